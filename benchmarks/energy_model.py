@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchmarks.report import machine, table, write_section
-from benchmarks.simulation import CASES
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from missions.flight_plan.conditions import Conditions, WindLayer
@@ -83,8 +82,15 @@ def modelled(flight: Flight) -> Timing:
 def own_rows() -> tuple[list[list[str]], list[str]]:
     """Flights of simulation/flight, and which miss the bar: that of windy flights, as its power knows no inflow."""
     rows, missed = [], []
+    wind = Conditions((WindLayer(10.0, 5.0, 270.0),))
+    airs = {
+        "calm": Weather(),
+        "wind 5 m/s": Weather(wind),
+        "wind 5 m/s, Dryden turbulence": Weather(wind, turbulence_mps_at_20ft=5.0),
+        "wind 5 m/s, gusts of 2 m/s": Weather(wind, gusts_mps=2.0),
+    }
     for code, speed_mps in (("iris", 5.0), ("inspector", 10.0)):
-        flights = [(f"square of 2 km, {case.name}", square_route(500.0, speed_mps), case.weather(270.0)) for case in CASES]
+        flights = [(f"square of 2 km, {name}", square_route(500.0, speed_mps), air) for name, air in airs.items()]
         flights += [
             ("5 times 60 m up and down", climbs(5, speed_mps), Weather()),
             ("10 holds of 20 s, 100 m apart", holds(10, speed_mps), Weather()),
@@ -128,7 +134,9 @@ def main() -> None:
         f"mean wind alone. {machine('numba', 'numpy')}\n\n{table(head, rows)}\n\nThe same model as plans have it, with the speeds up and "
         f"down of its rules, beside flights of both airframes of this program ([flight-simulation.md](flight-simulation.md)); the bar is "
         f"{100 * MOST_WINDY:.0f} % of energy. The simulated battery knows no inflow: level flight takes it as much as a hover, and a climb "
-        f"no more, where the model has less and more.\n\n{table(own_head, own)}"
+        "no more, where the model has less and more. Where the wind would ask for more than the airspeed that a UAV states, plans slow "
+        "down and the simulated autopilot does not yet: an Iris at 5 m/s in 8 m/s of wind is planned 10 % longer and with 17 % more energy "
+        f"than it takes.\n\n{table(own_head, own)}"
     )
     print(text)
     if options.write:

@@ -1,16 +1,15 @@
 """What plans say of time and battery beside what the same missions take in simulation.
 
-    python -m benchmarks.planned_and_flown [--missions 40] [--lines FILE.osm.pbf …] [--write]
+    python -m benchmarks.planned_and_flown [--missions 24] [--lines FILE.osm.pbf …] [--write]
 
 Missions past towers and back, with photos, looks and holds at some of them, along power lines of OSM files with --lines; each is timed as
 plans time it, by the mean wind and the rules' speeds up and down, and flown by JSBSim in three kinds of air, by the Iris or the Inspector.
 Beside it the same without what `Manoeuvres` count (missions/flight_plan/rules.py). With --write the table goes to docs/performance.md.
-Exits with 1 where the mean of a row is more than 10 % off, or where of 20 flights one takes over 10 % more than planned.
+Exits with 1 where the mean of a row is more than 10 % off, or where one of 20 flights takes over 10 % more than planned.
 """
 
 import argparse
 import multiprocessing
-import os
 import sys
 from collections.abc import Sequence
 from functools import partial
@@ -26,7 +25,7 @@ from simulation.flight.airframe import AIRFRAMES
 from tests.simulation.planned_flights import CALM, ROUGH, WINDY, air_of, compared, mission, planned_timing
 from tests.telemetry.estimation.routes import lines_of
 
-PROCESSES, NICE = 2, 15
+PROCESSES = 2
 MOST_MEAN, LEAST = 0.10, 0.90
 
 
@@ -59,12 +58,12 @@ def spread(ratios: Sequence[float]) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--missions", type=int, default=40)
+    parser.add_argument("--missions", type=int, default=24)
     parser.add_argument("--lines", type=Path, nargs="*", default=[])
     parser.add_argument("--write", action="store_true", help="into docs/performance.md")
     asked = parser.parse_args()
     lines = [line for path in asked.lines for line in lines_of(path)]
-    with multiprocessing.Pool(PROCESSES, os.nice, [NICE]) as pool:
+    with multiprocessing.Pool(PROCESSES) as pool:
         each = [one for many in pool.imap(partial(flown, lines=lines), range(asked.missions)) for one in many]
     rows, missed = [], []
     for code in AIRFRAMES:

@@ -4,9 +4,9 @@
 
 For each region a whole installation (./run) is started over its OpenStreetMap file, with a planned mission of two UAVs whose targets lie so
 far apart that a thousand towers stand in the picture. Chromium draws without a graphics card here, so that no frame rate says anything:
-counted are the draw calls of a frame (three.js), the milliseconds that our own code and three.js take for it in the page's main thread,
-and after each half minute of a playing view the heap after a collection and what the graphics hold. With --write the table goes to
-docs/performance.md. Exits with 1 where a bar is missed.
+counted are the draw calls of a frame (three.js), the milliseconds of processor time that scripts (our own code and three.js) take for it
+in the page's main thread, and after each half minute of a playing view the heap after a collection and what the graphics hold. With
+--write the table goes to docs/performance.md. Exits with 1 where a bar is missed.
 """
 
 import argparse
@@ -21,6 +21,7 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from datetime import date, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -37,18 +38,21 @@ DATA = PROJECT_DIR.parent / "shared" / "data" / "osm"
 REGIONS = {"columbus": "columbus-ohio.osm.pbf", "nepal": "nepal-power-2025.osm.pbf"}
 BAR_CALLS, BAR_SCRIPT_MS = 60, 8.0
 BAR_TOWERS = 1_000
+NEARLY_ALL = 0.85  # of a region that has fewer
 BAR_GROWTH = 1.05  # of the heap from the first third of the time to the last
 HALF_BOX_DEG = 0.13  # of the latitude, round the middle of the densest part
 TARGETS = 8
 SAMPLE_S = 30.0
 WARM_UP_S = 20.0
 PATIENCE_MS = 180_000
-VIEWS = {"all of it": ("f",), "from behind": ("c",), "round a target": ("o",)}
+VIEWPORT: Any = {"width": 960, "height": 600}  # what a frame costs the script does not go with its pixels
+VIEWS = {"all of it": ("f",), "from above": ("t", "f"), "from behind": ("c",), "round a target": ("o",)}
 
 
 @dataclass
 class Measured:
     region: str
+    of_region: int = 0  # its towers, all of them
     towers: int = 0
     calls: int = 0
     triangles: int = 0
@@ -65,7 +69,8 @@ class Measured:
     def is_passed(self) -> bool:
         is_flat = self.growth <= BAR_GROWTH and len(set(self.held)) <= 1
         is_quick = max(self.script_ms.values()) <= BAR_SCRIPT_MS
-        return self.towers >= BAR_TOWERS and self.calls <= BAR_CALLS and is_quick and is_flat
+        is_full = self.towers >= min(BAR_TOWERS, NEARLY_ALL * self.of_region)
+        return is_full and self.calls <= BAR_CALLS and is_quick and is_flat
 
 
 @contextmanager
@@ -93,7 +98,7 @@ def installation(osm_file: Path) -> Iterator[tuple[str, str]]:
 
 
 def signed_in(browser: Browser, address: str, password: str) -> Page:
-    context = browser.new_context(base_url=address, viewport={"width": 1440, "height": 900}, reduced_motion="no-preference")
+    context = browser.new_context(base_url=address, viewport=VIEWPORT, reduced_motion="no-preference")
     page = context.new_page()
     page.set_default_timeout(PATIENCE_MS)
     page.goto("/sign-in")
@@ -146,17 +151,19 @@ def spread_targets(places: np.ndarray) -> list[int]:
     return chosen
 
 
-def planned_mission(page: Page) -> str:
+def planned_mission(page: Page) -> tuple[str, int]:
+    """Its key, and how many towers the region has."""
     ids, places = towers_of(page)
     targets = spread_targets(places)
     starts = [places[targets[0]] + (0.002, 0.002), places[targets[1]] + (0.002, 0.002)]
     uavs = [posts(page, "/uavs", {"name": f"UAV {number}", "position": start.tolist()})["id"] for number, start in enumerate(starts)]
     body = {"name": "Benchmark", "uavs": [{"id": uav} for uav in uavs], "targets": [{"asset": ids[target]} for target in targets]}
-    mission = posts(page, "/missions", {**body, "return_to_start": False, "plan": True, "departs_at": "2030-06-20T15:00:00Z"})
+    departs_at = f"{date.today() + timedelta(days=20)}T15:00:00Z"
+    mission = posts(page, "/missions", {**body, "return_to_start": False, "plan": True, "departs_at": departs_at})
     until = time.monotonic() + PATIENCE_MS / 1_000
     while asks(page, f"/missions/{mission['id']}")["plan"] is None and time.monotonic() < until:
         time.sleep(1)
-    return str(mission["id"])
+    return str(mission["id"]), len(ids)
 
 
 def figures(page: Page) -> dict[str, float]:
@@ -168,6 +175,11 @@ def keeps_playing(page: Page) -> None:
         page.evaluate("document.querySelector('.scene-play').click()")
 
 
+def script_s(wire: CDPSession) -> float:
+    """Processor time that the page's main thread has spent in scripts."""
+    return next(float(metric["value"]) for metric in wire.send("Performance.getMetrics")["metrics"] if metric["name"] == "ScriptDuration")
+
+
 def heap_mb(wire: CDPSession) -> float:
     wire.send("HeapProfiler.collectGarbage")
     return float(wire.send("Runtime.getHeapUsage")["usedSize"]) / 1e6
@@ -175,25 +187,27 @@ def heap_mb(wire: CDPSession) -> float:
 
 def measure(page: Page, region: str, minutes: float) -> Measured:
     found = Measured(region)
-    mission = planned_mission(page)
+    mission, found.of_region = planned_mission(page)
     page.goto(f"/missions/{mission}/3d?source=plan")
     page.locator("html[data-loaded]").wait_for(state="attached")
     page.wait_for_function("() => spanwiseScene.figures()?.frames >= 0")
+    wire = page.context.new_cdp_session(page)
+    wire.send("Performance.enable", {"timeDomain": "threadTicks"})  # of the processor, however busy the machine is with other things
     for view, keys in VIEWS.items():
         for key in keys:
             page.keyboard.press(key)
         keeps_playing(page)
         page.wait_for_timeout(WARM_UP_S * 1_000 / 2)  # shaders are built with the first frames
         figures(page)
+        began_s = script_s(wire)
         page.wait_for_timeout(WARM_UP_S * 1_000)
-        told = figures(page)
+        told, ended_s = figures(page), script_s(wire)
         found.towers, found.calls = max(found.towers, int(told["towers"])), max(found.calls, int(told["calls"]))
         found.triangles = max(found.triangles, int(told["triangles"]))
-        found.script_ms[view] = told["script_ms"] / max(told["frames"], 1)
+        found.script_ms[view] = (ended_s - began_s) * 1_000 / max(told["frames"], 1)
         keeps_playing(page)
-        print(f"{region}, {view}: {told}", flush=True)
+        print(f"{region}, {view}: {found.script_ms[view]:.2f} ms of script a frame; {told}", flush=True)
     page.keyboard.press("c")
-    wire = page.context.new_cdp_session(page)
     wire.send("HeapProfiler.enable")
     for _ in range(round(minutes * 60 / SAMPLE_S)):
         until = time.monotonic() + SAMPLE_S
@@ -213,16 +227,21 @@ def report(rows: Sequence[Measured], minutes: float) -> str:
     head = ["region", "towers in the picture", "draw calls", "triangles", *of_views, "heap after a collection", "geometries, textures"]
     lines = [
         [
-            row.region, f"{row.towers:,}", str(row.calls), f"{row.triangles:,}", *(f"{row.script_ms[view]:.1f}" for view in VIEWS),
+            row.region,
+            f"{row.towers:,} of {row.of_region:,}",
+            str(row.calls),
+            f"{row.triangles:,}",
+            *(f"{row.script_ms[view]:.1f}" for view in VIEWS),
             f"{row.heap_mb[0]:.1f} to {row.heap_mb[-1]:.1f} MB" if row.heap_mb else "–",
             ", then ".join(f"{geometries}, {textures}" for geometries, textures in dict.fromkeys(row.held)) or "–",
         ]
         for row in rows
-    ]  # fmt: skip
+    ]
     words = (
-        f"`python -m benchmarks.scene --minutes {minutes:g}`: regions of OpenStreetMap, a planned mission of two UAVs, 1440 x 900, the view "
-        f"playing for {minutes:g} min. Bars: {BAR_TOWERS:,} towers in the picture, {BAR_CALLS} draw calls, {BAR_SCRIPT_MS:g} ms of script a "
-        "frame (our code and three.js, without the graphics), memory that does not grow. Drawn by the processor: no frame rate is told."
+        f"`python -m benchmarks.scene --minutes {minutes:g}`: regions of OpenStreetMap, a planned mission of two UAVs, the view "
+        f"playing for {minutes:g} min. Bars: {BAR_TOWERS:,} towers in the picture, or nearly all of a region that has fewer; "
+        f"{BAR_CALLS} draw calls; {BAR_SCRIPT_MS:g} ms of script a frame (our code and three.js, without the graphics), "
+        "of the processor's time; flat memory. Drawn by the processor: no frame rate is told."
     )
     return f"{words}\n\n{table(head, lines)}\n\n{machine('playwright')}"
 

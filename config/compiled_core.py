@@ -69,7 +69,7 @@ def _copy(source: Path, target: Path) -> None:
 
 def _processor() -> str:
     if named := os.environ.get("NUMBA_CPU_NAME"):  # an image is compiled for every processor of a level, not for the one at hand
-        return named
+        return f"{named} {os.environ.get('NUMBA_CPU_FEATURES', 'of its own')}"
     with suppress(OSError):
         for line in Path("/proc/cpuinfo").read_text().splitlines():
             if line.startswith("model name"):

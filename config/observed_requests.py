@@ -7,6 +7,7 @@ from time import perf_counter
 
 from django.conf import settings
 from django.http import HttpRequest, HttpResponse
+from django.utils.functional import SimpleLazyObject
 from prometheus_client import Counter, Histogram
 
 from config.health import PROBES
@@ -47,10 +48,19 @@ class ObservedRequests:
 
 
 def facts_of(request: HttpRequest, request_id: str) -> Facts:
-    """What is known once the address has been understood."""
+    """What is known once the address has been understood, and who asks once they have been looked up."""
     match = request.resolver_match
     named = {} if match is None else {_KWARGS[name]: str(value) for name, value in match.kwargs.items() if name in _KWARGS}
-    return {"request": request_id, **named}
+    return {"request": request_id, **_who(request), **named}
+
+
+def _who(request: HttpRequest) -> Facts:
+    """By number. Nobody is looked up for a line of log."""
+    user = getattr(request, "user", None)
+    if isinstance(user, SimpleLazyObject):
+        user = getattr(request, "_cached_user", None)  # where the session's middleware keeps whom it has looked up
+    key = getattr(user, "pk", None)
+    return {} if key is None else {"user": str(key)}
 
 
 def _count(request: HttpRequest, status: int, took_s: float) -> None:

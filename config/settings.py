@@ -8,6 +8,7 @@ from typing import Any
 
 import dj_database_url
 
+from config.log_settings import log_settings
 from config.mail import mail_settings
 from config.private_servers import broker_url, private_database_url, private_redis_url, state_directory
 from config.secret_files import secret
@@ -67,11 +68,15 @@ HTTPS = _flag("SPANWISE_HTTPS", default=False)
 SECURE_SSL_REDIRECT = HTTPS
 SESSION_COOKIE_SECURE = HTTPS
 CSRF_COOKIE_SECURE = HTTPS
+COOKIE_PREFIX = "__Host-" if HTTPS else ""  # browsers take such a cookie from this very host alone, and over TLS
+SESSION_COOKIE_NAME = f"{COOKIE_PREFIX}sessionid"
+CSRF_COOKIE_NAME = f"{COOKIE_PREFIX}csrftoken"
 SECURE_HSTS_SECONDS = 31_536_000 if HTTPS else 0
 SECURE_HSTS_INCLUDE_SUBDOMAINS = HTTPS
 SECURE_HSTS_PRELOAD = HTTPS
 SECURE_PROXY_SSL_HEADER = ("HTTP_X_FORWARDED_PROTO", "https") if HTTPS else None
 SECURE_REFERRER_POLICY = "strict-origin-when-cross-origin"  # public tile servers, OSM's among them, ask for an origin
+SESSION_COOKIE_AGE = int(_float("SPANWISE_SESSION_DAYS", 14) * 86_400)  # from signing in, however busy somebody is
 SESSION_COOKIE_HTTPONLY = True
 SESSION_COOKIE_SAMESITE = "Lax"
 X_FRAME_OPTIONS = "DENY"
@@ -435,15 +440,5 @@ SATELLITE_ATTRIBUTION = os.environ.get("SPANWISE_SATELLITE_ATTRIBUTION", "")
 # Hosts (host:port) that may be fetched from although they are not on the public internet, such as an Overpass of one's own.
 OUTGOING_ALLOWED_HOSTS = _list("SPANWISE_OUTGOING_ALLOWED_HOSTS", "")
 
-LOG_FORMAT = os.environ.get("SPANWISE_LOG_FORMAT", "line")  # or json
 LOG_REQUESTS = _flag("SPANWISE_LOG_REQUESTS", default=False)  # a line for each, for installations whose proxy writes none
-LOGGING = {
-    "version": 1,
-    "disable_existing_loggers": False,
-    "formatters": {
-        "line": {"()": "operation.log_lines.LineFormatter"},
-        "json": {"()": "operation.log_lines.JsonFormatter", "program": os.environ.get("SPANWISE_PROGRAM", "")},
-    },
-    "handlers": {"console": {"class": "logging.StreamHandler", "formatter": "json" if LOG_FORMAT == "json" else "line"}},
-    "root": {"handlers": ["console"], "level": os.environ.get("SPANWISE_LOG_LEVEL", "INFO")},
-}
+LOGGING = log_settings(os.environ)

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 
 REQUEST_ID_HEADER = "X-Request-ID"
-FIELDS = ("request", "mission", "uav", "job")
+FIELDS = ("request", "user", "mission", "uav", "job")
 ABOUT_REQUEST = "spanwise_about"  # what a request object itself knows of this, for lines that are written when it is over
 
 _SANE_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{7,63}")

@@ -8,9 +8,11 @@ from typing import Any
 from operation.log_context import ABOUT_REQUEST, FIELDS, facts
 from operation.redaction import without_secrets
 
+IN_ONE_LINE = {code: f"\\x{code:02x}" for code in (*range(32), 127, 0x85, 0x2028, 0x2029)} | {9: "\\t", 10: "\\n", 13: "\\r"}
+
 
 class LineFormatter(logging.Formatter):
-    """`2026-01-31 12:00:00,000 INFO name message [request=… mission=…]`."""
+    """`2026-01-31 12:00:00,000 INFO name message [request=… mission=…]`. Whatever the message holds, it begins no line of its own."""
 
     def __init__(self) -> None:
         super().__init__("{asctime} {levelname} {name} {message}", style="{")
@@ -19,6 +21,7 @@ class LineFormatter(logging.Formatter):
         return without_secrets(super().format(record))
 
     def formatMessage(self, record: logging.LogRecord) -> str:  # noqa: N802 (as logging has it)
+        record.message = record.message.translate(IN_ONE_LINE)
         line = super().formatMessage(record)
         named = " ".join(f"{name}={value}" for name, value in named_in(record).items())
         return f"{line} [{named}]" if named else line
@@ -45,7 +48,7 @@ class JsonFormatter(logging.Formatter):
             told["exception"] = without_secrets(self.formatException(record.exc_info))
         if record.stack_info:
             told["stack"] = without_secrets(record.stack_info)
-        return json.dumps(told, ensure_ascii=False, default=str)
+        return json.dumps(told, default=str)  # in ASCII: some programs take other signs for the end of a line
 
 
 def named_in(record: logging.LogRecord) -> dict[str, str]:

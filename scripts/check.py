@@ -36,6 +36,7 @@ WAITING_TESTS = (  # for other processes, more than they compute: beside the oth
     "tests/telemetry/gateway", "tests/telemetry/live", "tests/telemetry/watch", "tests/telemetry/test_companion.py",
     "tests/telemetry/test_command_delivery.py",
     "tests/missions/test_lost_planners.py", "tests/inspection/test_lost_workers.py", "tests/workspace/test_live.py", "tests/scripts",
+    "tests/config/test_drained_workers.py",
     "tests/simulation/test_fleet.py", "tests/simulation/test_mavproxy.py", "tests/simulation/test_mavsdk.py",
     "tests/simulation/test_pool_connections.py", "tests/simulation/test_simulator.py", "tests/simulation/test_through_the_gateway.py",
 )  # fmt: skip

@@ -10,6 +10,7 @@ from scripts.proxy_site import ALIVE, Site, entrances, plain_server, quoted, ups
 
 MOST_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
+CONNECT_S = 1  # to a program in the same house; its backlog is long
 LARGEST_BODY = "8m"  # above the application's own limit, so that it answers in its own words
 
 # A machine's mime.types may be missing, or old: a module that is not sent as JavaScript is not run.
@@ -68,7 +69,7 @@ def _proxied(
             proxy_set_header Host $http_host;
             proxy_set_header X-Forwarded-For $visitor;
             proxy_set_header X-Forwarded-Proto {scheme};
-            proxy_connect_timeout 5s;
+            proxy_connect_timeout {CONNECT_S}s;
             proxy_read_timeout 120s;
             proxy_next_upstream {again};
             proxy_buffers 16 32k;
@@ -172,12 +173,13 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
         too_large="This is more than Spanwise takes in one request.",
     )
     # Compressing makes an ETag weak, and a weak one never matches in If-Match: edits of missions would all be refused.
-    places_of_edits = _proxied("~ ^/api/v1/missions", "api", headers, scheme, to=web, compression="off")
+    again = "error" if site.web[0].startswith("unix:") else "error timeout"  # a machine that has gone refuses nothing
+    places_of_edits = _proxied("~ ^/api/v1/missions", "api", headers, scheme, to=web, compression="off", again=again)
     # A plan that was asked for changes nothing: when its program dies over it, another one is asked.
-    plans = _proxied("= /api/v1/plans", "api", headers, scheme, to=web, again="error non_idempotent")
-    api = _proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme, to=web)
-    links = _proxied("~ ^/(new-password|invitation)/", "page", headers, scheme, to=web, faults="emerg")
-    pages = _proxied("/", "page", headers, scheme, to=web)
+    plans = _proxied("= /api/v1/plans", "api", headers, scheme, to=web, again=f"{again} non_idempotent")
+    api = _proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme, to=web, again=again)
+    links = _proxied("~ ^/(new-password|invitation)/", "page", headers, scheme, to=web, faults="emerg", again=again)
+    pages = _proxied("/", "page", headers, scheme, to=web, again=again)
     return f"""{"user root;" if os.geteuid() == 0 else ""}
 daemon off;
 pid {quoted(folder / "nginx.pid")};

@@ -11,7 +11,7 @@ from django.conf import settings
 from django.core import signing
 from django.http import HttpRequest, HttpResponse
 
-COOKIE = "spanwise_known"
+COOKIE = f"{settings.COOKIE_PREFIX}spanwise_known"
 SALT = "workspace.known_browsers"
 KEPT_S = 180 * 24 * 3_600
 MOST_PEOPLE = 5  # of one browser

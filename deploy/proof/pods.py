@@ -1,6 +1,5 @@
 """Deployments of the shipped YAML as podman pods: what is changed for one machine without a cluster, and what is then seen of them."""
 
-import base64
 import contextlib
 import copy
 import http.client
@@ -20,6 +19,7 @@ from scripts.places import PROJECT_DIR
 Manifest = dict[str, Any]
 PODMAN_SETTINGS = """[containers]
 default_ulimits=["nofile=4096:4096","nproc=4096:4096"]
+log_driver="k8s-file"
 [engine]
 runtime="runc"
 cgroup_manager="cgroupfs"
@@ -39,6 +39,10 @@ class Podman:
         if check and done.returncode != 0:
             raise RuntimeError(f"podman {' '.join(arguments[:4])}: {done.stderr.strip()[-2000:]}")
         return done.stdout.strip()
+
+    def logs(self, container: str) -> str:
+        done = subprocess.run(["podman", "logs", container], env=self._environment, capture_output=True, text=True, check=False)
+        return done.stdout + done.stderr
 
 
 def shipped(overlay: str) -> list[Manifest]:
@@ -60,7 +64,10 @@ class Pod:
     number: int
     manifest: Manifest
     probes: dict[str, Any]
+    ports: dict[str, int]
+    settings: dict[str, str]
     address: str = ""
+    began_s: float = 0.0
     ready_s: float = -1.0
     exit_s: float = -1.0
     faults: list[str] = field(default_factory=list)
@@ -82,15 +89,14 @@ class Site:
     manifests: list[Manifest]
     image: str
     files: Path
-    secrets: dict[str, str]
-    trust: str
+    secrets: dict[str, Path]  # folders by the names of secrets
     gateway: str
     settings: dict[str, str]
 
-    def pod(self, program: str, number: int, **more: str) -> Pod:
-        """The Deployment or Job as it is shipped, with these changes: the image of this machine; a folder for the claim; addresses in
-        place of names that a cluster resolves; the kubelet's probes are asked by this program, since podman asks with a curl that the
-        image does not have.
+    def pod(self, program: str, number: int, **own: str) -> Pod:
+        """The Deployment or Job as it is shipped, with these changes: the image of this machine; folders for the claim and for secrets
+        (older podmans do not decode these); addresses in place of names that a cluster resolves; the kubelet's probes are asked by this
+        program, since podman asks with a curl that the image does not have.
         """
         kind = "Job" if program == "migrate" else "Deployment"
         deployment = copy.deepcopy(_found(self.manifests, kind, program))
@@ -98,49 +104,62 @@ class Site:
         container = template["spec"]["containers"][0]
         probes = {name: container.pop(name) for name in ("startupProbe", "livenessProbe", "readinessProbe") if name in container}
         container.pop("lifecycle", None)
+        ports = {entry["name"]: entry["containerPort"] for entry in container.pop("ports", [])}  # podman would take them on this machine
         container["image"] = self.image
-        container.setdefault("env", []).extend({"name": name, "value": value} for name, value in more.items())
         template["spec"]["hostAliases"] = [{"ip": self.gateway, "hostnames": ["postgresql", "redis"]}]
         for volume in template["spec"].get("volumes", []):
             if "persistentVolumeClaim" in volume:
                 volume.pop("persistentVolumeClaim")
                 volume["hostPath"] = {"path": str(self.files), "type": "Directory"}
+            if "secret" in volume:
+                volume["hostPath"] = {"path": str(self.secrets[volume.pop("secret")["secretName"]]), "type": "Directory"}
         name = f"proof-{program}-{number}"
         whole = {"apiVersion": "apps/v1", "kind": "Deployment", "metadata": {"name": name}, "spec": {"replicas": 1, "template": template}}
         template["spec"]["restartPolicy"] = "Never" if program == "migrate" else "Always"
         whole["spec"]["selector"] = {"matchLabels": template["metadata"]["labels"]}
-        return Pod(program, number, whole, probes)
+        return Pod(program, number, whole, probes, ports, own)
 
-    def beside(self) -> list[Manifest]:
-        """The settings as they are shipped, with this site's own, and the secrets."""
+    def settings_of(self, pod: Pod) -> Manifest:
+        """The settings as they are shipped, with this site's own and the pod's."""
         settings = copy.deepcopy(_found(self.manifests, "ConfigMap", "settings"))
-        settings["data"] |= self.settings
-        return [settings, _secret("secrets", self.secrets), _secret("trust", {"ca.crt": self.trust})]
+        settings["data"] |= self.settings | pod.settings
+        return settings
 
     def start(self, pod: Pod, folder: Path) -> None:
         path = folder / f"{pod.name}.yaml"
-        path.write_text(yaml.safe_dump_all([*self.beside(), pod.manifest]))
-        path.chmod(0o600)
-        self.podman("play", "kube", str(path))
+        path.write_text(yaml.safe_dump_all([self.settings_of(pod), pod.manifest]))
+        pod.began_s = time.monotonic()
+        # A pod that is started again has the address that it had: here no name leads to it.
+        self.podman("play", "kube", *(["--ip", pod.address] if pod.address else []), str(path))
         networks = json.loads(self.podman("inspect", pod.container, "--format", "{{json .NetworkSettings.Networks}}"))
         pod.address = next(iter(networks.values()))["IPAddress"]
+
+    def start_again(self, pod: Pod, folder: Path) -> None:
+        """What a Deployment does when a pod has ended."""
+        self.end(pod)
+        self.start(pod, folder)
 
     def end(self, pod: Pod) -> None:
         with contextlib.suppress(RuntimeError):
             self.podman("pod", "rm", "--force", "--time", "1", f"{pod.name}-pod-0")
 
 
-def _secret(name: str, values: dict[str, str]) -> Manifest:
-    data = {key: base64.b64encode(value.encode()).decode() for key, value in values.items()}
-    return {"apiVersion": "v1", "kind": "Secret", "metadata": {"name": name}, "data": data}
+def secret_folder(folder: Path, values: dict[str, str], user: int) -> Path:
+    """Files that this user alone can read."""
+    folder.mkdir()
+    for name, value in values.items():
+        path = folder / name
+        path.touch(mode=0o400)
+        path.write_text(value)
+        os.chown(path, user, user)
+    os.chown(folder, user, user)
+    return folder
 
 
 def answers(pod: Pod, probe: str, timeout_s: float = 5.0) -> bool:
     """Whether the pod passes a probe of its Deployment now, as a kubelet would ask it."""
     asked = pod.probes[probe]["httpGet"]
-    ports = pod.manifest["spec"]["template"]["spec"]["containers"][0]["ports"]
-    port = next(entry["containerPort"] for entry in ports if entry["name"] == asked["port"])
-    connection = http.client.HTTPConnection(pod.address, port, timeout=timeout_s)
+    connection = http.client.HTTPConnection(pod.address, pod.ports[asked["port"]], timeout=timeout_s)
     try:
         connection.request("GET", asked["path"])
         return 200 <= connection.getresponse().status < 400
@@ -150,17 +169,17 @@ def answers(pod: Pod, probe: str, timeout_s: float = 5.0) -> bool:
         connection.close()
 
 
-def wait_until_ready(pods: list[Pod], began_s: float, patience_s: float) -> None:
-    """Notes for each how long it took from `began_s` (monotonic)."""
-    waiting = list(pods)
-    while waiting and time.monotonic() - began_s < patience_s:
+def wait_until_ready(pods: list[Pod], patience_s: float) -> None:
+    """Notes for each how long it took from its own start."""
+    waiting, end_s = list(pods), time.monotonic() + patience_s
+    while waiting and time.monotonic() < end_s:
         for pod in list(waiting):
-            if answers(pod, "readinessProbe"):
-                pod.ready_s = time.monotonic() - began_s
+            if answers(pod, "startupProbe") and answers(pod, "readinessProbe"):
+                pod.ready_s = time.monotonic() - pod.began_s if pod.ready_s < 0 else pod.ready_s  # the first time counts
                 waiting.remove(pod)
         time.sleep(0.2)
-    for pod in waiting:
-        pod.faults.append(f"not ready after {patience_s:.0f} s")
+    if waiting:
+        raise TimeoutError(f"not ready after {patience_s:.0f} s: {', '.join(pod.name for pod in waiting)}")
 
 
 def look_at_rights(podman: Podman, pod: Pod) -> None:

@@ -24,16 +24,17 @@ from inspection.selectors.assets import Box, area_of
 from inspection.selectors.ground_data import supports_and_lines
 from inspection.selectors.terrain import ground_heights_m
 from inspection.selectors.terrain_models import finest_step_m, terrain_models
-from inspection.selectors.zone_table import ground_range_m
+from inspection.selectors.zone_table import zone_table
 
 RECIPE = 1  # part of the ETag: counts the changes to what a scene holds
 SHORTEST_SIDE_M, LONGEST_SIDE_M = 50.0, 40_000.0
 NEAREST_POLE_DEG = 85.0
-MOST_POSTS = 193  # of the ground, along each side
-AROUND_M = 1_500.0  # railways, bridges and zones reach so far beyond the box
+MOST_POSTS = 225  # of the ground, along each side
+AROUND_M = 1_500.0  # ground, railways, bridges and zones reach so far beyond the box
 REACH_DEG = 0.15  # a span is not longer than that in degrees
 MOST_SUPPORTS, MOST_SPANS, MOST_RAILWAYS, MOST_BRIDGES, MOST_ZONES = 4_000, 6_000, 1_500, 1_500, 200
-SIMPLER_DEG = 5e-6  # half a metre: of the outlines of zones
+SIMPLER_DEG, COARSEST_DEG = 5e-6, 1e-3  # half a metre to a hundred: of the outlines of zones
+MOST_CORNERS = 4_000  # of a zone
 
 Row = TypeVar("Row", Asset, NoFlyZone)
 
@@ -66,11 +67,12 @@ class SceneBridge:
 
 @dataclass(frozen=True, eq=False)
 class SceneZone:
-    """ground_is_known: under all of it, as planners ask before they compare heights above the sea with it."""
+    """A limit is open where planners count it so: not stated, counted from elsewhere, or above the sea over unknown ground."""
 
     zone: NoFlyZone
     shape: shapely.geometry.base.BaseGeometry
-    ground_is_known: bool
+    lower_is_open: bool
+    upper_is_open: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,8 +114,8 @@ def check_box(box: Box) -> None:
 def scene_in(box: Box) -> Scene:
     """Raises UnfitBox."""
     check_box(box)
-    ground = _ground(box)
     clip = _wider(box, AROUND_M)
+    ground = _ground(clip)
     west, south, east, north = box
     middle = np.array([(west + east) / 2, (south + north) / 2])
     found, left_out = _overhead(box, middle)
@@ -142,8 +144,8 @@ def scene_in(box: Box) -> Scene:
         spans=spans,
         assets=assets,
         railways=kept_railways,
-        bridges=[_bridge(asset, shape, ground) for asset, shape in kept_bridges],
-        zones=[_zone(zone, shape) for zone, shape in kept_zones],
+        bridges=_bridges(kept_bridges, ground),
+        zones=_zones(kept_zones),
         left_out=left_out,
     )
 
@@ -228,9 +230,18 @@ def _shape(row: Asset | NoFlyZone, clip: Box) -> shapely.geometry.base.BaseGeome
     if isinstance(row, Asset) and row.kind == AssetKind.BRIDGE:
         return shape
     if isinstance(row, NoFlyZone):
-        simpler = shapely.simplify(shape, SIMPLER_DEG)
-        shape = simpler if shapely.is_valid(simpler) and not simpler.is_empty else shape
+        return _with_fewer_corners(shapely.intersection(shape, shapely.box(*clip)))
     return shapely.intersection(shape, shapely.box(*clip))
+
+
+def _with_fewer_corners(shape: shapely.geometry.base.BaseGeometry) -> shapely.geometry.base.BaseGeometry:
+    """Half a metre off at most, or as much as it takes to have no more than MOST_CORNERS."""
+    tolerance_deg = SIMPLER_DEG
+    while True:
+        simpler = shapely.simplify(shape, tolerance_deg)
+        if shapely.get_num_coordinates(simpler) <= MOST_CORNERS or tolerance_deg > COARSEST_DEG:
+            return shape if simpler.is_empty or not shapely.is_valid(simpler) else simpler
+        tolerance_deg *= 2
 
 
 def _nearest(
@@ -254,9 +265,15 @@ def _nearest_places(position: FloatArray, middle: FloatArray, most: int) -> "np.
     return stays
 
 
-def _bridge(asset: Asset, shape: shapely.geometry.base.BaseGeometry, ground: SceneGround) -> SceneBridge:
-    """height_m is what planners count as its top."""
-    edge_m = _told(shapely.get_coordinates(shape), ground)
+def _bridges(rows: list[tuple[Asset, shapely.geometry.base.BaseGeometry]], ground: SceneGround) -> list[SceneBridge]:
+    edges, number = shapely.get_coordinates(np.array([shape for _, shape in rows], dtype=object), return_index=True)
+    edges_m = _told(edges, ground)
+    firsts = np.searchsorted(number, np.arange(1, len(rows)))
+    return [_bridge(asset, shape, own_m) for (asset, shape), own_m in zip(rows, np.split(edges_m, firsts), strict=False)]
+
+
+def _bridge(asset: Asset, shape: shapely.geometry.base.BaseGeometry, edge_m: FloatArray) -> SceneBridge:
+    """height_m is what planners count as its top. edge_m: the ground at its corners."""
     tags = asset.tags or (asset.parts[0]["tags"] if asset.parts else {})
     if asset.height_m is not None:
         deck_m, source = float(edge_m.mean()) + asset.height_m, "tag"
@@ -266,7 +283,11 @@ def _bridge(asset: Asset, shape: shapely.geometry.base.BaseGeometry, ground: Sce
     return SceneBridge(asset, shape, deck_m, source, height_m, "assumed" if asset.height_m is None else "tag")
 
 
-def _zone(zone: NoFlyZone, shape: shapely.geometry.base.BaseGeometry) -> SceneZone:
-    needs_ground = "AMSL" in {zone.lower_reference, zone.upper_reference}
-    is_known = not needs_ground or not math.isnan(ground_range_m(shapely.from_wkb(bytes(zone.wkb)))[0])
-    return SceneZone(zone, shape, is_known)
+def _zones(rows: list[tuple[NoFlyZone, shapely.geometry.base.BaseGeometry]]) -> list[SceneZone]:
+    table = zone_table()
+    bands = dict(zip(table.ids.tolist(), zip(table.floor_agl_m.tolist(), table.ceiling_agl_m.tolist(), strict=True), strict=True))
+    found = []
+    for zone, shape in rows:
+        floor_m, ceiling_m = bands.get(zone.pk, (-math.inf, math.inf))
+        found.append(SceneZone(zone, shape, not math.isfinite(floor_m), not math.isfinite(ceiling_m)))
+    return found

@@ -9,7 +9,7 @@ from rest_framework import serializers
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.graph.flown_heights import UNTAGGED_HEIGHT_M
 from inspection.graph.inspection_graph import NodeKind
-from inspection.models import Asset, NoFlyZone
+from inspection.models import Asset
 from inspection.scene.sag import CATENARY_M, EARTH_SHARE, MOST_OF_HEIGHT
 from inspection.scene.supports import DrawnSpan, DrawnSupport
 from inspection.selectors import asset_label
@@ -62,7 +62,6 @@ class SupportSerializer(serializers.Serializer):
 class SpanSerializer(serializers.Serializer):
     """Wires between two supports; never above the straight line between their tops."""
 
-    start = serializers.IntegerField(source="from", help_text="place in supports")
     to = serializers.IntegerField(help_text="place in supports")
     lines = serializers.ListField(child=serializers.IntegerField())
     voltage_v = serializers.IntegerField(allow_null=True)
@@ -72,8 +71,8 @@ class SpanSerializer(serializers.Serializer):
     sag_m = serializers.FloatField(help_text="of a phase in the middle, below the straight line between its ends")
 
     def get_fields(self) -> dict[str, Any]:
-        fields = super().get_fields()
-        return {"from": fields.pop("start"), **fields}
+        """With the one whose name Python keeps for itself."""
+        return {"from": serializers.IntegerField(help_text="place in supports"), **super().get_fields()}
 
 
 class RailwaySerializer(serializers.Serializer):
@@ -244,14 +243,13 @@ def _bridge_json(bridge: SceneBridge) -> dict[str, Any]:
 
 def _zone_json(scene_zone: SceneZone) -> dict[str, Any]:
     zone = scene_zone.zone
-    lower, upper = zone_limits(zone, scene_zone.ground_is_known)
     return {
         "id": zone.pk,
         "name": zone.name,
         "restriction": zone.restriction,
         "polygons": _polygons(scene_zone.shape),
-        "lower": lower,
-        "upper": upper,
+        "lower": _limit(zone.lower_limit_m, zone.lower_reference, scene_zone.lower_is_open),
+        "upper": _limit(zone.upper_limit_m, zone.upper_reference, scene_zone.upper_is_open),
         "lower_limit": limit_json(zone.lower_limit_m, zone.lower_reference),
         "upper_limit": limit_json(zone.upper_limit_m, zone.upper_reference),
         "schedule": zone.schedule,
@@ -259,20 +257,8 @@ def _zone_json(scene_zone: SceneZone) -> dict[str, Any]:
     }
 
 
-def zone_limits(zone: NoFlyZone, ground_is_known: bool) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Lower and upper limit as planners count them: see inspection/zones/reach.py."""
-    return (
-        _limit(zone.lower_limit_m, zone.lower_reference, ground_is_known),
-        _limit(zone.upper_limit_m, zone.upper_reference, ground_is_known),
-    )
-
-
-def _limit(value_m: float | None, reference: str, ground_is_known: bool) -> dict[str, Any]:
-    if value_m is not None and reference == "AGL":
-        return {"above": "ground", "m": value_m}
-    if value_m is not None and reference == "AMSL" and ground_is_known:
-        return {"above": "sea", "m": value_m}
-    return {"above": "open", "m": None}
+def _limit(value_m: float | None, reference: str, is_open: bool) -> dict[str, Any]:
+    return {"above": "open", "m": None} if is_open else {"above": "ground" if reference == "AGL" else "sea", "m": value_m}
 
 
 def _metres(values: tuple[float, ...]) -> list[float]:

@@ -1,6 +1,5 @@
 """A route as a file has it: read, checked, and made the mission items that a vehicle would be given."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -78,6 +77,13 @@ def _position(value: Any, place: str) -> LonLat:
 def _number(value: Any, place: str, least: float, most: float) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise InvalidRoute(f"{place} must be a number.")
-    if not (least <= value <= most and math.isfinite(value)):
-        raise InvalidRoute(f"{place} must be from {least:g} to {most:g}, not {value:g}.")
+    if not least <= value <= most:  # also of NaN; whole numbers may have hundreds of digits
+        raise InvalidRoute(f"{place} must be from {least:g} to {most:g}, not {_shown(value)}.")
     return float(value)
+
+
+def _shown(value: float) -> str:
+    try:
+        return f"{value:g}"
+    except OverflowError:
+        return "a number so large"

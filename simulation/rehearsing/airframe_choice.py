@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.power import power_w
 
+AS_FAST_SHARE = 0.8  # of the planned speed
+
 
 @dataclass(frozen=True)
 class Candidate:
@@ -26,12 +28,12 @@ def endurance_min(performance: Performance) -> float | None:
 def nearest_airframe(performance: Performance, speed_mps: float, candidates: Iterable[Candidate]) -> str:
     """The code of the one whose mass, and endurance where it is known, differ least as ratios; the first of equals.
 
-    Of a UAV whose battery is not known only those are looked at that fly at its speed, or else the fastest: there a slower one would say
-    nothing but that it comes late. Where a battery is known, it has to be drained as by a UAV of that mass.
+    Of a UAV whose battery is not known only those are looked at that fly about as fast, or else the fastest: a much slower one would say
+    little but that it comes late. Where a battery is known, it has to be drained as by a UAV of that mass.
     """
     own_min, candidates = endurance_min(performance), tuple(candidates)
     if own_min is None:
-        wanted_mps = min(speed_mps, max(candidate.max_speed_mps for candidate in candidates))
+        wanted_mps = min(AS_FAST_SHARE * speed_mps, max(candidate.max_speed_mps for candidate in candidates))
         candidates = tuple(candidate for candidate in candidates if candidate.max_speed_mps >= wanted_mps)
 
     def differs(candidate: Candidate) -> float:

@@ -81,7 +81,7 @@ async function problemOf(response) {
 export async function request(method, path, { body, bytes, headers = {}, signal, keepalive = false } = {}) {
   const address = path.startsWith("http") || path.startsWith("/api/") ? path : ROOT + path;
   const send = { method, signal, keepalive, credentials: "same-origin", headers: { Accept: "application/json", ...headers } };
-  if (method !== "GET") send.headers["X-CSRFToken"] = cookie("csrftoken");
+  if (method !== "GET") send.headers["X-CSRFToken"] = cookie("__Host-csrftoken") || cookie("csrftoken"); // the first over https
   if (body !== undefined) {
     send.headers["Content-Type"] = "application/json";
     send.body = JSON.stringify(body);

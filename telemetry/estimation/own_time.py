@@ -9,6 +9,7 @@ from bisect import bisect_right
 from dataclasses import dataclass, field
 
 SLOWEST, FASTEST = 0.05, 100.0  # what is learnt beyond is no clock's rate
+SAME_RATE = 0.02  # by which what is learnt of one rate may differ from time to time
 RATES_KEPT = 32
 
 
@@ -35,7 +36,7 @@ class OwnTime:
     def run_at(self, rate: float | None, from_s: float) -> None:
         """From a moment of the server's clock on. None, and what cannot be: as the server's."""
         rate = believed_rate(rate)
-        if rate == self.rate:
+        if abs(rate - self.rate) <= SAME_RATE * self.rate:
             return
         last = self._stretches[-1]
         from_s = max(from_s, last.server_s)

@@ -286,3 +286,21 @@ def test_a_viewer_looks_and_changes_nothing_on_a_phone(visitor: Visitor, picture
         expect(page.get_by_role("button", name=name)).to_have_count(0)
     page.get_by_role("button", name="All of them").tap()
     expect(page.get_by_role("link", name="Sanderling")).to_be_visible()
+
+
+def test_it_is_said_which_simulated_airframe_flies_for_a_type(visitor: Visitor, picture: Picture) -> None:
+    page = visitor.signs_in("opal")
+    made = writes(page, "POST", "/uav-types", {"name": "Bench quad", "cruise_speed_mps": 10.0, "mass_kg": 1.5, "battery_wh": 60.0})["id"]
+    fleet(page, f"?tab=types&id={made}")
+    choice = details(page).get_by_role("combobox", name="Simulated airframe")
+    expect(choice).to_have_value("")
+    expect(details(page)).to_contain_text("Iris: 1.5")
+    choice.select_option(label="Inspector")
+    expect(page.get_by_text("In simulation Inspector flies for Bench quad.")).to_be_visible()
+    expect(details(page)).to_contain_text("Inspector: ")
+    assert asks(page, f"/uav-types/{made}/airframe") == {"airframe": "inspector", "flown": "inspector"}
+    choice.scroll_into_view_if_needed()
+    picture(page, "type-airframe")
+    assert faults(page) == []
+    viewer = fleet(visitor.signs_in("vera"), f"?tab=types&id={made}")
+    expect(details(viewer).get_by_role("combobox", name="Simulated airframe")).to_be_disabled()

@@ -54,6 +54,7 @@ def asked_for_rehearsals(visitor: Visitor) -> Iterator[None]:
         yield
     finally:
         writes(page, "PUT", "/rehearsal-rule", {"requires_green": False})
+    visitor.complaints[:] = [words for words in visitor.complaints if "409 (Conflict)" not in words]  # the refusal that is looked for
 
 
 def opened(page: Page, key: str) -> Page:
@@ -140,7 +141,7 @@ def test_a_mission_into_14_mps_of_wind_is_refused_with_the_reason(visitor: Visit
     panel.get_by_role("button", name="Rehearse", exact=True).click()
     expect(panel.locator("#rehearsal-sentence")).to_have_text(re.compile("fails?: As planned"), timeout=FLIGHT_MS)
     expect(panel.locator(".rehearsal-reasons")).to_contain_text(
-        re.compile(r"wind of 14\.0 m/s at 10 m, it flies [\d.]+ m/s through the air at most")
+        re.compile(r"wind of 14\.0 m/s at \d+ m, it flies [\d.]+ m/s through the air at most")
     )
     picture(page, "rehearsal-wind")
     with asked_for_rehearsals(visitor):

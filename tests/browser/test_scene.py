@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
@@ -18,6 +19,7 @@ Picture = Callable[[Page, str], None]
 PATIENCE_MS = 60_000  # pictures are drawn by the processor here
 FLIGHT_S = 120
 START = [-82.9655, 39.9125]
+DEPARTS_AT = (datetime.now(UTC) + timedelta(days=20)).replace(hour=15, minute=0, second=0, microsecond=0)
 NO_WEBGL = """
     const own = HTMLCanvasElement.prototype.getContext;
     HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
@@ -38,12 +40,12 @@ def rehearsed(visitor: Visitor, site: Site) -> tuple[str, str]:
     """Keys of a mission with one short flight to a tower, and of its rehearsal in calm air; flown once for all tests."""
     if site.address not in _rehearsed:
         page = visitor.signs_in("ada")
-        uav = posts(page, "/uavs", {"name": "Dunlin", "position": START, "is_simulated": True})["id"]
+        uav = posts(page, "/uavs", {"name": "Eider", "position": START, "is_simulated": True})["id"]
         towers = asks(page, "/assets?kind=tower&bbox=-82.98,39.90,-82.95,39.925&limit=100")["features"]
         nearest = min(towers, key=lambda tower: sum((a - b) ** 2 for a, b in zip(tower["geometry"]["coordinates"], START, strict=True)))
         body: dict[str, Any] = {
             "name": "One tower", "uavs": [{"id": uav}], "targets": [{"asset": nearest["id"]}], "return_to_start": True, "plan": True,
-            "departs_at": "2030-06-20T15:00:00Z",
+            "departs_at": DEPARTS_AT.isoformat(),
         }  # fmt: skip
         mission = posts(page, "/missions", body)["id"]
         rehearsal = posts(page, f"/missions/{mission}/rehearsals", {"conditions": ["calm"]})["id"]
@@ -70,10 +72,9 @@ def test_a_rehearsal_is_seen_in_space_kept_as_a_picture_and_linked(visitor: Visi
     page = seen(visitor.signs_in("vera"), f"/missions/{mission}/3d")  # without a flight on record: the newest rehearsal
     canvas = page.get_by_role("img", name=re.compile("^3D view: 1 UAV"))
     instruments = page.get_by_role("region", name="Instruments")
-    expect(instruments).to_contain_text("Dunlin", timeout=PATIENCE_MS)
+    expect(instruments).to_contain_text("Eider", timeout=PATIENCE_MS)
     expect(page.get_by_text("Simulated", exact=True)).to_be_visible()
-    page.keyboard.press(".")
-    page.keyboard.press(".")  # its target is reached
+    page.keyboard.press(".")  # from the take-off on: its target is reached
     expect(instruments.locator("[data-reading=task]")).to_contain_text("A1", timeout=PATIENCE_MS)
     expect(instruments.locator("[data-reading=wire]")).to_contain_text("m", timeout=PATIENCE_MS)
     page.keyboard.press("o")
@@ -81,9 +82,9 @@ def test_a_rehearsal_is_seen_in_space_kept_as_a_picture_and_linked(visitor: Visi
     expect(canvas).to_have_attribute("aria-label", re.compile("Round a target A1"), timeout=PATIENCE_MS)
     with page.expect_download(timeout=PATIENCE_MS) as kept:
         page.keyboard.press("p")
-    assert kept.value.suggested_filename.startswith("one-tower-20300620")
+    assert kept.value.suggested_filename.startswith(f"one-tower-{DEPARTS_AT:%Y-%m-%d}-15")
     assert kept.value.path().read_bytes().startswith(b"\x89PNG")
-    expect(page).to_have_url(re.compile(rf"source=rehearsal:{rehearsal}:0&t=2030-06-20T15.*camera=orbit"), timeout=PATIENCE_MS)
+    expect(page).to_have_url(re.compile(rf"source=rehearsal:{rehearsal}:0&t={DEPARTS_AT:%Y-%m-%d}T15.*camera=orbit"), timeout=PATIENCE_MS)
     clock = page.locator(".scene-clock").text_content()
     assert faults(page) == []
     other = seen(visitor.signs_in("opal"), page.url)

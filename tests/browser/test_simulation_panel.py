@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import TOO_WIDE, asks
+from tests.browser.operator_map import TOO_WIDE, asks, wait_for_map
 from tests.browser.pictures import Picture
 from tests.browser.simulated_mission import (
     SOON_MS,
@@ -49,16 +49,16 @@ def test_simulated_uavs_are_started_changed_and_ended_one_by_one(visitor: Visito
     panel = panel_of(page)
     expect(panel.locator("#simulation-state")).to_contain_text("start them here")
     picture(page, "simulation-before")
-    flies_in_simulation(page, "5 times real time")
+    flies_in_simulation(page, "5× real time")
     expect(panel.locator("#simulation-state")).to_have_text("2 simulated UAVs at 5 times real time.")
     expect(panel.locator(".simulation-uavs li")).to_have_count(2)
-    panel.get_by_role("combobox", name="Pace").select_option(label="2 times real time")
+    panel.get_by_role("combobox", name="Pace").select_option(label="2× real time")
     expect(panel.locator("#simulation-state")).to_contain_text("at 2 times real time", timeout=SOON_MS)
 
     panel.get_by_label("Wind and faults of").select_option(label="Ruff")
-    panel.get_by_label("Wind", exact=True).fill("9")
-    panel.get_by_label("From").fill("180")
-    panel.get_by_label("Gusts").fill("2")
+    panel.get_by_role("spinbutton", name="Speed").fill("9")
+    panel.get_by_role("spinbutton", name="From").fill("180")
+    panel.get_by_role("spinbutton", name="Gusts").fill("2")
     panel.get_by_role("button", name="Set the wind").click()
     expect(page.locator("#spoken")).to_have_text("The wind has changed.")
     expect(panel.locator(".simulation-uavs li").filter(has_text="Ruff")).to_contain_text("wind 9 m/s from 180°, gusts 2 m/s")
@@ -116,14 +116,15 @@ def test_the_panel_obeys_the_readers_units_and_language(visitor: Visitor, missio
         panel.get_by_role("button", name="In der Simulation fliegen").click()
         expect(panel.locator(".simulation-uavs")).to_contain_text("am Boden", timeout=SOON_MS)
         expect(panel.locator(".simulation-three .unit")).to_have_text(["mph", "°", "mph"])
-        panel.get_by_label("Böen").fill("10")
+        panel.get_by_role("spinbutton", name="Böen").fill("10")
         panel.get_by_role("button", name="Wind setzen").click()
         expect(page.locator("#spoken")).to_have_text("Der Wind hat sich geändert.")
         assert simulation_of(page, mission)["vehicles"][0]["conditions"]["gusts_mps"] == pytest.approx(4.4704)
         picture(page, "simulation-german-imperial")
         page.emulate_media(color_scheme="dark")
         picture(page, "simulation-german-imperial-dark")
-        phone = opened(visitor.signs_in("opal", size=(390, 844), touch=True), f"/missions/{mission}/fly")
+        phone = visitor.opens(f"/missions/{mission}/fly", size=(390, 844), touch=True, cookies=page.context.cookies())
+        wait_for_map(phone)
         phone.locator("#narrow-tabs label").last.click()
         panel_of(phone).scroll_into_view_if_needed()
         picture(phone, "simulation-phone-light")

@@ -4,9 +4,13 @@ import os
 import time
 
 from celery import Celery
+from celery.signals import worker_process_init
 from redis import Redis
 
+from config.celery import warm_up_process
+
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
+worker_process_init.disconnect(warm_up_process)  # nothing is planned here
 app = Celery("slow")
 app.config_from_object("django.conf:settings", namespace="CELERY")
 app.conf.task_default_queue = os.environ["SLOW_QUEUE"]

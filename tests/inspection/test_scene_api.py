@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
+from django.contrib.gis.geos import GEOSGeometry
 from django.core.management import call_command
 from django.test import Client
 
@@ -173,6 +175,20 @@ def test_zones_are_cut_and_bridges_are_whole(client: Client) -> None:
     (bridge,) = shown["bridges"]
     assert (bridge["deck_amsl_m"], bridge["deck_source"], bridge["height_m"], bridge["height_source"]) == (13.0, "layer", 30.0, "assumed")
     assert bridge["carries"] == "a road"
+
+
+def test_a_zone_with_very_many_corners_comes_with_bounded_ones_and_hardly_another_area(client: Client) -> None:
+    angle = np.linspace(0.0, 2 * np.pi, 30_001)[:-1]
+    reach = 0.01 * (1 + 0.001 * np.sin(4_000 * angle))
+    ring = np.column_stack([10.005 + reach * np.cos(angle), 56.005 + 0.6 * reach * np.sin(angle)])
+    area = shapely.Polygon(ring)
+    NoFlyZone.objects.create(identifier="jagged", name="Jagged", geometry=GEOSGeometry(shapely.MultiPolygon([area]).wkt, srid=4326))
+    (zone,) = scene(client)["zones"]
+    corners = sum(len(one) for polygon in zone["polygons"] for one in polygon)
+    drawn = shapely.MultiPolygon([(polygon[0], polygon[1:]) for polygon in zone["polygons"]])
+    assert corners <= selector.MOST_CORNERS
+    assert drawn.is_valid
+    assert drawn.symmetric_difference(area).area < 0.005 * area.area
 
 
 def test_what_goes_beyond_a_limit_is_left_out_from_the_edge_and_counted(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:

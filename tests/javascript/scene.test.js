@@ -289,6 +289,16 @@ test("rails lie on the ground, rise to the bridge that carries them, and no stee
   assert.ok(y > ground.heightAt(x, z) + 5, "the dam begins before the bridge's own way");
 });
 
+test("wires over rails hang below what planners count, on masts that stand on the ground", () => {
+  const plain = { ...ground, heightAt: () => 0 };
+  const [electric, other] = railwayTracks([scene.railways[0], { ...scene.railways[0], is_electrified: false }], { frame, ground: plain, wire_agl_m: RULES.rail_wire_agl_m });
+  const heights = (points) => [...points].filter((_, at) => at % 3 === 1);
+  assert.equal(Math.max(...heights(electric.masts.ends)), RULES.rail_wire_agl_m);
+  assert.equal(Math.min(...heights(electric.masts.ends)), 0);
+  assert.ok(Math.max(...heights(electric.wires)) < RULES.rail_wire_agl_m && Math.min(...heights(electric.wires)) > 5);
+  assert.equal(other.wires.length + other.masts.tone.length, 0);
+});
+
 test("a bridge is a slab at its deck's height with piers down to the ground", () => {
   const { vertices } = bridgeSolid(scene.bridges[0], { frame, ground });
   const heights = vertices.filter((_, at) => at % 3 === 1);

@@ -25,6 +25,7 @@ DEPARTURES = 2  # for each set of zones
 ALMOST, MORE, LEAST_WH = 0.9, 1.01, 0.1  # of what is missing, with which it is not done, and is; what is told is rounded
 FLOWN_SHARE = 0.2  # of the missions with such refusals are planned again with what is missing
 BY_HAND_EVERY = 20  # of so many missions one is kept and changed by hand
+OUT_OF_REACH = {"beyond_range", "beyond_energy"}
 SEEN = (
     "inside_zone", "beyond_range", "beyond_energy", "put off or higher", "several flights", "charges", "returns that fail",
     "beside approved ones", "changed by hand", "speeds by hand", "taken back", "by hand refused", "refusals flown", "alone",
@@ -106,7 +107,7 @@ def _refusals_that_can_be_flown(asked: Any, plan: dict[str, Any], draw: random.R
 
     What is said to be in reach alone is flown when it comes before all others; where UAVs charge on the way, when there are no others.
     """
-    refused = [item for item in plan["unassigned"] if item["reason"] in {"beyond_range", "beyond_energy"}]
+    refused = [item for item in plan["unassigned"] if item["reason"] in OUT_OF_REACH]
     if not refused or draw.random() > FLOWN_SHARE:
         return []
     item = draw.choice(refused)
@@ -114,7 +115,9 @@ def _refusals_that_can_be_flown(asked: Any, plan: dict[str, Any], draw: random.R
     only = replace(asked, targets=(asked.targets[target],))
     if lacks is None:
         seen["alone"] += 1
-        is_flown = target not in _left_out(make_plan(request=first_of_all(asked, target))) or not make_plan(request=only)["unassigned"]
+        first = _left_out(make_plan(request=first_of_all(asked, target))).get(target)
+        # What is said is said of the battery: at the time of that plan a zone may be in force that was not.
+        is_flown = first is None or first["reason"] not in OUT_OF_REACH or not make_plan(request=only)["unassigned"]
         return [] if is_flown else [f"target {target} is not flown alone: {said}"]
     if "charges on the way" in said:  # by way of others there may be more towers to charge at
         asked, target = only, 0

@@ -25,6 +25,12 @@ def faults() -> list[str]:
     return []
 
 
+@pytest.fixture(autouse=True)
+def _no_other_loops(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever went round in other tests is over."""
+    monkeypatch.setattr(pulse, "_due_s", {})
+
+
 @pytest.fixture(params=["tcp", "unix"])
 def told_at(request: pytest.FixtureRequest, faults: list[str], tmp_path: Path) -> Iterator[str]:
     place = "127.0.0.1:0" if request.param == "tcp" else f"unix:{tmp_path / 'told.sock'}"

@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 from scripts.page_headers import content_security_policy
-from scripts.places import CannotStart, Places
+from scripts.places import TELLING_PROGRAMS, CannotStart, Places
+from scripts.programs import web_programs
 from scripts.proxy import configuration
 from scripts.system_packages import find_program
 
@@ -54,3 +55,22 @@ def test_behind_a_tls_proxy_the_visitors_address_is_the_one_that_it_names(tmp_pa
     monkeypatch.setenv("SPANWISE_HTTPS", "1")
     assert "default $http_x_forwarded_for;" in configuration(Places(tmp_path), tmp_path, 8000)
     test_nginx_accepts_the_configuration_even_with_a_blank_in_the_path(tmp_path)
+
+
+def test_what_programs_tell_of_themselves_has_a_port_of_its_own_where_it_is_wanted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SPANWISE_METRICS_PORT", raising=False)
+    assert "told.sock" not in configuration(Places(tmp_path), tmp_path, 8000)
+    monkeypatch.setenv("SPANWISE_METRICS_PORT", "9464")
+    text = configuration(Places(tmp_path), tmp_path, 8000)
+    assert text.count("listen 127.0.0.1:9464;") == 1
+    told_at = {program.environment.get("SPANWISE_METRICS") for program in web_programs(Places(tmp_path), tmp_path)} - {None}
+    assert len(told_at) == len(TELLING_PROGRAMS)
+    for place in told_at:
+        assert f"{place}:/" in text
+    test_nginx_accepts_the_configuration_even_with_a_blank_in_the_path(tmp_path)
+
+
+def test_a_port_for_metrics_that_is_none_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SPANWISE_METRICS_PORT", "all")
+    with pytest.raises(CannotStart, match="SPANWISE_METRICS_PORT"):
+        configuration(Places(tmp_path), tmp_path, 8000)

@@ -14,7 +14,8 @@ from simulation.rehearsing.candidates import CANDIDATES
         (Performance(battery_wh=56.6), 14.0, "iris"),  # another one would drain its battery in no time
         (Performance(battery_wh=263.2, mass_kg=3.77), 8.0, "inspector"),
         (Performance(), 8.0, "iris"),
-        (Performance(), 14.0, "inspector"),  # the Iris would come late, and say nothing else
+        (Performance(), 12.0, "iris"),  # it does 10, and says that it comes late
+        (Performance(), 14.0, "inspector"),  # the Iris would come late, and say little else
         (Performance(mass_kg=4.0), 8.0, "inspector"),
         (Performance(), 40.0, "inspector"),  # nobody flies that: the fastest
     ],

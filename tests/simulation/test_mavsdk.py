@@ -164,18 +164,18 @@ def test_armed_taken_off_flown_somewhere_and_landed(station):
 
 
 def test_a_mission_is_flown_paused_resumed_and_ends_at_home(station):
-    """The return home is told once it hovers at the last place, as an operator does."""
+    """The return home is told once it hovers at the last place, as an operator does. ArduPilot's list begins with home and a take-off."""
     lat, lon = round(AT.lat * 1e7), round(AT.lon * 1e7)
-    home = [(16, 0, 0.0, lat, lon, GROUND_M)] if station.flavour is Flavour.ARDUPILOT else []
+    before = [(16, 0, 0.0, lat, lon, GROUND_M), (22, 3, 0.0, lat, lon, 20.0)] if station.flavour is Flavour.ARDUPILOT else []
     flown = [(16, 3, 0.0, lat + north_m * 90, lon, height_m) for north_m, height_m in ((60, 20.0), (120, 25.0), (180, 25.0))]
     items = [
         RawItem(seq, frame, command, int(seq == 0), 1, one, 0.0, 0.0, math.nan, *place, height_m, 0)
-        for seq, (command, frame, one, *place, height_m) in enumerate(home + flown)
+        for seq, (command, frame, one, *place, height_m) in enumerate(before + flown)
     ]
     station.raw.upload_mission(items)
     station.action.arm()
     station.raw.start_mission()
-    wait_for(lambda: station.raw.mission_progress().current >= 1 + len(home), "the first place")
+    wait_for(lambda: station.raw.mission_progress().current >= 1 + len(before), "the first place")
     assert station.telemetry.in_air() and station.mode() == MISSION
     station.raw.pause_mission()
     wait_for(lambda: station.mode() == HOLD, "the pause")

@@ -94,7 +94,7 @@ def test_another_organisation_finds_nothing(mission: Mission, person: User) -> N
 
 
 def test_the_verdict_says_in_words_by_route_and_target_why(mission: Mission, person: User) -> None:
-    mission.mission_uavs.update(performance={"battery_wh": 10.3})
+    mission.mission_uavs.update(performance={"battery_wh": 10.7})
     rehearsal = rehearsed(mission, person, "calm")
     body = client_of(person).get(f"/api/v1/{path(mission)}/{rehearsal.pk}").json()
     verdict = body["runs"][0]["verdict"]
@@ -104,7 +104,7 @@ def test_the_verdict_says_in_words_by_route_and_target_why(mission: Mission, per
     assert target["reasons"] == [f"{percent} % battery at return, limit 20 %"]
     assert f"{percent} % battery at return, limit 20 %" in verdict["findings"][0]["message"]
     assert verdict["findings"][0]["message"].startswith("target 1 ")
-    assert body["uavs"][0]["words"] == "Tern: the simulated Iris, the nearest by mass and endurance, with its own battery of 10 Wh"
+    assert body["uavs"][0]["words"] == "Tern: the simulated Iris, the nearest by mass and endurance, with its own battery of 11 Wh"
     limit = next(one for one in body["limits"] if one["name"] == "obstacle_fail_m")
     assert (limit["value"], limit["source"]) == (5.0, "arms of a tower beside its middle")
     track = client_of(person).get(f"/api/v1/{path(mission)}/{rehearsal.pk}/track?run=0").json()

@@ -7,8 +7,9 @@ from simulation.verdict.finding import Level
 from simulation.verdict.flown import Ending, FlownFlight, FlownRoute
 from simulation.verdict.following import following_of
 from simulation.verdict.judging import Verdict, judge
+from simulation.verdict.obstacles import nearest_standing
 from simulation.verdict.stored import track_to_json, verdict_to_json
-from tests.simulation.flown import LIMITS, a_route, a_track, around, flown, rows, standing, zones
+from tests.simulation.flown import LIMITS, UP_M, a_route, a_track, around, flown, rows, standing, zones
 
 
 def codes(verdict: Verdict) -> list[tuple[str, str]]:
@@ -121,6 +122,14 @@ def test_a_tower_that_is_taller_than_the_flight_is_measured_across() -> None:
     assert verdict.routes[0].obstacle is not None
     assert verdict.routes[0].obstacle.away_m == pytest.approx(30.0, abs=0.1)
     assert not verdict.findings
+
+
+def test_a_wire_beside_and_below_is_as_far_as_in_space() -> None:
+    """Along the second kilometre 6 m beside and 8 m below the flight: 10 m; as high as the flight it is 6 m."""
+    below, level = (standing(((6.0, 1_200.0), (6.0, 1_800.0), top_m)) for top_m in (UP_M - 8.0, UP_M + 8.0))
+    for wires, away_m in ((below, 10.0), (level, 6.0)):
+        on_way, _ = nearest_standing(flown().flights[0], wires, column_m=15.0)
+        assert on_way is not None and on_way.away_m == pytest.approx(away_m, abs=0.05)
 
 
 def test_what_stands_beside_the_take_off_is_worth_a_warning_alone() -> None:

@@ -26,7 +26,8 @@ def fly(approval: Approval, uav: Uav, began_at: datetime, *, leaves_out: int | N
     for number, measurement in enumerate(_each_second(route_of(approval, uav), leaves_out)):
         at = began_at + timedelta(seconds=number)
         if number % every_s == 0:
-            records.append(NewRecord(uav.pk, LinkKind.MAVLINK, "flight", number, at, at, measurement, mission_id=approval.mission_id))
+            boot_ms = 1_000 * number
+            records.append(NewRecord(uav.pk, LinkKind.MAVLINK, "flight", boot_ms, at, at, measurement, mission_id=approval.mission_id))
     store_records(records)
     return at
 

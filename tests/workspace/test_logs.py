@@ -17,12 +17,14 @@ from django.test import Client, override_settings
 from django.urls import reverse
 from django.utils import timezone
 
+from config.log_settings import log_settings
 from operation.log_context import about
 from operation.log_lines import JsonFormatter, LineFormatter
 from operation.redaction import without_secrets
 from tests.telemetry.uav_clients import LINK, linked_uav, report
 from tests.workspace.people import client_of, somebody
 from workspace.models import Role, User
+from workspace.services import create_api_token
 
 PASSWORD = "inspect-the-lines-8"
 PATIENCE_S = 60
@@ -153,6 +155,12 @@ def test_a_traceback_is_told_without_them(logs: dict[str, io.StringIO]) -> None:
         assert "hunter22" not in log.getvalue()
 
 
+def test_nothing_that_is_told_begins_a_line_of_its_own(logs: dict[str, io.StringIO]) -> None:
+    logging.getLogger("spanwise.test").warning("no UAV %s", "Kite\n2026-01-01 INFO forged\r\x1b[2J\u2028more")
+    assert len(logs["json"].getvalue().splitlines()) == len(logs["line"].getvalue().splitlines()) == 1
+    assert r"Kite\n2026-01-01 INFO forged\r\x1b[2J" in logs["line"].getvalue()
+
+
 def test_a_line_names_what_the_work_is_about(logs: dict[str, io.StringIO]) -> None:
     with about(request="abc", mission="m-1"):
         logging.getLogger("spanwise.test").warning("hot", extra={"uav": 7})
@@ -178,16 +186,27 @@ def test_a_request_has_an_id_that_its_lines_and_its_answer_name(logs: dict[str, 
 
 
 @pytest.mark.django_db
+def test_who_is_refused_is_told_by_number_whatever_they_came_with(logs: dict[str, io.StringIO]) -> None:
+    viewer = somebody(Role.VIEWER)
+    token = create_api_token(user=viewer, name="ci", expires_at=timezone.now() + timedelta(days=1))
+    assert client_of(viewer).post("/api/v1/missions", {}, content_type="application/json").status_code == 403
+    answer = Client().post("/api/v1/missions", {}, content_type="application/json", headers={"Authorization": f"Bearer {token}"})
+    assert answer.status_code == 403
+    assert Client().get("/api/v1/missions").status_code == 401
+    refused = [line for line in lines(logs) if line["logger"] == "django.request"]
+    assert [line.get("user") for line in refused] == [str(viewer.pk), str(viewer.pk), None]
+    assert all(line["request"] for line in refused)
+
+
+@pytest.mark.django_db
 @pytest.mark.parametrize("told", ["", "short", "a" * 65, "with blanks in it", "new\tline-and-more", "<script>alert(1)</script>"])
 def test_an_id_that_is_not_fit_to_be_written_down_is_replaced(told: str) -> None:
     given = Client().get("/sign-in", headers={"X-Request-ID": told})["X-Request-ID"]
     assert re.fullmatch(r"[0-9a-f]{32}", given)
 
 
-def test_the_settings_choose_the_way_of_writing() -> None:
-    formatter = settings.LOGGING["handlers"]["console"]["formatter"]
-    assert formatter == "line"
-    made = [
-        logging.config.DictConfigurator(settings.LOGGING).configure_formatter(dict(one)) for one in settings.LOGGING["formatters"].values()
-    ]
-    assert [type(one) for one in made] == [LineFormatter, JsonFormatter]
+@pytest.mark.parametrize(("said", "made"), [("json", JsonFormatter), ("line", LineFormatter), ("", LineFormatter)])
+def test_the_environment_chooses_the_way_of_writing(said: str, made: type[logging.Formatter]) -> None:
+    chosen = log_settings({"SPANWISE_LOG_FORMAT": said, "SPANWISE_PROGRAM": "gateway"})
+    formatter = chosen["formatters"][chosen["handlers"]["console"]["formatter"]]
+    assert type(logging.config.DictConfigurator(chosen).configure_formatter(dict(formatter))) is made

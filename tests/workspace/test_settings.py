@@ -1,5 +1,9 @@
 """What the settings make of the environment."""
 
+import os
+import subprocess
+import sys
+
 import pytest
 import redis
 from celery import Celery
@@ -41,3 +45,21 @@ def test_a_session_of_the_key_before_holds_while_that_key_is_named() -> None:
         assert client.get("/account").status_code == 200
     with override_settings(SECRET_KEY="the-key-of-tomorrow", SECRET_KEY_FALLBACKS=[]):
         assert client.get("/account").status_code == 302
+
+
+def test_over_https_cookies_are_bound_to_the_host() -> None:
+    """Browsers take a __Host- cookie from the host itself alone, over TLS, for the whole site."""
+    names = ("SESSION_COOKIE_NAME", "CSRF_COOKIE_NAME", "SESSION_COOKIE_SECURE", "SESSION_COOKIE_DOMAIN")
+    lines = f"from django.conf import settings; print(*(getattr(settings, name) for name in {names}))"
+    told = {
+        https: subprocess.run(  # noqa: S603
+            [sys.executable, "-c", lines],
+            cwd=settings.BASE_DIR,
+            env={**os.environ, "DJANGO_SETTINGS_MODULE": "config.settings", "SPANWISE_HTTPS": https},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout.strip()
+        for https in ("1", "0")
+    }
+    assert told == {"1": "__Host-sessionid __Host-csrftoken True None", "0": "sessionid csrftoken False None"}

@@ -10,6 +10,6 @@ export function mountStages(store) {
   store.listen(["mission"], ({ mission }) => {
     if (!mission || document.querySelector(".stages")) return;
     const links = STAGES.map(([rest, words]) => h("a", { href: `/missions/${mission.id}${rest}`, "aria-current": rest ? null : "page" }, words));
-    byId("mission-facts").after(h("nav", { class: "page-tabs stages", "aria-label": t("Stages of the mission") }, links));
+    byId("others").after(h("nav", { class: "page-tabs stages", "aria-label": t("Stages of the mission") }, links));
   });
 }

@@ -3,7 +3,7 @@
 import { t, tn } from "../text.js";
 import { heightText, numberText, percentText, speedText } from "../units.js";
 
-export const SPEEDS = [1, 2, 5, 10].map((speed) => [speed, speed === 1 ? t("Real time") : t("{speed} times real time", { speed })]);
+export const SPEEDS = [1, 2, 5, 10].map((speed) => [speed, speed === 1 ? t("Real time") : t("{speed}× real time", { speed })]);
 export const AIRS = [["as-planned", t("As planned")], ["calm", t("Calm")], ["strong-wind", t("Strong wind")]];
 const WEAK_SHARE = 0.2;
 const WIND_AGL_M = 10;

@@ -5,6 +5,7 @@ import { clockText, durationText, energyText, exactHeightText, lengthText, perce
 
 const UNDER_WAY = ["dispatched", "active"];
 const ENOUGH_TO_SHARE = 20; // estimates beside a measurement: of fewer a share says nothing
+const HURRIED = 0.75; // of the planned time: only who flies faster than real time is back so early
 const NOT_BEGUN = ["draft", "planned", "approved", "dispatched"];
 
 export const isUnderWay = ({ mission }) => UNDER_WAY.includes(mission.state);
@@ -26,6 +27,7 @@ export function factsOf(record) {
   const facts = [];
   const simulated = record.routes.filter(({ is_simulated }) => is_simulated);
   if (simulated.length) facts.push(simulated.length === record.routes.length ? t("Flown in simulation, by no real aircraft.") : t("Simulated, no real aircraft: {names}.", { names: simulated.map(({ name }) => name).join(", ") }));
+  if (simulated.length && wasFlown(record) && record.summary.flown.duration_s < HURRIED * record.summary.planned.duration_s) facts.push(t("Times are of the clock on the wall: it was flown faster than real time."));
   if (isUnderWay(record) && record.mission.started_at) facts.push(t("Under way since {time}.", { time: clockText(record.mission.started_at) }));
   if (!wasFlown(record)) facts.push(isOver(record) ? t("Nothing that its UAVs reported is in the log.") : t("Its record is written while it is flown."));
   else if (lowest !== null) facts.push(t("No battery was below {percent}.", { percent: percentText(Math.floor(lowest)) }));

@@ -100,7 +100,7 @@ export function createActs({ stage, rig, hands, picture, player, hasOwnTime, tar
     async keepPicture() {
       const uav = source.routes.find(({ place }) => place === stage.chosen);
       const words = [stage.mission.name, [timeWords(), uav && `${routeLetter(uav.place)} ${uav.name}`, CAMERA_LONG[rig.mode]].filter(Boolean).join(" · "), source.isSimulated ? t("Simulated") : source.kind === "plan" ? t("Planned, not flown") : "Spanwise"];
-      const at = source.hasDate ? new Date(atNow()).toISOString().slice(0, 19).replace(/[:T]/g, "") : `${Math.round((atNow() - source.departs_ms) / 1_000)}s`;
+      const at = source.hasDate ? new Date(atNow()).toISOString().slice(0, 19).replaceAll(":", "").replace("T", "-") : `${Math.round((atNow() - source.departs_ms) / 1_000)}s`;
       await download(stillOf(picture.copy(), labels.shown(), words, palette()), fileName(stage.mission.name, at, rig.mode));
     },
     async copyLink() {

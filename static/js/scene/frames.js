@@ -97,6 +97,7 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
       const words = describe(subject, target);
       if (canvas.getAttribute("aria-label") !== words) canvas.setAttribute("aria-label", words);
     }
+    labels.setNight(picture.isNight());
     labels.show([...drawn.filter(({ route }) => (rig.mode !== "onboard" && rig.mode !== "chase") || route !== stage.chosen).map(labelOf), ...targets.map((one) => targetLabel(one, pose.eye)), ...ground], picture.project, picture.size);
   }
 

@@ -37,6 +37,8 @@ export function createLabels(container) {
 
   return {
     element: layer,
+    /** At night the ground is dark in both themes. */
+    setNight: (isNight) => layer.classList.toggle("night", isNight),
     /** items: [{ key, place: [x, y, z], parts: [words], className, weight }]; project: of the view; size: of the picture. */
     show(items, project, size) {
       const seen = [];

@@ -21,8 +21,8 @@ let feed = null;
 let timer = 0;
 let opened = 0; // the last one wins
 
-const noStage = { press: () => false };
-const acts = new Proxy({}, { get: (_target, name) => (...given) => (stage ?? noStage)[name]?.(...given) ?? false });
+/** What the stage of the moment can do; nothing while there is none. */
+const acts = new Proxy({}, { get: (_target, name) => (...given) => stage?.[name]?.(...given) ?? false });
 
 function keepAddress() {
   clearTimeout(timer);
@@ -46,8 +46,9 @@ async function open(wanted, link = null) {
     drawSources(source, choices);
     if (!source.routes.length) return tell(t("There is nothing to see yet: plan the mission first."));
     if (source.kind === "live") follow(source);
-    stage = await openStage(root, { mission: { id: page.mission, name: mission.name }, source, link, now_ms: () => feed?.now_ms() ?? Date.now(), onChange: keepAddress });
-    if (turn !== opened) stage.dispose();
+    const made = await openStage(root, { isWanted: () => turn === opened, mission: { id: page.mission, name: mission.name }, source, link, now_ms: () => feed?.now_ms() ?? Date.now(), onChange: keepAddress });
+    if (!made) return;
+    stage = made;
     root.dataset.kind = stage.kind;
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;

@@ -8,6 +8,7 @@ import { createView } from "./view.js";
 import { makeWorld } from "./world/world.js";
 
 const SAME_SUN_MS = 30_000;
+const [HEAD_M, HEAD_PX] = [1.1, 30]; // round a UAV its way is not drawn
 
 /** canvas in its container; draw, onLost, onFound: as of createView. Throws NoWebGL. */
 export function createPicture(container, canvas, { palette, draw, onLost, onFound, quality = "high" }) {
@@ -76,7 +77,8 @@ export function createPicture(container, canvas, { palette, draw, onLost, onFoun
       view.aim(pose, distance_m);
       parts.uavs.show(drawn, { palette: colours, metresPerPixel: view.metresPerPixel, dt_s, hidden });
       parts.marks.show(drawn.filter(({ route }) => route !== hidden), { wind: hidden === null ? wind : null, chosen, palette: colours, metresPerPixel: view.metresPerPixel });
-      parts.ways.frame({ at_ms, looked, viewport: view.viewport() });
+      const heads = drawn.map(({ route, place }) => ({ route, place, radius_m: Math.max(HEAD_M, HEAD_PX * view.metresPerPixel(place)) }));
+      parts.ways.frame({ at_ms, heads, looked, viewport: view.viewport() });
       return world.update(view.camera) === true;
     },
     dispose() {

@@ -45,10 +45,12 @@ function pictureIn(holder, options) {
 /**
  * root: an element with a size. mission: { id, name }; source: of sources/read.js; link: of link.js or null. isPanel: with a button that closes it.
  * player: of the page that it stands on, or null: then it has its own where the source has a span. now_ms(): of a live source.
- * onChange(): what a link would say is another. onClose(). → acts and point(); throws ApiError.
+ * onChange(): what a link would say is another. onClose(). isWanted(): whether it still is once the ground is read; else null is given.
+ * → acts and point(); throws ApiError.
  */
-export async function openStage(root, { mission, source, link = null, isPanel = false, player: hostPlayer = null, now_ms = () => Date.now(), onChange = () => {}, onClose = () => {}, openAddress = () => "" }) {
+export async function openStage(root, { mission, source, link = null, isPanel = false, player: hostPlayer = null, now_ms = () => Date.now(), onChange = () => {}, onClose = () => {}, openAddress = () => "", isWanted = () => true }) {
   const scene = await readScene(source);
+  if (!isWanted()) return null;
   let palette = readScenePalette();
   const holder = h("div", { class: "scene-picture" });
   const notice = h("p", { class: "scene-notice float", role: "status", hidden: true });

@@ -59,6 +59,7 @@ def test_route_is_flown_from_a_shell_without_database_and_redis(tmp_path: Path) 
         ({"waypoints": [{"position": [47, 97], "altitude_relative_m": 9}], "speed_mps": 5}, "latitude, must be from -85 to 85"),
         ({"waypoints": [{"position": [9, 47], "altitude_relative_m": float("nan")}], "speed_mps": 5}, "not nan"),
         ({"waypoints": [{"position": [9, 47], "altitude_relative_m": -4}], "speed_mps": 5}, "not -4"),
+        ({"waypoints": [{"position": [9, 47], "altitude_relative_m": 10**400}], "speed_mps": 5}, "not a number so large"),
         ({"waypoints": [{"position": [9, 47], "altitude_relative_m": True}], "speed_mps": 5}, "must be a number"),
         ({"waypoints": [{"position": [9, 47], "altitude_relative_m": 9}]}, "speed_mps must be a number"),
         ({"waypoints": [{"position": [9, 47], "altitude_relative_m": 9}], "speed_mps": 0}, "speed_mps must be from"),

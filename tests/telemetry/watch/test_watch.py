@@ -63,6 +63,16 @@ def test_seconds_without_a_report_are_estimated_and_kept(uav):
     assert abs(estimate.position.x - UAV_AT.lon) < 1e-3
 
 
+@pytest.mark.parametrize(("clock_rate", "metres"), [(None, (4.0, 8.0)), (1.0, (4.0, 8.0)), (10.0, (25.0, 60.0))])
+def test_a_uav_whose_clock_runs_faster_comes_farther_in_a_second(uav, clock_rate, metres):
+    """It is flown by hand to the east at 10 m/s; 0.6 s later it is looked at."""
+    UavLink.objects.update_or_create(uav=uav, defaults={"clock_rate": clock_rate})
+    report(uav, 0.4, mode="POSCTL", velocity_east_mps=10.0, velocity_north_mps=0.0, heading_deg=90.0)
+    watch().round(NOW.timestamp() + 1.01)
+    (lon, _) = UavWatch.objects.get(uav=uav).estimated["position"]
+    assert metres[0] < (lon - UAV_AT.lon) * 62_400.0 < metres[1], "a degree of longitude at 56 degrees north"
+
+
 def test_a_report_that_comes_late_replaces_what_was_estimated_for_its_second(uav):
     report(uav, 0.4)
     one = watch()

@@ -1,6 +1,7 @@
 /** German: simulated UAVs that fly in real time. */
 
 export default {
+  "Times are of the clock on the wall: it was flown faster than real time.": "Zeiten sind die der Uhr an der Wand: Es wurde schneller als in Echtzeit geflogen.",
   "Fly": "Fliegen",
   "Report": "Bericht",
   "Stages of the mission": "Abschnitte der Mission",
@@ -12,7 +13,8 @@ export default {
   "Pace": "Tempo",
   "Fly in simulation": "In der Simulation fliegen",
   "Set the wind": "Wind setzen",
-  "Wind and faults of": "Wind und Störungen für",
+  "Wind and faults of": "Gilt für",
+  "Speed|wind": "Stärke",
   "All well again": "Alles wieder gut",
   "By the clock on the wall; {flown} s of the flight.": "Nach der Uhr an der Wand; {flown} s des Fluges.",
   "calm": "windstill",
@@ -28,7 +30,7 @@ export default {
   "This machine is too slow for that pace: {seconds} s behind.": "Dieser Rechner ist für dieses Tempo zu langsam: {seconds} s zurück.",
   "Real time": "Echtzeit",
   "{count} simulated UAV in real time.": ["{count} simuliertes UAV in Echtzeit.", "{count} simulierte UAVs in Echtzeit."],
-  "{speed} times real time": "{speed}-fache Echtzeit",
+  "{speed}× real time": "{speed}× Echtzeit",
   "Simulated UAVs are being started.": "Simulierte UAVs werden gestartet.",
   "The wind has changed.": "Der Wind hat sich geändert.",
   "{fault}: done.": "{fault}: erledigt.",
@@ -36,7 +38,7 @@ export default {
   "Its UAVs are gone at once, wherever they are: of those in the air the link is lost.": "Ihre UAVs sind sofort weg, wo immer sie sind: Zu denen in der Luft reißt die Verbindung ab.",
   "End the simulation": "Simulation beenden",
   "Faults": "Störungen",
-  "Link or GPS lost for": "Verbindung oder GPS weg für",
+  "Link or GPS lost for": "Ausfall dauert",
   "Lose the link": "Verbindung weg",
   "Lose GPS": "GPS weg",
   "Motor failure": "Motorausfall",

@@ -31,12 +31,12 @@ export function mountCards(store, { isOfOne, pick, jumpTo, follow }) {
 
   function make(uav) {
     const at = {
-      letter: h("span", { class: "letter" }), name: h("strong", {}), simulated: h("span", { class: "card-simulated" }), chip: h("span", { class: "chip" }), age: h("span", { class: "age" }), mission: h("p", { class: "caption of-mission" }),
+      letter: h("span", { class: "letter" }), name: h("strong", {}), chip: h("span", { class: "chip" }), age: h("span", { class: "age" }), mission: h("p", { class: "caption of-mission" }),
       estimate: h("p", { class: "estimate" }), figures: h("dl", { class: "figures" }), strip: h("div", { class: "strip-place" }), next: h("p", { class: "next" }), command: h("p", { class: "card-command" }), alerts: h("ul", { class: "card-alerts" }),
       jump: h("button", { type: "button", class: "text-button", onclick: () => jumpTo(uav.id) }, t("Show on the map")), follow: h("button", { type: "button", class: "text-button", "aria-pressed": "false", onclick: follow }, t("Follow")),
     };
     at.acts = h("div", { class: "card-acts" }, at.jump, at.follow);
-    at.head = h("button", { type: "button", class: "card-head", "aria-pressed": "false", onclick: () => pick(uav.id) }, at.letter, at.name, at.simulated, at.chip);
+    at.head = h("button", { type: "button", class: "card-head", "aria-pressed": "false", onclick: () => pick(uav.id) }, at.letter, at.name, at.chip);
     const card = h("li", { class: "card", onclick: (event) => !event.target.closest("button, a") && pick(uav.id) }, h("div", { class: "card-top" }, at.head, at.age), at.mission, at.command, at.estimate, at.figures, at.strip, at.next, at.alerts, at.acts);
     parts.set(card, at);
     return card;
@@ -59,10 +59,11 @@ export function mountCards(store, { isOfOne, pick, jumpTo, follow }) {
     const age = ageWords(uav, now_ms);
     refill(at.age, `${age.isLate} ${age.words}`, () => [age.isLate && icon("signal", "small"), age.words]);
     at.age.classList.toggle("late", age.isLate);
-    refill(at.simulated, `${uav.is_simulated} ${rateOf(uav)}`, () => [uav.is_simulated && simulatedMark(), rateOf(uav) !== 1 && rateMark(rateOf(uav))]);
     const ofMission = mission ? !isOfOne && h("a", { href: `/missions/${mission.id}/fly` }, mission.name) : t("not in a mission");
-    at.mission.hidden = !ofMission;
-    refill(at.mission, JSON.stringify(mission && [mission.id, mission.name]), () => [ofMission]);
+    const rate = rateOf(uav);
+    const about = [uav.is_simulated && simulatedMark(), rate !== 1 && rateMark(rate), ofMission].filter(Boolean);
+    at.mission.hidden = about.length === 0;
+    refill(at.mission, JSON.stringify([mission && [mission.id, mission.name], uav.is_simulated, rate]), () => about.flatMap((part, index) => (index ? [" ", part] : [part])));
     const estimate = estimateWords(uav, certainty, now_ms);
     at.estimate.hidden = estimate === null;
     if (estimate) refill(at.estimate, `${estimate.strong} ${estimate.rest}`, () => [icon("circle-dashed"), h("span", {}, h("strong", {}, estimate.strong), ` ${estimate.rest}`)]);

@@ -3,7 +3,6 @@
 import { byId, h, icon } from "../../dom.js";
 import { routeLetter, routeNumber } from "../../map/palette.js";
 import { KINDS } from "../../mission/flying.js";
-import { markSimulated } from "../../simulated.js";
 import { t } from "../../text.js";
 import { flyingUavs } from "../in_air.js";
 import { isHeld } from "../uav_words.js";
@@ -42,7 +41,6 @@ export function mountCommandBar(store, commanding) {
       letter.className = `letter route-${routeNumber(uav.place)}`;
     }
     name.textContent = uav.name;
-    markSimulated(name, uav.is_simulated);
     const kind = isHeld(uav) ? "resume" : "pause";
     if (pause.dataset.kind === kind) return;
     pause.dataset.kind = kind;

@@ -8,6 +8,7 @@ import { exactClockText, speedText, zoneText } from "../../units.js";
 
 const STATES = { draft: t("Draft"), planned: t("Planned"), approved: t("Approved"), dispatched: t("Dispatched"), active: t("Active"), completed: t("Completed"), aborted: t("Aborted"), failed: t("Failed") };
 const IMAGES = { approved: "badge-check", dispatched: "send", active: "radio", completed: "check", aborted: "octagon-alert", failed: "circle-x" };
+const LEAST_WIND_MPS = 0.5; // below, it comes from nowhere
 const GRACE_MS = 2500; // a page that has just been opened, or a wink of the network, is not called cut off
 
 /** Wind as the newest report has it: "wind 5 m/s from 240°", or "". */
@@ -15,7 +16,7 @@ export function windWords(uavs) {
   const told = uavs.map(({ measured }) => measured).filter((measured) => typeof measured?.wind_speed_mps === "number");
   const [newest] = told.sort((a, b) => Date.parse(b.measured_at) - Date.parse(a.measured_at));
   if (!newest) return "";
-  const from = typeof newest.wind_from_deg === "number" ? t("from {degrees}°", { degrees: Math.round(newest.wind_from_deg) }) : "";
+  const from = typeof newest.wind_from_deg === "number" && newest.wind_speed_mps >= LEAST_WIND_MPS ? t("from {degrees}°", { degrees: Math.round(newest.wind_from_deg) }) : "";
   return `${t("wind {speed}", { speed: speedText(newest.wind_speed_mps) })} ${from}`.trim();
 }
 

@@ -82,7 +82,7 @@ export function mountSimulation(page) {
     event.preventDefault();
     const [speed_mps, gusts_mps] = [wind, gusts].map(({ valueAsNumber }) => valueAsNumber * SPEED_UNIT.mps);
     void done(() => patch(address(), { conditions: windOf(speed_mps, from.valueAsNumber, gusts_mps) }), t("The wind has changed."));
-  } }, h("div", { class: "simulation-three" }, field(t("Wind"), wind, SPEED_UNIT.unit), field(t("From"), from, "°"), field(t("Gusts"), gusts, SPEED_UNIT.unit)), h("button", { class: "button small", type: "submit" }, t("Set the wind")));
+  } }, h("div", { class: "simulation-three" }, field(t("Speed|wind"), wind, SPEED_UNIT.unit), field(t("From"), from, "°"), field(t("Gusts"), gusts, SPEED_UNIT.unit)), h("button", { class: "button small", type: "submit" }, t("Set the wind")));
 
   const seconds = number("simulation-seconds", LASTS_S, 1, 3600);
   const lasts = h("p", { class: "caption", id: "simulation-lasts" });

@@ -3,7 +3,7 @@
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineSegments, LineBasicMaterial, Mesh, MeshBasicMaterial, Vector3 } from "../three.js";
 import { towards } from "../cameras/vectors.js";
 
-const WIND_AWAY_M = 3.2; // of the arrow's middle above the UAV
+const WIND_AWAY_M = 1.3; // of the arrow's middle above the UAV
 const FULL_WIND_MPS = 12; // an arrow of full length
 const DASHES = 24;
 

@@ -9,6 +9,7 @@ import { bodyShape, ROTORS, rotorShape, SPAN_M, TURNS } from "./uav_shape.js";
 
 const LEAST_PX = 40; // across: from far away it is drawn larger than it is
 const CONE_M = 14;
+const GLOW = 0.4;
 const MOST_CONE = 1.6; // times that, from far away
 const CONE_HALF_DEG = 22; // half of what an inspection camera sees across
 const LEAST_BOUND_M = 1.5;
@@ -37,6 +38,14 @@ const RIM_FRAGMENT = `
 /** See-through with a clear edge: what is hollow. */
 const hollow = (inner, rim) => new ShaderMaterial({ vertexShader: RIM_VERTEX, fragmentShader: RIM_FRAGMENT, uniforms: { inner: { value: inner }, rim: { value: rim } }, transparent: true, depthWrite: false, side: DoubleSide });
 
+/** It is never as dark as the night: some of its own colour shines. */
+function litFromWithin(material) {
+  material.onBeforeCompile = (shader) => {
+    shader.fragmentShader = shader.fragmentShader.replace("#include <emissivemap_fragment>", `#include <emissivemap_fragment>\n  totalEmissiveRadiance += diffuseColor.rgb * ${GLOW.toFixed(2)};`);
+  };
+  return material;
+}
+
 export const isSolid = (kind) => kind === MEASURED;
 
 /** count: of UAVs at most. */
@@ -51,7 +60,7 @@ export function createUavs(count) {
     return mesh;
   };
   const body = bodyShape();
-  const solid = many(body, new MeshStandardMaterial({ vertexColors: true, roughness: 0.55, metalness: 0.05 }));
+  const solid = many(body, litFromWithin(new MeshStandardMaterial({ vertexColors: true, roughness: 0.55, metalness: 0.05 })));
   solid.castShadow = true;
   const ghosts = many(body, hollow(0.1, 0.95));
   const rotors = many(rotorShape(), new MeshBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false, side: DoubleSide }), count * 4);

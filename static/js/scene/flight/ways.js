@@ -1,6 +1,6 @@
 /** Planned and flown ways as ribbons with height poles: one drawing for all routes of a kind, cut off at the moment that is shown. */
 
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineSegments, Mesh, ShaderMaterial } from "../three.js";
+import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineSegments, Mesh, ShaderMaterial, Vector4 } from "../three.js";
 import { heightPoles, ribbon } from "../geometry/ribbon.js";
 import { ESTIMATED } from "../sources/pieces.js";
 
@@ -14,8 +14,9 @@ const FOR_EVER_S = 1e30;
 const VERTEX = `
   uniform vec2 viewport; uniform float leastPx; uniform float mostPx; uniform float halfWidth;
   attribute vec3 tangent; attribute float along; attribute float at; attribute float route; attribute float dashed; attribute float side;
-  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute;
+  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute; varying vec3 vPlace;
   void main() {
+    vPlace = position;
     vec4 seen = modelViewMatrix * vec4(position, 1.0);
     vec3 way = (modelViewMatrix * vec4(tangent, 0.0)).xyz;
     vec3 across = cross(way, normalize(seen.xyz));
@@ -27,14 +28,14 @@ const VERTEX = `
   }`;
 const LINE_VERTEX = `
   attribute float at; attribute float route;
-  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute;
+  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute; varying vec3 vPlace;
   void main() {
-    vAlong = 0.0; vAt = at; vDashed = 0.0; vRoute = route;
+    vPlace = vec3(1e9); vAlong = 0.0; vAt = at; vDashed = 0.0; vRoute = route;
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
   }`;
 const FRAGMENT = `
-  uniform vec3 colours[${ROUTES}]; uniform float now; uniform float opacity; uniform float later; uniform float looked; uniform float rest;
-  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute;
+  uniform vec3 colours[${ROUTES}]; uniform float now; uniform float opacity; uniform float later; uniform float looked; uniform float rest; uniform vec4 heads[${ROUTES}];
+  varying float vAlong; varying float vAt; varying float vDashed; varying float vRoute; varying vec3 vPlace;
   void main() {
     if (vDashed > 0.5) {
       float period = max(5.0, exp2(ceil(log2(max(fwidth(vAlong) * 9.0, 1e-4)))));
@@ -42,9 +43,11 @@ const FRAGMENT = `
     }
     int number = int(mod(vRoute + 0.5, ${ROUTES}.0));
     float alpha = opacity * (vAt > now ? later : 1.0) * (looked < -0.5 || abs(looked - vRoute) < 0.5 ? 1.0 : rest);
-    if (alpha < 0.01) discard;
     vec3 colour = colours[0];
-    for (int i = 1; i < ${ROUTES}; i++) if (i == number) colour = colours[i];
+    vec4 head = heads[0];
+    for (int i = 1; i < ${ROUTES}; i++) if (i == number) { colour = colours[i]; head = heads[i]; }
+    if (head.w > 0.0) alpha *= smoothstep(head.w * 0.55, head.w, distance(vPlace, head.xyz));
+    if (alpha < 0.01) discard;
     gl_FragColor = vec4(colour, alpha);
     #include <colorspace_fragment>
   }`;
@@ -55,7 +58,7 @@ function material({ isLine, width_m = 0, least_px = 1, most_px = 1, opacity, lat
     fragmentShader: FRAGMENT,
     uniforms: {
       viewport: { value: [1, 1] }, leastPx: { value: least_px }, mostPx: { value: most_px }, halfWidth: { value: width_m / 2 }, colours: { value: Array.from({ length: ROUTES }, () => new Color()) }, now: { value: FOR_EVER_S }, opacity: { value: opacity },
-      later: { value: later }, looked: { value: -1 }, rest: { value: 0.35 },
+      later: { value: later }, heads: { value: Array.from({ length: ROUTES }, () => new Vector4()) }, looked: { value: -1 }, rest: { value: 0.35 },
     },
     transparent: true,
     depthWrite: false,
@@ -196,12 +199,14 @@ export function createWays(groundAt) {
       refill(flown, ribbonArrays(lines), ATTRIBUTES);
       refill(flownPoles, poleArrays(lines.filter(({ dashed }) => !dashed), groundAt, FLOWN.poles_m), { position: 3, route: 1, at: 1 });
     },
-    /** at_ms: what is later is faint; looked: place of the route that is looked at, or null. */
-    frame({ at_ms, looked, viewport }) {
+    /** at_ms: what is later is faint; heads: UAVs as [{ route, place, radius_m }], which their ways do not cover; looked: a route's place, or null. */
+    frame({ at_ms, heads, looked, viewport }) {
       for (const { material: look } of all) {
         look.uniforms.now.value = at_ms === null ? FOR_EVER_S : (at_ms - from_ms) / 1_000;
         look.uniforms.looked.value = looked ?? -1;
         look.uniforms.viewport.value = viewport;
+        look.uniforms.heads.value.forEach((head) => head.set(0, 0, 0, 0));
+        for (const { route, place, radius_m } of heads) look.uniforms.heads.value[route % ROUTES].set(...place, radius_m);
       }
     },
     setPalette(palette) {

@@ -1,4 +1,6 @@
-/** Railways: a bed over the ground, dams up to the bridges that carry it, and two rails a track. Values in, arrays out. */
+/** Railways: a bed over the ground, dams up to the bridges that carry it, two rails a track, and the wire of electric ones. Values in, arrays out. */
+
+import { memberList } from "./struts.js";
 
 const STEP_M = 20;
 const GAUGE_M = 1.435;
@@ -8,23 +10,27 @@ const BED_LIFT_M = 0.35;
 const RAIL_LIFT_M = 0.25; // above the bed
 const STEEPEST = 0.03; // of a ramp
 const DAM_SLOPE = 1.5; // across, for each metre of height
+const MAST_EVERY_M = 58;
+const MAST_OUT_M = 1.2; // beside the bed
+const CONTACT_M = 5.6; // above the ground
+const CARRIER_SAG_M = 1.1;
 const LEAST_LIFT_M = 0.05;
 const MOST_ROUNDS = 12;
 
 /**
  * All railways of a scene, in their order: [{ bed: { vertices, uv (0 to 1 across, metres along), index }, rails: Float32Array of segments
- * (x, y, z, x, y, z) }]. Where two share an end they are equally high there, so ramps go on from one to the next.
+ * (x, y, z, x, y, z), wires: the same of contact wires and what carries them, masts: members }]. Where two share an end they are equally high there, so ramps go on from one to the next.
  *
- * deckAt(x, z): y of a bridge for rails there, or null.
+ * deckAt(x, z): y of a bridge for rails there, or null. wire_agl_m: what planners count of a railway; nothing of it is drawn higher.
  */
-export function railwayTracks(railways, { frame, ground, deckAt = () => null }) {
+export function railwayTracks(railways, { frame, ground, deckAt = () => null, wire_agl_m = 8 }) {
   const ways = railways.map((railway) => {
     const points = densified(railway.line.map(([lon, lat]) => frame.toLocal(lon, lat, 0)).map(([x, , z]) => [x, z]));
     const onDeck = points.map(([x, z]) => deckAt(x, z));
     return { railway, points, onDeck, heights: points.map(([x, z], place) => Math.max(ground.heightAt(x, z), onDeck[place] ?? -Infinity)) };
   });
   ramps(ways);
-  return ways.map((way) => track(way, ground));
+  return ways.map((way) => ({ ...track(way, ground), ...overhead(way, wire_agl_m) }));
 }
 
 /** Before and behind what is lifted, no steeper than a ramp; again until ends that lie together agree. */
@@ -86,6 +92,47 @@ function track({ railway, points, onDeck, heights }, ground) {
     bed: { vertices: Float32Array.from(bed.vertices), uv: Float32Array.from(bed.uv), index: Uint32Array.from(bed.index) },
     rails: railLines(points, heights, sides, railway.tracks),
   };
+}
+
+/** Masts beside the outermost track, an arm over all, and for each track a contact wire below the wire that carries it. */
+function overhead({ railway, points, heights }, wire_agl_m) {
+  const [masts, wires] = [memberList(), []];
+  if (!railway.is_electrified) return { masts: masts.take(), wires: new Float32Array(0) };
+  const sides = sidesOf(points);
+  const out_m = (BED_M + (railway.tracks - 1) * TRACK_M) / 2 + MAST_OUT_M;
+  const high_m = wire_agl_m - 0.3; // the bed's lift is below the wire, too
+  const at = (place, across, up) => [points[place][0] + across * sides[place][0], heights[place] + up, points[place][1] + across * sides[place][1]];
+  const stands = mastPlaces(points);
+  for (const place of stands) {
+    masts.add(at(place, out_m, 0), at(place, out_m, wire_agl_m), 0.28);
+    masts.add(at(place, out_m, wire_agl_m - 0.4), at(place, -out_m + 2 * MAST_OUT_M, high_m), 0.12);
+    masts.add(at(place, out_m, CONTACT_M + 0.3), at(place, -out_m + 2 * MAST_OUT_M, CONTACT_M + 0.3), 0.09);
+  }
+  for (let track = 0; track < railway.tracks; track += 1) {
+    const across = (track - (railway.tracks - 1) / 2) * TRACK_M;
+    for (let field = 1; field < stands.length; field += 1) {
+      const [from, to] = [stands[field - 1], stands[field]];
+      for (let place = from; place < to; place += 1) {
+        const carried = (own) => high_m - 4 * CARRIER_SAG_M * ((own - from) / (to - from)) * (1 - (own - from) / (to - from));
+        wires.push(...at(place, across, CONTACT_M), ...at(place + 1, across, CONTACT_M));
+        wires.push(...at(place, across, carried(place)), ...at(place + 1, across, carried(place + 1)));
+      }
+    }
+  }
+  return { masts: masts.take(), wires: Float32Array.from(wires) };
+}
+
+/** Every so many metres along the way, at its points; the first and the last among them. */
+function mastPlaces(points) {
+  const places = [0];
+  let since_m = 0;
+  for (let place = 1; place < points.length - 1; place += 1) {
+    since_m += Math.hypot(points[place][0] - points[place - 1][0], points[place][1] - points[place - 1][1]);
+    if (since_m < MAST_EVERY_M) continue;
+    places.push(place);
+    since_m = 0;
+  }
+  return points.length > 1 ? [...places, points.length - 1] : [];
 }
 
 function railLines(points, heights, sides, tracks) {

@@ -4,6 +4,7 @@ import { area2, refined, triangulate } from "./triangulate.js";
 
 const EDGE_M = 60; // no side of a wall or cap that follows the ground is longer, where the ground is finer than that
 const FLAT_EDGE_M = 2_000;
+const MOST_TRIANGLES = 16_000; // of a floor or ceiling, about
 const ON_CLIP_DEG = 1e-6;
 const LIFT_M = 0.6; // a floor on the ground lies so far above it
 
@@ -20,7 +21,7 @@ export function limitHeight(limit, side, x, z, { frame, heightAt, open_top_agl_m
  */
 export function zoneVolume(zone, { frame, ground, clip, rules }) {
   const room = { frame, heightAt: ground.heightAt, open_top_agl_m: rules.open_top_agl_m };
-  const step_m = follows(zone) && !isLevel(ground) ? Math.max(EDGE_M, Math.min(ground.stepX, ground.stepZ)) : FLAT_EDGE_M;
+  const step_m = follows(zone) && !isLevel(ground) ? stepOver(zone, frame, ground) : FLAT_EDGE_M;
   const low = (x, z) => Math.max(limitHeight(zone.lower, "lower", x, z, room), ground.heightAt(x, z) + LIFT_M);
   const high = (x, z) => Math.max(limitHeight(zone.upper, "upper", x, z, room), low(x, z));
   const isOpen = zone.upper.above === "open";
@@ -48,6 +49,12 @@ export function zoneVolume(zone, { frame, ground, clip, rules }) {
 /** The ring so turned that walls along it show their front to the outside: outlines one way round, holes the other. */
 function facingOut(ring, number) {
   return area2(ring) > 0 === (number === 0) ? ring : [...ring].reverse();
+}
+
+/** As fine as the ground is known, and EDGE_M at least; coarser for zones of more than some 14 square kilometres. */
+function stepOver(zone, frame, ground) {
+  const area_m2 = zone.polygons.reduce((sum, [outline]) => sum + Math.abs(area2(outline.map(([lon, lat]) => local(frame, lon, lat)))) / 2, 0);
+  return Math.max(EDGE_M, Math.min(ground.stepX, ground.stepZ), Math.sqrt((4 * area_m2) / MOST_TRIANGLES));
 }
 
 function follows(zone) {

@@ -12,7 +12,7 @@ const sampleOf = (sample) => ({ ...sample, altitude_relative_m: sample.height_m 
 export function piecesOf(track) {
   const known = (samples) => samples.filter(({ position }) => position !== null).map(sampleOf);
   const measured = track.measured.map((run) => ({ kind: MEASURED, samples: completed(known(run)) }));
-  const estimated = track.estimated.map((run) => ({ kind: ESTIMATED, samples: completed(known(run)) }));
+  const estimated = track.estimated.map((run) => ({ kind: ESTIMATED, samples: completed(known(run)).map((sample) => ({ ...sample, waypoint: sample.waypoint ?? run[0].waypoint ?? null })) }));
   return [...measured, ...estimated].filter(({ samples }) => samples.length > 0).sort((a, b) => a.samples[0].at_ms - b.samples[0].at_ms || a.samples.at(-1).at_ms - b.samples.at(-1).at_ms);
 }
 

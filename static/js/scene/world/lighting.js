@@ -60,13 +60,14 @@ export function mood(palette, altitude_deg) {
  */
 export function nightPalette(palette, night) {
   if (palette.isDark || night < 0.02) return palette;
-  const towards = (names, colour, share) => names.map((name) => [name, `#${new Color(palette[name]).lerp(new Color(colour), share * night).getHexString()}`]);
+  const towards = (names, colour, share) => names.map((name) => [name, `#${new Color(palette[name]).lerp(new Color(colour), share).getHexString()}`]);
+  const pale = step(night, 0.68, 0.82); // all at once, when the ground is as far from dark lines as from pale ones
   return {
     ...palette,
     ...Object.fromEntries([
-      ...towards(["volt400", "volt220", "volt132", "volt66", "volt20", "voltUnknown", "tower"], "#d3dfe8", 0.62),
-      ...towards(["railway", "bridge", "ground", "pressed", "raised", "inkSecond"], NIGHT.light, 0.86),
-      ...towards(["zone"], "#f285b6", 0.7),
+      ...towards(["volt400", "volt220", "volt132", "volt66", "volt20", "voltUnknown", "tower"], "#d3dfe8", 0.62 * pale),
+      ...towards(["railway", "bridge", "ground", "pressed", "raised", "inkSecond"], NIGHT.light, 0.86 * night),
+      ...towards(["zone"], "#f285b6", 0.7 * pale),
     ]),
   };
 }

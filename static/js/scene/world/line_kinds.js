@@ -7,6 +7,7 @@ const WIRE_PX = [[380_000, 1.5], [200_000, 1.35], [100_000, 1.2], [0, 1]];
 const WIRE_M = 0.11; // a bundle, or a rope with the eye's help
 const EARTH = { px: 0.8, m: 0.05 };
 const RAIL = { px: 0.7, m: 0.14 };
+const RAIL_WIRE = { px: 0.65, m: 0.05 };
 const EDGE_PX = 1.6;
 const REST_DASH_M = 40;
 
@@ -28,12 +29,20 @@ export function wireSegments({ points, first, span, isEarth }, scene, palette) {
 }
 
 export function railSegments(rails, palette) {
-  const lines = arrays(rails.reduce((sum, own) => sum + own.length / 6, 0));
-  const colour = new Color(palette.railway).lerp(new Color(palette.ink), 0.35);
+  return ofOneLook(rails, new Color(palette.railway).lerp(new Color(palette.ink), 0.35), RAIL);
+}
+
+export function railWireSegments(wires, palette) {
+  return ofOneLook(wires, new Color(palette.tower), RAIL_WIRE);
+}
+
+/** pieces: arrays of segments (x, y, z, x, y, z). */
+function ofOneLook(pieces, colour, { px, m }) {
+  const lines = arrays(pieces.reduce((sum, own) => sum + own.length / 6, 0));
   let at = 0;
-  for (const own of rails) {
+  for (const own of pieces) {
     for (let place = 0; place < own.length; place += 6) {
-      lines.put(at, own.subarray(place, place + 6), colour, 0, RAIL.px, RAIL.m);
+      lines.put(at, own.subarray(place, place + 6), colour, 0, px, m);
       at += 1;
     }
   }

@@ -46,7 +46,6 @@ const VERTEX = /* glsl */ `
     #include <fog_vertex>
   }`;
 const FRAGMENT = /* glsl */ `
-  uniform float opacity;
   varying vec3 vTint;
   varying float vAlpha;
   varying float vAcross;
@@ -59,7 +58,7 @@ const FRAGMENT = /* glsl */ `
     if (vDash > 0.0 && mod(vAlong, vDash * 1.8) > vDash) discard;
     float cover = clamp(vHalf + 0.5 - abs(vAcross), 0.0, 1.0) * min(vHalf * 2.0, 1.0);
     if (cover < 0.01) discard;
-    gl_FragColor = vec4(vTint, cover * vAlpha * opacity);
+    gl_FragColor = vec4(vTint, cover * vAlpha);
     #include <colorspace_fragment>
     #include <fog_fragment>
   }`;
@@ -67,14 +66,14 @@ const FRAGMENT = /* glsl */ `
 const CORNERS = new Float32Array([-1, 0, 0, 1, 0, 0, -1, 1, 0, 1, 1, 0]);
 
 /**
- * fade: [metres from where on lines are faint, how faint]. Gives { mesh, set(segments, tints, sizes), opacity(value), dispose() };
+ * fade: [metres from where on lines are faint, how faint]. Gives { mesh, set(segments, tints, sizes), recolour(tints), dispose() };
  * set: Float32Array of 6, 4 (colour in the working space, dash) and 2 (pixels, metres) for each segment.
  */
 export function screenLines({ fade = [6_000, 0.4], order = 2 } = {}) {
   const material = new ShaderMaterial({
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
-    uniforms: UniformsUtils.merge([UniformsLib.fog, { viewport: { value: new Vector4(0, 0, 1, 1) }, pixelRatio: { value: 1 }, fade: { value: fade }, opacity: { value: 1 } }]),
+    uniforms: UniformsUtils.merge([UniformsLib.fog, { viewport: { value: new Vector4(0, 0, 1, 1) }, pixelRatio: { value: 1 }, fade: { value: fade } }]),
     transparent: true,
     side: DoubleSide,
     depthWrite: false,
@@ -105,11 +104,9 @@ export function screenLines({ fade = [6_000, 0.4], order = 2 } = {}) {
     },
     recolour(tints) {
       const attribute = mesh.geometry.getAttribute("tint");
+      if (!attribute) return;
       attribute.array.set(tints);
       attribute.needsUpdate = true;
-    },
-    opacity(value) {
-      material.uniforms.opacity.value = value;
     },
     dispose() {
       mesh.geometry.dispose();

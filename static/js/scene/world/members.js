@@ -40,7 +40,7 @@ function shadowMaterial(leastShadow) {
   return material;
 }
 
-/** Gives { mesh, shadowPixel(metres), set({ ends, width_m, tone }, colours), dispose() }; colours: Float32Array of 3 for each member, in the working space. */
+/** Gives { mesh, shadowPixel(metres), set({ ends, width_m, tone }, colours), recolour(colours), dispose() }; colours: Float32Array of 3 for each member, in the working space. */
 export function memberMesh({ leastPx = LEAST_PX, castShadow = true } = {}) {
   const prism = new CylinderGeometry(0.5, 0.5, 1, 4, 1, true);
   const { material, uniforms } = memberMaterial(leastPx);
@@ -88,6 +88,10 @@ export function memberMesh({ leastPx = LEAST_PX, castShadow = true } = {}) {
       holder.mesh.count = count;
       holder.mesh.visible = count > 0;
       holder.mesh.instanceMatrix.needsUpdate = true;
+      holder.mesh.instanceColor.needsUpdate = true;
+    },
+    recolour(colours) {
+      holder.mesh.instanceColor.array.set(colours);
       holder.mesh.instanceColor.needsUpdate = true;
     },
     dispose() {

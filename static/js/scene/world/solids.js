@@ -43,22 +43,23 @@ const SLEEPERS = /* glsl */ `
     float tie = smoothstep(0.5 - wide, 0.5 + wide, abs(fract(way) - 0.5) * 2.0) * (1.0 - smoothstep(0.25, 0.7, wide)) + 0.5 * smoothstep(0.25, 0.7, wide);
     float inside = step(0.18, vUv.x) * step(vUv.x, 0.82); // dams have -1 to 0 and 1 to 2
     diffuseColor.rgb = mix(diffuseColor.rgb, tieColour, tie * inside);
+    if (vUv.x < 0.0 || vUv.x > 1.0) diffuseColor.rgb = damColour;
   }`;
 
-/** The beds, with sleepers across. */
+/** The beds, with sleepers across, and their dams; `ties` and `dams` are their colours. */
 export function makeBeds() {
   const material = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 });
-  const uniforms = { tieColour: { value: new Color() } };
+  const uniforms = { tieColour: { value: new Color() }, damColour: { value: new Color() } };
   material.defines = { USE_UV: "" };
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.fragmentShader = shader.fragmentShader
-      .replace("#include <common>", "#include <common>\nuniform vec3 tieColour;")
+      .replace("#include <common>", "#include <common>\nuniform vec3 tieColour;\nuniform vec3 damColour;")
       .replace("#include <color_fragment>", `#include <color_fragment>\n${SLEEPERS}`);
   };
   const mesh = new Mesh(new BufferGeometry(), material);
   mesh.receiveShadow = true;
-  return { ...solid(mesh, material), ties: uniforms.tieColour.value };
+  return { ...solid(mesh, material), ties: uniforms.tieColour.value, dams: uniforms.damColour.value };
 }
 
 function solid(mesh, material) {

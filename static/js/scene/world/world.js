@@ -11,7 +11,7 @@ import { wiresOf } from "../geometry/wires.js";
 import { zoneVolume } from "../geometry/zones.js";
 import { Color, Fog, Group } from "../three.js";
 import { makeLights, mood, nightPalette } from "./lighting.js";
-import { edgeSegments, railSegments, wireSegments } from "./line_kinds.js";
+import { edgeSegments, railSegments, railWireSegments, wireSegments } from "./line_kinds.js";
 import { screenLines } from "./lines.js";
 import { makeSky } from "./sky.js";
 import { makeBeds, makeBridges } from "./solids.js";
@@ -19,18 +19,19 @@ import { makeSupports } from "./supports.js";
 import { makeTerrain } from "./terrain.js";
 import { makeZones } from "./zones.js";
 
+const BRACING = { high: { near_m: 900, most: 50 }, low: { near_m: 300, most: 8 } };
 const NIGHT_STEP = 0.06; // things get other colours after so much of dusk
 const FOG_M = [4_000, 30_000];
 const FLAT = { columns: 2, rows: 2, step_lon_deg: 0.1, step_lat_deg: 0.1 };
 const NO_WIRES = { points: new Float64Array(0), first: new Uint32Array(1), span: new Uint32Array(0), isEarth: new Uint8Array(0) };
 
-/** quality: "high", or "low" without shadows and bracing. */
+/** quality: "high", or "low" without shadows and with little bracing. */
 export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
   const group = new Group();
   const fog = new Fog(0xffffff, ...FOG_M);
   const lights = makeLights({ shadows: quality !== "low" });
   const [sky, terrain, beds, bridges, zones] = [makeSky(), makeTerrain(), makeBeds(), makeBridges(), makeZones()];
-  const supports = makeSupports({ hasBracing: quality !== "low" });
+  const supports = makeSupports({ bracing: BRACING[quality] });
   const wires = screenLines({ fade: [5_000, 0.35], order: 2 });
   const edges = screenLines({ fade: [16_000, 0.5], order: 4 });
   const parts = [sky, terrain, beds, bridges, supports, wires, edges, zones];
@@ -53,16 +54,26 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     lights.apply(now, sun);
   }
 
-  function paintThings() {
+  /** isNew: other things than before, not the same in other colours. */
+  function paintThings({ isNew = false } = {}) {
     const own = nightPalette(palette, now.night);
     paintedNight = now.night;
-    bridges.apply(new Color(own.bridge).lerp(new Color(own.ground), palette.isDark ? 0.25 : 0.35));
-    beds.apply(new Color(own.railway).lerp(new Color(own.ground), 0.62));
-    beds.ties.set(own.railway).lerp(new Color(own.ground), 0.25);
+    const calm = palette.isDark ? 0.72 + 0.14 * now.night : 0; // in the dark theme surfaces are darker than lines
+    const near = (name, share) => new Color(own[name]).lerp(new Color(own.ground), Math.max(share, calm));
+    bridges.apply(near("bridge", 0.35));
+    beds.apply(near("railway", 0.62));
+    beds.ties.copy(near("railway", 0.25));
+    beds.dams.copy(near("railway", palette.isDark ? 0.92 : 0.8));
     zones.apply(own);
     supports.apply(own);
-    wires.set(...joined([wireSegments(shown.wires, scene, own), railSegments(shown.rails, own)]));
-    edges.set(...edgeSegments(shown.volumes, own));
+    const [lines, borders] = [joined([wireSegments(shown.wires, scene, own), railSegments(shown.rails, own), railWireSegments(shown.railWires, own)]), edgeSegments(shown.volumes, own)];
+    if (isNew) {
+      wires.set(...lines);
+      edges.set(...borders);
+    } else {
+      wires.recolour(lines[1]);
+      edges.recolour(borders[1]);
+    }
   }
 
   function tellForce() {
@@ -78,7 +89,8 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     paint();
     const isOtherForce = tellForce();
     if (isOtherForce) zones.show(shown.volumes);
-    if (isOtherForce || Math.abs(now.night - paintedNight) > NIGHT_STEP) paintThings();
+    if (isOtherForce) edges.set(...edgeSegments(shown.volumes, nightPalette(palette, now.night)));
+    if (Math.abs(now.night - paintedNight) > NIGHT_STEP) paintThings();
   }
 
   function show(sceneData) {
@@ -89,8 +101,8 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     beds.show(shown.beds);
     bridges.show(shown.bridges);
     zones.show(shown.volumes);
-    supports.show(sceneData?.supports ?? [], frame);
-    paintThings();
+    supports.show(sceneData?.supports ?? [], frame, shown.masts);
+    paintThings({ isNew: true });
   }
 
   sun = sunAt(moment, frame.origin.position);
@@ -132,17 +144,19 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
 function emptyShown(frame) {
   const [lon, lat] = frame.origin.position;
   const flat = { ...FLAT, west_deg: lon - 0.05, north_deg: lat + 0.05, altitude_amsl_m: Array(4).fill(frame.origin.altitude_amsl_m) };
-  return { ground: makeGround(flat, frame), wires: NO_WIRES, rails: [], beds: [], bridges: [], volumes: [] };
+  return { ground: makeGround(flat, frame), wires: NO_WIRES, rails: [], railWires: [], masts: [], beds: [], bridges: [], volumes: [] };
 }
 
 function shownOf(scene, frame) {
   const ground = makeGround(scene.ground, frame);
   const deckAt = deckUnder(scene.bridges, frame);
-  const tracks = railwayTracks(scene.railways, { frame, ground, deckAt });
+  const tracks = railwayTracks(scene.railways, { frame, ground, deckAt, wire_agl_m: scene.rules.rail_wire_agl_m });
   return {
     ground,
     wires: wiresOf(scene, frame),
     rails: tracks.map(({ rails }) => rails),
+    railWires: tracks.map((track) => track.wires),
+    masts: tracks.map(({ masts }) => masts),
     beds: tracks.map(({ bed }) => bed),
     bridges: scene.bridges.map((bridge) => bridgeSolid(bridge, { frame, ground })),
     volumes: scene.zones.map((zone) => zoneVolume(zone, { frame, ground, clip: scene.clip, rules: scene.rules })),
