@@ -216,6 +216,9 @@ class SimulationPageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
+TOLD = tuple(name for name in ToldSerializer().fields if name != "at")
+
+
 def simulation_json(simulation: Simulation) -> dict[str, Any]:
     return {
         "id": str(simulation.pk),
@@ -237,7 +240,7 @@ def simulation_json(simulation: Simulation) -> dict[str, Any]:
 
 
 def vehicle_json(vehicle: SimulatedVehicle) -> dict[str, Any]:
-    told = {name: value for name, value in vehicle.told.items() if name in ToldSerializer().fields}
+    told = {name: vehicle.told[name] for name in TOLD if name in vehicle.told}
     airframe = AIRFRAMES.get(vehicle.airframe)
     own_wh = 0.0 if airframe is None else airframe.battery_wh
     return {
