@@ -26,6 +26,7 @@ REASONS = {
     "uav-changed": gettext_lazy("A UAV that it stood in for is no longer marked as simulated, or is reached in another way."),
     "simulator-lost": gettext_lazy("The simulator was lost while the UAV was in the air: the UAV is lost with it."),
     "simulator-fault": gettext_lazy("It failed inside Spanwise; the error is in the simulator's log."),
+    "no-gateway": gettext_lazy("No gateway listens for MAVLink: SPANWISE_GATEWAY_UDP is empty, and SPANWISE_SIMULATOR_GATEWAY names none."),
     "no-socket": gettext_lazy("The simulator could not listen at its port."),
     "port-taken": gettext_lazy(
         "Another program on the simulator's machine has its port, such as another installation of Spanwise. Start it again, or give this "
