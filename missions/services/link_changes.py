@@ -15,9 +15,13 @@ ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
 def refuse_to_cut_off(uav: Uav, before: Mapping[str, Any]) -> None:
     """Raises Refused for a change after which a command that waits, be it an abort, would reach nobody or somebody else.
 
+    Nor is a UAV that flies taken for a simulated one: somebody else would answer in its place. That it is real can be said at any time.
+
     The caller holds the UAV's row, so that no command is given meanwhile. before: its facts.
     """
     changed = [name for name in REACHED_BY if getattr(uav, name) != before[name]]
+    if uav.is_simulated and not before["is_simulated"]:
+        changed.append("is_simulated")
     if not changed or (changed == ["mavlink_system_id"] and before["mavlink_system_id"] is None):  # one without an id reached nobody
         return
     values = {"uav": uav.name}

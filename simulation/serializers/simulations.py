@@ -26,6 +26,7 @@ REASONS = {
     "uav-changed": gettext_lazy("A UAV that it stood in for is no longer marked as simulated, or is reached in another way."),
     "simulator-lost": gettext_lazy("The simulator was lost while the UAV was in the air: the UAV is lost with it."),
     "simulator-fault": gettext_lazy("It failed inside Spanwise; the error is in the simulator's log."),
+    "no-gateway": gettext_lazy("No gateway listens for MAVLink: SPANWISE_GATEWAY_UDP is empty, and SPANWISE_SIMULATOR_GATEWAY names none."),
     "no-socket": gettext_lazy("The simulator could not listen at its port."),
     "port-taken": gettext_lazy(
         "Another program on the simulator's machine has its port, such as another installation of Spanwise. Start it again, or give this "
@@ -216,6 +217,9 @@ class SimulationPageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
+TOLD = tuple(name for name in ToldSerializer().fields if name != "at")
+
+
 def simulation_json(simulation: Simulation) -> dict[str, Any]:
     return {
         "id": str(simulation.pk),
@@ -237,7 +241,7 @@ def simulation_json(simulation: Simulation) -> dict[str, Any]:
 
 
 def vehicle_json(vehicle: SimulatedVehicle) -> dict[str, Any]:
-    told = {name: value for name, value in vehicle.told.items() if name in ToldSerializer().fields}
+    told = {name: vehicle.told[name] for name in TOLD if name in vehicle.told}
     airframe = AIRFRAMES.get(vehicle.airframe)
     own_wh = 0.0 if airframe is None else airframe.battery_wh
     return {

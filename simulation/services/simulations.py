@@ -11,6 +11,7 @@ from django.conf import settings
 from django.contrib.gis.geos import Point
 from django.db import connection, transaction
 from django.db.models import Q
+from django.db.models.functions import Now
 from django.utils import timezone
 
 from inspection.geodesy import LonLat
@@ -176,7 +177,7 @@ def hold_starts() -> None:
     with connection.cursor() as cursor:
         cursor.execute("SELECT pg_advisory_xact_lock(%s)", [_STARTS])
     now = timezone.now()
-    unheld = Simulation.objects.filter(Q(lease_expires_at=None) | Q(lease_expires_at__lt=now), state__in=PRESENT)
+    unheld = Simulation.objects.filter(Q(lease_expires_at=None) | Q(lease_expires_at__lt=Now()), state__in=PRESENT)
     for simulation in unheld.filter(Q(lifetime_ends_at__lte=now) | Q(end_wanted_at__isnull=False)):
         end_now(simulation, "ended-by-hand" if simulation.end_wanted_at else "lifetime-over")
 

@@ -39,7 +39,7 @@ def take_simulation(*, holder: str, lease_s: float, most_load: float, flown: Col
     """
     with transaction.atomic():
         now = timezone.now()
-        free = Q(lease_expires_at=None) | Q(lease_expires_at__lt=now) | Q(holder__startswith=f"{_name(holder)}/")
+        free = Q(lease_expires_at=None) | Q(lease_expires_at__lt=Now()) | Q(holder__startswith=f"{_name(holder)}/")
         waiting = Simulation.objects.filter(free, state__in=PRESENT).exclude(pk__in=flown)
         for simulation in waiting.select_for_update(skip_locked=True, of=("self",)).order_by("created_at"):
             if (reason := _why_over(simulation)) is not None:

@@ -13,8 +13,14 @@ from simulation.vehicle_endpoint.launch import Launch
 from simulation.vehicle_protocol.flavour import Flavour
 
 
+class NoGateway(Exception):
+    """A mission's UAV has nowhere to connect to."""
+
+
 def launch_of(vehicle: SimulatedVehicle, simulation: Simulation, options: Options) -> Launch:
-    """Over the stored terrain; a ground height that was said holds where it is known from nowhere else."""
+    """Over the stored terrain; a ground height that was said holds where it is known from nowhere else. Raises NoGateway."""
+    if vehicle.uav is not None and options.gateway is None:
+        raise NoGateway
     position, sky = LonLat(*vehicle.position.coords), sky_from_json(vehicle.conditions)
     return Launch(
         system=vehicle.system_id,
@@ -28,7 +34,7 @@ def launch_of(vehicle: SimulatedVehicle, simulation: Simulation, options: Option
         battery_percent=sky.battery_percent,
         ground=BlockedGround(heights_at(planning_read().edition), vehicle.ground_amsl_m or 0.0),
         weather=weather_of(sky),
-        talks_to=[] if vehicle.uav is None else [options.gateway],
+        talks_to=[] if vehicle.uav is None or options.gateway is None else [options.gateway],
         listens_at=None if vehicle.port is None else (options.host, vehicle.port),
     )
 

@@ -17,13 +17,13 @@ LEASE_S = 5.0  # a killed simulator's simulations are taken over within this and
 class Options:
     """`name` is the same at every start of one simulator, and no other's; `holder` is of this run alone.
 
-    `most_load`: simulated seconds a second that it takes on, over all UAVs. `gateway`: where a mission's UAVs connect; `host`: where the
-    pool's listen.
+    `most_load`: simulated seconds a second that it takes on, over all UAVs. `gateway`: where a mission's UAVs connect, None where none
+    listens; `host`: where the pool's listen.
     """
 
     name: str
     most_load: float
-    gateway: Address
+    gateway: Address | None
     host: str
     run: str = field(default_factory=lambda: secrets.token_hex(4))
     lease_s: float = LEASE_S
@@ -35,11 +35,12 @@ class Options:
 
 def options_of_settings(*, name: str | None = None, most_uavs: int | None = None, gateway: str | None = None) -> Options:
     """Without a name, of this process alone. Raises WrongAddress."""
+    reached_at = gateway or settings.SIMULATOR_GATEWAY or settings.GATEWAY_UDP.split(",")[0]
     named = name or settings.SIMULATOR_NAME or f"{socket.gethostname()}-{os.getpid()}"
     return Options(
         name=re.sub(r"[^\w.-]", "-", named)[:80],
         most_load=float(settings.SIMULATOR_MOST_UAVS if most_uavs is None else most_uavs),
-        gateway=gateway_address(gateway or settings.SIMULATOR_GATEWAY or settings.GATEWAY_UDP.split(",")[0]),
+        gateway=gateway_address(reached_at) if reached_at else None,
         host=settings.SIMULATOR_HOST,
     )
 

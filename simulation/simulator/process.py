@@ -26,7 +26,7 @@ from simulation.services.simulator_leases import (
     tell,
 )
 from simulation.simulator.flight import Flight, flight_of
-from simulation.simulator.launches import launch_of
+from simulation.simulator.launches import NoGateway, launch_of
 from simulation.simulator.options import Options
 from simulation.vehicle_endpoint.fleet import Change, WrongPace
 from workspace.errors import DATABASE_AWAY
@@ -105,6 +105,11 @@ class Simulator:
                 self.flights[held.simulation.pk] = flight_of(held.simulation, held.vehicles, launches)
             except DATABASE_AWAY:
                 raise
+            except NoGateway:
+                logger.warning(
+                    "simulation %s has no gateway to connect to: SPANWISE_SIMULATOR_GATEWAY says where one listens", held.simulation.pk
+                )
+                fail_simulation(simulation=held.simulation, reason="no-gateway")
             except OSError as error:
                 is_taken = error.errno == errno.EADDRINUSE
                 if is_taken:

@@ -124,7 +124,11 @@ def test_what_its_rehearsal_failed_is_not_approved_where_a_rehearsal_is_asked_fo
 def test_a_mission_into_14_mps_of_wind_is_refused_with_the_reason(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("ada")
     strong = {"wind": [{"altitude_agl_m": 10, "speed_mps": 14.0, "from_deg": 0.0}]}
-    uav = posts(page, "/uavs", {"name": "Gadwall", "position": STARTS["Wigeon"], "is_simulated": True, "max_airspeed_mps": 20.0})["id"]
+    uav = posts(
+        page,
+        "/uavs",
+        {"name": "Gadwall", "position": STARTS["Wigeon"], "is_simulated": True, "cruise_speed_mps": 10.0, "max_airspeed_mps": 20.0},
+    )["id"]
     tower = asks(page, "/assets?kind=tower&bbox=-83.0,39.90,-82.98,39.91&limit=1")["features"][0]["id"]
     body = {
         "name": "Into the wind", "uavs": [{"id": uav}], "targets": [{"asset": tower}], "conditions": strong, "return_to_start": True,

@@ -348,6 +348,22 @@ def test_how_a_uav_is_reached_does_not_change_while_its_mission_is_on_its_way(he
     change_uav(uav=tern, actor=person, position=None, values={"link": LinkKind.HTTP})
 
 
+def test_a_uav_that_flies_is_not_taken_for_a_simulated_one(here: World, person: User) -> None:
+    """Else one would stand in for it, under its number and key. That it is real can be said at any time."""
+    (tern,) = uavs = fleet(is_simulated=True)
+    dispatched(person, uavs, here.towers[1:2])
+    change_uav(uav=tern, actor=person, position=None, values={"is_simulated": False})
+    with pytest.raises(Refused) as error:
+        change_uav(uav=tern, actor=person, position=None, values={"is_simulated": True})
+    assert codes(error) == ["commands_waiting"]
+    carry(tern)
+    with pytest.raises(Refused) as error:
+        change_uav(uav=tern, actor=person, position=None, values={"is_simulated": True})
+    assert codes(error) == ["mission_on_its_way"]
+    tern.refresh_from_db()
+    assert not tern.is_simulated
+
+
 def test_a_flight_that_failed_ends_its_route_alone(here: World, person: User) -> None:
     tern, kite = uavs = fleet("Tern", "Kite")
     mission = active(person, uavs, here)

@@ -33,7 +33,7 @@ from workspace.services import LEASE_S, create_job
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
-PATIENCE_S = 240.0
+PATIENCE_S = 420.0
 LARGE = 14
 KILLS = 20
 JOBS = 100

@@ -374,6 +374,7 @@ def test_a_uav_at_a_mission_keeps_its_values_when_the_stored_one_moves(here: Wor
             "most_targets": None,
             "sensors": [],
             "sorties": 1,
+            "is_simulated": False,
             "own_figures": [],
             **performance_to_json(Performance()),
         }

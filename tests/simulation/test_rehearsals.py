@@ -86,7 +86,8 @@ def test_wind_that_the_uav_cannot_fly_in_fails_with_its_reason(mission: Mission,
 
 
 def test_wind_that_its_airframe_flies_in_and_the_uav_does_not_fails(mission: Mission, person: User) -> None:
-    """What flies for it is stronger than the UAV, which is planned at 12 m/s and of which nothing more is known."""
+    """What flies for it is as heavy, but stronger."""
+    mission.mission_uavs.update(performance={"mass_kg": 3.8, "battery_wh": 260.0, "max_airspeed_mps": 12.0})
     Mission.objects.filter(pk=mission.pk).update(conditions={"wind": [{"altitude_agl_m": 10, "speed_mps": 14.0, "from_deg": 0.0}]})
     rehearsal = rehearsed(mission, person, "as-planned")
     finding = rehearsal.runs.get().verdict["findings"][0]
@@ -150,8 +151,8 @@ def test_another_plan_makes_a_rehearsal_out_of_date_and_the_same_plan_does_not(m
 def test_another_airframe_makes_a_rehearsal_out_of_date(here: World, person: User) -> None:
     uav_type = UavType.objects.create(organisation=person.organisation, name="Heavy", mass_kg=3.8, battery_wh=260.0)
     mission = planned(person, fleet(uav_type=uav_type), [here.towers[0]])
-    known = content(mission)
-    SimulatedAirframe.objects.create(uav_type=uav_type, airframe="iris")
+    known, flown = content(mission), plan_to_fly(loaded(mission)).stand_ins[0].airframe
+    SimulatedAirframe.objects.create(uav_type=uav_type, airframe="iris" if flown == "inspector" else "inspector")
     assert content(mission) != known
 
 

@@ -10,7 +10,7 @@ from simulation.models import SimulationChange, SimulationState
 from simulation.serializers.simulations import simulation_json
 from simulation.services.simulations import IsOver, NoPortFree, QuotaReached, change_simulation, end_simulation, end_vehicle
 from simulation.services.simulator_leases import end_single_ones, end_those_over, release_simulations, renew_simulations, take_changes
-from simulation.simulator.options import Options
+from simulation.simulator.options import Options, options_of_settings
 from simulation.simulator.process import Simulator
 from tests.missions.flights import approved, dispatched, fleet, planned
 from tests.missions.worlds import world
@@ -141,6 +141,17 @@ def test_a_port_that_another_program_has_is_told_by_its_name(settings, person):
     told = simulation_json(fresh(simulation))
     assert (told["state"], told["reason"]) == ("failed", "port-taken"), told
     assert "SPANWISE_SIMULATOR_PORTS" in told["message"]
+    assert simulator.flights == {}
+
+
+def test_without_a_gateway_a_missions_uavs_are_told_to_have_none(settings, mission, person):
+    settings.GATEWAY_UDP = settings.SIMULATOR_GATEWAY = ""
+    of_mission = stand_ins(mission, person)
+    simulator = Simulator(options_of_settings(name="one"))
+    simulator.round()
+    told = simulation_json(fresh(of_mission))
+    assert (told["state"], told["reason"]) == ("failed", "no-gateway"), told
+    assert "SPANWISE_SIMULATOR_GATEWAY" in told["message"]
     assert simulator.flights == {}
 
 

@@ -27,6 +27,7 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
   const { source } = stage;
   const names = new Map(targets.map(({ place, label, name }) => [place, { label, name }]));
   const where = new Map(targets.map((target) => [target.place, target.place3d]));
+  const assets = new Set(targets.map(({ asset }) => asset)); // a target's own label names it already
   const [longitude_deg] = scene.origin.position;
   let drawn = [];
   let read_ms = -Infinity;
@@ -88,7 +89,7 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
     const isDue = !isPlaying || now_ms - read_ms >= READ_EVERY_MS;
     if (isDue) {
       read_ms = now_ms;
-      ground = groundLabels(picture.labels(), pose.eye);
+      ground = groundLabels(picture.labels().filter(({ kind, id }) => kind === "zone" || !assets.has(id)), pose.eye);
       const route = source.routes.find(({ place }) => place === stage.chosen) ?? null;
       instruments.show(route, subject, subject ? readingsOf(subject, { nearest: nearestOf(subject, sun), task: subject.task, wind, labels: names }) : []);
     }
