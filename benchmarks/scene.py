@@ -1,6 +1,6 @@
 """The 3D view over real regions: draw calls, script time of a frame, and memory while it plays.
 
-    python -m benchmarks.scene [--minutes 10] [--regions columbus nepal] [--write]
+    python -m benchmarks.scene [--minutes 10] [--regions columbus nepal funen] [--write]
 
 For each region a whole installation (./run) is started over its OpenStreetMap file, with a planned mission of eight UAVs whose targets lie
 so far apart that a thousand towers stand in the picture. Chromium draws without a graphics card here, so that no frame rate says anything:
@@ -35,7 +35,11 @@ from tests.browser.conftest import CHROMIUM_FLAGS
 
 PROJECT_DIR = Path(__file__).resolve().parents[1]
 DATA = PROJECT_DIR.parent / "shared" / "data" / "osm"
-REGIONS = {"columbus": "columbus-ohio.osm.pbf", "nepal": "nepal-power-2025.osm.pbf"}
+REGIONS = {
+    "columbus": "columbus-ohio.osm.pbf",
+    "nepal": "nepal-power-2025.osm.pbf",
+    "funen": "funen-power-nodes-2019.osm.pbf",  # more towers within a picture than the others have, but none of their wires
+}
 BAR_CALLS, BAR_SCRIPT_MS = 60, 8.0
 BAR_TOWERS = 1_000
 NEARLY_ALL = 0.85  # of a box that has fewer
