@@ -31,7 +31,7 @@ def active_spans(schedule: Schedule | None, box: Box, from_s: float, to_s: float
 
     schedule is in the form of checked_schedule; None applies always. Days and times of day are UTC. With the sun, "Monday" is Monday in
     UTC as well as at the place, and the span reaches from the earliest start to the latest end in the box; where an event does not happen
-    at all the zone applies that whole day.
+    at all the zone applies that whole day, and where it happens in a part of the box alone, until the third day after is over.
     """
     if not from_s < to_s:
         return ()
@@ -90,6 +90,8 @@ def _of_entry(entry: dict[str, Any], day: int, box: Box) -> Iterator[Span]:
         known = [(place, start) for place, start in zip(places, starts, strict=True) if start is not None]
         ends = [_end(end_event, end_s, place, start, day) for place, start in known]
         if known:
+            if len(known) < len(places):  # somewhere between it begins, and what ends it may come no sooner than where it never comes
+                ends.append((day + 3) * DAY_S)
             early, late = SUN_ALLOWANCE_S if start_event else 0.0, SUN_ALLOWANCE_S if end_event else 0.0
             yield Span(min(start for _place, start in known) - early, max(ends) + late)
     for lon, lat in places:

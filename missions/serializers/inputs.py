@@ -107,6 +107,7 @@ class UavInputSerializer(PerformanceFieldsSerializer):
     """A UAV where it stands: a stored one by `id`, whose values the others override, or a new one by name and position."""
 
     id = serializers.IntegerField(required=False, allow_null=True)
+    is_simulated = serializers.BooleanField(read_only=True, help_text="of the stored UAV; sent again it says nothing")
     name = serializers.CharField(max_length=LONGEST_UAV_NAME, required=False)
     position = PositionField(required=False)
     max_range_m = AboveZeroField(required=False, allow_null=True, max_value=FARTHEST_RANGE_M, help_text="null or missing: not limited")

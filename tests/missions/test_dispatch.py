@@ -7,7 +7,7 @@ from django.utils import timezone
 
 from missions.mavlink.content import load_to_json
 from missions.models import Approval, CommandKind, CommandState, LinkKind, Mission, MissionState, TargetState, Uav, UavState
-from missions.services import change_mission, change_uav, plan_mission
+from missions.services import change_mission, plan_mission
 from missions.services.approval import approve_mission, revoke_approval
 from missions.services.approval_document import approval_document, content_sha256
 from missions.services.commands import note_failed
@@ -334,34 +334,6 @@ def test_only_a_mission_that_was_started_is_gone_on_with(here: World, person: Us
     carry(tern)
     assert commanded(tern, person, CommandKind.RESUME) == ""
     assert commanded(kite, person, CommandKind.RESUME) == "not_started"
-
-
-def test_how_a_uav_is_reached_does_not_change_while_its_mission_is_on_its_way(here: World, person: User) -> None:
-    (tern,) = uavs = fleet()
-    mission = dispatched(person, uavs, here.towers[1:2])
-    carry(tern)
-    with pytest.raises(Refused) as error:
-        change_uav(uav=tern, actor=person, position=None, values={"link": LinkKind.HTTP})
-    assert codes(error) == ["mission_on_its_way"]
-    abort_mission(mission=mission, actor=person, why="Storm")
-    carry(tern)
-    change_uav(uav=tern, actor=person, position=None, values={"link": LinkKind.HTTP})
-
-
-def test_a_uav_that_flies_is_not_taken_for_a_simulated_one(here: World, person: User) -> None:
-    """Else one would stand in for it, under its number and key. That it is real can be said at any time."""
-    (tern,) = uavs = fleet(is_simulated=True)
-    dispatched(person, uavs, here.towers[1:2])
-    change_uav(uav=tern, actor=person, position=None, values={"is_simulated": False})
-    with pytest.raises(Refused) as error:
-        change_uav(uav=tern, actor=person, position=None, values={"is_simulated": True})
-    assert codes(error) == ["commands_waiting"]
-    carry(tern)
-    with pytest.raises(Refused) as error:
-        change_uav(uav=tern, actor=person, position=None, values={"is_simulated": True})
-    assert codes(error) == ["mission_on_its_way"]
-    tern.refresh_from_db()
-    assert not tern.is_simulated
 
 
 def test_a_flight_that_failed_ends_its_route_alone(here: World, person: User) -> None:

@@ -5,7 +5,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from inspection.zones.activity import SUN_ALLOWANCE_S, Span, active_spans, merged
@@ -246,6 +246,8 @@ def test_two_halves_of_a_window_tell_what_the_window_tells(stored: Any, box: Any
     assert merged(halves) == active_spans(stored, box, from_s, to_s)
 
 
+@example(stored=schedule(entry("MON", startEvent="SR", endEvent="SR")), box=(0.0, 71.75, 0.0, 76.75), from_h=178, share=(0.0, 0.0))
+@example(stored=schedule(entry("MON", startEvent="SR", endTime="09:00:00Z")), box=(0.0, 60.0, 0.0, 76.75), from_h=178, share=(0.0, 0.6))
 @given(stored=periods(), box=boxes, from_h=st.integers(0, 700), share=st.tuples(st.floats(0, 1), st.floats(0, 1)))
 def test_a_larger_box_is_never_active_for_less(stored: Any, box: Any, from_h: int, share: tuple[float, float]) -> None:
     from_s = at("2026-11-01T00:00") + from_h * 3_600
