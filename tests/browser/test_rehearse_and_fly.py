@@ -24,7 +24,7 @@ from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.browser
 
-NAME = "Godwit"
+NAME = "Gannet"
 SILENT_S = "3600"  # until somebody ends it
 WATCHES_THE_UAV = """() => {
     window.placesOfTheUav = new Set();

@@ -57,7 +57,8 @@ def test_a_viewer_has_nothing_to_edit_with(visitor: Visitor, size: tuple[int, in
     expect(page.locator("#target-list .target")).to_have_count(2)
     expect(page.locator("#options-words")).to_contain_text("Finish soonest")
     editing = page.locator("#side").locator(
-        "input:not([readonly]), select:not(#rehearsal-list), #tools, #undo:visible, #redo:visible, #clear-targets:visible, .target .icon-button, .uav button"
+        "input:not([readonly]), select:not(#rehearsal-list), #tools, "
+        "#undo:visible, #redo:visible, #clear-targets:visible, .target .icon-button, .uav button"
     )
     expect(editing).to_have_count(0)
     page.get_by_role("button", name="More for this mission").click()
