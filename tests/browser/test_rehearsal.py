@@ -90,7 +90,7 @@ def test_a_plan_is_rehearsed_and_its_verdict_read(visitor: Visitor, planned: str
     panel.get_by_role("button", name="Calm").click()
     expect(panel.locator(".rehearsal-targets .pass")).to_have_count(3)
     panel.get_by_text("Limits and what flew").click()
-    expect(panel).to_contain_text("Wigeon: the simulated Inspector, the nearest by speed and mass")
+    expect(panel).to_contain_text("Wigeon: the simulated Iris, the nearest by speed and mass")
     picture(page, "rehearsal-limits")
 
 
