@@ -6,7 +6,7 @@ import { heightText } from "../units.js";
 import { isInForce } from "../zones/in_force.js";
 import { CAMERA_LONG } from "./camera_bar.js";
 import { between, lengthOf, minus } from "./cameras/vectors.js";
-import { nearestTower, nearestWire, nearestZone } from "./instruments/distances.js";
+import { nearestTower, nearestWire, nearestZone, roomRound } from "./instruments/distances.js";
 import { certaintyText, readingsOf } from "./instruments/readings.js";
 import { taskOf } from "./instruments/task.js";
 import { groundLabels } from "./labels.js";
@@ -71,8 +71,10 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
     const wind = source.windAt(at_ms, subject?.height_agl_m ?? 0);
     const isPlaying = player ? player.isPlaying : source.kind === "live";
     picture.setDate(sun);
+    const hidden = rig.mode === "onboard" ? stage.chosen : null;
+    const room_m = stage.isFlat ? 0 : roomRound(surroundings, pose.eye, drawn.filter(({ route }) => route !== hidden).map(({ place }) => place));
     const goesOn = picture.show({
-      pose, distance_m: Math.max(2, away_m), drawn, chosen: stage.chosen, looked: null, hidden: rig.mode === "onboard" ? stage.chosen : null,
+      pose, distance_m: Math.max(2, away_m), room_m, drawn, chosen: stage.chosen, looked: null, hidden,
       at_ms: source.kind === "live" ? null : at_ms, wind, dt_s: isPlaying && !isCalm() ? dt_s : 0,
     });
     write({ at_ms, subject, pose, sun, wind, isPlaying, now_ms, target });
@@ -91,7 +93,7 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
       read_ms = now_ms;
       ground = groundLabels(picture.labels().filter(({ kind, id }) => kind === "zone" || !assets.has(id)), pose.eye);
       const route = source.routes.find(({ place }) => place === stage.chosen) ?? null;
-      instruments.show(route, subject, subject ? readingsOf(subject, { nearest: nearestOf(subject, sun), task: subject.task, wind, labels: names }) : []);
+      instruments.show(route, subject, subject ? readingsOf(subject, { nearest: nearestOf(subject, sun), task: subject.task, wind, labels: names }) : [], Boolean(route?.isSimulated) && !source.isSimulated);
     }
     if (!isPlaying || now_ms - described_ms >= DESCRIBE_EVERY_MS) {
       described_ms = now_ms;

@@ -14,7 +14,7 @@ const SEGMENTS = 5; // of a pole that gets thinner
 /**
  * { frame: members of the outline, fine: bracing, insulators and foundations }, each as memberList takes it, in the frame.
  *
- * Nothing is higher than the support's height above its ground, and something of the outline reaches it.
+ * Nothing is higher than the support likely is above its ground, and something of the outline reaches it.
  */
 export function supportMembers(support, frame) {
   const stand = standing(support, frame);
@@ -26,8 +26,9 @@ export function supportMembers(support, frame) {
   ];
   const into = (list) => (start, end, width_m, tone = BODY) => list.add(place(start), place(end), width_m, tone);
   const draw = { outline: into(outline), fine: into(fine) };
-  (BUILDERS[support.form] ?? pole)(support, draw);
-  insulators(support, draw);
+  const drawn = { ...support, height_m: support.likely_m };
+  (BUILDERS[support.form] ?? pole)(drawn, draw);
+  insulators(drawn, draw);
   return { outline: outline.take(), fine: fine.take() };
 }
 
