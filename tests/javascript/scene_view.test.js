@@ -431,6 +431,8 @@ test("labels never cover each other, the heavier one stands, and where there is 
   const boxes = items.filter(({ key }) => placed.has(key)).map(({ key, width, height }) => ({ ...placed.get(key), width, height }));
   for (const [index, a] of boxes.entries()) for (const b of boxes.slice(index + 1)) assert.ok(a.left + a.width <= b.left || b.left + b.width <= a.left || a.top + a.height <= b.top || b.top + b.height <= a.top);
   assert.ok(placed.has(119) && placed.size < 120 && placed.size > 20);
+  const under = { left: 0, top: 0, right: 800, bottom: 250 };
+  for (const [key, { top }] of placeLabels(items, { width: 800, height: 500 }, new Map(), [under])) assert.ok(top >= 250, `${key} is not below what covers it`);
   const again = placeLabels(items, { width: 800, height: 500 }, placed);
   assert.deepEqual(again.get(119), placed.get(119));
 });

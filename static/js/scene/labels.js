@@ -41,8 +41,8 @@ export function createLabels(container) {
     element: layer,
     /** At night the ground is dark in both themes. */
     setNight: (isNight) => layer.classList.toggle("night", isNight),
-    /** items: [{ key, place: [x, y, z], parts: [words], className, weight }]; project: of the view; size: of the picture. */
-    show(items, project, size) {
+    /** items: [{ key, place: [x, y, z], parts: [words], className, weight }]; project: of the view; size: of the picture; covered: boxes of what stands over it. */
+    show(items, project, size, covered = []) {
       const seen = [];
       for (const item of items) {
         const at = project(item.place);
@@ -50,7 +50,7 @@ export function createLabels(container) {
         const { width, height } = elementOf(item);
         seen.push({ ...item, x: at.x, y: at.y, width, height });
       }
-      placed = placeLabels(seen, size, placed);
+      placed = placeLabels(seen, size, placed, covered);
       for (const [key, known] of elements) {
         const at = placed.get(key);
         if (!at) known.element.style.display = "none";
