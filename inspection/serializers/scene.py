@@ -88,6 +88,7 @@ class RailwaySerializer(serializers.Serializer):
 class SceneBridgeSerializer(serializers.Serializer):
     id = serializers.IntegerField()
     label = serializers.CharField()
+    is_named = serializers.BooleanField(help_text="its label is a name or number of its own")
     carries = serializers.CharField()
     polygons = serializers.ListField(child=serializers.ListField(child=serializers.ListField(child=PositionField())))
     deck_amsl_m = serializers.FloatField()
@@ -234,6 +235,7 @@ def _bridge_json(bridge: SceneBridge) -> dict[str, Any]:
     return {
         "id": bridge.asset.pk,
         "label": asset_label(bridge.asset),
+        "is_named": bool(bridge.asset.ref or bridge.asset.name),
         "carries": bridge.asset.carries,
         "polygons": _polygons(bridge.shape),
         "deck_amsl_m": round(bridge.deck_amsl_m, METRE_DIGITS),

@@ -56,7 +56,7 @@ export function randomScene(seed, { towers = 60 } = {}) {
     supports,
     spans,
     railways: [{ id: 5, label: "Track", kind: "rail", tracks: 2, is_electrified: true, line: [[WEST + 0.001, NORTH - 0.03], [WEST + 0.02, NORTH - 0.028], [WEST + 0.038, NORTH - 0.033]] }],
-    bridges: [{ id: 6, label: "Bridge", carries: "a railway", deck_amsl_m: 330, deck_source: "tag", height_m: 30, height_source: "tag", polygons: [[[[WEST + 0.018, NORTH - 0.0281], [WEST + 0.022, NORTH - 0.0281], [WEST + 0.022, NORTH - 0.0287], [WEST + 0.018, NORTH - 0.0287], [WEST + 0.018, NORTH - 0.0281]].map((at) => [...at])]] }],
+    bridges: [{ id: 6, label: "Bridge", is_named: true, carries: "a railway", deck_amsl_m: 330, deck_source: "tag", height_m: 30, height_source: "tag", polygons: [[[[WEST + 0.018, NORTH - 0.0281], [WEST + 0.022, NORTH - 0.0281], [WEST + 0.022, NORTH - 0.0287], [WEST + 0.018, NORTH - 0.0287], [WEST + 0.018, NORTH - 0.0281]].map((at) => [...at])]] }],
     zones: [
       zone(1, [[circle]], { above: "ground", m: 0 }, { above: "ground", m: 120 }),
       zone(2, [[notched, [...hole, hole[0]]]], { above: "sea", m: 320 }, { above: "sea", m: 410 }),

@@ -14,7 +14,8 @@ export function labelsOf(scene, frame, volumes) {
     const weight = 20 + Math.min((voltage_v ?? 0) / 20_000, 30);
     labels.push({ kind: "tower", id, text: label, position: frame.toLocal(...position, ground_amsl_m + height_m + TOP_M), weight, counted_m: uncounted_m(support) ? height_m : null });
   }
-  for (const { id, label, polygons, deck_amsl_m } of scene.bridges) {
+  for (const { id, label, is_named, polygons, deck_amsl_m } of scene.bridges) {
+    if (!is_named) continue;
     const points = polygons.flatMap(([outline]) => outline);
     const [lon, lat] = [0, 1].map((axis) => points.reduce((sum, point) => sum + point[axis], 0) / points.length);
     labels.push({ kind: "bridge", id, text: label, position: frame.toLocal(lon, lat, deck_amsl_m + TOP_M), weight: 15 });

@@ -37,7 +37,7 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
   const lights = makeLights({ shadows: quality !== "low" });
   const [sky, terrain, beds, bridges, zones] = [makeSky(), makeTerrain(), makeBeds(), makeBridges(), makeZones()];
   const supports = makeSupports({ bracing: BRACING[quality] });
-  const wires = screenLines({ fade: [5_000, 0.35], order: 2 });
+  const wires = screenLines({ fade: [3_500, 0.3], order: 2 });
   const edges = screenLines({ fade: [16_000, 0.5], order: 4 });
   const parts = [sky, terrain, beds, bridges, supports, wires, edges, zones];
   group.add(lights.group, supports.group, ...[sky, terrain, beds, bridges, zones, wires, edges].map((part) => part.mesh));
@@ -106,7 +106,7 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     beds.show(shown.beds);
     bridges.show(shown.bridges);
     zones.show(shown.volumes);
-    supports.show(sceneData?.supports ?? [], frame, shown.masts);
+    supports.show(sceneData?.supports ?? [], frame, shown.masts, shown.ground.heightAt);
     paintThings({ isNew: true });
   }
 
