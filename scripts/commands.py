@@ -12,14 +12,14 @@ QUEUES = ("data", "planning", "simulation")
 def web(*where: str) -> list[str]:
     """Pages and API. One process a program: of several on one socket the first to wake takes most of the work."""
     command = [sys.executable, "-m", "granian", "--interface", "wsgi", *where, "--workers", "1"]
-    command += ["--no-ws", "--blocking-threads", "4", "--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "10"]
+    command += ["--no-ws", "--blocking-threads", "4", "--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "8"]
     return [*command, "--respawn-failed-workers", "--respawn-interval", "0.5", "--log-level", "warning", "config.wsgi:application"]
 
 
 def live(*where: str) -> list[str]:
     """Websockets."""
     command = [sys.executable, "-m", "granian", "--interface", "asginl", *where, "--workers", "1"]
-    command += ["--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "5", "--respawn-failed-workers", "--respawn-interval", "0.5"]
+    command += ["--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "8", "--respawn-failed-workers", "--respawn-interval", "0.5"]
     return [*command, "--log-level", "warning", "config.asgi:application"]
 
 

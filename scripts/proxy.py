@@ -97,6 +97,7 @@ def _websockets(scheme: str, *, to: str) -> str:
             proxy_connect_timeout 5s;
             proxy_read_timeout 60s;
             proxy_send_timeout 30s;
+            proxy_next_upstream error timeout http_503;
             proxy_buffering off;
             error_page 502 504 = @api_unavailable;
         }}"""
