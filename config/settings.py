@@ -76,7 +76,10 @@ SECURE_HSTS_INCLUDE_SUBDOMAINS = HTTPS
 SECURE_HSTS_PRELOAD = HTTPS
 SECURE_PROXY_SSL_HEADER = ("HTTP_X_FORWARDED_PROTO", "https") if HTTPS else None
 SECURE_REFERRER_POLICY = "strict-origin-when-cross-origin"  # public tile servers, OSM's among them, ask for an origin
+SESSION_ENGINE = "workspace.session_store"
 SESSION_COOKIE_AGE = int(_float("SPANWISE_SESSION_DAYS", 14) * 86_400)  # from signing in, however busy somebody is
+SESSION_IDLE_S = _float("SPANWISE_SESSION_IDLE_MINUTES", 120) * 60  # without any open page
+SESSION_WATCHING_S = _float("SPANWISE_SESSION_WATCHING_HOURS", 12) * 3_600  # of an open page in which nobody does anything
 SESSION_COOKIE_HTTPONLY = True
 SESSION_COOKIE_SAMESITE = "Lax"
 X_FRAME_OPTIONS = "DENY"
@@ -334,6 +337,8 @@ CELERY_BEAT_SCHEDULE = {
     },
     "forget old uploads": {"task": "inspection.tasks.forget_old_uploads", "schedule": 3_600.0},
     "forget old sign-ins": {"task": "workspace.tasks.forget_old_sign_ins", "schedule": 3_600.0},
+    "forget ended sessions": {"task": "workspace.tasks.forget_ended_sessions", "schedule": 3_600.0},
+    "seal second factors with the key of today": {"task": "workspace.tasks.seal_second_factors", "schedule": 3_600.0},
     "forget old telemetry": {"task": "telemetry.tasks.forget_old_telemetry", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }

@@ -76,23 +76,6 @@ class AccountPassword(APIView):
         return Response(status=204)
 
 
-class AccountSessions(APIView):
-    write_roles = EVERYBODY
-    permission_classes = [InTheBrowserAlone]
-
-    @extend_schema(
-        operation_id="sign_out_everywhere",
-        summary="End one's own sessions in all other browsers",
-        description="The session that asks stays. Tokens stay, too. Not with a token.",
-        request=None,
-        responses={204: OpenApiResponse(description="Ended.")},
-    )
-    def post(self, request: Request) -> Response:
-        accounts.end_sessions(user=request.user, actor=request.user)
-        update_session_auth_hash(request, request.user)
-        return Response(status=204)
-
-
 class AccountTokens(APIView):
     """A token is answered once and not kept, so that the same request sent again makes another one."""
 

@@ -16,6 +16,7 @@ from django.db import Error as DatabaseError
 from operation.log_context import REQUEST_ID_HEADER, about, sane_request_id
 from operation.metrics import WEBSOCKET_MESSAGES, WEBSOCKETS
 from workspace.authentication import bearer_token, user_of_token
+from workspace.browser_sessions import note_session
 from workspace.farewell import farewell_here
 from workspace.models import User
 
@@ -94,8 +95,12 @@ class SignedInSocket(AsyncWebsocketConsumer):
         if key is None:
             return None
         store = import_module(settings.SESSION_ENGINE).SessionStore
-        user = await get_user({"session": store(session_key=key)})  # a store of its own: the first one keeps what it has read
-        return user if isinstance(user, User) and user.is_active else None
+        session = store(session_key=key)  # of its own: the first one keeps what it has read
+        user = await get_user({"session": session})
+        if not (isinstance(user, User) and user.is_active):
+            return None
+        await database_sync_to_async(note_session)(session, user, is_act=False)  # an open page is somebody's presence
+        return user
 
     async def _same_user(self, before: User) -> User | None:
         """Whoever was there before, as they are now; None once they may not listen any more, or work for somebody else."""

@@ -1,0 +1,82 @@
+"""R8: of three web replicas one is killed with -9 and one is drained, again and again, while people ask for plans and pages."""
+
+import time
+from collections.abc import Callable
+
+from tests.chaos.asking import Askers
+from tests.chaos.experiment import Course, main, percentile
+from tests.chaos.plans import planner, reader
+from tests.chaos.probes import is_ready
+from tests.chaos.site import Site, demo_site, wait_until
+
+REPLICAS = 3
+PLANNERS, READERS = 8, 4
+KILLS, SHORT_KILLS = 10, 2
+BETWEEN_S = 4.0
+ONLY_WEB = {
+    "gateway": 0,
+    "estimator": 0,
+    "simulator": 0,
+    "worker-data": 0,
+    "worker-planning": 0,
+    "worker-simulation": 0,
+    "beat": 0,
+    "live": 0,
+}
+
+
+def run(course: Course) -> None:
+    with demo_site("replicas", ONLY_WEB | {"web": REPLICAS}) as site:
+
+        def question(number: int) -> Callable[[], str]:
+            client = site.client(number)
+            return planner(site, client, course.seed + number) if number < PLANNERS else reader(client)
+
+        wait_until(lambda: all(_serves(site, name) for name in site.installation.names("web")), "every web replica")
+        for number in range(PLANNERS * REPLICAS):  # each has its graph and its compiled core
+            question(number % PLANNERS)()
+        killed = _broken(course, site, question, _kill)
+        _tell(course, "killed with -9", killed)
+        drained = _broken(course, site, question, _drain)
+        _tell(course, "drained (TERM) and started again", drained)
+
+
+def _broken(
+    course: Course, site: Site, question: Callable[[int], Callable[[], str]], harm: Callable[[Site, str], None]
+) -> tuple[Askers, int]:
+    times = SHORT_KILLS if course.is_short else KILLS
+    with Askers(question, PLANNERS + READERS, pause_s=0.05) as askers:
+        for _ in range(times):
+            time.sleep(BETWEEN_S * course.chance.uniform(0.5, 1.5))
+            name = course.chance.choice(site.installation.names("web"))
+            harm(site, name)
+            wait_until(lambda name=name: _serves(site, name), name)  # type: ignore[misc]
+        time.sleep(2.0)
+    return askers, times
+
+
+def _kill(site: Site, name: str) -> None:
+    pid = site.installation.kill(name)
+    site.installation.wait_for_another(name, pid)
+
+
+def _drain(site: Site, name: str) -> None:
+    site.installation.restart(name)
+
+
+def _serves(site: Site, name: str) -> bool:
+    return is_ready(site.installation, name)
+
+
+def _tell(course: Course, harm: str, ran: tuple[Askers, int]) -> None:
+    askers, times = ran
+    failed = {told: number for told, number in askers.counted.items() if told != "200"}
+    slowest_s = percentile([wait_s for _, wait_s in askers.waits_s], 0.99)
+    figure = f"{sum(failed.values())} of {askers.counted.total():,} failed at {times} times, p99 {slowest_s * 1000:.0f} ms"
+    course.tell(
+        f"one of {REPLICAS} web replicas is {harm}", figure + (f" {failed}, {askers.faults[:2]}" if failed else ""), "0 failed", not failed
+    )
+
+
+if __name__ == "__main__":
+    main(run)
