@@ -29,7 +29,7 @@ from typing import Self
 
 from config.private_servers import private_database_url, private_redis_url
 from deploy.load.certificates import make_authority, make_certificate
-from deploy.load.replicas import KINDS, free_port, kind_of, ports_of_simulations, replicas
+from deploy.load.replicas import KINDS, free_port, kind_of, name_of, ports_of_simulations, replicas
 from deploy.load.usage import Usage, usage
 from scripts import database_cluster
 from scripts.places import PROJECT_DIR, prepare_sockets, prepare_state, remove_sockets
@@ -46,7 +46,7 @@ class NotReady(Exception):
 
 
 class Installation:
-    """One state folder with its servers and programs. The names of replicas are those of ./run: web-1, web-2; live, live-2; proxy, redis."""
+    """One state folder with its servers and programs. Replicas are named as in ./run: web-1, web-2; live, live-2; proxy, redis."""
 
     def __init__(
         self,
@@ -211,13 +211,9 @@ class Installation:
     def _proxy(self, most: Mapping[str, int]) -> Program:
         """The proxy of the image, in front of unix sockets as in ./run."""
         certificate, key = make_certificate(self._certificates)
-        programs = replicas(self.places, self.sockets, {kind: most[kind] for kind in ("web", "live")})
-        places = {
-            kind: ",".join(f"unix:{path}" for one in programs if kind_of(one.name) == kind for path in one.stale_files) for kind in most
-        }
         environment = {
-            "SPANWISE_PROXY_WEB": places["web"],
-            "SPANWISE_PROXY_LIVE": places["live"],
+            "SPANWISE_PROXY_WEB": self._addresses("web", most),
+            "SPANWISE_PROXY_LIVE": self._addresses("live", most),
             "SPANWISE_PROXY_PORT": f"127.0.0.1:{self.plain_port}",
             "SPANWISE_PROXY_TLS_PORT": f"127.0.0.1:{self.port}",
             "SPANWISE_TLS_CERTIFICATE": str(certificate),
@@ -225,6 +221,10 @@ class Installation:
         }
         command = [sys.executable, "-m", "scripts.container", "proxy"]
         return Program("proxy", PROGRAM_STAGE, command, self.places.process("proxy"), patience_s=20, environment=environment)
+
+    def _addresses(self, kind: str, most: Mapping[str, int]) -> str:
+        names = [name_of(kind, number) for number in range(1, max(1, most[kind]) + 1)]
+        return ",".join(f"unix:{self.sockets / name}.sock" for name in names)
 
     def _give_settings(self) -> None:
         shared = dict(self.settings)

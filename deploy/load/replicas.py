@@ -1,4 +1,4 @@
-"""Several of each program, with the commands of ./run: what a replica has for itself are its name, its folder, its sockets and its ports."""
+"""Several of each program, with the commands of ./run: a replica has its own name, folder, sockets and ports."""
 
 import socket
 from collections.abc import Mapping
