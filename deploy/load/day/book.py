@@ -16,7 +16,9 @@ FILE = "book.jsonl"
 
 MISSION = "mission"  # id, name, revision
 EDIT = "edit"  # mission, revision, name
+ASKED = "asked"  # thing: a mission or zone is to go or to come back, and nobody knows until the next line about it
 DELETION = "deletion"  # mission
+RESTORATION = "restoration"  # mission
 JOB = "job"  # id: a promise to plan
 PLAN = "plan"  # job: what it promised was fetched
 APPROVAL = "approval"  # mission, approval, sha256

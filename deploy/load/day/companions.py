@@ -1,6 +1,5 @@
 """Companion computers: each reports every second in batches, asks what to fly every 5 s, flies it and tells what it found.
 
-
 As docs/uav-link.md asks of them: a record is numbered when it is measured and kept until it was answered. A few batches are sent twice, as
 after a lost answer, and a few after the next one.
 """

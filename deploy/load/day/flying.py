@@ -101,8 +101,7 @@ class FlyingOperator(Browser):
             if again:
                 self.ask("POST", f"{path}/plan", "mission: plan again", ok=(200, 409, 503))
                 tag = str(self.ask("GET", path, "mission: open").headers["ETag"])
-        self.ask("DELETE", path, "mission: delete", ok=(204, 404, 409))
-        self.book.note(kinds.DELETION, mission=mission)
+        self.delete_mission(mission)
         return ""
 
     def fly(self, mission: str, tag: str, page: LivePage) -> None:
@@ -110,7 +109,7 @@ class FlyingOperator(Browser):
         self.ask("GET", f"/missions/{mission}/fly", "page: fly")
         sent = self.ask("POST", f"{path}/dispatch", "mission: dispatch", {}, ok=(200, 409), **{"If-Match": tag})
         if sent.status_code == 409:  # the ground has changed in this moment
-            self.ask("DELETE", path, "mission: delete", ok=(204, 404, 409))
+            self.delete_mission(mission)
             return
         commands = [command["id"] for command in sent.json()["commands"]]
         for command in sent.json()["commands"]:

@@ -127,11 +127,10 @@ class PlansMissions(Person):
 
     def delete(self, mission: str) -> None:
         """Half of them are brought back at once: that was a mistake."""
-        self.ask("DELETE", f"/api/v1/missions/{mission}", "mission: delete", ok=(204, 404))
-        if self.draw.random() < 0.5:
+        if self.delete_mission(mission) and self.draw.random() < 0.5:
+            self.book.note(kinds.ASKED, thing=mission)
             self.ask("POST", f"/api/v1/missions/{mission}/restore", "mission: undo deletion", ok=(200, 404))
-        else:
-            self.book.note(kinds.DELETION, mission=mission)
+            self.book.note(kinds.RESTORATION, mission=mission)
 
 
 class Watches(Person):
@@ -201,6 +200,7 @@ class KeepsZones(Person):
         zone, tag = answer.json()["id"], answer.headers["ETag"]
         self.book.note(kinds.ZONE, id=zone, name=name)
         gevent.sleep(self.draw.uniform(20.0, 40.0))
+        self.book.note(kinds.ASKED, thing=str(zone))
         self.ask("DELETE", f"/api/v1/zones/{zone}", "zone: take away", ok=(204, 404), **{"If-Match": tag})
         self.book.note(kinds.ZONE_GONE, id=zone)
 
