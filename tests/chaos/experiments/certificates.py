@@ -16,7 +16,7 @@ SWAPS, SHORT_SWAPS = 5, 2
 BETWEEN_S = 4.0
 CLIENTS = 6
 HSTS_S = 31_536_000
-NONE = {"gateway": 0, "estimator": 0, "simulator": 0, "worker-data": 0, "worker-planning": 0, "worker-simulation": 0, "beat": 0, "live": 0}
+NONE = {"gateway": 0, "estimator": 0, "simulator": 0, "worker-data": 0, "worker-planning": 0, "worker-simulation": 0, "beat": 0}
 
 
 def run(course: Course) -> None:
