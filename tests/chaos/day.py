@@ -11,12 +11,11 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-import psycopg
 from deploy.load.day.playing import ALL, Playing, playing
-
 from deploy.load.installation import Installation
 from scripts.places import PROJECT_DIR, CannotStart
 from tests.chaos.experiment import Course
+from tests.chaos.jobs import one_of
 from tests.chaos.site import Site, people_of, shipped
 
 SIZES = {False: {"people": 60, "uavs": 60, "companions": 8, "users": 40}, True: {"people": 20, "uavs": 20, "companions": 3, "users": 16}}
@@ -46,13 +45,7 @@ class Day:
             yield playing_now
 
     def one(self, statement: str, *values: Any) -> Any:
-        """The one value of a statement, over a connection of its own; None where the database is away."""
-        try:
-            with psycopg.connect(_plain(self.installation.settings["DATABASE_URL"]), connect_timeout=2, autocommit=True) as connection:
-                row = connection.execute(statement, values).fetchone()
-        except psycopg.OperationalError:
-            return None
-        return None if row is None else row[0]
+        return one_of(self.installation, statement, *values)
 
     def newest_record_at(self) -> datetime | None:
         """Of UAVs that speak MAVLink: when the newest was received."""
@@ -93,10 +86,6 @@ class Day:
             course.tell(
                 "the people of the day", figure + (f": {played.failures()[:3]}" if whole.failures else ""), "0", whole.failures == 0
             )
-
-
-def _plain(url: str) -> str:
-    return url.replace("postgis://", "postgresql://", 1)
 
 
 @contextmanager

@@ -3,10 +3,10 @@
 import shutil
 import time
 from datetime import UTC, datetime
-from typing import Any
 
 from tests.chaos.day import Day, working_day
 from tests.chaos.experiment import Course, main
+from tests.chaos.jobs import job_of, large_plan_body, states_at_the_end
 from tests.chaos.pages import Pages
 from tests.chaos.site import wait_until
 
@@ -15,7 +15,6 @@ AWAY_S = 2.0
 BETWEEN_S = 5.0
 PAGES = 5
 LIVE_WITHIN_S = 10.0
-LARGE = 16  # targets: a job's plan
 JOBS_EACH_TIME = 3
 JOBS_END_WITHIN_S = 120.0
 
@@ -37,7 +36,7 @@ def run(course: Course) -> None:
                 day.installation.start("redis")
                 jobs += [_large_plan(course, day) for _ in range(JOBS_EACH_TIME)]
             last_s = time.monotonic()
-            ends = _ends(day, jobs)
+            ends = states_at_the_end(day.installation, jobs, JOBS_END_WITHIN_S)
             took_s = time.monotonic() - last_s
             wait_until(lambda: pages.are_live_since(_ago(3.0)), "live pages")
         course.tell(
@@ -64,28 +63,11 @@ def _kill_and_empty(day: Day) -> None:
 
 
 def _large_plan(course: Course, day: Day) -> str:
-    body: dict[str, Any] = {
-        "uavs": course.chance.sample(day.site.people["uavs"], 2),
-        "targets": [{"asset": asset} for asset in course.chance.sample(day.site.people["towers"], LARGE)],
-        "objective": "total",
-        "return_to_start": True,
-    }
     client = day.site.client(course.chance.randrange(12))
-    answer = client.ask("POST", "/api/v1/plans", body)
+    answer = client.ask("POST", "/api/v1/plans", large_plan_body(day.site, course.chance))
     client.close()
     assert answer.status == 202, (answer.status, answer.body[:300])
-    return str(answer.json["job"]["id"] if "job" in answer.json else answer.json["id"])
-
-
-def _ends(day: Day, jobs: list[str]) -> list[str]:
-    def states() -> list[str]:
-        return [day.one("SELECT state FROM workspace_job WHERE id = %s", job) for job in jobs]
-
-    try:
-        wait_until(lambda: not {"queued", "running", None} & set(states()), "all jobs", JOBS_END_WITHIN_S)
-    except TimeoutError as error:
-        print(error, flush=True)
-    return states()
+    return job_of(answer.json)
 
 
 if __name__ == "__main__":

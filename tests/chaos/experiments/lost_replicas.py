@@ -7,22 +7,12 @@ from tests.chaos.asking import Askers
 from tests.chaos.experiment import Course, main, percentile
 from tests.chaos.plans import planner, reader
 from tests.chaos.probes import is_ready
-from tests.chaos.site import Site, demo_site, wait_until
+from tests.chaos.site import ONLY_WEB, Site, demo_site, wait_until
 
 REPLICAS = 3
 PLANNERS, READERS = 8, 4
 KILLS, SHORT_KILLS = 10, 2
 BETWEEN_S = 4.0
-ONLY_WEB = {
-    "gateway": 0,
-    "estimator": 0,
-    "simulator": 0,
-    "worker-data": 0,
-    "worker-planning": 0,
-    "worker-simulation": 0,
-    "beat": 0,
-    "live": 0,
-}
 
 
 def run(course: Course) -> None:
