@@ -1,4 +1,4 @@
-"""A program: makes operators with tokens in the installation that the environment leads to, and tells what an experiment asks with, as JSON.
+"""A program: makes operators with tokens where the environment leads to, and tells what an experiment asks with, as JSON.
 
 python -m tests.chaos.people
 """
