@@ -184,7 +184,8 @@ AUTH_PASSWORD_VALIDATORS = [
         "CommonPasswordValidator",
         "NumericPasswordValidator",
     )
-]
+] + [{"NAME": "workspace.password_words.ContextWordsValidator"}]
+PASSWORD_WORDS = _list("SPANWISE_PASSWORD_WORDS", "")  # that no password here may be made of, beside those of the trade
 LOGIN_URL = "sign-in"
 LOGIN_REDIRECT_URL = "missions"
 LOGOUT_REDIRECT_URL = "sign-in"

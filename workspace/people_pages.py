@@ -74,6 +74,10 @@ class InvitationPage(FormView):
     def get_initial(self) -> dict[str, Any]:
         return {"email": self.invitation.email}
 
+    def get_form_kwargs(self) -> dict[str, Any]:
+        newcomer = User(organisation=self.invitation.organisation)  # whose name is no password
+        return super().get_form_kwargs() | {"instance": newcomer}
+
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         return super().get_context_data(**kwargs) | {"invitation": self.invitation}
 

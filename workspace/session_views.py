@@ -1,7 +1,6 @@
 """The API's doors to sessions in browsers: one's own, one by one, and until when the one that asks still lasts."""
 
 from django.contrib.auth import update_session_auth_hash
-from django.utils import timezone
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.request import Request
@@ -9,7 +8,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from workspace import accounts
-from workspace.browser_sessions import end_session, open_sessions, session_ends_at
+from workspace.browser_sessions import end_session, open_sessions, seconds_left, session_ends_at
 from workspace.errors import ApiProblem
 from workspace.models import BrowserSession
 from workspace.people_serializers import BrowserSessionListSerializer, BrowserSessionSerializer, SessionTimesSerializer
@@ -46,8 +45,7 @@ class ThisSession(APIView):
         row = None if request.auth is not None else _row_of(request)
         if row is None:
             raise ApiProblem(404, "not_found", _("There is no session."))
-        ends_at = session_ends_at(row)
-        return Response({"ends_at": ends_at, "ends_in_s": max(0, round((ends_at - timezone.now()).total_seconds()))})
+        return Response({"ends_at": session_ends_at(row), "ends_in_s": seconds_left(request.session)})
 
 
 class AccountSessionList(APIView):
