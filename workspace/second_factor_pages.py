@@ -200,6 +200,9 @@ class RemovePage(_OwnCodePage):
 
     template_name = "account/second_factor_remove.html"
 
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        return super().get_context_data(**kwargs) | {"is_required": second_factors.is_required_of(self.request.user)}
+
     def done(self, user: User) -> HttpResponse:
         second_factors.take_away(user=user, actor=user)
         return HttpResponseRedirect(resolve_url("account"))

@@ -11,6 +11,7 @@ export default {
   "{name} is signed out.": "{name} ist abgemeldet.",
   "never used": "nie benutzt",
   "No token is made.": "Kein Token ist erstellt.",
+  "Password": "Passwort",
   "Revoke {name}": "{name} widerrufen",
   "Revoked": "Widerrufen",
   "revoked {when}": "widerrufen {when}",
@@ -37,6 +38,8 @@ export default {
   "works until {day}": "gilt bis {day}",
   "Wrong code": "Falscher Code",
   "Wrong name or password": "Name oder Passwort falsch",
+  "You signed in a while ago, and this could outlive the session.": "Sie haben sich vor einer Weile angemeldet, und dies könnte die Sitzung überdauern.",
+  "Your password, please": "Bitte Ihr Passwort",
   "“{name}” is made. Copy it now: it is not shown again.": "„{name}“ ist erstellt. Jetzt kopieren: Es wird nicht wieder gezeigt.",
   "“{name}” works no more.": "„{name}“ gilt nicht mehr.",
 };

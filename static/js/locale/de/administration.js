@@ -76,6 +76,7 @@ export default {
   "Too old": "Zu alt",
   "Viewer": "Betrachter",
   "whoever has the link": "wer den Link hat",
+  "Whoever runs this installation asks for it.": "Wer diese Installation betreibt, verlangt es.",
   "Works for": "Gilt für",
   "Works until": "Gilt bis",
   "you": "Sie",
