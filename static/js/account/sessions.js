@@ -5,6 +5,7 @@ import { byId, h, icon } from "../dom.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { exactText, whenText } from "../units.js";
+import { proved } from "./proof.js";
 import { browserName } from "./sign_in_row.js";
 
 export function mountSessions({ tell, settle }) {
@@ -29,7 +30,7 @@ export function mountSessions({ tell, settle }) {
 
   async function act(send, words) {
     try {
-      await send();
+      if ((await proved(send)) === null) return;
       settle();
       toast(words);
     } catch (error) {
