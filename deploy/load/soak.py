@@ -6,9 +6,9 @@
 Starts the shipped programs with TLS (installation.py) in a folder of its own, prepares the day, plays it, and takes a sample each 10 s.
 The peak is the most users with 0 failures and a 95th percentile under --p95-ms over all requests. Half of it: half of those at desks; what
 is fixed, the 200 UAVs among it, stays. Memory is the proportional set size without shared segments, its slope a straight line through the
-samples after --warm-up-min, in percent an hour with its standard error. Ends with 1 where
+samples after --warm-up-min, in percent an hour, with what it lies within 95 of 100 times. Ends with 1 where
 
-    - a program, or all together, grows by more than 1 % an hour beyond two standard errors
+    - a program, or all together, grows by more than 1 % an hour for sure: beyond that bound
     - connections to PostgreSQL or open files end above where the warm-up ended (by more than 10 % and 4)
     - a request failed for good, or an invariant of invariants.py is violated
 """
@@ -174,7 +174,7 @@ p95 {whole.p95_ms:.0f} ms. {"Every bar was held." if not missed else "Missed: " 
 
 ![Memory, connections and Redis over the run](load-tests/soak.svg)
 
-{peak}{table(["program", "memory, MiB", "slope, % an hour ± standard error", "verdict", "files open"], rows)}
+{peak}{table(["program", "memory, MiB", "slope, % an hour, 95 %", "verdict", "files open"], rows)}
 
 Connections to PostgreSQL {first.connections} to {last.connections}; Redis {first.redis_bytes / MIB:.1f} to {last.redis_bytes / MIB:.1f}
 MiB, {first.redis_keys} to {last.redis_keys} keys; waiting in queues at most {max(one.waiting for one in looking.samples)}; dead rows
