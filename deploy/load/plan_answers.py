@@ -24,7 +24,14 @@ def plain_fault_of(content: bytes, asked: dict[str, Any]) -> str:
 def fault_of(content: bytes, asked: dict[str, Any]) -> str:
     """What is wrong with the answer to this request; empty for a whole plan in which every target is visited and all UAVs keep apart."""
     try:
-        plan = orjson.loads(content)
+        return fault_of_plan(orjson.loads(content), asked)
+    except ValueError as error:
+        return f"no JSON: {error}"[:100]
+
+
+def fault_of_plan(plan: Any, asked: dict[str, Any]) -> str:
+    """As `fault_of`, of what has been read already."""
+    try:
         if plan["unassigned"]:
             return f"{len(plan['unassigned'])} targets are left out"
         if len(plan["routes"]) != len(asked["uavs"]):
@@ -36,6 +43,6 @@ def fault_of(content: bytes, asked: dict[str, Any]) -> str:
             return "UAVs do not keep apart"
         if any(warning["code"] == "uav_inside_zone" for warning in plan["warnings"]):
             return "a UAV stands in a zone"
-    except (ValueError, KeyError, TypeError) as error:
+    except (KeyError, TypeError) as error:
         return f"no plan: {error!r}"[:100]
     return ""

@@ -14,18 +14,19 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 
+import gevent
 import orjson
 from locust import FastHttpUser, LoadTestShape, between, events, task
 from locust.env import Environment
 
-from deploy.load.answers import Recorder
-from deploy.load.plan_answers import fault_of, plain_fault_of
-from deploy.load.scenarios import SCENARIOS
+from deploy.load.answers import PLAN, Recorder
+from deploy.load.plan_answers import fault_of, fault_of_plan, plain_fault_of
+from deploy.load.scenarios import RAMPS_TO_SCALE_BY, SCENARIOS
 
 FOLDER = Path(os.environ["SPANWISE_LOAD_FOLDER"])  # what prepare_ground.py has written
 RESULT = Path(os.environ["SPANWISE_LOAD_RESULT"])
 SESSIONS = float(os.environ.get("SPANWISE_LOAD_SESSIONS", "0.05"))  # share of users who sign in
-SCENARIO = SCENARIOS[int(os.environ.get("SPANWISE_LOAD_SCENARIO", "4"))].scaled(
+SCENARIO = (SCENARIOS | RAMPS_TO_SCALE_BY)[int(os.environ.get("SPANWISE_LOAD_SCENARIO", "4"))].scaled(
     users=float(os.environ.get("SPANWISE_LOAD_USERS", "1")), seconds=float(os.environ.get("SPANWISE_LOAD_SECONDS", "1"))
 )
 TARGETS = os.environ.get("SPANWISE_LOAD_BODIES", "missions.json")
@@ -33,6 +34,9 @@ BODIES = [(orjson.dumps(body), body) for body in orjson.loads((FOLDER / TARGETS)
 TOKENS = (FOLDER / "tokens.txt").read_text().split()
 PASSWORD = (FOLDER / "password.txt").read_text()
 READ_WHOLE_EVERY = 10
+IS_LARGE = TARGETS.startswith("large")  # more targets than are planned while one waits
+LOOKS_EVERY_S = 1.0
+LONGEST_JOB_S = 300.0
 _users, _bodies = count(), count()
 recorder = Recorder(SCENARIO)
 
@@ -77,11 +81,42 @@ class Operator(FastHttpUser):
             return
         turn = next(_bodies)
         sent, body = BODIES[turn % len(BODIES)]
+        if IS_LARGE:
+            self.large_plan(sent, body)
+            return
         look = plain_fault_of if turn % READ_WHOLE_EVERY else fault_of
-        with self.client.post("/api/v1/plans", data=sent, headers=self.headers, name="plan", catch_response=True) as answer:
+        with self.client.post("/api/v1/plans", data=sent, headers=self.headers, name=PLAN, catch_response=True) as answer:
             fault = f"answered {answer.status_code}" if answer.status_code != 200 else look(answer.content, body)
             if fault:
                 answer.failure(fault)
+
+    def large_plan(self, sent: bytes, body: dict[str, Any]) -> None:
+        """A worker's: asked for, and looked at each second until it is done. The whole time counts as the plan's."""
+        began_s, fault = time.monotonic(), ""
+        with self.client.post("/api/v1/plans", data=sent, headers=self.headers, name="ask", catch_response=True) as answer:
+            if answer.status_code != 202:
+                answer.failure(f"answered {answer.status_code}")
+                return
+            job = f"/api/v1/jobs/{orjson.loads(answer.content)['job']}"
+        state = "queued"
+        while not fault and state in {"queued", "running"}:
+            gevent.sleep(LOOKS_EVERY_S)
+            answer = self.client.get(job, headers=self.headers, name="look")
+            if answer.status_code == 200:  # what is not is noted as a failure already, and asked again
+                found = orjson.loads(answer.content)
+                state = found["state"]
+            if time.monotonic() - began_s > LONGEST_JOB_S:
+                fault = f"not done after {LONGEST_JOB_S:.0f} s"
+        if not fault:
+            fault = fault_of_plan(found["result"], body) if state == "done" else f"{state}: {found['error']}"
+        self.environment.events.request.fire(
+            request_type="JOB",
+            name=PLAN,
+            response_time=1_000 * (time.monotonic() - began_s),
+            response_length=0,
+            exception=RuntimeError(fault) if fault else None,
+            context={},
+        )
 
     def sign_in(self) -> bool:
         """As the page does it. What goes wrong is a failure; then this user tries again after the wait."""

@@ -94,3 +94,23 @@ SCENARIOS = {
         "80 and 120: about 200 requests a second, and no failures.",
     ),
 }
+
+# The local scaler's: the article's ramps up and down with a load that web notices, and large plans, which workers make. Both end with a
+# hold that is longer than an autoscaler's wait before it takes replicas away, so that the way down is under load, too.
+RAMPS_TO_SCALE_BY = {
+    5: Scenario(
+        5,
+        (1.0, 1.0),
+        (
+            *_stages(60.0, [*_UP_TO_1000, (50, 700), (20, 500), (20, 300), (20, 100)]),
+            Stage(100, 20, 480.0),
+        ),
+        "The users of scenario 3 with the wait of scenario 2.",
+    ),
+    6: Scenario(
+        6,
+        (5.0, 5.0),
+        (Stage(4, 1, 60.0), Stage(24, 1, 180.0), Stage(12, 1, 60.0), Stage(4, 1, 480.0)),
+        "Not among its scenarios: plans of 16 targets for 3 UAVs, each a worker's for some 10 s.",
+    ),
+}
