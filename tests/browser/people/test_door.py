@@ -97,7 +97,9 @@ def test_a_word_stands_on_the_page_before_the_session_ends(visitor: Visitor, pic
 
 def module(page: Page, name: str) -> str:
     """The address of a module of pages, as the import map has it."""
-    found = page.evaluate("name => performance.getEntriesByType('resource').map(({ name }) => name).find((url) => url.includes(name))", name)
+    found = page.evaluate(
+        "name => performance.getEntriesByType('resource').map(({ name }) => name).find((url) => url.includes(name))", name
+    )
     assert isinstance(found, str)
     return found
 
