@@ -78,9 +78,9 @@ def demo_site(
         yield Site(installation, people_of(installation))
 
 
-def people_of(installation: Installation) -> dict[str, Any]:
-    """Operators with tokens, made beside those that may be there."""
-    command = [sys.executable, "-m", "tests.chaos.people"]
+def people_of(installation: Installation, organisation: int = 1) -> dict[str, Any]:
+    """Operators with tokens, made beside those that may be there, and what they ask with."""
+    command = [sys.executable, "-m", "tests.chaos.people", str(organisation)]
     told = subprocess.run(  # noqa: S603
         command, env=installation.environment(), cwd=PROJECT_DIR, stdout=subprocess.PIPE, text=True, check=True
     ).stdout
