@@ -15,6 +15,7 @@ from workspace.one_time_codes import STEP_S, code_of
 
 pytestmark = pytest.mark.browser
 Picture = Callable[[Page, str], None]
+DRAFTS = "Object.keys(localStorage).filter((key) => key.startsWith('spanwise.draft.')).length"
 
 
 def pictures(page: Page, picture: Picture, name: str) -> None:
@@ -96,8 +97,9 @@ def test_a_word_stands_on_the_page_before_the_session_ends(visitor: Visitor, pic
 
 
 def module(page: Page, name: str) -> str:
-    """The address of a module of pages, as the import map has it."""
-    found = page.evaluate("name => performance.getEntriesByType('resource').map(({ name }) => name).find((url) => url.includes(name))", name)
+    """The address of a module of pages, by which it has been fetched."""
+    entries = "performance.getEntriesByType('resource').map((entry) => entry.name)"
+    found = page.evaluate(f"name => {entries}.find((address) => address.includes(name))", name)
     assert isinstance(found, str)
     return found
 
@@ -106,8 +108,7 @@ def test_signing_out_tells_of_drafts_and_deletes_them(visitor: Visitor, picture:
     page = newcomer(visitor, "dora")
     page.goto("/missions/new")
     page.get_by_label("Name of the mission").fill("Half a plan")
-    drafts = "() => Object.keys(localStorage).filter((key) => key.includes('.draft.')).length"
-    page.wait_for_function(f"({drafts})() === 1")
+    page.wait_for_function(f"() => {DRAFTS} === 1")
     page.get_by_role("button", name=re.compile("^Account of")).click()
     page.get_by_role("button", name="Sign out").click()
     dialog = page.get_by_role("dialog")
@@ -115,4 +116,4 @@ def test_signing_out_tells_of_drafts_and_deletes_them(visitor: Visitor, picture:
     pictures(page, picture, "signing-out")
     dialog.get_by_role("button", name="Delete them").click()
     expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
-    assert page.evaluate(drafts) == 0
+    assert page.evaluate(DRAFTS) == 0
