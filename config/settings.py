@@ -300,7 +300,7 @@ CELERY_ACCEPT_CONTENT = ["json"]
 CELERY_TASK_TIME_LIMIT = 900
 CELERY_TASK_SOFT_TIME_LIMIT = 870
 CELERY_BROKER_CONNECTION_RETRY_ON_STARTUP = True
-CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 6  # what is not done by then goes back to the queue: a program ends within 10 s
+CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 5  # what is not done by then goes back to the queue: config/worker_end.py
 CELERY_BROKER_TRANSPORT_OPTIONS = {
     "visibility_timeout": 1_000,  # longer than the longest task
     "unacked_restore_interval": 2,

@@ -105,6 +105,7 @@ class ProgramState:
     state: str
     description: str
     started_at_s: int
+    pid: int  # 0 while it does not run
 
 
 class Supervisor:
@@ -165,7 +166,7 @@ class Supervisor:
             rows: list[dict[str, Any]] = self._call().getAllProcessInfo()
         except (OSError, http.client.HTTPException, xmlrpc.client.Error):
             return []
-        return [ProgramState(row["name"], row["statename"], row["description"], row["start"]) for row in rows]
+        return [ProgramState(row["name"], row["statename"], row["description"], row["start"], row["pid"]) for row in rows]
 
     def end_leftovers(self) -> None:
         """End what a killed supervisor left behind. The kernel has asked its programs to stop; here they get their time to do so."""
@@ -182,7 +183,7 @@ class Supervisor:
             # A shutdown alone stops one program after the other; these are stopped at once, each group together.
             for group in ([name for name in names if name not in SERVERS], [name for name in names if name in SERVERS]):
                 for name in group:
-                    self._stop_program(name)
+                    self.stop_program(name)
                 while any(state.name in group and state.state == "STOPPING" for state in self.states()) and time.monotonic() < deadline:
                     time.sleep(0.05)
             self._call().shutdown()
@@ -193,6 +194,7 @@ class Supervisor:
                 time.sleep(0.05)
         self.end_leftovers()
 
-    def _stop_program(self, name: str) -> None:
+    def stop_program(self, name: str) -> None:
+        """Ask it to end, and return at once; it is not started again."""
         with suppress(xmlrpc.client.Fault):  # it was not running
             self._call().stopProcess(name, False)

@@ -17,6 +17,7 @@ from operation.log_context import REQUEST_ID_HEADER, about, sane_request_id
 from operation.metrics import WEBSOCKET_MESSAGES, WEBSOCKETS
 from workspace.authentication import bearer_token, user_of_token
 from workspace.browser_sessions import note_session
+from workspace.farewell import farewell_here
 from workspace.models import User
 
 logger = logging.getLogger(__name__)
@@ -51,6 +52,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
             for task in (spoken, *self._tasks):
                 task.cancel()
             if self._counted_as is not None:
+                farewell_here().forget(self)
                 WEBSOCKETS.labels(self._counted_as).dec()
 
     def kind(self) -> str:
@@ -61,13 +63,15 @@ class SignedInSocket(AsyncWebsocketConsumer):
         await super().accept(*arguments, **named)
         self._counted_as = self.kind()
         WEBSOCKETS.labels(self._counted_as).inc()
+        farewell_here().expect(self)
         self._messages = WEBSOCKET_MESSAGES.labels(self._counted_as)
 
     async def send(self, *arguments: Any, **named: Any) -> None:
         await super().send(*arguments, **named)
         self._messages.inc()
 
-    def _hang_up(self, code: int) -> None:
+    def hang_up(self, code: int) -> None:
+        """Once nobody waits any more for what the browser says. The first code counts."""
         if not self._hung_up.done():
             self._hung_up.set_result(code)
 
@@ -80,7 +84,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
     def _look_how_it_ended(self, task: asyncio.Task[None]) -> None:
         if not task.cancelled() and (error := task.exception()) is not None:
             logger.error("a websocket is closed: %r", error, exc_info=error)
-            self._hang_up(FAILED)
+            self.hang_up(FAILED)
 
     async def _user(self) -> User | None:
         """Whoever listens, if they still may."""
@@ -111,7 +115,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
             with suppress(DatabaseError):  # away for a moment: the next look tells
                 now = await self._same_user(user)
                 if now is None or now.role != user.role:
-                    return self._hang_up(SIGNED_OUT)
+                    return self.hang_up(SIGNED_OUT)
 
 
 def _facts_of(scope: Any) -> dict[str, Any]:

@@ -11,9 +11,13 @@ from simulation.rehearsing.flying import RouteToFly
 
 
 def content_of(
-    routes: Sequence[RouteToFly], airframes: Sequence[str], batteries_wh: Sequence[float | None], departs_s: float | None
+    routes: Sequence[RouteToFly],
+    airframes: Sequence[str],
+    batteries_wh: Sequence[float | None],
+    departs_s: float | None,
+    turnaround_s: float,
 ) -> str:
-    """SHA-256 of the routes, their items, what flies them and when."""
+    """SHA-256 of the routes, their items, what flies them, when, and how long after a landing the next take-off is."""
     parts: list[dict[str, Any]] = [
         {
             "uav": route.uav,
@@ -27,5 +31,6 @@ def content_of(
         }
         for route, airframe, battery_wh in zip(routes, airframes, batteries_wh, strict=True)
     ]
-    text = json.dumps({"departs_s": departs_s, "routes": parts}, sort_keys=True, separators=(",", ":"))
+    between = {"turnaround_s": turnaround_s} if any(len(route.items) > 1 for route in routes) else {}
+    text = json.dumps({"departs_s": departs_s, "routes": parts, **between}, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
+from django.conf import settings
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
@@ -57,7 +58,13 @@ def plan_to_fly(mission: Mission) -> PlanToFly:
     if reasons:
         raise Refused(reasons)
     departs_s = departure_s(mission)
-    content = content_of(routes, [one.airframe for one in stand_ins], [one.battery_wh for one in stand_ins], departs_s)
+    content = content_of(
+        routes,
+        [one.airframe for one in stand_ins],
+        [one.battery_wh for one in stand_ins],
+        departs_s,
+        turnaround_s=settings.FLIGHT_RULES.turnaround_s,
+    )
     conditions = conditions_from_json(mission.conditions or None)
     return PlanToFly(tuple(routes), tuple(stand_ins), conditions, departs_s, content, _inspected(mission))
 

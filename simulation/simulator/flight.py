@@ -2,6 +2,7 @@
 
 import logging
 import threading
+import time
 from dataclasses import dataclass, field
 from typing import Any
 from uuid import UUID
@@ -18,15 +19,19 @@ ENDS_WITHIN_S = 5.0
 
 @dataclass
 class Flight:
-    """`vehicles` and the fleet's UAVs stand in the same order."""
+    """`vehicles` and the fleet's UAVs stand in the same order. It flies no step after `held_until_s` (monotonic), whatever holds up the
+    thread that renews the lease: another simulator may fly the same UAVs by then.
+    """
 
     simulation: Simulation
     vehicles: tuple[SimulatedVehicle, ...]
     fleet: Fleet
     speed: float
+    held_until_s: float
     _thread: threading.Thread = field(init=False, repr=False)
     _dropped: set[UUID] = field(default_factory=set)
     has_fallen: bool = False
+    is_given_up: bool = False
 
     def __post_init__(self) -> None:
         self._thread = threading.Thread(target=self._run, name=f"simulation {self.simulation.pk}", daemon=True)
@@ -64,17 +69,23 @@ class Flight:
         both = zip(self.vehicles, self.fleet.uavs, strict=True)
         return {vehicle.pk: _told(flying) for vehicle, flying in both if vehicle.pk not in self._dropped}
 
+    def _is_no_longer_held(self) -> bool:
+        if time.monotonic() > self.held_until_s:
+            self.is_given_up = True
+            logger.warning("the lease of simulation %s is out: it is given up", self.simulation.pk)
+        return self.is_given_up
+
     def _run(self) -> None:
         try:
-            self.fleet.run()
+            self.fleet.run(until=self._is_no_longer_held)
         except Exception:
             self.has_fallen = True
             logger.exception("simulation %s fell", self.simulation.pk)
 
 
-def flight_of(simulation: Simulation, vehicles: tuple[SimulatedVehicle, ...], launches: list[Launch]) -> Flight:
+def flight_of(simulation: Simulation, vehicles: tuple[SimulatedVehicle, ...], launches: list[Launch], *, held_until_s: float) -> Flight:
     """Raises OSError where a socket cannot be had."""
-    return Flight(simulation, vehicles, fleet_of(launches, speed=simulation.speed), simulation.speed)
+    return Flight(simulation, vehicles, fleet_of(launches, speed=simulation.speed), simulation.speed, held_until_s)
 
 
 def _told(flying: FlyingUav) -> dict[str, Any]:

@@ -46,7 +46,6 @@ class Simulator:
     options: Options
     flights: dict[UUID, Flight] = field(default_factory=dict)
     _stop: threading.Event = field(default_factory=threading.Event)
-    _renewed_s: float = field(default_factory=time.monotonic)
     _told_s: float = 0.0
     _quiet_until_s: float = -AWAY_EVERY_S
 
@@ -82,27 +81,35 @@ class Simulator:
         return sum(flight.load for flight in self.flights.values())
 
     def _hold(self) -> None:
-        options, fallen = self.options, [flight for flight in self.flights.values() if flight.has_fallen]
-        for flight in fallen:
-            fail_simulation(simulation=flight.simulation, reason="simulator-fault")
+        self._let_go()
+        options = self.options
         ended = end_those_over(holder=options.holder, ids=list(self.flights))
+        asked_s = time.monotonic()
         still = renew_simulations(holder=options.holder, ids=self.flights.keys() - ended, lease_s=options.lease_s)
-        self._renewed_s = time.monotonic()
         for key in self.flights.keys() - still:
             self.flights.pop(key).end()
+        for flight in self.flights.values():
+            flight.held_until_s = options.held_until_s(asked_s)
+            if flight.has_fallen:
+                fail_simulation(simulation=flight.simulation, reason="simulator-fault")
         for vehicle in end_single_ones(holder=options.holder, ids=list(self.flights)):
             self.flights[vehicle.simulation_id].drop(vehicle)
+
+    def _let_go(self) -> None:
+        for key in [key for key, flight in self.flights.items() if flight.is_given_up]:
+            self.flights.pop(key).end()
 
     def _take(self) -> None:
         options = self.options
         while True:
-            room = options.most_load - self.load
+            room, asked_s = options.most_load - self.load, time.monotonic()
             held = take_simulation(holder=options.holder, lease_s=options.lease_s, most_load=room, flown=list(self.flights))
             if held is None:
                 return
             try:
                 launches = [launch_of(vehicle, held.simulation, options) for vehicle in held.vehicles]
-                self.flights[held.simulation.pk] = flight_of(held.simulation, held.vehicles, launches)
+                held_until_s = options.held_until_s(asked_s)
+                self.flights[held.simulation.pk] = flight_of(held.simulation, held.vehicles, launches, held_until_s=held_until_s)
             except DATABASE_AWAY:
                 raise
             except NoGateway:
@@ -140,14 +147,12 @@ class Simulator:
             logger.exception("a change of simulation %s cannot be made", change.simulation_id)
 
     def _go_on_without_database(self, error: Exception) -> None:
-        """They fly on until the lease is out: then another simulator may have them, and two of one UAV would be one too many."""
+        """They fly on until their leases are out: then another simulator may have them, and two of one UAV would be one too many."""
         connection.close()
         if time.monotonic() >= self._quiet_until_s:
             self._quiet_until_s = time.monotonic() + AWAY_EVERY_S
             logger.warning("the database is away, no simulation is taken or changed: %s", type(error).__name__)
-        if time.monotonic() - self._renewed_s > self.options.lease_s and self.flights:
-            logger.warning("the leases are out: %s simulations are given up", len(self.flights))
-            self._end_all()
+        self._let_go()
 
     def _give_back(self) -> None:
         self._end_all()

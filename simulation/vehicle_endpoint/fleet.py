@@ -79,7 +79,7 @@ class Fleet:
         self._is_ended = True
 
     def run(self, until: Callable[[], bool] = lambda: False) -> FleetReport:
-        """Until told to end or `until` says so, which is asked after each step."""
+        """Until told to end or `until` says so, which is asked before each step."""
         self._began_s = time.monotonic()
         self._pace = Pace(STEP_S, self._pace.speed, self._began_s)
         with selectors.DefaultSelector() as selector:
@@ -87,11 +87,11 @@ class Fleet:
                 selector.register(uav.radio.socket, selectors.EVENT_READ, uav)
             while not self._is_ended:
                 if self._pace.begin(time.monotonic()):
+                    if until():
+                        break
                     self._make_changes(selector)
                     for uav in self._flying():
                         self._guarded(uav, uav.step)
-                    if until():
-                        break
                 for key, _ in selector.select(max(self._pace.next_s - time.monotonic(), 0.0)):
                     if not self._guarded(key.data, key.data.hear):
                         selector.unregister(key.fileobj)

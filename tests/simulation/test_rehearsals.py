@@ -17,6 +17,8 @@ from missions.services import create_mission, plan_mission
 from missions.services.approval import approve_mission
 from missions.services.refused import Refused
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack, SimulatedAirframe
+from simulation.rehearsing.content import content_of
+from simulation.rehearsing.flying import RouteToFly
 from simulation.serializers.words import reason_of
 from simulation.services.green_verdict import reasons_without_rehearsal, set_rule
 from simulation.services.plan_to_fly import plan_to_fly
@@ -154,6 +156,17 @@ def test_another_airframe_makes_a_rehearsal_out_of_date(here: World, person: Use
     known, flown = content(mission), plan_to_fly(loaded(mission)).stand_ins[0].airframe
     SimulatedAirframe.objects.create(uav_type=uav_type, airframe="iris" if flown == "inspector" else "inspector")
     assert content(mission) != known
+
+
+def test_the_pause_between_flights_is_part_of_what_was_rehearsed_where_there_is_one(mission: Mission) -> None:
+    (once, *_) = plan_to_fly(loaded(mission)).routes
+    twice = replace(once, items=(*once.items, *once.items), rally=(*once.rally, *once.rally))
+
+    def named(route: RouteToFly, turnaround_s: float) -> str:
+        return content_of([route], ["iris"], [None], None, turnaround_s)
+
+    assert named(once, 60.0) == named(once, 300.0)
+    assert named(twice, 60.0) != named(twice, 300.0)
 
 
 def test_a_plan_that_changes_before_a_worker_comes_is_not_flown(mission: Mission, person: User) -> None:

@@ -1,6 +1,7 @@
 """Simulated UAVs in real time: who may be stood in for, quotas, leases, lifetimes, and what a lost simulator leaves."""
 
 import socket
+from dataclasses import replace
 
 import pytest
 
@@ -15,6 +16,7 @@ from simulation.simulator.process import Simulator
 from tests.missions.flights import approved, dispatched, fleet, planned
 from tests.missions.worlds import world
 from tests.simulation.simulations import LONG_AGO, fresh, lose, pool, stand_ins, taken
+from tests.telemetry.gateway.station import wait_for
 from tests.workspace.people import somebody
 from workspace.models import AuditEntry, User
 
@@ -223,6 +225,25 @@ def test_what_a_simulator_had_to_give_up_it_takes_again(person):
     lose(simulation)
     assert taken("one/a").simulation == simulation
     assert fresh(simulation).restarts == 1
+
+
+def test_nothing_flies_beyond_its_lease_while_the_database_neither_answers_nor_refuses(person):
+    simulation = pool(person, 1)
+    simulator = Simulator(Options("one", 10.0, ("127.0.0.1", 1), "127.0.0.1", lease_s=1.0))
+    simulator.round()
+    flight = simulator.flights[simulation.pk]
+    wait_for(lambda: flight.is_given_up, "the end of the lease, which nobody renews")
+    steps = flight.fleet.report().steps
+    simulator.options = replace(simulator.options, lease_s=600.0)
+    try:
+        simulator.round()
+        anew = simulator.flights[simulation.pk]
+        assert anew is not flight
+        wait_for(lambda: anew.fleet.report().steps > 0, "it begins anew once the database is back")
+        assert flight.fleet.report().steps == steps, "the one that was given up stands still"
+        assert fresh(simulation).restarts == 1
+    finally:
+        simulator.flights.pop(simulation.pk).end()
 
 
 def test_what_is_over_and_was_left_by_a_dead_simulator_bars_no_start(person, mission):

@@ -123,7 +123,13 @@ function sceneOfMission() {
   return { mission: mission.id, wanted: run };
 }
 
-store.listen(["mission"], ({ mission }) => scene.show(Boolean(mission?.plan)));
+let plannedSeen = null;
+store.listen(["mission"], ({ mission }) => {
+  scene.show(Boolean(mission?.plan));
+  const isOther = plannedSeen !== null && (mission?.planned_at ?? null) !== plannedSeen;
+  if (isOther && mission?.plan && scene.stage()?.source.kind === "plan") void scene.open({ takesFocus: false }); // it was planned anew
+  plannedSeen = mission?.planned_at ?? null;
+});
 let runSeen = null;
 store.listen(["rehearsal"], ({ rehearsal: { track } }) => {
   const isOther = track !== null && track !== runSeen;

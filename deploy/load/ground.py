@@ -1,0 +1,30 @@
+"""The ground of the load tests in an installation: made once, kept in its folder."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+from deploy.load.installation import Installation
+from scripts.places import PROJECT_DIR
+
+NODES = 200_000
+LAST_WRITTEN = "password.txt"
+
+
+def ground_folder(installation: Installation) -> Path:
+    """Where requests, tokens and the password are."""
+    return installation.places.state / "ground"
+
+
+def bring_ground(installation: Installation) -> Path:
+    """The graph of benchmarks/make_graph.py with assets, accounts and requests, unless they are there. Returns their folder."""
+    folder = ground_folder(installation)
+    if not (folder / LAST_WRITTEN).exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        graph = folder / "graph.npz"
+        for command in (
+            ["benchmarks/make_graph.py", "--nodes", str(NODES), "--out", str(graph)],
+            ["deploy/load/prepare_ground.py", "--graph", str(graph)],
+        ):
+            subprocess.run([sys.executable, *command], cwd=PROJECT_DIR, env=installation.environment(), check=True)
+    return folder
