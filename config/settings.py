@@ -81,6 +81,7 @@ SESSION_COOKIE_AGE = int(_float("SPANWISE_SESSION_DAYS", 14) * 86_400)  # from s
 SESSION_IDLE_S = _float("SPANWISE_SESSION_IDLE_MINUTES", 120) * 60  # without any open page
 SESSION_WATCHING_S = _float("SPANWISE_SESSION_WATCHING_HOURS", 12) * 3_600  # of an open page in which nobody does anything
 SESSION_COOKIE_HTTPONLY = True
+MESSAGE_STORAGE = "django.contrib.messages.storage.session.SessionStorage"  # the admin's words need no cookie
 SESSION_COOKIE_SAMESITE = "Lax"
 X_FRAME_OPTIONS = "DENY"
 # Debian's GDAL is older than 3.9. GDAL reads terrain files alone, from the command line, with its driver named (GTiff, SRTMHGT).
@@ -184,7 +185,9 @@ AUTH_PASSWORD_VALIDATORS = [
         "CommonPasswordValidator",
         "NumericPasswordValidator",
     )
-]
+] + [{"NAME": "workspace.password_words.ContextWordsValidator"}]
+PASSWORD_WORDS = _list("SPANWISE_PASSWORD_WORDS", "")  # that no password here may be made of, beside those of the trade
+REQUIRES_SECOND_FACTOR = _flag("SPANWISE_REQUIRE_SECOND_FACTOR", default=False)  # of everybody, whatever their organisation says
 LOGIN_URL = "sign-in"
 LOGIN_REDIRECT_URL = "missions"
 LOGOUT_REDIRECT_URL = "sign-in"

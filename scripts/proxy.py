@@ -8,7 +8,7 @@ from pathlib import Path
 from operation.json_lines import is_asked_for
 from scripts import page_headers
 from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
-from scripts.proxy_site import ALIVE, Site, entrances, plain_server, quoted, upstreams
+from scripts.proxy_site import ALIVE, Site, came_over_http, entrances, plain_server, quoted, upstreams
 
 MOST_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
@@ -237,7 +237,7 @@ http {{
     gzip_comp_level 2;
     gzip_types {COMPRESSED};
 {upstreams(site)}
-    map $http_upgrade $connection_upgrade {{
+{came_over_http() if is_behind_https else ""}    map $http_upgrade $connection_upgrade {{
         "" close;
         default upgrade;
     }}

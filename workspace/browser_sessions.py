@@ -26,6 +26,12 @@ def session_ends_at(row: BrowserSession) -> datetime:
     return ends_at(began_at=row.began_at, acted_at=row.acted_at, present_at=row.present_at, rules=session_rules())
 
 
+def seconds_left(store: Any) -> int:
+    """Until the session ends if nobody is heard of any more."""
+    left = settings.SESSION_IDLE_S if store.in_use is None else (session_ends_at(store.in_use) - timezone.now()).total_seconds()
+    return max(0, round(left))
+
+
 def note_session(store: Any, user: User, *, is_act: bool, user_agent: str = "") -> None:
     """That the session of this store is in use, to the minute. One that is not known yet begins now."""
     now, row = timezone.now(), store.in_use

@@ -16,7 +16,7 @@ from workspace.invitations import InvitationGone, accept_invitation, mail_leaves
 from workspace.models import User
 from workspace.pages import SignedInPage
 from workspace.preferences import TIME_ZONES
-from workspace.second_factors import has_second_factor, recovery_codes_left
+from workspace.second_factors import has_second_factor, is_required_of, recovery_codes_left
 from workspace.way_in import let_in
 
 
@@ -30,6 +30,7 @@ class AccountPage(SignedInPage):
         has_one = has_second_factor(user)
         return super().get_context_data(**kwargs) | {
             "has_second_factor": has_one,
+            "second_factor_is_required": is_required_of(user),
             "codes_left": recovery_codes_left(user) if has_one else 0,
         }
 
@@ -73,6 +74,10 @@ class InvitationPage(FormView):
 
     def get_initial(self) -> dict[str, Any]:
         return {"email": self.invitation.email}
+
+    def get_form_kwargs(self) -> dict[str, Any]:
+        newcomer = User(organisation=self.invitation.organisation)  # whose name is no password
+        return super().get_form_kwargs() | {"instance": newcomer}
 
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         return super().get_context_data(**kwargs) | {"invitation": self.invitation}

@@ -92,6 +92,10 @@ class TokenListSerializer(serializers.Serializer):
     results = TokenSerializer(many=True)
 
 
+class ProofSerializer(serializers.Serializer):
+    password = serializers.CharField(trim_whitespace=False, max_length=4_096)
+
+
 class SessionTimesSerializer(serializers.Serializer):
     ends_at = serializers.DateTimeField()
     ends_in_s = serializers.IntegerField()
@@ -121,6 +125,7 @@ class BrowserSessionListSerializer(serializers.Serializer):
 
 class SecondFactorRuleSerializer(serializers.Serializer):
     required = serializers.BooleanField(help_text="of everybody in the organisation, from their next sign-in on")
+    is_of_the_installation = serializers.BooleanField(read_only=True, help_text="required whatever the organisation says")
 
 
 class PersonSerializer(serializers.ModelSerializer):

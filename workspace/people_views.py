@@ -3,6 +3,7 @@
 from datetime import timedelta
 from typing import Any
 
+from django.conf import settings
 from django.db.models import Count, Exists, OuterRef, Q, QuerySet
 from django.http import Http404
 from django.urls import reverse
@@ -193,7 +194,7 @@ class SecondFactorRule(APIView):
         responses=SecondFactorRuleSerializer,
     )
     def get(self, request: Request) -> Response:
-        return Response({"required": request.user.organisation.requires_second_factor})
+        return self._answer(request)
 
     @extend_schema(
         operation_id="set_second_factor_rule",
@@ -206,10 +207,16 @@ class SecondFactorRule(APIView):
         body = SecondFactorRuleSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         try:
-            required = second_factors.require_second_factor(actor=request.user, required=body.validated_data["required"])
+            second_factors.require_second_factor(actor=request.user, required=body.validated_data["required"])
         except second_factors.SetUpFirst as error:
             raise ApiProblem(409, "set_up_first", _("Set up a second factor for yourself first, under Account.")) from error
-        return Response({"required": required})
+        request.user.organisation.refresh_from_db(fields=["requires_second_factor"])
+        return self._answer(request)
+
+    @staticmethod
+    def _answer(request: Request) -> Response:
+        required = second_factors.is_required_of(request.user)
+        return Response({"required": required, "is_of_the_installation": settings.REQUIRES_SECOND_FACTOR})
 
 
 class InvitationList(APIView):
@@ -248,7 +255,9 @@ class InvitationList(APIView):
 class InvitationDetail(APIView):
     permission_classes = [AdministratorsAlone]
 
-    @extend_schema(operation_id="revoke_invitation", summary="Make an invitation's link stop working", responses={200: InvitationSerializer})
+    @extend_schema(
+        operation_id="revoke_invitation", summary="Make an invitation's link stop working", responses={200: InvitationSerializer}
+    )
     def delete(self, request: Request, invitation_id: int) -> Response:
         try:
             invitation = invitations.invitations_of(request.user).get(pk=invitation_id)

@@ -33,6 +33,8 @@ class PreferencesMiddleware:
             timezone.override(zone if zone in TIME_ZONES else None),
         ):
             response = self.get_response(request)
+        if user is not None and "Cache-Control" not in response:
+            response["Cache-Control"] = "no-store"  # what is not meant to be kept by the browser, is not
         if not own_language and response.get("Content-Type", "").startswith("text/html"):
             patch_vary_headers(response, ("Accept-Language",))
         return response

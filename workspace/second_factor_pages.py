@@ -130,9 +130,7 @@ class SetUpPage(AccessMixin, FormView):
         try:
             codes = second_factors.set_up(user=self.person, seed=self._seed(), code=form.cleaned_data["code"])
         except WrongCode:
-            form.add_error(
-                "code", _("This is not the app’s code of now. Wait for the next one. The telephone’s clock has to be right.")
-            )
+            form.add_error("code", _("This is not the app’s code of now. Wait for the next one. The telephone’s clock has to be right."))
             return self.form_invalid(form)
         del self.request.session[SEED]
         response = show_codes(self.request, codes, self.half_in.wanted if self.half_in else resolve_url("account"))
@@ -201,6 +199,9 @@ class RemovePage(_OwnCodePage):
     """Where the organisation asks for a second factor, the next sign-in asks to set up another one."""
 
     template_name = "account/second_factor_remove.html"
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        return super().get_context_data(**kwargs) | {"is_required": second_factors.is_required_of(self.request.user)}
 
     def done(self, user: User) -> HttpResponse:
         second_factors.take_away(user=user, actor=user)

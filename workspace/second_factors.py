@@ -37,6 +37,11 @@ def has_second_factor(user: User) -> bool:
     return SecondFactor.objects.filter(user=user).exists()
 
 
+def is_required_of(user: User) -> bool:
+    """By their organisation, or by whoever runs the installation."""
+    return bool(settings.REQUIRES_SECOND_FACTOR or user.organisation.requires_second_factor)
+
+
 def seed_text(seed: bytes) -> str:
     """As people type it, and apps read it."""
     return b32encode(seed).decode()
@@ -98,7 +103,7 @@ def take_away(*, user: User, actor: User | None) -> bool:
     return True
 
 
-def require_second_factor(*, actor: User, required: bool) -> bool:
+def require_second_factor(*, actor: User, required: bool) -> None:
     """Of everybody in the organisation, from their next sign-in on. Raises SetUpFirst."""
     if required and not has_second_factor(actor):
         raise SetUpFirst
@@ -117,7 +122,6 @@ def require_second_factor(*, actor: User, required: bool) -> bool:
                 before={"requires_second_factor": before},
                 after={"requires_second_factor": required},
             )
-    return required
 
 
 def seal_with_the_key_of_today() -> int:

@@ -1,7 +1,6 @@
 """The API's doors to sessions in browsers: one's own, one by one, and until when the one that asks still lasts."""
 
 from django.contrib.auth import update_session_auth_hash
-from django.utils import timezone
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.request import Request
@@ -9,11 +8,13 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from workspace import accounts
-from workspace.browser_sessions import end_session, open_sessions, session_ends_at
+from workspace.account_views import check_password
+from workspace.browser_sessions import end_session, open_sessions, seconds_left, session_ends_at
 from workspace.errors import ApiProblem
 from workspace.models import BrowserSession
-from workspace.people_serializers import BrowserSessionListSerializer, BrowserSessionSerializer, SessionTimesSerializer
+from workspace.people_serializers import BrowserSessionListSerializer, BrowserSessionSerializer, ProofSerializer, SessionTimesSerializer
 from workspace.permissions import EVERYBODY, InTheBrowserAlone
+from workspace.proof import PASSWORD_NEEDED, note_proof, require_proof
 
 
 class ThisSession(APIView):
@@ -46,8 +47,26 @@ class ThisSession(APIView):
         row = None if request.auth is not None else _row_of(request)
         if row is None:
             raise ApiProblem(404, "not_found", _("There is no session."))
-        ends_at = session_ends_at(row)
-        return Response({"ends_at": ends_at, "ends_in_s": max(0, round((ends_at - timezone.now()).total_seconds()))})
+        return Response({"ends_at": session_ends_at(row), "ends_in_s": seconds_left(request.session)})
+
+
+class Proof(APIView):
+    write_roles = EVERYBODY
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(
+        operation_id="prove_oneself",
+        summary="Say one's own password again",
+        description="For 15 min this session may then make tokens and end sessions. Five tries in a quarter of an hour.",
+        request=ProofSerializer,
+        responses={204: OpenApiResponse(description="It is the password.")},
+    )
+    def post(self, request: Request) -> Response:
+        body = ProofSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        check_password(request, "password", body.validated_data["password"])
+        note_proof(request.session)
+        return Response(status=204)
 
 
 class AccountSessionList(APIView):
@@ -72,9 +91,10 @@ class AccountSession(APIView):
         operation_id="end_session",
         summary="End one of one's own sessions",
         description="Its open pages are told within 5 s. Not with a token.",
-        responses={204: OpenApiResponse(description="Ended.")},
+        responses={204: OpenApiResponse(description="Ended."), 403: PASSWORD_NEEDED},
     )
     def delete(self, request: Request, session_id: int) -> Response:
+        require_proof(request)
         row = request.user.browser_sessions.filter(pk=session_id).first()
         if row is None:
             raise ApiProblem(404, "not_found", _("You have no such session."))
@@ -91,9 +111,10 @@ class AccountSessions(APIView):
         summary="End one's own sessions in all other browsers",
         description="The session that asks stays. Tokens stay, too. Not with a token.",
         request=None,
-        responses={204: OpenApiResponse(description="Ended.")},
+        responses={204: OpenApiResponse(description="Ended."), 403: PASSWORD_NEEDED},
     )
     def post(self, request: Request) -> Response:
+        require_proof(request)
         accounts.end_sessions(user=request.user, actor=request.user)
         update_session_auth_hash(request, request.user)
         return Response(status=204)

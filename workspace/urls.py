@@ -9,6 +9,7 @@ urlpatterns = [
     path("account/password", account_views.AccountPassword.as_view(), name="api-account-password"),
     path("account/sign-out-everywhere", session_views.AccountSessions.as_view(), name="api-account-sessions"),
     path("account/session", session_views.ThisSession.as_view(), name="api-account-this-session"),
+    path("account/proof", session_views.Proof.as_view(), name="api-account-proof"),
     path("account/sessions", session_views.AccountSessionList.as_view(), name="api-account-session-list"),
     path("account/sessions/<int:session_id>", session_views.AccountSession.as_view(), name="api-account-session"),
     path("account/tokens", account_views.AccountTokens.as_view(), name="api-account-tokens"),

@@ -11,7 +11,7 @@ from django.utils.crypto import constant_time_compare
 from workspace.browser_sessions import note_session
 from workspace.known_browsers import remember
 from workspace.models import SignInOutcome, User
-from workspace.second_factors import has_second_factor
+from workspace.second_factors import has_second_factor, is_required_of
 from workspace.sign_in_log import record_sign_in
 
 BACKEND = "workspace.authentication.RoleBackend"
@@ -30,7 +30,7 @@ class HalfIn:
 def let_in(request: HttpRequest, user: User, wanted: str) -> HttpResponse:
     """After the password: to where they wanted to go, to the page that asks for a code, or to the one that sets the codes up."""
     has_one = has_second_factor(user)
-    if not (has_one or user.organisation.requires_second_factor):
+    if not (has_one or is_required_of(user)):
         response = HttpResponseRedirect(wanted)
         sign_in(request, response, user)
         return response

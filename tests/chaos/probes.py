@@ -23,11 +23,11 @@ class _OverSocket(http.client.HTTPConnection):
         self.sock.connect(str(self._path))
 
 
-def answer_of(path: Path, address: str = "/readyz") -> tuple[int, list[str]]:
+def answer_of(path: Path, address: str = "/readyz", **headers: str) -> tuple[int, list[str]]:
     """Status and reasons; 0 where nobody answers."""
     connection = _OverSocket(path)
     try:
-        connection.request("GET", address, headers={"X-Forwarded-Proto": "https"})
+        connection.request("GET", address, headers={"X-Forwarded-Proto": "https", **headers})
         answer = connection.getresponse()
         told = answer.read()
         return answer.status, json.loads(told).get("reasons", []) if answer.getheader("Content-Type", "").startswith(

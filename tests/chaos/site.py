@@ -1,6 +1,8 @@
 """The shipped programs over the demo region, with people and UAVs, for one experiment; nothing of it is left afterwards."""
 
+import fcntl
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -13,7 +15,8 @@ from typing import Any
 
 from config.private_servers import state_directory
 from deploy.load.installation import Installation
-from scripts.places import PROJECT_DIR
+from scripts.places import PROJECT_DIR, CannotStart, Places
+from scripts.supervision import Supervisor
 from tests.chaos.asking import Client
 
 DEMO = (
@@ -25,6 +28,8 @@ DEMO = (
     ["build_graph"],
 )
 PATIENCE_S = 300.0
+ONLY_WEB = dict.fromkeys(("worker-data", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat"), 0)
+KEEPS = "SPANWISE_CHAOS_KEEPS"  # set: logs and data stay for whoever looks for a reason
 
 
 @dataclass
@@ -39,33 +44,56 @@ class Site:
 
 
 @contextmanager
-def demo_site(
+def shipped(
     name: str,
     counts: Mapping[str, int] | None = None,
     *,
     spare: Mapping[str, int] | None = None,
     settings: Mapping[str, str] | None = None,
     folder: Path | None = None,
-) -> Iterator[Site]:
+) -> Iterator[Installation]:
+    """The programs with an empty database, in a folder of their own (or in the one that is given)."""
     place = folder or state_directory() / "chaos" / name
-    _forget(place)
-    place.mkdir(parents=True)
+    place.mkdir(parents=True, exist_ok=True)
     place.chmod(0o755)  # for PostgreSQL's user
-    try:
-        with Installation(place, counts, spare=spare, settings=settings) as installation:
-            for command in DEMO:
-                installation.manage(*[word.format(demo=place / "demo") for word in command])
-            told = subprocess.run(  # noqa: S603
-                [sys.executable, "-m", "tests.chaos.people"],
-                env=installation.environment(),
-                cwd=PROJECT_DIR,
-                capture_output=True,
-                text=True,
-                check=True,
-            ).stdout
-            yield Site(installation, json.loads(told.splitlines()[-1]))
-    finally:
-        _forget(place)
+    with place.with_suffix(".lock").open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise CannotStart(f"this experiment is running already on {place}") from None
+        try:
+            Supervisor(Places(place), place).end_leftovers()  # of a run that was killed, before their folder goes
+            _forget(place)
+            with Installation(place, counts, spare=spare, settings=settings) as installation:
+                yield installation
+        finally:
+            if KEEPS not in os.environ:
+                _forget(place)
+
+
+@contextmanager
+def demo_site(
+    name: str,
+    counts: Mapping[str, int] | None = None,
+    *,
+    settings: Mapping[str, str] | None = None,
+    folder: Path | None = None,
+) -> Iterator[Site]:
+    """With the demo region, operators and UAVs."""
+    with shipped(name, counts, settings=settings, folder=folder) as installation:
+        for command in DEMO:
+            installation.manage(*[word.format(demo=installation.places.state / "demo") for word in command])
+        yield Site(installation, people_of(installation))
+
+
+def people_of(installation: Installation, organisation: int = 1) -> dict[str, Any]:
+    """Operators with tokens, made beside those that may be there, and what they ask with."""
+    command = [sys.executable, "-m", "tests.chaos.people", str(organisation)]
+    told = subprocess.run(  # noqa: S603
+        command, env=installation.environment(), cwd=PROJECT_DIR, stdout=subprocess.PIPE, text=True, check=True
+    ).stdout
+    found: dict[str, Any] = json.loads(told.splitlines()[-1])
+    return found
 
 
 def _forget(place: Path) -> None:

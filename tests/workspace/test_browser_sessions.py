@@ -193,3 +193,32 @@ def test_after_signing_out_everywhere_else_the_others_are_not_listed() -> None:
     here.post("/api/v1/account/sign-out-everywhere")
     assert [session["is_this_one"] for session in listed(here)] == [True]
     assert not is_in(there)
+
+
+def test_what_outlives_a_session_wants_the_password_again_after_a_while(settings: Any) -> None:
+    settings.PASSWORD_HASHERS = ["django.contrib.auth.hashers.MD5PasswordHasher"]
+    user, here, there = twice_in()
+    user.set_password("inspect-the-lines")
+    user.save()
+    here, there = client_of(user), client_of(user)
+    rows = {client: row_of(client) for client in (here, there)}
+
+    def asked() -> list[int]:
+        token = {"name": "script", "days": 1}
+        return [
+            here.post("/api/v1/account/tokens", token, content_type="application/json").status_code,
+            here.delete(f"/api/v1/account/sessions/{rows[there].pk}").status_code,
+        ]
+
+    ago(rows[here], began_at=hours(0.3))
+    assert asked() == [403, 403]
+    assert here.post("/api/v1/account/proof", {"password": "wrong"}, content_type="application/json").status_code == 400
+    assert asked() == [403, 403]
+    assert is_in(there)
+    assert here.post("/api/v1/account/proof", {"password": "inspect-the-lines"}, content_type="application/json").status_code == 204
+    assert asked() == [201, 204]
+
+
+def test_browsers_keep_no_page_and_no_answer_that_does_not_say_so() -> None:
+    client = client_of(somebody())
+    assert {client.get(path)["Cache-Control"] for path in ("/account", "/", "/api/v1/account", "/api/v1/jobs")} == {"no-store"}

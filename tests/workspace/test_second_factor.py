@@ -250,7 +250,7 @@ def test_administrators_who_have_one_ask_everybody_for_it() -> None:
     assert ask(True) == 409
     with_app(boss)
     assert ask(True) == 200
-    assert client_of(somebody()).get("/api/v1/second-factor-rule").json() == {"required": True}
+    assert client_of(somebody()).get("/api/v1/second-factor-rule").json()["required"] is True
     assert ask(False) == 200
     rules = AuditEntry.objects.filter(action="second factor rule").values_list("after", flat=True)
     assert list(rules) == [{"requires_second_factor": False}, {"requires_second_factor": True}]
@@ -305,3 +305,9 @@ def test_seeds_outlive_a_change_of_the_secret_key(ida: User) -> None:
         assert seal_with_the_key_of_today() == 1
     with override_settings(SECRET_KEY="the-key-of-today", SECRET_KEY_FALLBACKS=[]):
         try_code(user=ida, code=code_now())
+
+
+def test_whoever_runs_the_installation_asks_for_it_of_everybody(ida: User, settings: Any) -> None:
+    settings.REQUIRES_SECOND_FACTOR = True
+    assert type_password(Client(), ida, PASSWORD) == "/second-factor"
+    assert client_of(ida).get("/api/v1/second-factor-rule").json() == {"required": True, "is_of_the_installation": True}

@@ -16,7 +16,9 @@ FILE = "book.jsonl"
 
 MISSION = "mission"  # id, name, revision
 EDIT = "edit"  # mission, revision, name
+ASKED = "asked"  # thing: a mission or zone is to go or to come back, and nobody knows until the next line about it
 DELETION = "deletion"  # mission
+RESTORATION = "restoration"  # mission
 JOB = "job"  # id: a promise to plan
 PLAN = "plan"  # job: what it promised was fetched
 APPROVAL = "approval"  # mission, approval, sha256
@@ -32,6 +34,7 @@ ZONE_GONE = "zone-gone"  # id
 SENT = "sent"  # uav, datagrams: MAVLink, which nobody acknowledges
 UNANSWERED = "unanswered"  # method, path, key: given up
 RETRIED = "retried"  # name, why: failed, and was tried again
+SEEN = "seen"  # name, took_s: until somebody saw what was to come
 GAP = "gap"  # a page saw one: by, expected, got
 WATCHED = "watched"  # a page: by, messages, gaps, opened
 

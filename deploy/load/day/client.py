@@ -93,6 +93,16 @@ class Client(FastHttpUser):
     def headers_for(self, method: str) -> dict[str, str]:
         return {}
 
+    def note_seen(self, name: str, took_s: float) -> None:
+        """What somebody waited for came; that is no request, and not among their times."""
+        self.book.note(kinds.SEEN, name=name, took_s=round(took_s, 2))
+
+    def blame(self, name: str, fault: Exception) -> None:
+        """A failure that no answer's status tells: a wrong word in it, or what never came."""
+        self.environment.events.request.fire(
+            request_type="SEEN", name=name, response_time=0, response_length=0, exception=fault, context={}
+        )
+
 
 class Bearer(Client):
     """A program or a companion computer with a token."""
@@ -150,6 +160,14 @@ class Browser(Client):
         if answer.headers.get("ETag"):
             self.tags[path] = answer.headers["ETag"]
         return answer
+
+    def delete_mission(self, mission: str) -> bool:
+        """Whether it is deleted. One that is not there any more was deleted by a try whose answer was lost."""
+        self.book.note(kinds.ASKED, thing=mission)
+        answer = self.ask("DELETE", f"/api/v1/missions/{mission}", "mission: delete", ok=(204, 404, 409))
+        if answer.status_code != 409:
+            self.book.note(kinds.DELETION, mission=mission)
+        return bool(answer.status_code != 409)
 
     def get(self, path: str, name: str) -> Any:
         return self.ask("GET", f"/api/v1/{path}", name).json()

@@ -96,12 +96,11 @@ class PlansMissions(Person):
             told = self.get(f"jobs/{job}", "plan: job")
             if told["state"] in {"done", "failed", "cancelled"}:
                 break
-        late = None if told["state"] == "done" else TimeoutError(f"{told['state']} after {waited_s:.0f} s: {told.get('error')}")
-        self.environment.events.request.fire(
-            request_type="SEEN", name="plan: large, done", response_time=waited_s * 1000, response_length=0, exception=late, context={}
-        )
-        if late is None:
+        if told["state"] == "done":
+            self.note_seen("plan: large, done", waited_s)
             self.book.note(kinds.PLAN, job=job)
+        else:
+            self.blame("plan: large, done", TimeoutError(f"{told['state']} after {waited_s:.0f} s: {told.get('error')}"))
 
     def save_and_edit(self) -> None:
         """Two windows on one mission: the second one that saves is told that it has changed, and saves on top."""
@@ -127,11 +126,10 @@ class PlansMissions(Person):
 
     def delete(self, mission: str) -> None:
         """Half of them are brought back at once: that was a mistake."""
-        self.ask("DELETE", f"/api/v1/missions/{mission}", "mission: delete", ok=(204, 404))
-        if self.draw.random() < 0.5:
+        if self.delete_mission(mission) and self.draw.random() < 0.5:
+            self.book.note(kinds.ASKED, thing=mission)
             self.ask("POST", f"/api/v1/missions/{mission}/restore", "mission: undo deletion", ok=(200, 404))
-        else:
-            self.book.note(kinds.DELETION, mission=mission)
+            self.book.note(kinds.RESTORATION, mission=mission)
 
 
 class Watches(Person):
@@ -201,6 +199,7 @@ class KeepsZones(Person):
         zone, tag = answer.json()["id"], answer.headers["ETag"]
         self.book.note(kinds.ZONE, id=zone, name=name)
         gevent.sleep(self.draw.uniform(20.0, 40.0))
+        self.book.note(kinds.ASKED, thing=str(zone))
         self.ask("DELETE", f"/api/v1/zones/{zone}", "zone: take away", ok=(204, 404), **{"If-Match": tag})
         self.book.note(kinds.ZONE_GONE, id=zone)
 

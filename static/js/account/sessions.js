@@ -5,6 +5,7 @@ import { byId, h, icon } from "../dom.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { exactText, whenText } from "../units.js";
+import { proved } from "./proof.js";
 import { browserName } from "./sign_in_row.js";
 
 export function mountSessions({ tell, settle }) {
@@ -21,7 +22,6 @@ export function mountSessions({ tell, settle }) {
     try {
       const { data } = await get("/account/sessions");
       byId("sessions").replaceChildren(...data.results.map(row));
-      byId("sign-out-everywhere").disabled = data.results.every((session) => session.is_this_one);
     } catch (error) {
       tell(t("Sessions could not be loaded."), error);
     }
@@ -29,7 +29,7 @@ export function mountSessions({ tell, settle }) {
 
   async function act(send, words) {
     try {
-      await send();
+      if ((await proved(send)) === null) return;
       settle();
       toast(words);
     } catch (error) {

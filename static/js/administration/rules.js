@@ -11,8 +11,10 @@ const RULES = [
 
 export function mountRules({ tell, settle }) {
   async function show({ id, path, name }) {
-    byId(id).checked = (await get(path)).data[name];
-    byId(id).disabled = false;
+    const { data } = await get(path);
+    byId(id).checked = data[name];
+    byId(id).disabled = Boolean(data.is_of_the_installation);
+    byId(id).title = data.is_of_the_installation ? t("Whoever runs this installation asks for it.") : "";
   }
 
   async function load() {

@@ -15,7 +15,7 @@ import { openStage } from "./stage.js";
 const KEPT_MS = 400; // after a change the address says it
 const TICK_MS = 500; // of a live source: silence is seen without a word
 const AGAIN_MS = 30_000; // a record that still grows is read
-const SOURCE_WORDS = { plan: t("Plan"), rehearsal: t("Rehearsal"), live: t("Live"), record: t("Record") };
+const SOURCE_WORDS = { plan: t("Planned"), rehearsal: t("Rehearsal"), live: t("Live"), record: t("Record") };
 
 const page = readPage();
 const root = byId("scene");

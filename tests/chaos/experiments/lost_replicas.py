@@ -5,32 +5,29 @@ from collections.abc import Callable
 
 from tests.chaos.asking import Askers
 from tests.chaos.experiment import Course, main, percentile
-from tests.chaos.plans import planner, reader
+from tests.chaos.jobs import one_of
+from tests.chaos.plans import SAVED_AS, Saver, planner, reader
 from tests.chaos.probes import is_ready
-from tests.chaos.site import Site, demo_site, wait_until
+from tests.chaos.site import ONLY_WEB, Site, demo_site, wait_until
 
 REPLICAS = 3
-PLANNERS, READERS = 8, 4
+PLANNERS, READERS, SAVERS = 8, 4, 2
 KILLS, SHORT_KILLS = 10, 2
 BETWEEN_S = 4.0
-ONLY_WEB = {
-    "gateway": 0,
-    "estimator": 0,
-    "simulator": 0,
-    "worker-data": 0,
-    "worker-planning": 0,
-    "worker-simulation": 0,
-    "beat": 0,
-    "live": 0,
-}
 
 
 def run(course: Course) -> None:
     with demo_site("replicas", ONLY_WEB | {"web": REPLICAS}) as site:
+        savers: list[Saver] = []
 
         def question(number: int) -> Callable[[], str]:
             client = site.client(number)
-            return planner(site, client, course.seed + number) if number < PLANNERS else reader(client)
+            if number < PLANNERS:
+                return planner(site, client, course.seed + number)
+            if number < PLANNERS + READERS:
+                return reader(client)
+            savers.append(Saver(site, client, course.seed + number))
+            return savers[-1]
 
         wait_until(lambda: all(_serves(site, name) for name in site.installation.names("web")), "every web replica")
         for number in range(PLANNERS * REPLICAS):  # each has its graph and its compiled core
@@ -39,13 +36,14 @@ def run(course: Course) -> None:
         _tell(course, "killed with -9", killed)
         drained = _broken(course, site, question, _drain)
         _tell(course, "drained (TERM) and started again", drained)
+        _tell_saved(course, site, savers)
 
 
 def _broken(
     course: Course, site: Site, question: Callable[[int], Callable[[], str]], harm: Callable[[Site, str], None]
 ) -> tuple[Askers, int]:
     times = SHORT_KILLS if course.is_short else KILLS
-    with Askers(question, PLANNERS + READERS, pause_s=0.05) as askers:
+    with Askers(question, PLANNERS + READERS + SAVERS, pause_s=0.05) as askers:
         for _ in range(times):
             time.sleep(BETWEEN_S * course.chance.uniform(0.5, 1.5))
             name = course.chance.choice(site.installation.names("web"))
@@ -76,6 +74,16 @@ def _tell(course: Course, harm: str, ran: tuple[Askers, int]) -> None:
     course.tell(
         f"one of {REPLICAS} web replicas is {harm}", figure + (f" {failed}, {askers.faults[:2]}" if failed else ""), "0 failed", not failed
     )
+
+
+def _tell_saved(course: Course, site: Site, savers: list[Saver]) -> None:
+    saved = [one for saver in savers for one in saver.saved]
+    lost = sum(one_of(site.installation, "SELECT 1 FROM missions_mission WHERE id = %s", one) is None for one in saved)
+    rows = one_of(site.installation, "SELECT count(*) FROM missions_mission WHERE name = %s", SAVED_AS)
+    figure = (
+        f"{len(saved)} saved, {sum(saver.again for saver in savers)} asked again under their key: {lost} lost, {rows - len(saved)} doubled"
+    )
+    course.tell("missions saved meanwhile", figure, "0 lost, 0 doubled", bool(saved) and not lost and rows == len(set(saved)))
 
 
 if __name__ == "__main__":

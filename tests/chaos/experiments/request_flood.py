@@ -6,18 +6,8 @@ from collections.abc import Callable
 from tests.chaos.asking import Askers
 from tests.chaos.experiment import Course, main, percentile
 from tests.chaos.plans import planner, reader
-from tests.chaos.site import Site, demo_site
+from tests.chaos.site import ONLY_WEB, Site, demo_site
 
-ONLY_WEB = {
-    "gateway": 0,
-    "estimator": 0,
-    "simulator": 0,
-    "worker-data": 0,
-    "worker-planning": 0,
-    "worker-simulation": 0,
-    "beat": 0,
-    "live": 0,
-}
 OTHERS = 4
 EACH_S, SHORT_EACH_S = 60.0, 15.0
 ROUNDS = 2  # without, with, without, with: what the machine does beside it falls on both

@@ -20,7 +20,7 @@ const VERTEX = /* glsl */ `
   void main() {
     vec4 a = modelViewMatrix * vec4(start, 1.0);
     vec4 b = modelViewMatrix * vec4(end, 1.0);
-    float near = -0.05;
+    float near = -1.01 * projectionMatrix[3][2] / (projectionMatrix[2][2] - 1.0); // the camera's: what is cut there leaves nothing to be clipped
     if (a.z > near && b.z < near) a = mix(a, b, (a.z - near) / (a.z - b.z));
     else if (b.z > near && a.z < near) b = mix(b, a, (b.z - near) / (b.z - a.z));
     vec4 ca = projectionMatrix * a;
