@@ -69,10 +69,12 @@ class LocalScaler:
         wanted, self._book = decide(self.rules, self._book, now_s=at_s, replicas=self._wanted, total=total)
         self._wanted = wanted
         missing = wanted - len(self._serving) - len(self._starting)
-        for name in [name for name in self.installation.spare_names(self.kind) if name not in self._leaving][: max(0, missing)]:
+        free = [name for name in self.installation.spare_names(self.kind) if name not in self._leaving | self._starting]
+        for name in free[: max(0, missing)]:
             self._starting.add(name)
             self._actions.append(self._threads.submit(self._bring, name))
-        for name in sorted(self._serving, key=_number)[missing:] if missing < 0 else ():
+        serving = sorted(self._serving, key=_number)  # the newest go first; what is still starting does not serve in their place
+        for name in serving[max(wanted, len(serving) + min(0, missing)) :]:
             self._serving.discard(name)
             self._leaving.add(name)
             self._actions.append(self._threads.submit(self._take_away, name))
