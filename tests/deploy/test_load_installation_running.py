@@ -70,6 +70,8 @@ def test_a_killed_replica_and_one_that_goes_lose_no_request(installation: Instal
         visitors.wait_for_more(20)
         pid = installation.kill("web-1")
         installation.wait_for_another("web-1", pid)
+        while not installation.is_ready("web-1"):
+            visitors.wait_for_more(1)
         visitors.wait_for_more(20)
         if installation.name_server:
             (spare,) = installation.spare_names("web")
