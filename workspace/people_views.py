@@ -199,7 +199,9 @@ class InvitationList(APIView):
 class InvitationDetail(APIView):
     permission_classes = [AdministratorsAlone]
 
-    @extend_schema(operation_id="revoke_invitation", summary="Make an invitation's link stop working", responses={200: InvitationSerializer})
+    @extend_schema(
+        operation_id="revoke_invitation", summary="Make an invitation's link stop working", responses={200: InvitationSerializer}
+    )
     def delete(self, request: Request, invitation_id: int) -> Response:
         try:
             invitation = invitations.invitations_of(request.user).get(pk=invitation_id)

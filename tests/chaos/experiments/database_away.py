@@ -26,7 +26,7 @@ BEFORE_S = 10.0
 READY_WITHIN_S = 5.0
 GIVEN_UP_S = 90.0
 PAGES = 3
-READ = ("/api/v1/missions?limit=5", "/api/v1/uavs", "/api/v1/live", "/api/v1/alerts", "/api/v1/jobs", "/missions", "/api/v1/ground")
+READ = ("/api/v1/missions?limit=5", "/api/v1/uavs", "/api/v1/live", "/api/v1/alerts", "/api/v1/jobs", "/sign-in", "/api/v1/ground")
 
 
 def run(course: Course) -> None:
