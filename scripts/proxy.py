@@ -1,12 +1,14 @@
 """The reverse proxy (nginx): its configuration for one installation, without anything of the machine's own."""
 
+import json
 import os
 import resource
 from pathlib import Path
 
+from operation.json_lines import is_asked_for
 from scripts import page_headers
 from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
-from scripts.proxy_site import ALIVE, Site, entrances, plain_server, quoted, upstreams
+from scripts.proxy_site import ALIVE, Site, came_over_http, entrances, plain_server, quoted, upstreams
 
 MOST_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
@@ -97,6 +99,7 @@ def _websockets(scheme: str, *, to: str) -> str:
             proxy_connect_timeout 5s;
             proxy_read_timeout 60s;
             proxy_send_timeout 30s;
+            proxy_next_upstream error timeout http_503;
             proxy_buffering off;
             error_page 502 504 = @api_unavailable;
         }}"""
@@ -118,6 +121,16 @@ def _telling(sockets: Path) -> str:
 {locations}
         location / {{ return 404; }}
     }}"""
+
+
+def _line() -> str:
+    """How a request is written down: for people, or as JSON for programs."""
+    if not is_asked_for():
+        return """'$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time $told_id'"""
+    told = {"time": "$time_iso8601", "level": "INFO", "logger": "requests", "message": "$told_request", "program": "proxy"}
+    told |= {"request": "$told_id", "address": "$remote_addr"}
+    numbers = '"status": $status, "bytes": $body_bytes_sent, "seconds": $request_time'
+    return f"escape=json '{json.dumps(told)[:-1]}, {numbers}}}'"
 
 
 def _file_limit() -> int:
@@ -197,14 +210,16 @@ http {{
     charset utf-8;
     charset_types text/css text/plain text/javascript image/svg+xml;
 {temporary}
-    # A link to a new password, and an invitation, let their holder in: no log has them, nor faults of the application at them.
+    # A link to a new password, and an invitation, let their holder in: no log has them, nor faults of the application at them. Nor has it
+    # what stands behind a question mark.
     map $request $told_request {{
         "~^(?<told>[A-Z]+ /(new-password|invitation)/)" "$told...";
+        "~^(?<asked>[^? ]+ [^? ]+)\\?" "$asked?...";
         default $request;
     }}
     map $upstream_http_x_request_id $told_id {{ "" "-"; default $upstream_http_x_request_id; }}
     {visitor}
-    log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time $told_id';
+    log_format line {_line()};
     access_log /dev/stdout line buffer=32k flush=1s;
     server_tokens off;
     sendfile on;
@@ -222,7 +237,7 @@ http {{
     gzip_comp_level 2;
     gzip_types {COMPRESSED};
 {upstreams(site)}
-    map $http_upgrade $connection_upgrade {{
+{came_over_http() if is_behind_https else ""}    map $http_upgrade $connection_upgrade {{
         "" close;
         default upgrade;
     }}

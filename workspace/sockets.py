@@ -17,6 +17,8 @@ from django.db import Error as DatabaseError
 from operation.log_context import REQUEST_ID_HEADER, about, sane_request_id
 from operation.metrics import WEBSOCKET_MESSAGES, WEBSOCKETS
 from workspace.authentication import bearer_token, user_of_token
+from workspace.browser_sessions import note_session
+from workspace.farewell import farewell_here
 from workspace.models import User
 
 logger = logging.getLogger(__name__)
@@ -52,6 +54,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
             for task in (spoken, *self._tasks):
                 task.cancel()
             if self._counted_as is not None:
+                farewell_here().forget(self)
                 WEBSOCKETS.labels(self._counted_as).dec()
 
     def kind(self) -> str:
@@ -72,13 +75,15 @@ class SignedInSocket(AsyncWebsocketConsumer):
         await super().accept(*arguments, **named)
         self._counted_as = self.kind()
         WEBSOCKETS.labels(self._counted_as).inc()
+        farewell_here().expect(self)
         self._messages = WEBSOCKET_MESSAGES.labels(self._counted_as)
 
     async def send(self, *arguments: Any, **named: Any) -> None:
         await super().send(*arguments, **named)
         self._messages.inc()
 
-    def _hang_up(self, code: int) -> None:
+    def hang_up(self, code: int) -> None:
+        """Once nobody waits any more for what the browser says. The first code counts."""
         if not self._hung_up.done():
             self._hung_up.set_result(code)
 
@@ -91,7 +96,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
     def _look_how_it_ended(self, task: asyncio.Task[None]) -> None:
         if not task.cancelled() and (error := task.exception()) is not None:
             logger.error("a websocket is closed: %r", error, exc_info=error)
-            self._hang_up(FAILED)
+            self.hang_up(FAILED)
 
     async def _user(self) -> User | None:
         """Whoever listens, if they still may."""
@@ -102,8 +107,12 @@ class SignedInSocket(AsyncWebsocketConsumer):
         if key is None:
             return None
         store = import_module(settings.SESSION_ENGINE).SessionStore
-        user = await get_user({"session": store(session_key=key)})  # a store of its own: the first one keeps what it has read
-        return user if isinstance(user, User) and user.is_active else None
+        session = store(session_key=key)  # of its own: the first one keeps what it has read
+        user = await get_user({"session": session})
+        if not (isinstance(user, User) and user.is_active):
+            return None
+        await database_sync_to_async(note_session)(session, user, is_act=False)  # an open page is somebody's presence
+        return user
 
     async def _same_user(self, before: User) -> User | None:
         """Whoever was there before, as they are now; None once they may not listen any more, or work for somebody else."""
@@ -118,7 +127,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
             with suppress(DatabaseError):  # away for a moment: the next look tells
                 now = await self._same_user(user)
                 if now is None or now.role != user.role:
-                    return self._hang_up(SIGNED_OUT)
+                    return self.hang_up(SIGNED_OUT)
 
 
 def _facts_of(scope: Any) -> dict[str, Any]:

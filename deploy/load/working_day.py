@@ -67,5 +67,7 @@ def played(who: type[User], many: tuple[str, int], does: dict[str, int]) -> type
     return type(f"{who.__name__}OfDay", (who,), {"abstract": False, "tasks": tasks, **number, **waits})
 
 
+if sum(many[1] for _, many, _, _ in DAY if many[0] == FIXED) != SITE.fixed_users:
+    raise SystemExit("the table has another number of fixed users than day/site.py says")
 for _who, _many, _does, _why in DAY:
     globals()[f"{_who.__name__}OfDay"] = played(_who, _many, _does)

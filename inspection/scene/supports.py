@@ -7,6 +7,7 @@ import numpy as np
 
 from inspection.scene.arms import Arms, arms_of
 from inspection.scene.forms import Form, Tags, form_of, is_anchor, layout_of
+from inspection.scene.likely_heights import likely_height_m
 from inspection.scene.overhead import Overhead, bearings_deg
 from inspection.scene.sag import sag_m
 
@@ -22,6 +23,7 @@ class LineFacts:
     voltage_v: int | None
     circuits: int | None
     tags: Tags
+    is_minor: bool = False
 
 
 @dataclass(frozen=True)
@@ -37,8 +39,9 @@ class SupportFacts:
 class DrawnSupport:
     kind: str  # "vertex" where no support is mapped
     form: Form
-    height_m: float
+    height_m: float  # what planners count
     height_source: str  # tag, line, assumed
+    likely_m: float  # what is drawn: its arms are below that
     voltage_v: int | None
     is_anchor: bool
     bearing_deg: float
@@ -79,6 +82,7 @@ def drawn(
     phases = [min(sum(map(phases_of, own)), MOST_PHASES) for own in carried]
     bearing, ways, bend = bearings_deg(found, np.array([(own or 1) * 1.0 for own in voltage_v]))
     most_phases, most_v = _at_ends(found, phases), _at_ends(found, [own or 0 for own in voltage_v])
+    has_major = _at_ends(found, [int(not all(line.is_minor for line in own)) for own in carried])
     stands = [
         _support(
             VERTEX if key < 0 else supports.get(key, VERTEX),
@@ -89,6 +93,7 @@ def drawn(
             ways=int(ways[place]),
             bend_deg=float(bend[place]),
             bearing_deg=float(bearing[place]),
+            is_of_minor_lines=not has_major[place],
         )
         for place, (key, height_m, is_tagged, is_by_line) in enumerate(
             zip(found.support.tolist(), found.height_m.tolist(), found.is_tagged.tolist(), found.is_by_line.tolist(), strict=True)
@@ -113,21 +118,25 @@ def _at_ends(found: Overhead, of_span: Sequence[int]) -> list[int]:
 
 def _support(
     facts: SupportFacts, *, height_m: float, height_source: str, line_voltage_v: int | None, phases: int, ways: int, bend_deg: float,
-    bearing_deg: float,
+    bearing_deg: float, is_of_minor_lines: bool,
 ) -> DrawnSupport:  # fmt: skip
     voltage_v = line_voltage_v or facts.voltage_v
     form = form_of(facts.kind, facts.tags, voltage_v)
     fastened = is_anchor(facts.tags, ways, bend_deg)
     layout = layout_of(form, facts.tags, phases, voltage_v)
+    likely_m = height_m
+    if height_source == "assumed":
+        likely_m = likely_height_m(facts.kind, voltage_v, is_of_minor_lines=is_of_minor_lines, counted_m=height_m)
     return DrawnSupport(
         kind=facts.kind,
         form=form,
         height_m=height_m,
         height_source=height_source,
+        likely_m=likely_m,
         voltage_v=voltage_v,
         is_anchor=fastened,
         bearing_deg=bearing_deg,
-        arms=arms_of(form, layout, height_m, voltage_v, phases, fastened),
+        arms=arms_of(form, layout, likely_m, voltage_v, phases, fastened),
     )
 
 

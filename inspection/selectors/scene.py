@@ -26,7 +26,7 @@ from inspection.selectors.terrain import ground_heights_m
 from inspection.selectors.terrain_models import finest_step_m, terrain_models
 from inspection.selectors.zone_table import zone_table
 
-RECIPE = 1  # part of the ETag: counts the changes to what a scene holds
+RECIPE = 2  # part of the ETag: counts the changes to what a scene holds
 SHORTEST_SIDE_M, LONGEST_SIDE_M = 50.0, 40_000.0
 NEAREST_POLE_DEG = 85.0
 MOST_POSTS = 225  # of the ground, along each side
@@ -124,7 +124,7 @@ def scene_in(box: Box) -> Scene:
     supports, spans = drawn(
         found,
         {pk: SupportFacts(asset.subtype or "tower", asset.max_voltage_v, asset.tags) for pk, asset in assets.items()},
-        {pk: LineFacts(asset.max_voltage_v, asset.circuits, asset.tags) for pk, asset in lines.items()},
+        {pk: LineFacts(line.max_voltage_v, line.circuits, line.tags, is_minor=line.subtype == "minor_line") for pk, line in lines.items()},
     )
     railways = [(asset, _shape(asset, clip)) for asset in _in_area(AssetKind.RAILWAY, clip).filter(is_flyable=True)]
     zones = NoFlyZone.objects.filter(geometry__intersects=area_of(clip)).annotate(wkb=AsWKB("geometry")).defer("geometry")

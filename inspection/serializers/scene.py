@@ -51,6 +51,7 @@ class SupportSerializer(serializers.Serializer):
     ground_amsl_m = serializers.FloatField()
     height_m = serializers.FloatField(help_text="above its ground; what planners count")
     height_source = serializers.ChoiceField(choices=["tag", "line", "assumed"])
+    likely_m = serializers.FloatField(help_text="above its ground, as it is drawn: below height_m where it likely is")
     voltage_v = serializers.IntegerField(allow_null=True)
     is_anchor = serializers.BooleanField(help_text="wires end here, and are not hung below the arms")
     bearing_deg = serializers.FloatField(help_text="along the line; its arms stand across")
@@ -87,6 +88,7 @@ class RailwaySerializer(serializers.Serializer):
 class SceneBridgeSerializer(serializers.Serializer):
     id = serializers.IntegerField()
     label = serializers.CharField()
+    is_named = serializers.BooleanField(help_text="its label is a name or number of its own")
     carries = serializers.CharField()
     polygons = serializers.ListField(child=serializers.ListField(child=serializers.ListField(child=PositionField())))
     deck_amsl_m = serializers.FloatField()
@@ -194,6 +196,7 @@ def _support_json(drawn: DrawnSupport, asset: Asset | None, position: FloatArray
         "ground_amsl_m": round(ground_m, METRE_DIGITS),
         "height_m": round(drawn.height_m, METRE_DIGITS),
         "height_source": drawn.height_source,
+        "likely_m": round(drawn.likely_m, METRE_DIGITS),
         "voltage_v": drawn.voltage_v,
         "is_anchor": drawn.is_anchor,
         "bearing_deg": round(drawn.bearing_deg, 1),
@@ -232,6 +235,7 @@ def _bridge_json(bridge: SceneBridge) -> dict[str, Any]:
     return {
         "id": bridge.asset.pk,
         "label": asset_label(bridge.asset),
+        "is_named": bool(bridge.asset.ref or bridge.asset.name),
         "carries": bridge.asset.carries,
         "polygons": _polygons(bridge.shape),
         "deck_amsl_m": round(bridge.deck_amsl_m, METRE_DIGITS),

@@ -69,9 +69,9 @@ def card(page: Page, name: str) -> Any:
     return page.locator("#uav-cards .card").filter(has=page.get_by_role("button", name=re.compile(name)))
 
 
-def flies_until(page: Page, fact: Any, flyers: list[Flyer], along_m: float, *, drifts_m: float = 0.0) -> float:
+def flies_until(page: Page, fact: Any, flyers: list[Flyer], along_m: float, *, drifts_m: float = 0.0, most: int = MOST_STEPS) -> float:
     """A report a second of each until the page shows what is waited for; the first drifts aside. Returns how far they have come."""
-    for step in range(MOST_STEPS):
+    for step in range(most):
         if fact():
             return along_m
         along_m += STEP_M

@@ -106,7 +106,7 @@ def test_flights_among_towers(visitor: Visitor, towers: Towers, picture: Picture
         "approach": (first - 16, "uav=0&camera=chase&view=-28,18,9"),
         "line": ((first + last) / 2, "uav=0&camera=chase&view=35,24,22"),
         "two": ((first + last) / 2, "uav=1&camera=orbit&view=150,22,520"),
-        "target": (first + 4, "uav=0&camera=orbit&view=200,12,120"),
+        "target": (first - 1, "uav=0&camera=orbit&view=200,12,120"),
         "onboard": (first - 5, "uav=0&camera=onboard&view=0,-18,0"),
         "landing": (landing, "uav=0&camera=chase&view=40,16,12"),
         "top": (first + 4, "camera=top&view=0,90,900"),
@@ -126,7 +126,7 @@ def test_round_a_zone_and_at_night(visitor: Visitor, towers: Towers, zone: str, 
     targets = [towers[5], towers[11]]
     night = rehearsed(page, "Night patrol", {"Pratincole": beside(towers[4])}, targets, NIGHT, 2)
     day = rehearsed(page, "Round the works", {"Phalarope": beside(towers[4])}, targets, DAYTIME, 2)
-    at_tower = reached_s(page, night)[0][0] + 4
+    at_tower = reached_s(page, night)[0][0] - 1
     between = sum(reached_s(page, day)[0]) / 2
     for theme in ("light", "dark"):
         page = visitor.signs_in("vera", **VIEWS[theme])

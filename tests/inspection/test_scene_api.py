@@ -84,7 +84,7 @@ def test_the_demo_region_in_3d_is_that_of_rows_terrain_and_planners(client: Clie
     assert shown["ground"]["kind"] == "terrain"
     assert np.abs(told - ground_heights_m(positions)).max() < WITHIN_M
     for support in supports:
-        assert max([support["height_m"]] + [slot[1] for slot in support["slots"] + support["earth"]]) == support["height_m"]
+        assert max(slot[1] for slot in support["slots"] + support["earth"]) <= support["likely_m"] <= support["height_m"]
     for span in spans:
         lowest_m = min(slot[1] for end in ("from", "to") for slot in supports[span[end]]["slots"])
         assert span["sag_m"] == pytest.approx(min(span["length_m"] ** 2 / (8 * CATENARY_M), lowest_m / 2), abs=0.02)
@@ -123,6 +123,19 @@ def test_heights_say_whether_a_tag_a_line_or_a_rule_told_them(client: Client) ->
     assert sorted(span["phases"] for span in shown["spans"]) == [3, 3, 6]
     assert supports[None]["kind"] == "vertex"
     assert supports[plain.pk]["bearing_deg"] % 180 == pytest.approx(77, abs=4)
+
+
+def test_a_pole_without_a_height_is_drawn_as_is_likely_and_counted_as_planners_do(client: Client) -> None:
+    pole = ground.tower((10.0, 56.0), subtype="pole")
+    ground.line((10.0, 56.0), (10.002, 56.0005), voltages_v=[20_000])
+    tower = ground.tower((10.01, 56.0))
+    ground.line((10.01, 56.0), (10.014, 56.0), voltages_v=[110_000])
+    shown = scene(client)
+    told = [(one["id"], one["kind"], one["height_m"], one["likely_m"]) for one in shown["supports"]]
+    assert (pole.pk, "pole", 45.0, 10.4) in told
+    assert (tower.pk, "tower", 45.0, 45.0) in told
+    assert sorted(one[1:] for one in told if one[0] is None) == [("vertex", 45.0, 10.4), ("vertex", 45.0, 45.0)]
+    assert max(slot[1] for one in shown["supports"] if one["voltage_v"] == 20_000 for slot in one["slots"]) <= 10.4
 
 
 def test_a_span_across_the_edge_of_the_box_comes_with_both_its_ends(client: Client) -> None:

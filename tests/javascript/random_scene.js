@@ -1,5 +1,7 @@
 /** A made-up scene with hills, lines and zones, the same for the same seed; shaped as GET /api/v1/scene answers. */
 
+import { makeFrame } from "../../static/js/scene/frame.js";
+
 /** Numbers from 0 to 1, the same for a seed. Source: mulberry32. */
 export function drawer(seed) {
   let state = seed >>> 0;
@@ -33,7 +35,7 @@ export function randomScene(seed, { towers = 60 } = {}) {
     const arms = [8, 14, 19].map((down, level) => [height_m - down + 2, -[4.2, 5.8, 4.9][level], [4.2, 5.8, 4.9][level]]);
     const form = ["lattice", "tubular", "wooden", "h-frame", "guyed", "stake", "portal"][number % 7];
     return {
-      id: number, label: `Tower ${number}`, kind: "tower", form, position, ground_amsl_m: hill_m(...position), height_m, height_source: "assumed",
+      id: number, label: `Tower ${number}`, kind: "tower", form, position, ground_amsl_m: hill_m(...position), height_m, height_source: "assumed", likely_m: height_m,
       voltage_v: 132_000, is_anchor: false, bearing_deg: between(70, 110) + (number % 3 === 0 ? 180 : 0), arms, slots, earth: [[0, height_m]],
     };
   });
@@ -54,7 +56,7 @@ export function randomScene(seed, { towers = 60 } = {}) {
     supports,
     spans,
     railways: [{ id: 5, label: "Track", kind: "rail", tracks: 2, is_electrified: true, line: [[WEST + 0.001, NORTH - 0.03], [WEST + 0.02, NORTH - 0.028], [WEST + 0.038, NORTH - 0.033]] }],
-    bridges: [{ id: 6, label: "Bridge", carries: "a railway", deck_amsl_m: 330, deck_source: "tag", height_m: 30, height_source: "tag", polygons: [[[[WEST + 0.018, NORTH - 0.0281], [WEST + 0.022, NORTH - 0.0281], [WEST + 0.022, NORTH - 0.0287], [WEST + 0.018, NORTH - 0.0287], [WEST + 0.018, NORTH - 0.0281]].map((at) => [...at])]] }],
+    bridges: [{ id: 6, label: "Bridge", is_named: true, carries: "a railway", deck_amsl_m: 330, deck_source: "tag", height_m: 30, height_source: "tag", polygons: [[[[WEST + 0.018, NORTH - 0.0281], [WEST + 0.022, NORTH - 0.0281], [WEST + 0.022, NORTH - 0.0287], [WEST + 0.018, NORTH - 0.0287], [WEST + 0.018, NORTH - 0.0281]].map((at) => [...at])]] }],
     zones: [
       zone(1, [[circle]], { above: "ground", m: 0 }, { above: "ground", m: 120 }),
       zone(2, [[notched, [...hole, hole[0]]]], { above: "sea", m: 320 }, { above: "sea", m: 410 }),
@@ -62,5 +64,34 @@ export function randomScene(seed, { towers = 60 } = {}) {
     ],
     rules: RULES,
     left_out: { supports: 0, spans: 0, railways: 0, bridges: 0, zones: 0 },
+  };
+}
+
+/** Steep ground as a terrain model has it: { scene: { ground, zones, origin, clip }, frame }, posts every 60 m, some 1,000 m from valley to peak. */
+export function mountains(seed, { posts = 120 } = {}) {
+  const next = drawer(seed);
+  const step = 0.00054;
+  const waves = Array.from({ length: 24 }, (_, at) => {
+    const size = 1.35 ** at;
+    return { u: (next() - 0.5) * size * 60, v: (next() - 0.5) * size * 60, phase: next() * 6.3, high: 260 / size };
+  });
+  const height = (column, row) => 1_000 + waves.reduce((sum, { u, v, phase, high }) => sum + high * Math.sin((u * column + v * row) / posts + phase), 0);
+  const altitude_amsl_m = Array.from({ length: posts * posts }, (_, at) => Math.round(height(at % posts, Math.floor(at / posts)) * 100) / 100);
+  const [west, north] = [85, 28];
+  const [east, south] = [west + step * (posts - 1), north - step * (posts - 1)];
+  const origin = { position: [(west + east) / 2, (south + north) / 2], altitude_amsl_m: 1_000 };
+  const box = (west_, south_, east_, north_) => [[west_, south_], [east_, south_], [east_, north_], [west_, north_], [west_, south_]].map(([u, v]) => [west + u * (east - west), south + v * (north - south)]);
+  const zone = (id, outline, lower, upper) => ({ id, name: `Zone ${id}`, restriction: "", polygons: [[outline]], lower, upper, lower_limit: null, upper_limit: null, schedule: null, schedule_words: "" });
+  return {
+    frame: makeFrame(origin),
+    scene: {
+      origin, clip: [west, south, east, north],
+      ground: { kind: "terrain", west_deg: west, north_deg: north, step_lon_deg: step, step_lat_deg: step, columns: posts, rows: posts, altitude_amsl_m },
+      zones: [
+        zone(1, box(0.1, 0.1, 0.6, 0.55), { above: "ground", m: 0 }, { above: "ground", m: 120 }),
+        zone(2, box(0.3, 0.35, 0.95, 0.9), { above: "sea", m: 900 }, { above: "sea", m: 1_400 }),
+        zone(3, box(0.55, 0.05, 0.9, 0.4), { above: "ground", m: 40 }, { above: "sea", m: 1_300 }),
+      ],
+    },
   };
 }

@@ -4,6 +4,8 @@ import test from "node:test";
 import { makeFrame } from "../../static/js/scene/frame.js";
 import { bridgeSolid } from "../../static/js/scene/geometry/bridges.js";
 import { catenaryConstant, sagAt } from "../../static/js/scene/geometry/catenary.js";
+import { countedAir } from "../../static/js/scene/geometry/counted.js";
+import { cutBy, foldsOf } from "../../static/js/scene/geometry/folds.js";
 import { groundMesh, makeGround } from "../../static/js/scene/geometry/ground.js";
 import { labelsOf } from "../../static/js/scene/geometry/labels.js";
 import { railwayTracks } from "../../static/js/scene/geometry/railways.js";
@@ -11,17 +13,18 @@ import { heightPoles, ribbon } from "../../static/js/scene/geometry/ribbon.js";
 import { memberMatrices } from "../../static/js/scene/geometry/struts.js";
 import { sunAt } from "../../static/js/scene/geometry/sun.js";
 import { supportMembers } from "../../static/js/scene/geometry/towers.js";
-import { area2, refined, triangulate } from "../../static/js/scene/geometry/triangulate.js";
+import { area2, triangulate } from "../../static/js/scene/geometry/triangulate.js";
 import { deckUnder } from "../../static/js/scene/geometry/under_decks.js";
 import { slotPoint, standing, wiresOf } from "../../static/js/scene/geometry/wires.js";
-import { zoneVolume } from "../../static/js/scene/geometry/zones.js";
-import { drawer, hill_m, randomScene, RULES } from "./random_scene.js";
+import { withinFor, zoneVolume } from "../../static/js/scene/geometry/zones.js";
+import { drawer, hill_m, mountains, randomScene, RULES } from "./random_scene.js";
 
 const POINTS = 100; // random ones, of each kind
 const WITHIN_M = 0.5;
 const scene = randomScene(7);
 const frame = makeFrame(scene.origin);
 const ground = makeGround(scene.ground, frame);
+const folds = foldsOf(ground);
 const close = (actual, expected, within, message) => assert.ok(Math.abs(actual - expected) <= within, `${message ?? ""} ${actual} is not ${expected}`);
 
 /** Heights at which an upright line through a place meets triangles. */
@@ -92,6 +95,27 @@ test("tower tops are where ground and height say, and no member is above", () =>
   }
 });
 
+test("what is drawn lower than planners count has a mark up to there, and wires from top to top", () => {
+  const low = { ...scene, supports: scene.supports.map((support, number) => (number % 2 ? { ...support, likely_m: support.height_m - 8, arms: [[support.height_m - 9, -2, 2]], slots: [], earth: [] } : support)) };
+  const { points, first, marks } = countedAir(low, frame);
+  assert.equal(first.length - 1, scene.spans.length, "each span has an end that is counted higher");
+  const next = drawer(12);
+  for (let point = 0; point < POINTS; point += 1) {
+    const number = Math.floor(next() * scene.spans.length);
+    const share = next();
+    const tops = [scene.spans[number].from, scene.spans[number].to].map((place) => frame.toLocal(...scene.supports[place].position, scene.supports[place].ground_amsl_m + scene.supports[place].height_m));
+    [0, 1, 2].forEach((axis) => close(points[number * 6 + axis] * (1 - share) + points[number * 6 + 3 + axis] * share, tops[0][axis] * (1 - share) + tops[1][axis] * share, 1e-6));
+  }
+  for (let place = 1; place < 8; place += 2) {
+    const { outline } = supportMembers(low.supports[place], frame);
+    const top = Math.max(...outline.ends.filter((_, at) => at % 3 === 1));
+    const mark = marks.subarray(((place - 1) / 2) * 18, ((place - 1) / 2) * 18 + 6);
+    close(mark[1], top, WITHIN_M, "it begins where the drawing ends");
+    close(mark[4] - mark[1], 8, 0.01);
+  }
+  assert.equal(countedAir(scene, frame).marks.length, 0);
+});
+
 test("a member's matrix brings a prism from one end to the other, as wide as it is", () => {
   const ends = Float32Array.from([1, 2, 3, 4, 7, -2, 0, 0, 0, 0, 9, 0, 5, 5, 5, 9, 5, 5]);
   const matrices = memberMatrices({ ends, width_m: Float32Array.from([0.5, 2, 1]) });
@@ -155,26 +179,40 @@ test("wires of a circuit do not cross from tower to tower, whichever way round t
   }
 });
 
-test("a polygon with a notch and a hole becomes triangles of its area, all turned one way, and stays it when refined", () => {
+test("a polygon with a notch and a hole becomes triangles of its area, all turned one way", () => {
   const outline = [[0, 0], [10, 0], [10, 10], [5, 5], [0, 10], [0, 0]];
   const hole = [[2, 1], [4, 1], [3, 3]];
-  const cut = triangulate([outline, hole]);
-  const fine = refined(cut, 0.7);
-  for (const { points, triangles } of [cut, fine]) {
-    let area = 0;
-    for (let at = 0; at < triangles.length; at += 3) {
-      const own = area2([points[triangles[at]], points[triangles[at + 1]], points[triangles[at + 2]]]) / 2;
-      assert.ok(own > -1e-12);
-      area += own;
-    }
-    close(area, 75 - 2, 1e-9);
+  const { points, triangles } = triangulate([outline, hole]);
+  let area = 0;
+  for (let at = 0; at < triangles.length; at += 3) {
+    const own = area2([points[triangles[at]], points[triangles[at + 1]], points[triangles[at + 2]]]) / 2;
+    assert.ok(own > -1e-12);
+    area += own;
   }
-  const { points, triangles } = fine;
-  for (let at = 0; at < triangles.length; at += 1) {
-    const [a, b] = [points[triangles[at]], points[triangles[at % 3 === 2 ? at - 2 : at + 1]]];
-    assert.ok(Math.hypot(a[0] - b[0], a[1] - b[1]) <= 0.7 + 1e-9);
-  }
+  close(area, 75 - 2, 1e-9);
   assert.deepEqual(triangulate([[[0, 0], [1, 1]]]).triangles, []);
+});
+
+test("what is cut along the ground's folds covers the same area, in pieces over which the ground is a plane", () => {
+  const { scene: steep, frame: own } = mountains(5);
+  const rough = makeGround(steep.ground, own);
+  const cuts = foldsOf(rough);
+  const next = drawer(6);
+  for (let round = 0; round < 20; round += 1) {
+    const triangle = Array.from({ length: 3 }, () => [rough.west + next() * rough.stepX * (rough.columns - 1), rough.north + next() * rough.stepZ * (rough.rows - 1)]);
+    const turned = area2(triangle) > 0 ? triangle : [...triangle].reverse();
+    for (const within of [0.15, 5]) {
+      const pieces = cuts.pieces([turned], within);
+      close(pieces.reduce((sum, piece) => sum + area2(piece), 0), area2(turned), 1e-6 * area2(turned));
+      for (const piece of pieces.filter((_, number) => number % 50 === 0)) {
+        const middle = [0, 1].map((axis) => piece.reduce((sum, point) => sum + point[axis], 0) / piece.length);
+        const mean = piece.reduce((sum, [x, z]) => sum + rough.heightAt(x, z), 0) / piece.length;
+        close(mean, rough.heightAt(...middle), 2 * within);
+      }
+    }
+  }
+  assert.deepEqual(cutBy([[0, 0], [2, 0], [2, 2], [0, 2]], (x) => 1 - x), [[0, 0], [1, 0], [1, 2], [0, 2]]);
+  assert.deepEqual(cutBy([[0, 0], [2, 0], [2, 2]], (x) => x - 3), []);
 });
 
 test("random star-shaped polygons are covered whole", () => {
@@ -194,15 +232,15 @@ test("random star-shaped polygons are covered whole", () => {
 
 test("zones reach from limit to limit: over the ground they follow it, above the sea they are level", () => {
   const next = drawer(4);
-  const volumes = scene.zones.map((zone) => zoneVolume(zone, { frame, ground, clip: scene.clip, rules: RULES }));
+  const volumes = scene.zones.map((zone) => zoneVolume(zone, { frame, ground, folds, clip: scene.clip, rules: RULES }));
   const sea = (m) => m - scene.origin.altitude_amsl_m;
   for (let point = 0; point < POINTS; point += 1) {
     const [angle, reach] = [next() * 2 * Math.PI, Math.sqrt(next()) * 0.98];
     const [lon, lat] = [10.02 + 0.004 * reach * Math.cos(angle), 56.03 + 0.002 * reach * Math.sin(angle)];
     const [x, y, z] = frame.toLocal(lon, lat, hill_m(lon, lat));
     const [floor, ceiling] = heightsThrough(volumes[0].caps.vertices, volumes[0].caps.index, x, z);
-    close(ceiling, y + 120, WITHIN_M + 0.2);
-    close(floor, y, WITHIN_M + 0.8); // floors lie a little above the ground they stand on
+    close(ceiling, y + 120, WITHIN_M);
+    close(floor, ground.heightAt(x, z), WITHIN_M);
   }
   const corner = scene.zones[1].polygons[0][0];
   for (let point = 0; point < POINTS; point += 1) {
@@ -211,7 +249,7 @@ test("zones reach from limit to limit: over the ground they follow it, above the
     const heights = heightsThrough(volumes[1].caps.vertices, volumes[1].caps.index, x, z);
     assert.ok(heights.length === 0 || heights.length === 2);
     if (heights.length) close(heights[1], sea(410), 1e-3);
-    if (heights.length) close(heights[0], Math.max(sea(320), ground.heightAt(x, z) + 0.6), WITHIN_M);
+    if (heights.length) close(heights[0], Math.max(sea(320), ground.heightAt(x, z)), WITHIN_M);
   }
   for (let point = 0; point < POINTS; point += 1) {
     const { vertices } = volumes[0].walls;
@@ -220,12 +258,42 @@ test("zones reach from limit to limit: over the ground they follow it, above the
     const [x, z] = [0, 2].map((axis) => vertices[panel + axis] + share * (vertices[panel + 6 + axis] - vertices[panel + axis]));
     const [lon, lat] = frame.toGeographic([x, 0, z]);
     const top = vertices[panel + 4] + share * (vertices[panel + 10] - vertices[panel + 4]);
-    close(top, hill_m(lon, lat) - 200 + 120, WITHIN_M + 0.2);
+    close(top, hill_m(lon, lat) - 200 + 120, WITHIN_M);
   }
 });
 
+test("in mountains zones follow the ground as closely, up to where a limit above the sea is higher", () => {
+  const { scene: steep, frame: own } = mountains(8);
+  const rough = makeGround(steep.ground, own);
+  const cuts = foldsOf(rough);
+  const within_m = withinFor(steep.zones, own, cuts);
+  const next = drawer(9);
+  const sea = (m) => m - steep.origin.altitude_amsl_m;
+  const limits = [
+    [(y) => y, (y) => y + 120],
+    [(y) => Math.max(y, sea(900)), (y) => Math.max(y, sea(1_400))],
+    [(y) => y + 40, (y) => Math.max(y + 40, sea(1_300))],
+  ];
+  steep.zones.forEach((zone, number) => {
+    const { walls, caps } = zoneVolume(zone, { frame: own, ground: rough, folds: cuts, clip: steep.clip, rules: RULES, within_m });
+    const [[west, south], , [east, north]] = zone.polygons[0][0];
+    for (let point = 0; point < POINTS; point += 1) {
+      const [x, , z] = own.toLocal(west + (east - west) * (0.01 + 0.98 * next()), south + (north - south) * (0.01 + 0.98 * next()), 0);
+      const heights = heightsThrough(caps.vertices, caps.index, x, z);
+      limits[number].forEach((expected, side) => close(heights.at(-side), expected(rough.heightAt(x, z)), WITHIN_M, `zone ${number}, ${side ? "ceiling" : "floor"}`));
+    }
+    for (let point = 0; point < POINTS; point += 1) {
+      const panel = Math.floor((next() * walls.vertices.length) / 12) * 12;
+      const share = next();
+      const [x, low, z] = [0, 1, 2].map((axis) => walls.vertices[panel + axis] + share * (walls.vertices[panel + 6 + axis] - walls.vertices[panel + axis]));
+      const high = walls.vertices[panel + 4] + share * (walls.vertices[panel + 10] - walls.vertices[panel + 4]);
+      [low, high].forEach((height, side) => close(height, limits[number][side](rough.heightAt(x, z)), WITHIN_M, `zone ${number}, wall`));
+    }
+  });
+});
+
 test("a zone without an upper limit has no ceiling, and none has a wall where the scene was cut", () => {
-  const open = zoneVolume(scene.zones[2], { frame, ground, clip: scene.clip, rules: RULES });
+  const open = zoneVolume(scene.zones[2], { frame, ground, folds, clip: scene.clip, rules: RULES });
   const [, , cut] = frame.toLocal(10, scene.clip[1], 0);
   const [, , side] = frame.toLocal(10, 56.05 - 0.035, 0);
   for (let at = 2; at < open.walls.vertices.length; at += 3) {
@@ -317,7 +385,7 @@ test("the sun stands as high at noon as latitude and season say, and due south",
 });
 
 test("names stand over what they name, the heaviest first", () => {
-  const volumes = scene.zones.map((zone) => ({ ...zoneVolume(zone, { frame, ground, clip: scene.clip, rules: RULES }), isInForce: true }));
+  const volumes = scene.zones.map((zone) => ({ ...zoneVolume(zone, { frame, ground, folds, clip: scene.clip, rules: RULES }), isInForce: true }));
   const labels = labelsOf(scene, frame, volumes);
   assert.equal(labels[0].kind, "zone");
   assert.ok(labels.every(({ weight }, at) => at === 0 || weight <= labels[at - 1].weight));

@@ -5,7 +5,7 @@ import { createRig } from "../../static/js/scene/cameras/rig.js";
 import { directionOf, lengthOf, minus, towards, turn_deg } from "../../static/js/scene/cameras/vectors.js";
 import { drawFlight } from "../../static/js/scene/flight/drawn_flight.js";
 import { makeFrame } from "../../static/js/scene/frame.js";
-import { nearestTower, nearestWire, nearestZone, surroundingsOf } from "../../static/js/scene/instruments/distances.js";
+import { nearestTower, nearestWire, nearestZone, roomRound, surroundingsOf } from "../../static/js/scene/instruments/distances.js";
 import { headingText, readingsOf } from "../../static/js/scene/instruments/readings.js";
 import { taskOf } from "../../static/js/scene/instruments/task.js";
 import { placeLabels } from "../../static/js/scene/label_places.js";
@@ -162,7 +162,7 @@ const WAYPOINTS = [["start", 0, null], ["target", 300, 0], ["pass", 600, null], 
   kind, target, position: eastOf(east_m), altitude_amsl_m: 100, altitude_agl_m: 60, altitude_relative_m: 60, sequence: index,
 }));
 const MISSION = {
-  id: "m", name: "North belt", departs_at: "2026-09-10T09:10:00Z", state: "planned", targets: [{ label: "Tower 1", asset: 7 }, { label: "Tower 2", asset: 8 }],
+  id: "m", name: "North belt", uavs: [{ id: 3, is_simulated: true }], departs_at: "2026-09-10T09:10:00Z", state: "planned", targets: [{ label: "Tower 1", asset: 7 }, { label: "Tower 2", asset: 8 }],
   plan: { conditions: { wind: [{ altitude_agl_m: 10, speed_mps: 4, from_deg: 270 }] }, routes: [{ uav: "Wigeon", uav_id: 3, waypoints: WAYPOINTS, arrival_s: [0, 30, 60, 90, 180] }] },
 };
 
@@ -203,6 +203,18 @@ test("a record is measured, estimated in its silence, and has the wind that was 
   assert.equal(momentOf(pieces, T0 + 30_000).bound.along_m, 30);
   const wind = source.windAt(T0 + 40_000);
   assert.deepEqual([wind.speed_mps, wind.from_deg], [3, 0], "the air goes south: it comes from the north");
+});
+
+test("a record goes on growing while its mission is under way: the same routes with more flown", () => {
+  const report = (at_s) => ({ geometry: { coordinates: eastOf(at_s * 10) }, properties: { uav: 3, measured_at: new Date(T0 + at_s * 1_000).toISOString(), altitude_relative_m: 50, is_in_air: true } });
+  const record = (state) => ({ mission: { departs_at: "2026-09-10T09:10:00Z", state }, targets: [], routes: [{ place: 0, uav: 3, name: "Wigeon", is_simulated: false, waypoints: WAYPOINTS.map((point, sequence) => ({ ...point, sequence, arrival_s: sequence })) }] });
+  const loaded = (state, until_s) => ({ record: record(state), alerts: [], records: { features: Array.from({ length: until_s }, (_, at_s) => report(at_s)), every_s: null }, estimates: { features: [], every_s: null } });
+  const source = recordSource(loaded("active", 5));
+  const [route] = source.routes;
+  assert.deepEqual([source.isGrowing, source.isSimulated, source.span.to_ms], [true, false, T0 + 4_000]);
+  source.renew(loaded("completed", 9));
+  assert.equal(source.routes[0], route);
+  assert.deepEqual([source.isGrowing, source.span.to_ms, route.pieces[0].samples.length], [false, T0 + 8_000, 9]);
 });
 
 const live = (more = {}) => ({
@@ -309,7 +321,8 @@ test("its camera is on the target while that is near, else ahead and down", () =
 // instruments
 
 const SCENE = {
-  supports: [{ id: 7, label: "Tower 1", kind: "tower", position: HOME, ground_amsl_m: 40, height_m: 30 }, { id: 9, label: null, kind: "vertex", position: eastOf(20), ground_amsl_m: 40, height_m: 20 }],
+  supports: [{ id: 7, label: "Tower 1", kind: "tower", position: HOME, ground_amsl_m: 40, height_m: 30, likely_m: 30, arms: [[24, -5, 5]] }, { id: 9, label: null, kind: "vertex", position: eastOf(20), ground_amsl_m: 40, height_m: 20, likely_m: 20, arms: [] }],
+  spans: [],
   zones: [
     { id: 1, name: "Reserve", polygons: [[[eastOf(100), eastOf(200), eastOf(200, 100), eastOf(100, 100), eastOf(100)]]], lower: { above: "ground", m: 0 }, upper: { above: "ground", m: 50 } },
     { id: 2, name: "Upper air", polygons: [[[eastOf(-900), eastOf(900), eastOf(900, 900), eastOf(-900, 900), eastOf(-900)]]], lower: { above: "sea", m: 540 }, upper: { above: "open", m: null }, schedule: "later" },
@@ -328,6 +341,26 @@ test("distances to wire, tower and zone are those in space", () => {
   near(nearestTower(AROUND, [12, 10, 0]).away_m, 12, 1e-3);
 });
 
+test("where planners count a wire higher than it is drawn, that one is near, too", () => {
+  const pole = (id, position) => ({ id, label: `Pole ${id}`, kind: "pole", position, ground_amsl_m: 40, height_m: 45, likely_m: 10, arms: [] });
+  const around = surroundingsOf({ supports: [pole(1, HOME), pole(2, eastOf(100))], spans: [{ from: 0, to: 1 }], zones: [] }, FRAME, { points: Float64Array.from([0, 9, 0, 100, 9, 0]), first: Uint32Array.from([0, 2]) }, () => 0);
+  const over = nearestWire(around, [50, 50, 0]);
+  near(over.away_m, 5, 0.01);
+  assert.equal(over.isCounted, true);
+  const low = nearestWire(around, [50, 12, 0]);
+  near(low.away_m, 3, 0.01);
+  assert.equal(low.isCounted, false);
+});
+
+test("the room round a camera is that to ground, towers with their arms, wires and UAVs", () => {
+  near(roomRound(AROUND, [8, 10, 0]), 3, 0.01); // beside arms of 5 m
+  assert.equal(roomRound(AROUND, [4, 10, 0]), 0);
+  near(roomRound(AROUND, [500, 60, 500]), 60, 0.01);
+  near(roomRound(AROUND, [500, 60, 500], [[500, 60, 490]]), 10, 1e-9);
+  near(roomRound(AROUND, [2, 21, -100]), 2.2, 0.05);
+  near(roomRound(AROUND, [0, 40_000, 0]), 39_800, 1);
+});
+
 test("a zone is a volume: beside it, over it, inside it", () => {
   near(nearestZone(AROUND, [70, 20, -50]).away_m, 30, 0.05);
   near(nearestZone(AROUND, [150, 90, -50]).away_m, 40, 1e-6);
@@ -342,7 +375,7 @@ test("distances agree with a search through many points of the wires", () => {
   const next = numbers(5);
   const points = Array.from({ length: 40 }, (_, index) => [index * 30, 25 + 6 * Math.cos(index), 40 * Math.sin(index / 5)]);
   const wires = { points: Float64Array.from(points.flat()), first: Uint32Array.from([0, 20, 40]), span: Uint32Array.from([0, 1]) };
-  const around = surroundingsOf({ supports: [], zones: [] }, FRAME, wires, () => 0);
+  const around = surroundingsOf({ supports: [], spans: [], zones: [] }, FRAME, wires, () => 0);
   for (let trial = 0; trial < 100; trial += 1) {
     const at = [next() * 1_300 - 50, next() * 100, next() * 200 - 100];
     let least = Infinity;
@@ -398,6 +431,8 @@ test("labels never cover each other, the heavier one stands, and where there is 
   const boxes = items.filter(({ key }) => placed.has(key)).map(({ key, width, height }) => ({ ...placed.get(key), width, height }));
   for (const [index, a] of boxes.entries()) for (const b of boxes.slice(index + 1)) assert.ok(a.left + a.width <= b.left || b.left + b.width <= a.left || a.top + a.height <= b.top || b.top + b.height <= a.top);
   assert.ok(placed.has(119) && placed.size < 120 && placed.size > 20);
+  const under = { left: 0, top: 0, right: 800, bottom: 250 };
+  for (const [key, { top }] of placeLabels(items, { width: 800, height: 500 }, new Map(), [under])) assert.ok(top >= 250, `${key} is not below what covers it`);
   const again = placeLabels(items, { width: 800, height: 500 }, placed);
   assert.deepEqual(again.get(119), placed.get(119));
 });

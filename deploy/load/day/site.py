@@ -8,6 +8,7 @@ from typing import Any
 import orjson
 
 FILE = "day.json"
+OTHERS_FIXED = 6  # programs, curator, administrator
 
 
 @dataclass(frozen=True)
@@ -55,6 +56,11 @@ class Site:
 
     def people_who_are(self, role: str) -> list[str]:
         return [person.name for person in self.people if person.role == role]
+
+    @property
+    def fixed_users(self) -> int:
+        """Of working_day.py's table: those whose number does not follow the load."""
+        return 2 * len(self.desks) + OTHERS_FIXED
 
     def write(self, folder: Path) -> None:
         path = folder / FILE

@@ -3,6 +3,7 @@
 import { ApiError, get } from "../api.js";
 import { openFeed } from "../live/feed.js";
 import { KINDS } from "../live/shown.js";
+import { staleWords } from "../live/stale.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { mountWorkbench } from "../page/workbench.js";
 import { mountSceneOpener } from "../scene/opener.js";
@@ -64,7 +65,8 @@ function followFeed(stage) {
   const { source } = stage;
   if (source.kind !== "live") return () => {};
   let { revision } = source;
-  return store.listen(["uavs", "now_ms"], ({ uavs, now_ms }) => {
+  return store.listen(["uavs", "now_ms", "link"], ({ uavs, now_ms, link, since_ms }) => {
+    stage.sayStale(staleWords({ link, since_ms, now_ms }));
     if (!source.take({ uavs, now_ms })) return;
     stage.refresh(source.revision !== revision);
     revision = source.revision;

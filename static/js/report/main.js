@@ -92,8 +92,17 @@ function take(answer) {
   byId("replay-tables").replaceChildren(...replayTables(routes));
   routes.forEach((route) => (route.alerts = route.alerts.filter(({ at_ms }) => at_ms >= span.from_ms && at_ms <= span.to_ms)));
   dock.draw({ routes, span });
+  renewScene();
   show();
   return undefined;
+}
+
+/** The 3D view goes with the record; where it showed the plan it shows what is flown from now on. */
+function renewScene() {
+  const stage = scene.stage();
+  if (!stage) return;
+  if (stage.source.kind === "record") stage.renew(loaded);
+  else void scene.open({ takesFocus: false });
 }
 
 const targetOnStrip = ({ place, label: name, state, reached_at }) => {

@@ -51,6 +51,13 @@ export function createActs({ stage, rig, hands, picture, player, hasOwnTime, tar
     return `${dateText(iso)}, ${exactClockText(iso)}`;
   }
 
+  function whatFlies() {
+    const simulated = source.routes.filter(({ isSimulated }) => isSimulated);
+    if (source.isSimulated) return t("Simulated");
+    if (simulated.length) return t("Simulated, no real aircraft: {names}.", { names: simulated.map(({ name }) => name).join(", ") });
+    return source.kind === "plan" ? t("Planned, not flown") : "Spanwise";
+  }
+
   function link() {
     const state = rig.state();
     const place = state.mode === "free" ? picture.frame.toGeographic(state.eye) : null;
@@ -99,7 +106,7 @@ export function createActs({ stage, rig, hands, picture, player, hasOwnTime, tar
     changeSpeed: (direction) => (player?.changeSpeed(direction), Boolean(player)),
     async keepPicture() {
       const uav = source.routes.find(({ place }) => place === stage.chosen);
-      const words = [stage.mission.name, [timeWords(), uav && `${routeLetter(uav.place)} ${uav.name}`, CAMERA_LONG[rig.mode]].filter(Boolean).join(" · "), source.isSimulated ? t("Simulated") : source.kind === "plan" ? t("Planned, not flown") : "Spanwise"];
+      const words = [stage.mission.name, [timeWords(), uav && `${routeLetter(uav.place)} ${uav.name}`, CAMERA_LONG[rig.mode]].filter(Boolean).join(" · "), whatFlies()];
       const at = source.hasDate ? new Date(atNow()).toISOString().slice(0, 19).replaceAll(":", "").replace("T", "-") : `${Math.round((atNow() - source.departs_ms) / 1_000)}s`;
       await download(stillOf(picture.copy(), labels.shown(), words, palette()), fileName(stage.mission.name, at, rig.mode));
     },

@@ -6,7 +6,7 @@ import { heightText } from "../units.js";
 import { isInForce } from "../zones/in_force.js";
 import { CAMERA_LONG } from "./camera_bar.js";
 import { between, lengthOf, minus } from "./cameras/vectors.js";
-import { nearestTower, nearestWire, nearestZone } from "./instruments/distances.js";
+import { nearestTower, nearestWire, nearestZone, roomRound } from "./instruments/distances.js";
 import { certaintyText, readingsOf } from "./instruments/readings.js";
 import { taskOf } from "./instruments/task.js";
 import { groundLabels } from "./labels.js";
@@ -22,8 +22,8 @@ const ROUTES = 8;
 const TOGETHER_M = 90;
 const TOGETHER_SHARE = 0.4;
 
-/** See stage.js for what it is given. → { draw({ dt_s }), pick({ x, y }), drawn(), describe() }. */
-export function createFrames({ stage, scene, picture, canvas, rig, hands, player, flight, targets, labels, instruments, palette, atNow, isCalm, surroundings, choose, seeTarget }) {
+/** See stage.js for what it is given; overlays(): elements that stand over the picture. → { draw({ dt_s }), pick({ x, y }), drawn(), describe() }. */
+export function createFrames({ stage, scene, picture, canvas, rig, hands, player, flight, targets, labels, instruments, palette, atNow, isCalm, surroundings, overlays, choose, seeTarget }) {
   const { source } = stage;
   const names = new Map(targets.map(({ place, label, name }) => [place, { label, name }]));
   const where = new Map(targets.map((target) => [target.place, target.place3d]));
@@ -33,6 +33,7 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
   let read_ms = -Infinity;
   let described_ms = -Infinity;
   let ground = []; // labels of what stands on it
+  let covered = []; // boxes of the picture that labels keep out of
 
   function momentAt(route, at_ms) {
     if (source.momentAt) return source.momentAt(route, at_ms);
@@ -71,8 +72,10 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
     const wind = source.windAt(at_ms, subject?.height_agl_m ?? 0);
     const isPlaying = player ? player.isPlaying : source.kind === "live";
     picture.setDate(sun);
+    const hidden = rig.mode === "onboard" ? stage.chosen : null;
+    const room_m = stage.isFlat ? 0 : roomRound(surroundings, pose.eye, drawn.filter(({ route }) => route !== hidden).map(({ place }) => place));
     const goesOn = picture.show({
-      pose, distance_m: Math.max(2, away_m), drawn, chosen: stage.chosen, looked: null, hidden: rig.mode === "onboard" ? stage.chosen : null,
+      pose, distance_m: Math.max(2, away_m), room_m, drawn, chosen: stage.chosen, looked: null, hidden,
       at_ms: source.kind === "live" ? null : at_ms, wind, dt_s: isPlaying && !isCalm() ? dt_s : 0,
     });
     write({ at_ms, subject, pose, sun, wind, isPlaying, now_ms, target });
@@ -89,9 +92,10 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
     const isDue = !isPlaying || now_ms - read_ms >= READ_EVERY_MS;
     if (isDue) {
       read_ms = now_ms;
+      covered = boxesOf(overlays());
       ground = groundLabels(picture.labels().filter(({ kind, id }) => kind === "zone" || !assets.has(id)), pose.eye);
       const route = source.routes.find(({ place }) => place === stage.chosen) ?? null;
-      instruments.show(route, subject, subject ? readingsOf(subject, { nearest: nearestOf(subject, sun), task: subject.task, wind, labels: names }) : []);
+      instruments.show(route, subject, subject ? readingsOf(subject, { nearest: nearestOf(subject, sun), task: subject.task, wind, labels: names }) : [], Boolean(route?.isSimulated) && !source.isSimulated);
     }
     if (!isPlaying || now_ms - described_ms >= DESCRIBE_EVERY_MS) {
       described_ms = now_ms;
@@ -99,7 +103,12 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
       if (canvas.getAttribute("aria-label") !== words) canvas.setAttribute("aria-label", words);
     }
     labels.setNight(picture.isNight());
-    labels.show([...drawn.filter(({ route }) => (rig.mode !== "onboard" && rig.mode !== "chase") || route !== stage.chosen).map(labelOf), ...targets.map((one) => targetLabel(one, pose.eye)), ...ground], picture.project, picture.size);
+    labels.show([...drawn.filter(({ route }) => (rig.mode !== "onboard" && rig.mode !== "chase") || route !== stage.chosen).map(labelOf), ...targets.map((one) => targetLabel(one, pose.eye)), ...ground], picture.project, picture.size, covered);
+  }
+
+  function boxesOf(elements) {
+    const corner = canvas.getBoundingClientRect();
+    return elements.map((element) => element.getBoundingClientRect()).filter(({ width, height }) => width > 0 && height > 0).map(({ left, top, right, bottom }) => ({ left: left - corner.left, top: top - corner.top, right: right - corner.left, bottom: bottom - corner.top }));
   }
 
   function nearestOf(uav, date) {

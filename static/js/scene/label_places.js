@@ -10,10 +10,11 @@ const TRIES = [
 /**
  * items: [{ key, x, y, width, height, weight }] with the point on the screen that each belongs to; the heavier ones are placed first.
  * → Map of key → { left, top }, without those that have no room. before: the last answer: a label stays where it stood, if it can.
+ * covered: boxes { left, top, right, bottom } of what stands over the picture.
  */
-export function placeLabels(items, { width, height }, before = new Map()) {
+export function placeLabels(items, { width, height }, before = new Map(), covered = []) {
   const placed = new Map();
-  const taken = [];
+  const taken = [...covered];
   for (const item of [...items].sort((a, b) => b.weight - a.weight)) {
     const last = before.get(item.key)?.tried;
     const order = last === undefined ? [...TRIES.keys()] : [last, ...[...TRIES.keys()].filter((number) => number !== last)];

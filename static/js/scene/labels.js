@@ -1,11 +1,14 @@
 /** Names in the picture: UAVs, targets, and what stands on the ground, as text of the page that never covers another one. */
 
 import { h } from "../dom.js";
+import { t } from "../text.js";
+import { heightText } from "../units.js";
 import { placeLabels } from "./label_places.js";
 
 const MOST_OF_GROUND = 14;
 const GROUND_REACH_M = { zone: 6_000, line: 2_500, tower: 420, bridge: 1_500, railway: 1_500 };
 const USUAL_REACH_M = 800;
+const SAME_M = 250;
 const TOUCHES_PX = 40; // beyond the edge nothing is measured
 
 /** onPick(item): a label was clicked. */
@@ -39,8 +42,8 @@ export function createLabels(container) {
     element: layer,
     /** At night the ground is dark in both themes. */
     setNight: (isNight) => layer.classList.toggle("night", isNight),
-    /** items: [{ key, place: [x, y, z], parts: [words], className, weight }]; project: of the view; size: of the picture. */
-    show(items, project, size) {
+    /** items: [{ key, place: [x, y, z], parts: [words], className, weight }]; project: of the view; size: of the picture; covered: boxes of what stands over it. */
+    show(items, project, size, covered = []) {
       const seen = [];
       for (const item of items) {
         const at = project(item.place);
@@ -48,7 +51,7 @@ export function createLabels(container) {
         const { width, height } = elementOf(item);
         seen.push({ ...item, x: at.x, y: at.y, width, height });
       }
-      placed = placeLabels(seen, size, placed);
+      placed = placeLabels(seen, size, placed, covered);
       for (const [key, known] of elements) {
         const at = placed.get(key);
         if (!at) known.element.style.display = "none";
@@ -71,12 +74,24 @@ export function createLabels(container) {
   };
 }
 
+/** Two bridges of one road side by side have one name between them. */
+function isFirstOfItsName() {
+  const kept = new Map(); // text → places
+  return ({ kind, text, position }) => {
+    const others = kept.get(`${kind} ${text}`) ?? [];
+    if (others.some((other) => Math.hypot(other[0] - position[0], other[2] - position[2]) < SAME_M)) return false;
+    kept.set(`${kind} ${text}`, [...others, position]);
+    return true;
+  };
+}
+
 /** Of the world's labels those that are near enough, the nearest and heaviest first. eye: the camera's place. */
 export function groundLabels(labels, eye, most = MOST_OF_GROUND) {
   return labels
     .map((label) => ({ ...label, away_m: Math.hypot(label.position[0] - eye[0], label.position[1] - eye[1], label.position[2] - eye[2]) }))
     .filter(({ kind, away_m }) => away_m < (GROUND_REACH_M[kind] ?? USUAL_REACH_M))
     .sort((a, b) => b.weight / (200 + b.away_m) - a.weight / (200 + a.away_m))
+    .filter(isFirstOfItsName())
     .slice(0, most)
-    .map(({ kind, id, text, position, weight, away_m }) => ({ key: `${kind} ${id}`, place: position, parts: [text], className: `ground ${kind}`, weight: Math.min(1, weight / 100) * 20 - away_m / 1_000 }));
+    .map(({ kind, id, text, position, weight, away_m, counted_m }) => ({ key: `${kind} ${id}`, place: position, parts: [text, counted_m ? t("counted as {height}", { height: heightText(counted_m) }) : ""], className: `ground ${kind}`, weight: Math.min(1, weight / 100) * 20 - away_m / 1_000 }));
 }

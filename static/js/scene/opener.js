@@ -13,7 +13,7 @@ export function mountSceneOpener(options) {
   let panel = null; // a promise
   let stage = null; // of the open panel, once it is there
 
-  async function open() {
+  async function open({ takesFocus = true } = {}) {
     const asked = options();
     if (!asked) return false;
     close();
@@ -22,6 +22,7 @@ export function mountSceneOpener(options) {
     const own = import("./panel.js").then(({ openPanel }) =>
       openPanel(frame, {
         ...asked,
+        takesFocus,
         onClose() {
           if (panel !== own && panel !== null) return;
           panel = stage = null;

@@ -23,9 +23,9 @@ function loadStyles() {
 
 /**
  * frame: the element that holds the map. mission: its id; wanted: a source of link.js or null for the usual; player: the page's own, or null;
- * record: of report/load.js, where the page has it already; follow(stage) → a function that ends it: for a source that lives. onClose().
+ * record: of report/load.js, where the page has it already; follow(stage) → a function that ends it: for a source that lives. onClose(). takesFocus: the picture.
  */
-export async function openPanel(frame, { mission, wanted = null, record = null, player = null, now_ms, follow = () => () => {}, onClose = () => {} }) {
+export async function openPanel(frame, { takesFocus = true, mission, wanted = null, record = null, player = null, now_ms, follow = () => () => {}, onClose = () => {} }) {
   const root = h("div", { class: "scene-root" }, h("p", { class: "scene-waiting" }, t("Reading what there is to see.")));
   const element = h("section", { class: "scene-panel", "aria-label": t("3D view") }, root);
   await loadStyles();
@@ -60,6 +60,6 @@ export async function openPanel(frame, { mission, wanted = null, record = null, 
     event.preventDefault();
     event.stopPropagation(); // the page's own keys rest while the view has the focus
   });
-  element.querySelector("canvas")?.focus({ preventScroll: true });
+  if (takesFocus) element.querySelector("canvas")?.focus({ preventScroll: true });
   return { close, stage };
 }

@@ -72,14 +72,14 @@ export function createPicture(container, canvas, { palette, draw, onLost, onFoun
       sun_ms = date.getTime();
       world.setSun(date);
     },
-    /** pose: of the rig; drawn: moments with { colour, report }; chosen, looked: places of routes; hidden: the one that looks. */
-    show({ pose, distance_m, drawn, chosen, looked, hidden, at_ms, wind, dt_s }) {
-      view.aim(pose, distance_m);
-      parts.uavs.show(drawn, { palette: colours, metresPerPixel: view.metresPerPixel, dt_s, hidden });
-      parts.marks.show(drawn.filter(({ route }) => route !== hidden), { wind: hidden === null ? wind : null, chosen, palette: colours, metresPerPixel: view.metresPerPixel });
+    /** pose: of the rig; distance_m: to what is looked at; room_m: round the camera; drawn: moments with { colour, report }; chosen, looked: places of routes; hidden: the one that looks. */
+    show({ pose, distance_m, room_m, drawn, chosen, looked, hidden, at_ms, wind, dt_s }) {
+      view.aim(pose, room_m);
+      parts.uavs.show(drawn, { palette: colours, metresPerPixel: view.metresPerPixel, isDark: colours.isDark || picture.isNight(), dt_s, hidden });
+      parts.marks.show(drawn.filter(({ route }) => route !== hidden), { wind: hidden === null ? wind : null, chosen, palette: colours, isNight: picture.isNight(), metresPerPixel: view.metresPerPixel });
       const heads = drawn.map(({ route, place }) => ({ route, place, radius_m: Math.max(HEAD_M, HEAD_PX * view.metresPerPixel(place)) }));
       parts.ways.frame({ at_ms, heads, looked, viewport: view.viewport() });
-      return world.update(view.camera) === true;
+      return world.update(view.camera, distance_m) === true;
     },
     dispose() {
       clear();

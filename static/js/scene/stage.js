@@ -1,9 +1,10 @@
 /** The 3D view of one mission in an element: picture, labels, instruments, cameras and time, for a page of its own and for panels. */
 
-import { get } from "../api.js";
+import { get, signInAddress } from "../api.js";
 import { h, icon } from "../dom.js";
 import { routeLetter } from "../map/palette.js";
 import { onTheme } from "../page/theme.js";
+import { simulatedMark } from "../simulated.js";
 import { createPlayer } from "../report/player.js";
 import { t } from "../text.js";
 import { createActs } from "./acts.js";
@@ -54,6 +55,7 @@ export async function openStage(root, { mission, source, link = null, isPanel = 
   let palette = readScenePalette();
   const holder = h("div", { class: "scene-picture" });
   const notice = h("p", { class: "scene-notice float", role: "status", hidden: true });
+  const stale = h("p", { class: "scene-notice float warning", role: "status", hidden: true });
   const stage = { mission, source, chosen: null, target: null, isFlat: false, isPanel, now_ms };
   let frames = null;
   root.replaceChildren(holder);
@@ -69,12 +71,12 @@ export async function openStage(root, { mission, source, link = null, isPanel = 
   const rig = createRig({ isCalm: () => calm.matches });
   const labels = createLabels(holder);
   const instruments = createInstruments();
-  holder.append(notice);
+  holder.append(h("div", { class: "scene-notices" }, notice, stale));
 
   picture.showGround(scene);
   const flight = drawFlight(source, { frame: picture.frame, groundAt: picture.groundAt, groundKind: scene.ground.kind });
   picture.showFlight(flight, source.routes.length, source.span?.from_ms ?? 0);
-  const heights = new Map(scene.supports.map(({ id, height_m }) => [id, height_m]));
+  const heights = new Map(scene.supports.map(({ id, likely_m }) => [id, likely_m]));
   const targets = source.targets.map((target) => ({ ...target, place3d: flight.targetPlace({ position: target.position, height_m: heights.get(target.asset) ?? null }) }));
 
   let lastMove_ms = null;
@@ -96,9 +98,9 @@ export async function openStage(root, { mission, source, link = null, isPanel = 
   const acts = createActs({ stage, rig, hands, picture, player, hasOwnTime: !hostPlayer, targets, labels, atNow, frames: () => frames, palette: () => palette, onChange, onClose, step: (direction) => bar?.step(direction), showBar: () => cameraBar.show({ mode: rig.mode, chosen: stage.chosen, isFlat: stage.isFlat }) });
   const cameraBar = createCameraBar({ routes: source.routes, acts, isPanel, openAddress });
   const bar = !hostPlayer && player ? createTimeBar({ player, source, eventWords: (event) => eventWords(event, source) }) : null;
-  frames = createFrames({ stage, scene, picture, canvas, rig, hands, player, flight, targets, labels, instruments, palette: () => palette, atNow, isCalm: () => calm.matches, surroundings: surroundingsOf(scene, picture.frame, picture.wires(), picture.groundAt), choose: acts.choose, seeTarget: acts.seeTarget });
+  frames = createFrames({ stage, scene, picture, canvas, rig, hands, player, flight, targets, labels, instruments, palette: () => palette, atNow, isCalm: () => calm.matches, surroundings: surroundingsOf(scene, picture.frame, picture.wires(), picture.groundAt), overlays: () => [...cameraBar.element.children, ...chips.children, instruments.element, notice, stale], choose: acts.choose, seeTarget: acts.seeTarget });
 
-  const chips = h("div", { class: "scene-chips" }, source.isSimulated && h("span", { class: "chip" }, t("Simulated")), source.kind === "plan" && h("span", { class: "chip draft" }, t("Planned, not flown")), source.kind === "live" && h("span", { class: "chip active" }, t("Live")), scene.ground.kind === "flat" && h("span", { class: "chip draft" }, t("Flat ground assumed")));
+  const chips = h("div", { class: "scene-chips" }, source.isSimulated && simulatedMark(), source.kind === "plan" && h("span", { class: "chip draft" }, t("Planned, not flown")), source.kind === "live" && h("span", { class: "chip active" }, t("Live")), scene.ground.kind === "flat" && h("span", { class: "chip draft" }, t("Flat ground assumed")));
   holder.append(h("div", { class: "scene-over" }, cameraBar.element, chips), instruments.element);
   if (bar) root.append(bar.element);
   if (stage.isFlat) {
@@ -134,6 +136,22 @@ export async function openStage(root, { mission, source, link = null, isPanel = 
     point(place) {
       if (place !== null && place !== stage.chosen) acts.choose(place);
       moved();
+    },
+    /** What staleWords of live/stale.js says of a live source. */
+    sayStale(said) {
+      const words = [said?.words, said?.rest].filter(Boolean).join(" ");
+      if (stale.dataset.words === words) return;
+      stale.dataset.words = words;
+      stale.hidden = !said;
+      if (said) stale.replaceChildren(icon("cloud-off"), h("span", {}, h("strong", {}, said.words), said.rest && ` ${said.rest}`, said.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))]));
+    },
+    /** A record has grown: of report/load.js. */
+    renew(loaded) {
+      source.renew(loaded);
+      picture.showFlown(flight, source.span?.from_ms ?? 0);
+      if (bar) player.setSpan(source.span);
+      bar?.renew();
+      picture.request();
     },
     /** A live source has grown or moved. */
     refresh(hasGrown) {

@@ -16,7 +16,8 @@ const MINUTE_MS = 60_000;
  * Times are those of the day; without a departure they are counted from it.
  */
 export function createTimeBar({ player, source, eventWords }) {
-  const { span, hasDate, departs_ms } = source;
+  const { hasDate, departs_ms } = source;
+  let { span } = source;
   const text = (at_ms) => (hasDate ? exactClockText(new Date(at_ms).toISOString()) : sinceText((at_ms - departs_ms) / 1_000));
   const name = `scene-speed-${Math.random().toString(36).slice(2)}`;
   const play = h("button", { class: "scene-play", type: "button", onclick: () => player.toggle() });
@@ -82,5 +83,12 @@ export function createTimeBar({ player, source, eventWords }) {
     speeds.forEach((input) => (input.checked = Number(input.value) === player.speed));
   }
 
-  return { element, show, step, text };
+  /** The source's span and events are others than before. */
+  function renew() {
+    span = source.span;
+    drawMarks();
+    show();
+  }
+
+  return { element, show, renew, step, text };
 }

@@ -7,6 +7,10 @@ const SLOW_FRAMES = 12;
 const MOST_PIXELS = 2; // of the device a CSS pixel
 const LEAST_PIXELS = 0.75;
 const LONGEST_STEP_S = 0.25; // after a pause nothing jumps
+const NEAR_SHARE = 0.25; // of the room round the camera: nothing is nearer than that
+const [LEAST_NEAR_M, LOW_NEAR_M, MOST_NEAR_M] = [0.15, 2, 500];
+const LOW_M = 80; // with less room bridges and the like may stand beside it
+const FAR_M = 200_000;
 
 export class NoWebGL extends Error {}
 
@@ -36,7 +40,7 @@ export function createView(container, canvas, { draw, onLost = () => {}, onFound
   renderer.info.autoReset = false;
   const scene = new Scene();
   scene.background = new Color();
-  const camera = new PerspectiveCamera(50, 1, 0.5, 40_000);
+  const camera = new PerspectiveCamera(50, 1, 0.5, FAR_M);
   let pixels = Math.min(globalThis.devicePixelRatio || 1, MOST_PIXELS);
   let [wanted, last_ms, slow, isOver] = [0, 0, 0, false];
   const size = { width: 1, height: 1 };
@@ -96,14 +100,13 @@ export function createView(container, canvas, { draw, onLost = () => {}, onFound
     size,
     request,
     setBackground: (colour) => scene.background.set(colour),
-    /** pose: of the rig. Near and far go with the distance, so that depths stay apart. */
-    aim({ eye, look, up, field_deg }, distance_m) {
+    /** pose: of the rig; room_m: how near the nearest thing is. The near plane goes as far out as that allows, so that depths stay apart. */
+    aim({ eye, look, up, field_deg }, room_m) {
       camera.position.set(...eye);
       camera.up.set(...up);
       camera.lookAt(...look);
       camera.fov = size.width < size.height ? Math.min(75, field_deg * 1.25) : field_deg;
-      camera.near = Math.min(8, Math.max(0.15, distance_m * 0.02));
-      camera.far = 120_000;
+      camera.near = Math.min(room_m < LOW_M ? LOW_NEAR_M : MOST_NEAR_M, Math.max(LEAST_NEAR_M, room_m * NEAR_SHARE));
       camera.updateProjectionMatrix();
       camera.updateMatrixWorld();
     },

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from inspection.scene.arms import arms_of, has_earth_wire
 from inspection.scene.decks import LAYER_M, deck_amsl_m, layer_of
 from inspection.scene.forms import Form, Layout, form_of, is_anchor, layout_of
+from inspection.scene.likely_heights import likely_height_m
 from inspection.scene.sag import CATENARY_M, sag_m
 from inspection.scene.supports import LineFacts, phases_of
 
@@ -101,3 +102,18 @@ def test_a_deck_keeps_a_layers_room_and_is_no_lower_than_its_ends() -> None:
     assert deck_amsl_m(np.array([10.0, 10.0]), 1) == 10.0 + LAYER_M
     assert deck_amsl_m(np.array([40.0, 2.0, 41.0]), 1) == 41.0
     assert [layer_of({"layer": text}) for text in ("2", "-1", "", "x", "99")] == [2, 1, 1, 1, 5]
+
+
+@pytest.mark.parametrize(
+    ("kind", "voltage_v", "is_of_minor_lines", "height_m"),
+    [
+        ("pole", 400, True, 8.048), ("pole", 20_000, False, 10.4), ("pole", None, True, 10.4), ("pole", 138_000, False, 24.56),
+        ("pole", 400_000, False, 34.0), ("portal", 110_000, False, 10.95), ("portal", None, False, 10.95), ("tower", 20_000, False, 45.0),
+        ("vertex", 33_000, False, 11.96), ("vertex", 110_000, False, 45.0), ("vertex", None, True, 10.4), ("vertex", None, False, 45.0),
+    ],
+)  # fmt: skip
+def test_poles_and_portals_without_a_height_are_likely_lower_than_planners_count(
+    kind: str, voltage_v: int | None, is_of_minor_lines: bool, height_m: float
+) -> None:
+    likely_m = likely_height_m(kind, voltage_v, is_of_minor_lines=is_of_minor_lines, counted_m=45.0)
+    assert likely_m == pytest.approx(height_m)

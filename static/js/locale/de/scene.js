@@ -16,6 +16,8 @@ export default {
   "Flat ground assumed": "Ebener Boden angenommen",
   "This browser draws no 3D.": "Dieser Browser zeichnet kein 3D.",
   "WebGL is missing or switched off. You see the flight from above instead.": "WebGL fehlt oder ist abgeschaltet. Sie sehen den Flug stattdessen von oben.",
+  "counted as {height}": "zählt als {height}",
+  "as high as planners count": "so hoch, wie die Planung zählt",
   "The graphics have stopped.": "Die Grafik ist stehen geblieben.",
   "They are started again as soon as the browser can.": "Sie läuft wieder an, sobald der Browser es kann.",
   "View from above, without WebGL": "Ansicht von oben, ohne WebGL",

@@ -1,6 +1,7 @@
 /** The head of the page: which mission, its state, the facts of now; and what is said when nothing comes in any more. */
 
-import { ASKED, CONNECTING, GONE, LIVE, SIGNED_OUT } from "../../live/feed.js";
+import { ASKED, LIVE } from "../../live/feed.js";
+import { staleWords } from "../../live/stale.js";
 import { signInAddress } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
 import { t, tn } from "../../text.js";
@@ -9,7 +10,6 @@ import { exactClockText, speedText, zoneText } from "../../units.js";
 const STATES = { draft: t("Draft"), planned: t("Planned"), approved: t("Approved"), dispatched: t("Dispatched"), active: t("Active"), completed: t("Completed"), aborted: t("Aborted"), failed: t("Failed") };
 const IMAGES = { approved: "badge-check", dispatched: "send", active: "radio", completed: "check", aborted: "octagon-alert", failed: "circle-x" };
 const LEAST_WIND_MPS = 0.5; // below, it comes from nowhere
-const GRACE_MS = 2500; // a page that has just been opened, or a wink of the network, is not called cut off
 
 /** Wind as the newest report has it: "wind 5 m/s from 240°", or "". */
 export function windWords(uavs) {
@@ -18,14 +18,6 @@ export function windWords(uavs) {
   if (!newest) return "";
   const from = typeof newest.wind_from_deg === "number" && newest.wind_speed_mps >= LEAST_WIND_MPS ? t("from {degrees}°", { degrees: Math.round(newest.wind_from_deg) }) : "";
   return `${t("wind {speed}", { speed: speedText(newest.wind_speed_mps) })} ${from}`.trim();
-}
-
-/** What a page that is told nothing says: { words, isBad } or null. */
-export function staleWords({ link, since_ms, now_ms }) {
-  if (link === SIGNED_OUT) return { words: t("You are signed out: nothing comes in any more."), isBad: true, needsDoor: true };
-  if (link === GONE) return { words: t("This mission has been deleted."), isBad: true };
-  if (link === CONNECTING && now_ms - since_ms > GRACE_MS) return { words: t("No live data since {time}.", { time: exactClockText(new Date(since_ms).toISOString()) }), rest: t("What you see is from then. Connecting again."), isBad: true };
-  return null;
 }
 
 export function mountHead(store, page) {

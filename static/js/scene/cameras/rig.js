@@ -14,6 +14,7 @@ const BEGINNINGS = {
 const FIELDS_DEG = { chase: 50, orbit: 45, top: 40, free: 55, onboard: 65 };
 const NEAREST_M = { chase: 3, orbit: 5, top: 25 };
 const FARTHEST_M = 60_000;
+const FIT_MARGIN = 1.2; // bars stand over the picture's edges
 const ABOVE_GROUND_M = 1.6; // a camera is never lower
 const FOLLOWS_S = 0.35; // time constant of a heading that is followed
 const GLIDES_S = 0.22; // of a camera that is sent elsewhere
@@ -152,7 +153,7 @@ export function createRig({ isCalm = () => false } = {}) {
     /** So far away that all of a sphere is in the picture, from where top and orbit look. */
     fit(radius_m, field_deg = FIELDS_DEG[rig.mode]) {
       if (rig.mode === "free" || rig.mode === "onboard" || rig.mode === "chase") rig.setMode("orbit");
-      const reach_m = radius_m / Math.sin((field_deg / 2) * (Math.PI / 180));
+      const reach_m = (FIT_MARGIN * radius_m) / Math.sin((field_deg / 2) * (Math.PI / 180));
       view().distance_m = within(reach_m, NEAREST_M[rig.mode], FARTHEST_M);
       rig.offset = [0, 0, 0];
       rig.isGliding = true;

@@ -3,7 +3,9 @@
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineSegments, LineBasicMaterial, Mesh, MeshBasicMaterial, Vector3 } from "../three.js";
 import { towards } from "../cameras/vectors.js";
 
-const WIND_AWAY_M = 1.3; // of the arrow's middle above the UAV
+const WIND_ABOVE_M = 0.4; // the arrow's height over the UAV
+const WIND_BESIDE_M = 0.9; // of its tip from the UAV: it points at it from where the wind comes
+const WIND_AT_NIGHT = "#d3dfe8";
 const FULL_WIND_MPS = 12; // an arrow of full length
 const DASHES = 24;
 
@@ -44,7 +46,7 @@ export function createMarks(count) {
   return {
     group,
     /** drawn: moments with { colour, report: place of the last report or null }; wind: { speed_mps, from_deg } or null at the chosen one. */
-    show(drawn, { wind, chosen, palette, metresPerPixel }) {
+    show(drawn, { wind, chosen, palette, metresPerPixel, isNight = false }) {
       used = 0;
       for (const { place, ground, colour: hex, report } of drawn) {
         colour.set(hex);
@@ -64,10 +66,12 @@ export function createMarks(count) {
       arrow.visible = Boolean(uav && wind && wind.speed_mps > 0.2);
       if (!arrow.visible) return;
       const scale = Math.max(1, 40 * metresPerPixel(uav.place));
-      arrow.position.set(uav.place[0], uav.place[1] + WIND_AWAY_M * Math.max(1, scale * 0.6), uav.place[2]);
-      arrow.lookAt(new Vector3(...towards(wind.from_deg)).add(arrow.position)); // its tail, at +z, is where the wind comes from
-      arrow.scale.setScalar(scale * (0.5 + 1.5 * Math.min(1, wind.speed_mps / FULL_WIND_MPS)));
-      arrow.material.color.set(palette.inkSecond);
+      const long_m = scale * (0.5 + 1.5 * Math.min(1, wind.speed_mps / FULL_WIND_MPS));
+      const from = new Vector3(...towards(wind.from_deg));
+      arrow.position.set(uav.place[0], uav.place[1] + WIND_ABOVE_M * scale, uav.place[2]).addScaledVector(from, WIND_BESIDE_M * scale + long_m / 2);
+      arrow.lookAt(from.add(arrow.position)); // its tail, at +z, is where the wind comes from
+      arrow.scale.setScalar(long_m);
+      arrow.material.color.set(isNight ? WIND_AT_NIGHT : palette.inkSecond);
     },
     dispose() {
       geometry.dispose();

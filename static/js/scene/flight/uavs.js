@@ -12,6 +12,9 @@ const CONE_M = 14;
 const GLOW = 0.4;
 const MOST_CONE = 1.6; // times that, from far away
 const CONE_HALF_DEG = 22; // half of what an inspection camera sees across
+const LIT_DARK = "#66727a"; // what shines of it where all else is dark
+const ROTOR_LIGHT = 5; // times its own colour, there
+const GHOST_LIGHT = 0.4; // towards white, there
 const LEAST_BOUND_M = 1.5;
 const LEAST_BOUND_PX = 14; // radius
 
@@ -46,6 +49,9 @@ function litFromWithin(material) {
   return material;
 }
 
+const WHITE = new Color(1, 1, 1);
+const BRIGHT = new Color(ROTOR_LIGHT, ROTOR_LIGHT, ROTOR_LIGHT);
+
 export const isSolid = (kind) => kind === MEASURED;
 
 /** count: of UAVs at most. */
@@ -77,17 +83,18 @@ export function createUavs(count) {
 
   function put(mesh, number, tint) {
     mesh.setMatrixAt(number, matrix);
-    mesh.setColorAt(number, colour.set(tint));
+    mesh.setColorAt(number, tint.isColor ? tint : colour.set(tint));
   }
 
   return {
     group,
-    /** drawn: moments of drawn_flight.js with { colour, isChosen }; palette; metresPerPixel(place); dt_s: how far rotors turn. hidden: the one whose camera looks. */
-    show(drawn, { palette, metresPerPixel, dt_s = 0, hidden = null }) {
+    /** drawn: moments of drawn_flight.js with { colour, isChosen }; palette; metresPerPixel(place); dt_s: how far rotors turn. isDark: by theme or night. hidden: the one whose camera looks. */
+    show(drawn, { palette, metresPerPixel, isDark = palette.isDark, dt_s = 0, hidden = null }) {
       spin += dt_s * 23; // seen turning, not as fast as they do
       const numbers = { solid: 0, ghosts: 0, rotors: 0, cones: 0, bounds: 0 };
-      cones.material.opacity = palette.isDark ? 0.06 : 0.1;
-      cones.material.blending = palette.isDark ? AdditiveBlending : NormalBlending;
+      solid.material.emissive.set(isDark ? LIT_DARK : "#000000");
+      cones.material.opacity = isDark ? 0.06 : 0.1;
+      cones.material.blending = isDark ? AdditiveBlending : NormalBlending;
       for (const uav of drawn) {
         if (uav.route === hidden) continue;
         const { kind, bound } = uav.moment;
@@ -98,13 +105,13 @@ export function createUavs(count) {
         matrix.compose(at, turn.setFromEuler(tilt), size.setScalar(scale));
         const tint = kind === LOST ? palette.inkSecond : uav.colour;
         if (isSolid(kind)) put(solid, numbers.solid++, tint);
-        else put(ghosts, numbers.ghosts++, tint);
+        else put(ghosts, numbers.ghosts++, isDark ? colour.set(tint).lerp(WHITE, GHOST_LIGHT) : tint);
         if (kind !== LOST) {
           own.copy(matrix);
           ROTORS.forEach((place, index) => {
             rotor.makeTranslation(place[0], place[1], place[2]);
             matrix.makeRotationY(uav.isInAir ? spin * TURNS[index] + index : index).premultiply(rotor).premultiply(own);
-            put(rotors, numbers.rotors++, "#ffffff");
+            put(rotors, numbers.rotors++, isDark ? BRIGHT : WHITE);
           });
         }
         if (uav.isInAir && (kind === MEASURED || kind === PLANNED)) {

@@ -7,7 +7,7 @@ import { ESTIMATED } from "../sources/pieces.js";
 const ROUTES = 8;
 const PLANNED = { width_m: 0.16, least_px: 1.4, most_px: 3, poles_m: 120 };
 const FLOWN = { width_m: 0.42, least_px: 3.2, most_px: 8, poles_m: 60 };
-const APART_M = 0.8; // points of a way that are nearer to each other show nothing more
+const APART_M = 0.4; // points of a way that are nearer to each other show nothing more
 const ALWAYS_S = -1e9; // a time that is over
 const FOR_EVER_S = 1e30;
 

@@ -1,6 +1,6 @@
 /** The ground as a grid of triangles in the frame: its height anywhere, and its mesh. Values in, arrays out. */
 
-const SKIRT_M = 40_000; // the ground goes on so far beyond the grid, and comes to the mean height of its edge
+const SKIRT_M = 100_000; // the ground goes on so far beyond the grid, and comes to the mean height of its edge
 
 /**
  * ground: of the scene (see docs/scene.md). Gives { columns, rows, west, north, stepX, stepZ, heights: Float32Array (y, row by row from the

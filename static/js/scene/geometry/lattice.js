@@ -18,7 +18,7 @@ export function lattice(support, draw, { foot_m = footOf(support), waist_m = wai
   for (const arm of arms) wedge(draw, arm, half(arm[0]), brace_m);
   const peak = half(highest_m);
   if (height_m > highest_m + 0.1) for (const [a, b] of SIDES) draw.outline([a * peak, highest_m, b * peak], [0, height_m, 0], legs_m * 0.6);
-  footings(draw, foot_m, legs_m);
+  footings(draw, foot_m, legs_m, support.depth_m);
 }
 
 function footOf({ height_m }) {
@@ -118,9 +118,9 @@ function delta(support, draw, { foot_m, waist_m, legs_m, brace_m }) {
       fine([here, beam_m, along], [there, beam_m + thick_m * 1.4, along], brace_m * 0.8);
     }
   }
-  footings(draw, foot_m, legs_m);
+  footings(draw, foot_m, legs_m, support.depth_m);
 }
 
-function footings({ fine }, foot_m, legs_m) {
-  for (const [a, b] of SIDES) fine([(a * foot_m) / 2, -0.8, (b * foot_m) / 2], [(a * foot_m) / 2, 0.4, (b * foot_m) / 2], legs_m * 3, 2);
+function footings({ fine }, foot_m, legs_m, depth_m) {
+  for (const [a, b] of SIDES) fine([(a * foot_m) / 2, -depth_m, (b * foot_m) / 2], [(a * foot_m) / 2, 0.4, (b * foot_m) / 2], legs_m * 3, 2);
 }

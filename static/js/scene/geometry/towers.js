@@ -9,14 +9,16 @@ export const BODY = 0;
 export const INSULATOR = 1;
 export const FOUNDATION = 2;
 
+const LEAST_DEPTH_M = 0.6; // of a foundation
 const SEGMENTS = 5; // of a pole that gets thinner
 
 /**
  * { frame: members of the outline, fine: bracing, insulators and foundations }, each as memberList takes it, in the frame.
  *
- * Nothing is higher than the support's height above its ground, and something of the outline reaches it.
+ * below_m: how far the drawn ground is below the support's foot: foundations reach down to it.
+ * Nothing is higher than the support likely is above its ground, and something of the outline reaches it.
  */
-export function supportMembers(support, frame) {
+export function supportMembers(support, frame, below_m = 0) {
   const stand = standing(support, frame);
   const [outline, fine] = [memberList(), memberList()];
   const place = ([across, up, along]) => [
@@ -26,8 +28,9 @@ export function supportMembers(support, frame) {
   ];
   const into = (list) => (start, end, width_m, tone = BODY) => list.add(place(start), place(end), width_m, tone);
   const draw = { outline: into(outline), fine: into(fine) };
-  (BUILDERS[support.form] ?? pole)(support, draw);
-  insulators(support, draw);
+  const drawn = { ...support, height_m: support.likely_m, depth_m: LEAST_DEPTH_M + Math.max(below_m, 0) };
+  (BUILDERS[support.form] ?? pole)(drawn, draw);
+  insulators(drawn, draw);
   return { outline: outline.take(), fine: fine.take() };
 }
 
@@ -54,7 +57,8 @@ function pole(support, { outline, fine }) {
       for (const end of [left_m, right_m]) fine([0, arm_m - 0.9, 0], [end * 0.7, arm_m, 0], 0.1);
     }
   }
-  if (!isWooden) fine([0, -0.6, 0], [0, 0.35, 0], foot_m * 1.6, FOUNDATION);
+  if (!isWooden) fine([0, -support.depth_m, 0], [0, 0.35, 0], foot_m * 1.6, FOUNDATION);
+  else if (support.depth_m > LEAST_DEPTH_M) fine([0, -support.depth_m, 0], [0, 0, 0], foot_m);
 }
 
 /** Two legs under a beam, crossed below it; with the tips of the legs above it where earth wires hang. */
@@ -67,7 +71,7 @@ function twoLegged(support, { outline, fine }) {
   const width_m = Math.min(Math.max(height_m * 0.014, 0.35), 0.7);
   for (const side of [-leg_m, leg_m]) {
     outline([side, 0, 0], [side, isPortal ? arm_m : height_m, 0], width_m);
-    fine([side, -0.6, 0], [side, 0.35, 0], width_m * 2.4, FOUNDATION);
+    fine([side, -support.depth_m, 0], [side, 0.35, 0], width_m * 2.4, FOUNDATION);
   }
   outline([-reach_m, arm_m - width_m, 0], [reach_m, arm_m - width_m, 0], width_m * 0.7);
   if (isPortal) outline([-reach_m, arm_m, 0], [reach_m, arm_m, 0], width_m * 0.7);

@@ -106,28 +106,3 @@ function same(one, other) {
 function cross(a, b, c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
-
-/** The same area in triangles with no side longer than `most_m`; what two triangles share is cut at the same place. */
-export function refined({ points, triangles }, most_m, mostTriangles = 60_000) {
-  const all = [...points];
-  const middles = new Map();
-  const middle = (a, b) => {
-    const key = a < b ? a * 4_294_967_296 + b : b * 4_294_967_296 + a;
-    if (!middles.has(key)) middles.set(key, all.push([(all[a][0] + all[b][0]) / 2, (all[a][1] + all[b][1]) / 2]) - 1);
-    return middles.get(key);
-  };
-  const length = (a, b) => Math.hypot(all[a][0] - all[b][0], all[a][1] - all[b][1]);
-  const waiting = [];
-  for (let at = triangles.length - 3; at >= 0; at -= 3) waiting.push([triangles[at], triangles[at + 1], triangles[at + 2]]);
-  const done = [];
-  while (waiting.length) {
-    const [a, b, c] = waiting.pop();
-    const sides = [length(a, b), length(b, c), length(c, a)];
-    const longest = Math.max(...sides);
-    if (longest <= most_m || done.length / 3 + waiting.length > mostTriangles) done.push(a, b, c);
-    else if (sides[0] === longest) waiting.push([a, middle(a, b), c], [middle(a, b), b, c]);
-    else if (sides[1] === longest) waiting.push([a, b, middle(b, c)], [a, middle(b, c), c]);
-    else waiting.push([a, b, middle(c, a)], [middle(c, a), b, c]);
-  }
-  return { points: all, triangles: done };
-}

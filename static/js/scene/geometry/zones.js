@@ -1,40 +1,51 @@
 /** Zones as volumes: walls from limit to limit, a floor and a ceiling; over the ground they follow it. Values in, arrays out. */
 
-import { area2, refined, triangulate } from "./triangulate.js";
+import { cutBy } from "./folds.js";
+import { area2, triangulate } from "./triangulate.js";
 
-const EDGE_M = 60; // no side of a wall or cap that follows the ground is longer, where the ground is finer than that
-const FLAT_EDGE_M = 2_000;
-const MOST_TRIANGLES = 16_000; // of a floor or ceiling, about
+export const WITHIN_M = 0.15; // a floor, ceiling or wall strays no farther from what it follows
+const MOST_BLOCKS = 300_000; // of the ground, under all floors and ceilings of a scene that follow it
 const ON_CLIP_DEG = 1e-6;
-const LIFT_M = 0.6; // a floor on the ground lies so far above it
+const LIFT_M = 0.25; // a floor on the ground lies so far above it
 
-/** y of a limit { above, m } at a place. An open one: the ground below, or the height that open zones are drawn to. */
-export function limitHeight(limit, side, x, z, { frame, heightAt, open_top_agl_m }) {
-  if (limit.above === "ground") return heightAt(x, z) + limit.m;
-  if (limit.above === "sea") return limit.m - frame.origin.altitude_amsl_m;
-  return heightAt(x, z) + (side === "upper" ? open_top_agl_m : 0);
+/** How far zones may stray from the ground they follow: WITHIN_M, more where they would be too many triangles together. */
+export function withinFor(zones, frame, folds) {
+  const following = zones.flatMap((zone) => [zone.lower, zone.upper].filter(({ above }) => above !== "sea").map(() => zone));
+  const boxes = following.flatMap(({ polygons }) => polygons.map(([outline]) => boxOf(outline.map(([lon, lat]) => local(frame, lon, lat)))));
+  let within_m = WITHIN_M;
+  while (boxes.reduce((sum, box) => sum + folds.count(box, within_m), 0) > MOST_BLOCKS) within_m *= 2;
+  return within_m;
 }
+
+/** A limit { above, m } as { level, over }: the higher of a level y and the ground's with so much over it. An open one: the ground below, or the height that open zones are drawn to. */
+function surfaceOf(limit, side, { frame, open_top_agl_m }) {
+  if (limit.above === "ground") return { level: -Infinity, over: limit.m };
+  if (limit.above === "sea") return { level: limit.m - frame.origin.altitude_amsl_m, over: -Infinity };
+  return { level: -Infinity, over: side === "upper" ? open_top_agl_m : 0 };
+}
+
+const higherOf = (one, other) => ({ level: Math.max(one.level, other.level), over: Math.max(one.over, other.over) });
 
 /**
  * One zone. Gives { walls: { vertices, uv (metres along, metres up), fade (1, or 0 where it ends without a limit), index }, caps: { vertices, index }, edges: Float32Array of segments
- * (x, y, z, x, y, z), middle: [x, y, z] over its ceiling }. Walls are left out where the scene was cut (`clip`).
+ * (x, y, z, x, y, z), middle: [x, y, z] over its ceiling }. Walls are left out where the scene was cut (`clip`). folds: of the ground.
  */
-export function zoneVolume(zone, { frame, ground, clip, rules }) {
-  const room = { frame, heightAt: ground.heightAt, open_top_agl_m: rules.open_top_agl_m };
-  const step_m = follows(zone) && !isLevel(ground) ? stepOver(zone, frame, ground) : FLAT_EDGE_M;
-  const low = (x, z) => Math.max(limitHeight(zone.lower, "lower", x, z, room), ground.heightAt(x, z) + LIFT_M);
-  const high = (x, z) => Math.max(limitHeight(zone.upper, "upper", x, z, room), low(x, z));
+export function zoneVolume(zone, { frame, ground, folds, clip, rules, within_m = WITHIN_M }) {
+  const room = { frame, open_top_agl_m: rules.open_top_agl_m };
+  const floor = higherOf(surfaceOf(zone.lower, "lower", room), { level: -Infinity, over: LIFT_M });
+  const ceiling = higherOf(surfaceOf(zone.upper, "upper", room), floor);
+  const [low, high] = [floor, ceiling].map(({ level, over }) => (x, z) => Math.max(level, ground.heightAt(x, z) + over));
   const isOpen = zone.upper.above === "open";
   const walls = { vertices: [], uv: [], fade: [], index: [] };
   const caps = { vertices: [], index: [] };
   const edges = [];
   let largest = null;
   for (const rings of zone.polygons) {
-    for (const ring of rings.map(facingOut)) addWalls(ring, { frame, clip, step_m, low, high, isOpen, walls, edges });
-    const flat = rings.map((ring) => ring.map(([lon, lat]) => local(frame, lon, lat)));
-    const { points, triangles } = refined(triangulate(flat), step_m);
-    addCap(caps, points, triangles, low, 1);
-    if (!isOpen) addCap(caps, points, triangles, high, -1);
+    for (const ring of rings.map(facingOut)) addWalls(ring, { frame, ground, folds, clip, low, high, kinks: [floor, ceiling], isOpen, within_m, walls, edges });
+    const { points, triangles } = triangulate(rings.map((ring) => ring.map(([lon, lat]) => local(frame, lon, lat))));
+    const parts = Array.from({ length: triangles.length / 3 }, (_, place) => [0, 1, 2].map((corner) => points[triangles[place * 3 + corner]]));
+    addCap(caps, parts, floor, low, 1, { ground, folds, within_m });
+    if (!isOpen) addCap(caps, parts, ceiling, high, -1, { ground, folds, within_m });
     largest = larger(largest, points, triangles);
   }
   const [x, z] = largest?.middle ?? [0, 0];
@@ -51,44 +62,68 @@ function facingOut(ring, number) {
   return area2(ring) > 0 === (number === 0) ? ring : [...ring].reverse();
 }
 
-/** As fine as the ground is known, and EDGE_M at least; coarser for zones of more than some 14 square kilometres. */
-function stepOver(zone, frame, ground) {
-  const area_m2 = zone.polygons.reduce((sum, [outline]) => sum + Math.abs(area2(outline.map(([lon, lat]) => local(frame, lon, lat)))) / 2, 0);
-  return Math.max(EDGE_M, Math.min(ground.stepX, ground.stepZ), Math.sqrt((4 * area_m2) / MOST_TRIANGLES));
-}
-
-function follows(zone) {
-  return zone.lower.above !== "sea" || zone.upper.above !== "sea";
-}
-
-function isLevel({ heights }) {
-  return heights.every((height) => height === heights[0]);
-}
-
 function local(frame, lon, lat) {
   const [x, , z] = frame.toLocal(lon, lat, 0);
   return [x, z];
 }
 
-function addWalls(ring, { frame, clip, step_m, low, high, isOpen, walls, edges }) {
+function boxOf(points) {
+  return [0, 1].map((axis) => points.reduce((least, point) => Math.min(least, point[axis]), Infinity)).concat([0, 1].map((axis) => points.reduce((most, point) => Math.max(most, point[axis]), -Infinity)));
+}
+
+function addWalls(ring, { frame, ground, folds, clip, low, high, kinks, isOpen, within_m, walls, edges }) {
   let along_m = 0;
   for (let at = 0; at < ring.length - 1; at += 1) {
     const [start, end] = [local(frame, ...ring[at]), local(frame, ...ring[at + 1])];
     const length = Math.hypot(end[0] - start[0], end[1] - start[1]);
     if (length === 0) continue;
-    const isCut = liesOn(clip, ring[at], ring[at + 1]);
-    const pieces = Math.ceil(length / step_m);
-    const corners = [];
-    for (let piece = 0; piece <= pieces; piece += 1) {
-      const [x, z] = [0, 1].map((axis) => start[axis] + ((end[axis] - start[axis]) * piece) / pieces);
-      corners.push({ x, z, low: low(x, z), high: high(x, z), along: along_m + (length * piece) / pieces });
+    const corner = (share) => {
+      const [x, z] = [0, 1].map((axis) => start[axis] + (end[axis] - start[axis]) * share);
+      return { x, z, low: low(x, z), high: high(x, z), share, along: along_m + length * share };
+    };
+    if (!liesOn(clip, ring[at], ring[at + 1])) {
+      const shares = withKinks([0, ...folds.meeting(start, end), 1], (share) => ground.heightAt(...[0, 1].map((axis) => start[axis] + (end[axis] - start[axis]) * share)), kinks);
+      const corners = straightened(shares.map(corner), within_m);
+      for (let piece = 1; piece < corners.length; piece += 1) addPanel(walls, edges, corners[piece - 1], corners[piece], isOpen);
+      const { x, z, low: bottom, high: top } = corners[0];
+      if (isCorner(ring, at) && !isOpen) edges.push(x, bottom, z, x, top, z);
     }
     along_m += length;
-    if (isCut) continue;
-    for (let piece = 0; piece < pieces; piece += 1) addPanel(walls, edges, corners[piece], corners[piece + 1], isOpen);
-    const { x, z, low: bottom, high: top } = corners[0];
-    if (isCorner(ring, at) && !isOpen) edges.push(x, bottom, z, x, top, z);
   }
+}
+
+/** Besides the shares of the way those where a surface goes over from its level to following the ground. */
+function withKinks(shares, groundAt, surfaces) {
+  const found = [...shares];
+  for (const { level, over } of surfaces) {
+    if (!Number.isFinite(level) || !Number.isFinite(over)) continue;
+    let before = groundAt(0) + over - level;
+    for (let at = 1; at < shares.length; at += 1) {
+      const after = groundAt(shares[at]) + over - level;
+      if (before * after < 0) found.push(shares[at - 1] + ((shares[at] - shares[at - 1]) * before) / (before - after));
+      before = after;
+    }
+  }
+  return found.sort((one, other) => one - other);
+}
+
+/** Without the corners that lie on the line between those kept, in both heights. */
+function straightened(corners, within_m) {
+  const kept = [corners[0]];
+  const spans = [[0, corners.length - 1]];
+  while (spans.length) {
+    const [from, to] = spans.pop();
+    const [start, end] = [corners[from], corners[to]];
+    let [worst, most] = [-1, within_m];
+    for (let at = from + 1; at < to; at += 1) {
+      const share = (corners[at].share - start.share) / (end.share - start.share || 1);
+      const off = Math.max(...["low", "high"].map((name) => Math.abs(start[name] + share * (end[name] - start[name]) - corners[at][name])));
+      if (off > most) [worst, most] = [at, off];
+    }
+    if (worst < 0) kept.push(end);
+    else spans.push([worst, to], [from, worst]);
+  }
+  return kept;
 }
 
 function addPanel({ vertices, uv, fade, index }, edges, here, there, isOpen) {
@@ -117,12 +152,15 @@ function liesOn([west, south, east, north], [lon, lat], [nextLon, nextLat]) {
   return on(lon, nextLon, west) || on(lon, nextLon, east) || on(lat, nextLat, south) || on(lat, nextLat, north);
 }
 
-function addCap({ vertices, index }, points, triangles, heightOf, turn) {
-  const first = vertices.length / 3;
-  for (const [x, z] of points) vertices.push(x, heightOf(x, z), z);
-  for (let at = 0; at < triangles.length; at += 3) {
-    const [a, b, c] = [triangles[at], triangles[at + 1], triangles[at + 2]].map((place) => first + place);
-    index.push(a, ...(turn > 0 ? [b, c] : [c, b]));
+/** A floor or ceiling of triangles, in pieces over which its surface is level or goes with a face of the ground. */
+function addCap({ vertices, index }, parts, { level, over }, heightOf, turn, { ground, folds, within_m }) {
+  const aboveLevel = (x, z) => ground.heightAt(x, z) + over - level;
+  for (const piece of folds.pieces(parts, within_m, (highest) => highest + over <= level)) {
+    for (const part of Number.isFinite(level) ? [cutBy(piece, aboveLevel), cutBy(piece, (x, z) => -aboveLevel(x, z))] : [piece]) {
+      const first = vertices.length / 3;
+      for (const [x, z] of part) vertices.push(x, heightOf(x, z), z);
+      for (let at = 1; at < part.length - 1; at += 1) index.push(first, ...(turn > 0 ? [first + at, first + at + 1] : [first + at + 1, first + at]));
+    }
   }
 }
 

@@ -1,5 +1,10 @@
 /** How far a UAV is from the nearest wire, tower and zone: in space, from the data that the scene is drawn from. Values in, values out. */
 
+import { countedAir } from "../geometry/counted.js";
+
+const FOOT_SHARE = 0.1; // of a tower's height: half its feet's width
+const CLEAR_OF_ALL_M = 250; // so far over the ground nothing stands
+
 /**
  * Everything that can be near, in the frame: prepared once for a scene.
  *
@@ -9,15 +14,16 @@ export function surroundingsOf(sceneData, frame, wires, groundAt) {
   const origin_m = frame.origin.altitude_amsl_m;
   const towers = sceneData.supports
     .filter(({ kind }) => kind !== "vertex")
-    .map(({ id, label, position, ground_amsl_m, height_m }) => {
+    .map(({ id, label, position, ground_amsl_m, height_m, arms }) => {
       const [x, y, z] = frame.toLocal(position[0], position[1], ground_amsl_m);
-      return { id, label, x, z, bottom: y, top: y + height_m };
+      return { id, label, x, z, bottom: y, top: y + height_m, wide_m: Math.max(height_m * FOOT_SHARE, ...arms.flatMap(([, left_m, right_m]) => [-left_m, right_m])) };
     });
   const zones = sceneData.zones.map(({ id, name, polygons, lower, upper, schedule, schedule_words }) => ({
     id, name, lower, upper, schedule, schedule_words,
     polygons: polygons.map((rings) => rings.map((ring) => ring.map(([lon, lat]) => { const [x, , z] = frame.toLocal(lon, lat, 0); return [x, z]; }))),
   }));
-  return { towers, wires, boxes: boxesOf(wires), zones, groundAt, origin_m };
+  const hung = [wires, countedAir(sceneData, frame)].map((lines, number) => ({ ...lines, boxes: boxesOf(lines), isCounted: number === 1 }));
+  return { towers, hung, zones, groundAt, origin_m };
 }
 
 /** The box round each polyline: [least x, y, z, most x, y, z] each. */
@@ -40,8 +46,15 @@ function boxesOf({ points, first }) {
 
 const beyond = (value, least, most) => (value < least ? least - value : value > most ? value - most : 0);
 
-/** The nearest point of the wires: { away_m, line, point } or null; nothing farther than reach_m is looked for. */
-export function nearestWire({ wires: { points, first }, boxes }, [x, y, z], reach_m = Infinity) {
+/**
+ * The nearest point of the wires: { away_m, line, point, isCounted } or null; nothing farther than reach_m is looked for. isCounted: it is where
+ * planners count a wire above the one that is drawn.
+ */
+export function nearestWire({ hung }, place, reach_m = Infinity) {
+  return hung.reduce((nearest, lines) => nearestOf(lines, place, nearest?.away_m ?? reach_m) ?? nearest, null);
+}
+
+function nearestOf({ points, first, boxes, isCounted }, [x, y, z], reach_m) {
   let nearest = null;
   let least = reach_m;
   for (let line = 0; line < first.length - 1; line += 1) {
@@ -54,7 +67,7 @@ export function nearestWire({ wires: { points, first }, boxes }, [x, y, z], reac
       const share = length2 > 0 ? Math.min(1, Math.max(0, ((x - points[from]) * dx + (y - points[from + 1]) * dy + (z - points[from + 2]) * dz) / length2)) : 0;
       const point = [points[from] + share * dx, points[from + 1] + share * dy, points[from + 2] + share * dz];
       const away_m = Math.hypot(x - point[0], y - point[1], z - point[2]);
-      if (away_m < least) [least, nearest] = [away_m, { away_m, line, point }];
+      if (away_m < least) [least, nearest] = [away_m, { away_m, line, point, isCounted }];
     }
   }
   return nearest;
@@ -71,6 +84,15 @@ export function nearestTower({ towers }, [x, y, z], reach_m = Infinity) {
     if (away_m < least) [least, nearest] = [away_m, { away_m, tower, point: [tower.x, Math.min(tower.top, Math.max(tower.bottom, y)), tower.z] }];
   }
   return nearest;
+}
+
+/** How far from a place the nearest of ground, towers with their arms, wires and what is at `others` is. */
+export function roomRound(surroundings, [x, y, z], others = []) {
+  const above_m = y - surroundings.groundAt(x, z);
+  const apart_m = others.reduce((least, [ox, oy, oz]) => Math.min(least, Math.hypot(ox - x, oy - y, oz - z)), Math.max(above_m, 0));
+  if (above_m > CLEAR_OF_ALL_M) return Math.min(apart_m, above_m - CLEAR_OF_ALL_M * 0.8);
+  const towers_m = surroundings.towers.reduce((least, tower) => Math.min(least, Math.hypot(Math.max(Math.hypot(x - tower.x, z - tower.z) - tower.wide_m, 0), beyond(y, tower.bottom, tower.top))), apart_m);
+  return nearestWire(surroundings, [x, y, z], towers_m)?.away_m ?? towers_m;
 }
 
 const limitAt = ({ above, m }, ground, origin_m, otherwise) => (above === "open" || m === null ? otherwise : above === "ground" ? ground + m : m - origin_m);

@@ -2,10 +2,11 @@
 
 import { h } from "../../dom.js";
 import { routeLetter, routeNumber } from "../../map/palette.js";
+import { markSimulated } from "../../simulated.js";
 import { t } from "../../text.js";
 import { certaintyText } from "./readings.js";
 
-/** onChoose(step: 1 or -1): another UAV. show(route, drawn, readings). */
+/** show(route, drawn, readings, isMarked): isMarked where it is simulated and others are not. */
 export function createInstruments() {
   const letter = h("span", { class: "letter" });
   const name = h("strong", {});
@@ -29,12 +30,13 @@ export function createInstruments() {
 
   return {
     element,
-    show(route, drawn, readings) {
+    show(route, drawn, readings, isMarked = false) {
       element.hidden = !route;
       if (!route) return;
       put(letter, routeLetter(route.place));
       letter.className = `letter route-${routeNumber(route.place)}`;
       put(name, route.name);
+      markSimulated(name, isMarked);
       list.hidden = !drawn;
       empty.hidden = Boolean(drawn);
       put(certainty, drawn ? certaintyText(drawn.moment) : "");

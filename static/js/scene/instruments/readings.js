@@ -52,7 +52,7 @@ export function readingsOf(drawn, { nearest, task, wind, labels }) {
   const known = (value, text) => (typeof value === "number" && Number.isFinite(value) ? `${guess}${text(value)}` : NONE);
   const zone = near(nearest.zone, ({ zone: { name }, isInside }) => (isInside ? t("inside {zone}", { zone: name }) : name));
   const tower = near(nearest.tower, ({ tower: { label } }) => label ?? "");
-  const wire = near(nearest.wire, () => "");
+  const wire = near(nearest.wire, ({ isCounted }) => (isCounted ? t("as high as planners count") : ""));
   return [
     { name: "task", words: t("Task"), value: taskText(task, labels), note: labels.get(task.target)?.name ?? "" },
     { name: "agl", words: t("Above ground"), value: known(drawn.height_agl_m, exactHeightText), note: "" },

@@ -66,12 +66,12 @@ export function liveSource({ detail, features = [] }) {
     const samples = completed((flown.get(route.uav_id) ?? []).filter(({ position }) => position).map((sample) => ({ ...sample, altitude_relative_m: sample.height_m })));
     const pieces = [];
     for (const sample of samples) addSample(pieces, sample);
-    return { place, uav: route.uav_id, name: route.uav, planned: plannedOf(route), pieces };
+    return { place, uav: route.uav_id, name: route.uav, isSimulated: detail.uavs?.find(({ id }) => id === route.uav_id)?.is_simulated ?? false, planned: plannedOf(route), pieces };
   });
   const uavOfRoute = (route, uavs) => uavs.find(({ id, mission, place }) => id === route.uav || (mission === detail.id && place === route.place));
 
   const source = {
-    kind: "live", isSimulated: false, departs_ms: null, hasDate: true, span: null, routes, targets: targetsOf(routes, detail.targets), events: [],
+    kind: "live", isSimulated: routes.length > 0 && routes.every(({ isSimulated }) => isSimulated), departs_ms: null, hasDate: true, span: null, routes, targets: targetsOf(routes, detail.targets), events: [],
     revision: 0, // of what was flown: a ribbon that has grown
     wind: null,
     windAt: () => source.wind,
@@ -81,7 +81,6 @@ export function liveSource({ detail, features = [] }) {
       for (const route of routes) {
         const uav = uavOfRoute(route, uavs);
         if (!uav) continue;
-        source.isSimulated ||= uav.is_simulated;
         route.uavNow = uav;
         const sample = liveSample(uav, now_ms);
         if (!sample) continue;

@@ -1,6 +1,6 @@
 /** A mission's record as the view shows it: what was measured, and in the silence what was estimated. */
 
-import { isOver } from "../../report/sentence.js";
+import { isOver, isUnderWay } from "../../report/sentence.js";
 import { eventsOf, spanOf } from "../../report/timeline.js";
 import { estimatesOf, silenceOf_ms, trackOf, tracksOf } from "../../report/track.js";
 import { completed, ESTIMATED, MEASURED } from "./pieces.js";
@@ -16,22 +16,33 @@ export function piecesOf(track) {
   return [...measured, ...estimated].filter(({ samples }) => samples.length > 0).sort((a, b) => a.samples[0].at_ms - b.samples[0].at_ms || a.samples.at(-1).at_ms - b.samples.at(-1).at_ms);
 }
 
-/** loaded: of report/load.js. → a source, see sources/read.js. */
-export function recordSource({ record, records, estimates, alerts }) {
-  const silence_ms = silenceOf_ms(Math.max(records.every_s ?? 0, estimates.every_s ?? 0));
-  const [measured, estimated] = [tracksOf(records.features), estimatesOf(estimates.features)];
-  const routes = record.routes.map(({ place, uav, name, waypoints, is_simulated }) => {
-    const track = trackOf(measured.get(uav) ?? [], estimated.get(uav) ?? [], silence_ms);
-    return { place, uav, name, is_simulated, track, planned: waypoints.map(({ arrival_s, ...point }) => ({ ...point, altitude_amsl_m: null, at_s: arrival_s })), pieces: piecesOf(track) };
-  });
-  const departs_ms = Date.parse(record.mission.departs_at ?? record.mission.started_at ?? 0) || 0;
-  return {
-    kind: "record", isSimulated: routes.some(({ is_simulated }) => is_simulated), departs_ms, hasDate: true, routes,
-    span: spanOf(routes.map(({ track }) => track)),
-    targets: targetsOf(routes, record.targets),
-    events: eventsOf({ routes, targets: record.targets, alerts, isOver: isOver(record) }),
-    windAt: (at_ms) => windMeasured(routes, at_ms),
+/** loaded: of report/load.js. → a source, see sources/read.js; renew(loaded) puts in what has come since. */
+export function recordSource(loaded) {
+  const { record } = loaded;
+  const source = {
+    kind: "record", isSimulated: record.routes.every(({ is_simulated }) => is_simulated), departs_ms: Date.parse(record.mission.departs_at ?? record.mission.started_at ?? 0) || 0, hasDate: true,
+    routes: record.routes.map(({ place, uav, name, waypoints, is_simulated }) => ({
+      place, uav, name, isSimulated: is_simulated, planned: waypoints.map(({ arrival_s, ...point }) => ({ ...point, altitude_amsl_m: null, at_s: arrival_s })),
+    })),
+    targets: [],
+    windAt: (at_ms) => windMeasured(source.routes, at_ms),
+    renew,
   };
+  source.targets = targetsOf(source.routes, record.targets);
+  renew(loaded);
+  return source;
+
+  function renew({ record: newest, records, estimates, alerts }) {
+    const silence_ms = silenceOf_ms(Math.max(records.every_s ?? 0, estimates.every_s ?? 0));
+    const [measured, estimated] = [tracksOf(records.features), estimatesOf(estimates.features)];
+    for (const route of source.routes) {
+      route.track = trackOf(measured.get(route.uav) ?? [], estimated.get(route.uav) ?? [], silence_ms);
+      route.pieces = piecesOf(route.track);
+    }
+    source.span = spanOf(source.routes.map(({ track }) => track));
+    source.events = eventsOf({ routes: source.routes, targets: newest.targets, alerts, isOver: isOver(newest) });
+    source.isGrowing = isUnderWay(newest);
+  }
 }
 
 /** The newest wind that a UAV told before a moment: { speed_mps, from_deg }; null where none did. */

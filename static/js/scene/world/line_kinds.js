@@ -10,6 +10,7 @@ const RAIL = { px: 0.7, m: 0.14 };
 const RAIL_WIRE = { px: 0.65, m: 0.05 };
 const EDGE_PX = 1.6;
 const REST_DASH_M = 40;
+const COUNTED = { px: 0.9, dash_m: 4, faint: 0.35 };
 
 export function wireSegments({ points, first, span, isEarth }, scene, palette) {
   const count = span.length ? points.length / 3 - span.length : 0;
@@ -36,13 +37,19 @@ export function railWireSegments(wires, palette) {
   return ofOneLook(wires, new Color(palette.tower), RAIL_WIRE);
 }
 
+/** marks: of countedAir. */
+export function countedSegments(marks, palette) {
+  const { px, dash_m, faint } = COUNTED;
+  return ofOneLook([marks], new Color(palette.tower).lerp(new Color(palette.ground), faint), { px, m: 0, dash_m });
+}
+
 /** pieces: arrays of segments (x, y, z, x, y, z). */
-function ofOneLook(pieces, colour, { px, m }) {
+function ofOneLook(pieces, colour, { px, m, dash_m = 0 }) {
   const lines = arrays(pieces.reduce((sum, own) => sum + own.length / 6, 0));
   let at = 0;
   for (const own of pieces) {
     for (let place = 0; place < own.length; place += 6) {
-      lines.put(at, own.subarray(place, place + 6), colour, 0, px, m);
+      lines.put(at, own.subarray(place, place + 6), colour, dash_m, px, m);
       at += 1;
     }
   }

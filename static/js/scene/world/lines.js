@@ -20,7 +20,7 @@ const VERTEX = /* glsl */ `
   void main() {
     vec4 a = modelViewMatrix * vec4(start, 1.0);
     vec4 b = modelViewMatrix * vec4(end, 1.0);
-    float near = -0.05;
+    float near = -1.01 * projectionMatrix[3][2] / (projectionMatrix[2][2] - 1.0); // the camera's: what is cut there leaves nothing to be clipped
     if (a.z > near && b.z < near) a = mix(a, b, (a.z - near) / (a.z - b.z));
     else if (b.z > near && a.z < near) b = mix(b, a, (b.z - near) / (b.z - a.z));
     vec4 ca = projectionMatrix * a;
@@ -35,7 +35,7 @@ const VERTEX = /* glsl */ `
     vec4 mvPosition = share < 0.5 ? a : b;
     float far = length(mvPosition.xyz);
     float wide = max(size.x * pixelRatio, size.y * projectionMatrix[1][1] * viewport.w * 0.5 / max(own.w, 0.05));
-    vAlpha = mix(1.0, fade.y, smoothstep(fade.x * 0.25, fade.x, far));
+    vAlpha = mix(1.0, fade.y, smoothstep(fade.x * 0.1, fade.x, far));
     vTint = tint.rgb;
     vDash = tint.a;
     vAlong = share * distance(start, end);
@@ -66,7 +66,7 @@ const FRAGMENT = /* glsl */ `
 const CORNERS = new Float32Array([-1, 0, 0, 1, 0, 0, -1, 1, 0, 1, 1, 0]);
 
 /**
- * fade: [metres from where on lines are faint, how faint]. Gives { mesh, set(segments, tints, sizes), recolour(tints), dispose() };
+ * fade: [metres from where on lines are faint, how faint]. Gives { mesh, reach(times), set(segments, tints, sizes), recolour(tints), dispose() };
  * set: Float32Array of 6, 4 (colour in the working space, dash) and 2 (pixels, metres) for each segment.
  */
 export function screenLines({ fade = [6_000, 0.4], order = 2 } = {}) {
@@ -89,6 +89,10 @@ export function screenLines({ fade = [6_000, 0.4], order = 2 } = {}) {
   };
   return {
     mesh,
+    /** So many times farther than usual lines become faint; never nearer. */
+    reach(times) {
+      material.uniforms.fade.value = [fade[0] * Math.max(times, 1), fade[1]];
+    },
     set(segments, tints, sizes) {
       mesh.geometry.dispose();
       const geometry = empty();

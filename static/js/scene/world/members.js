@@ -3,7 +3,7 @@
 import { Color, CylinderGeometry, DynamicDrawUsage, InstancedMesh, MeshDepthMaterial, MeshLambertMaterial, Vector2 } from "../three.js";
 import { memberMatrices } from "../geometry/struts.js";
 
-const LEAST_PX = 1.15; // an outline is never thinner on the screen
+const LEAST_PX = 0.9; // an outline is never thinner on the screen
 const LEAST_SHADOW_PX = 2.4; // nor its shadow in the shadow map
 const SIZE = new Vector2();
 

@@ -10,13 +10,14 @@ const LOOK_AGAIN_M = 40; // the camera has moved so far since the near ones were
 
 const MAST = { isMast: true };
 
-/** bracing: of supports within near_m, at most so many. Gives { group, show(supports, frame, masts), apply(palette), update(camera), shadowPixel(metres), dispose() }. */
+/** bracing: of supports within near_m, at most so many. Gives { group, show(supports, frame, masts, groundAt), apply(palette), update(camera), shadowPixel(metres), dispose() }. */
 export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
   const group = new Group();
   const [outline, fine] = [memberMesh(), memberMesh({ leastPx: 0.55 })];
   group.add(outline.mesh, fine.mesh);
   let supports = [];
   let frame = null;
+  let ground = () => Infinity;
   let masts = [];
   let outlines = [];
   let feet = new Float32Array(0);
@@ -66,9 +67,14 @@ export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
     isStale = true;
   }
 
+  function belowFoot({ position, ground_amsl_m }) {
+    const [x, y, z] = frame.toLocal(...position, ground_amsl_m);
+    return y - ground(x, z);
+  }
+
   /** A few a frame, so that no frame is late; drawn once all are there. */
   function workOut() {
-    for (const place of wanted.splice(0, MOST_A_FRAME)) near.set(place, supportMembers(supports[place], frame).fine);
+    for (const place of wanted.splice(0, MOST_A_FRAME)) near.set(place, supportMembers(supports[place], frame, belowFoot(supports[place])).fine);
     if (wanted.length) return;
     isStale = false;
     paintNear();
@@ -76,8 +82,9 @@ export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
 
   return {
     group,
-    /** along: masts of railways, as members. */
-    show(next, ownFrame, along = []) {
+    /** along: masts of railways, as members; groundAt(x, z): of the drawn ground. */
+    show(next, ownFrame, along = [], groundAt = () => Infinity) {
+      ground = groundAt;
       [supports, frame, masts, near, lookedFrom, wanted, isStale] = [next, ownFrame, along, new Map(), null, [], false];
       feet = Float32Array.from(supports.flatMap(({ position, ground_amsl_m, height_m }) => ownFrame.toLocal(...position, ground_amsl_m + height_m / 2)));
       group.visible = supports.length + masts.length > 0;

@@ -2,16 +2,18 @@
 
 import { isInForce } from "../../zones/in_force.js";
 import { bridgeSolid } from "../geometry/bridges.js";
+import { countedAir } from "../geometry/counted.js";
+import { foldsOf } from "../geometry/folds.js";
 import { makeGround } from "../geometry/ground.js";
 import { labelsOf } from "../geometry/labels.js";
 import { railwayTracks } from "../geometry/railways.js";
 import { sunAt } from "../geometry/sun.js";
 import { deckUnder } from "../geometry/under_decks.js";
 import { wiresOf } from "../geometry/wires.js";
-import { zoneVolume } from "../geometry/zones.js";
+import { withinFor, zoneVolume } from "../geometry/zones.js";
 import { Color, Fog, Group } from "../three.js";
 import { makeLights, mood, nightPalette } from "./lighting.js";
-import { edgeSegments, railSegments, railWireSegments, wireSegments } from "./line_kinds.js";
+import { countedSegments, edgeSegments, railSegments, railWireSegments, wireSegments } from "./line_kinds.js";
 import { screenLines } from "./lines.js";
 import { makeSky } from "./sky.js";
 import { makeBeds, makeBridges } from "./solids.js";
@@ -21,8 +23,11 @@ import { makeZones } from "./zones.js";
 
 const BRACING = { high: { near_m: 900, most: 50 }, low: { near_m: 300, most: 8 } };
 const NIGHT_STEP = 0.06; // things get other colours after so much of dusk
-const FOG_M = [4_000, 30_000];
+const FOG_M = [4_000, 30_000]; // begins, hides all
+const FOG_SHARES = [1.1, 3]; // of what is looked at from farther away: that is never in the fog
+const LINES_M = 4_000; // what is looked at from farther away has lines as strong as from here
 const FLAT = { columns: 2, rows: 2, step_lon_deg: 0.1, step_lat_deg: 0.1 };
+const NO_AIR = { points: new Float64Array(0), first: new Uint32Array(1), marks: new Float32Array(0) };
 const NO_WIRES = { points: new Float64Array(0), first: new Uint32Array(1), span: new Uint32Array(0), isEarth: new Uint8Array(0) };
 
 /** quality: "high", or "low" without shadows and with little bracing. */
@@ -32,7 +37,7 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
   const lights = makeLights({ shadows: quality !== "low" });
   const [sky, terrain, beds, bridges, zones] = [makeSky(), makeTerrain(), makeBeds(), makeBridges(), makeZones()];
   const supports = makeSupports({ bracing: BRACING[quality] });
-  const wires = screenLines({ fade: [5_000, 0.35], order: 2 });
+  const wires = screenLines({ fade: [3_500, 0.3], order: 2 });
   const edges = screenLines({ fade: [16_000, 0.5], order: 4 });
   const parts = [sky, terrain, beds, bridges, supports, wires, edges, zones];
   group.add(lights.group, supports.group, ...[sky, terrain, beds, bridges, zones, wires, edges].map((part) => part.mesh));
@@ -66,7 +71,7 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     beds.dams.copy(near("railway", palette.isDark ? 0.92 : 0.8));
     zones.apply(own);
     supports.apply(own);
-    const [lines, borders] = [joined([wireSegments(shown.wires, scene, own), railSegments(shown.rails, own), railWireSegments(shown.railWires, own)]), edgeSegments(shown.volumes, own)];
+    const [lines, borders] = [joined([wireSegments(shown.wires, scene, own), railSegments(shown.rails, own), railWireSegments(shown.railWires, own), countedSegments(shown.counted.marks, own)]), edgeSegments(shown.volumes, own)];
     if (isNew) {
       wires.set(...lines);
       edges.set(...borders);
@@ -101,7 +106,7 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     beds.show(shown.beds);
     bridges.show(shown.bridges);
     zones.show(shown.volumes);
-    supports.show(sceneData?.supports ?? [], frame, shown.masts);
+    supports.show(sceneData?.supports ?? [], frame, shown.masts, shown.ground.heightAt);
     paintThings({ isNew: true });
   }
 
@@ -120,7 +125,9 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
       paint();
       paintThings();
     },
-    update(camera) {
+    update(camera, look_m = 0) {
+      [fog.near, fog.far] = FOG_M.map((least_m, end) => Math.max(least_m, FOG_SHARES[end] * look_m));
+      for (const own of [wires, edges]) own.reach(look_m / LINES_M);
       const hasMoved = lights.follow(camera, shown.ground.heightAt);
       if (hasMoved) supports.shadowPixel(lights.pixel_m);
       return supports.update(camera) || hasMoved;
@@ -144,7 +151,7 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
 function emptyShown(frame) {
   const [lon, lat] = frame.origin.position;
   const flat = { ...FLAT, west_deg: lon - 0.05, north_deg: lat + 0.05, altitude_amsl_m: Array(4).fill(frame.origin.altitude_amsl_m) };
-  return { ground: makeGround(flat, frame), wires: NO_WIRES, rails: [], railWires: [], masts: [], beds: [], bridges: [], volumes: [] };
+  return { ground: makeGround(flat, frame), wires: NO_WIRES, counted: NO_AIR, rails: [], railWires: [], masts: [], beds: [], bridges: [], volumes: [] };
 }
 
 function shownOf(scene, frame) {
@@ -154,13 +161,21 @@ function shownOf(scene, frame) {
   return {
     ground,
     wires: wiresOf(scene, frame),
+    counted: countedAir(scene, frame),
     rails: tracks.map(({ rails }) => rails),
     railWires: tracks.map((track) => track.wires),
     masts: tracks.map(({ masts }) => masts),
     beds: tracks.map(({ bed }) => bed),
     bridges: scene.bridges.map((bridge) => bridgeSolid(bridge, { frame, ground })),
-    volumes: scene.zones.map((zone) => zoneVolume(zone, { frame, ground, clip: scene.clip, rules: scene.rules })),
+    volumes: volumesOf(scene, frame, ground),
   };
+}
+
+function volumesOf({ zones, clip, rules }, frame, ground) {
+  if (!zones.length) return [];
+  const folds = foldsOf(ground);
+  const within_m = withinFor(zones, frame, folds);
+  return zones.map((zone) => zoneVolume(zone, { frame, ground, folds, clip, rules, within_m }));
 }
 
 /** Segments, tints and sizes of several kinds as one of each. */

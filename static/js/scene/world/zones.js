@@ -35,7 +35,7 @@ const FRAGMENT = /* glsl */ `
 /** Gives { mesh, show(volumes), apply(palette), dispose() }; volumes: of geometry/zones.js with { isInForce }. */
 export function makeZones() {
   const uniforms = UniformsUtils.merge([UniformsLib.fog, { colour: { value: new Color() }, strength: { value: 0.12 } }]);
-  const material = new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms, transparent: true, depthWrite: false, side: DoubleSide, fog: true });
+  const material = new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms, transparent: true, depthWrite: false, side: DoubleSide, fog: true, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -2 }); // a floor lies close over the ground
   const mesh = new Mesh(new BufferGeometry(), material);
   mesh.renderOrder = 3;
   mesh.frustumCulled = false;
