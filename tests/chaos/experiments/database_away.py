@@ -35,7 +35,7 @@ def run(course: Course) -> None:
         ready_s: dict[str, float] = {}
         with Pages(day.site, PAGES) as pages, day.at_work() as played:
             wait_until(lambda: all(is_ready(day.installation, name) for name in KILLED), "every program")
-            wait_until(lambda: pages.are_live_since(_ago(3.0)), "live pages")
+            pages.wait_until_live()
             pids = {name: day.installation.pid(name) for name in KILLED}
             with Askers(lambda number: _question(course, day, number, written), 6, pause_s=0.1) as askers:
                 time.sleep(BEFORE_S)
@@ -50,10 +50,6 @@ def run(course: Course) -> None:
         _tell(course, day, askers, written, ready_s)
         course.tell("programs that had to be started again", ", ".join(again) or "none", "none", not again)
         day.judge(course, played)
-
-
-def _ago(seconds: float) -> datetime:
-    return datetime.fromtimestamp(time.time() - seconds, UTC)
 
 
 def _question(course: Course, day: Day, number: int, written: list[str]) -> Callable[[], str]:
