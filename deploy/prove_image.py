@@ -5,7 +5,8 @@ deploy/prove_image.py IMAGE [--overlay production] [--lasts-s 30] [--json FILE]
 As root, with podman, kubectl, PostgreSQL with PostGIS and Redis. The programs run in pods as their Deployments say (user, read-only root,
 no capabilities, limits, probes), against PostgreSQL and Redis with TLS and verified certificates. Printed: seconds until ready, seconds
 from SIGTERM to the end, and requests that failed while one of two web replicas is killed (SIGKILL), stopped (SIGTERM) and started again,
-and while the proxy's certificate is swapped. The bars: ready within 60 s, ended within 10 s, none failed. Exit code 1 if one is missed.
+and while the proxy's certificate is swapped. The bars: ready within 60 s, ended within 10 s, none failed, every line of log JSON. Exit
+code 1 if one is missed.
 """
 
 import argparse
@@ -24,11 +25,22 @@ PROJECT_DIR = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(PROJECT_DIR))
 
 from deploy.proof.load import Counted, Proxy, plan_bodies, under_load  # noqa: E402
-from deploy.proof.pods import Pod, Podman, Site, answers, look_at_rights, secret_folder, shipped, stop_softly, wait_until_ready  # noqa: E402
+from deploy.proof.pods import (  # noqa: E402
+    Pod,
+    Podman,
+    Site,
+    answers,
+    look_at_lines,
+    look_at_rights,
+    secret_folder,
+    shipped,
+    stop_softly,
+    wait_until_ready,
+)
 from deploy.proof.servers import Servers, running_servers  # noqa: E402
 
 READY_S, END_S = 60.0, 10.0
-PATIENCE_S = 300.0  # after which there is nothing to be proven
+PATIENCE_S = 900.0  # after which there is nothing to be proven
 USER = 10001  # of the image
 PROGRAMS = ("live", "gateway", "estimator", "simulator", "worker-data", "worker-planning", "worker-simulation", "beat")
 NETWORK = "podman-default-kube-network"  # what podman play kube puts pods into
@@ -212,6 +224,7 @@ class Proof:
     def _stop_all(self) -> None:
         for pod in reversed(self.running):
             stop_softly(self.podman, pod, END_S)
+            look_at_lines(pod, self.podman.logs(pod.container))
 
     def _report(self) -> int:
         print(f"{'program':<20} {'ready s':>8} {'end s':>8}")

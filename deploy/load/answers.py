@@ -64,6 +64,7 @@ class StageFigures:
     """One stage of a run. The hold is the stage once all its users are there; demand is users / (mean wait + mean answer)."""
 
     users: int
+    users_there: int  # at its end, as Locust has counted them
     hold_s: float
     plans_per_s: float
     demand_per_s: float
@@ -111,6 +112,7 @@ class Run:
         wait_s = sum(scenario.wait_s) / 2
         return StageFigures(
             users=stage.users,
+            users_there=int(np.interp(ends_s - 1.0, self.users_at_s, self.users)),
             hold_s=hold_s,
             plans_per_s=len(took_ms) / hold_s if hold_s else 0.0,
             demand_per_s=stage.users / (wait_s + (took_ms.mean() / 1_000 if len(took_ms) else 0.0)),

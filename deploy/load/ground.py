@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 from deploy.load.installation import Installation
@@ -9,6 +10,7 @@ from scripts.places import PROJECT_DIR
 
 NODES = 200_000
 LAST_WRITTEN = "password.txt"
+GOOD_FOR_S = 6 * 86_400  # its tokens are good for a day longer
 
 
 def ground_folder(installation: Installation) -> Path:
@@ -19,7 +21,8 @@ def ground_folder(installation: Installation) -> Path:
 def bring_ground(installation: Installation) -> Path:
     """The graph of benchmarks/make_graph.py with assets, accounts and requests, unless they are there. Returns their folder."""
     folder = ground_folder(installation)
-    if not (folder / LAST_WRITTEN).exists():
+    written = folder / LAST_WRITTEN
+    if not written.exists() or time.time() - written.stat().st_mtime > GOOD_FOR_S:
         folder.mkdir(parents=True, exist_ok=True)
         graph = folder / "graph.npz"
         for command in (

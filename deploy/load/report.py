@@ -13,6 +13,7 @@ DOCUMENT = PROJECT_DIR / "docs" / "load-tests.md"
 PICTURES = PROJECT_DIR / "docs" / "load-tests"
 LEAST_SERVED_PERCENT = 97.0  # in the hold of scenario 4's last stage
 MOST_MEDIAN_MS = 100.0  # of scenarios 1 to 3: what a person takes for at once
+MOST_MISSING = 0.01  # of a stage's users at its end
 HEAD = ["users", "answers/s in the hold", "of the demand", "median", "95 %", "median in the ramp", "failures"]
 
 
@@ -78,6 +79,11 @@ def missed_bars(report: RunReport) -> list[str]:
     """What the run was to show and has not; empty for a good one."""
     name = f"scenario {report.scenario}, {report.title}"
     missed = [f"{name}: {report.failures} of {report.answers:,} failed"] if report.failures else []
+    missed += [
+        f"{name}: {stage.users_there} users were there, not {stage.users}"
+        for stage in report.stages
+        if abs(stage.users_there - stage.users) > 1 + MOST_MISSING * stage.users
+    ]
     if report.scenario == 4:
         served = report.stages[-1].served_percent
         missed += [f"{name}: {served:.1f} % of the demand was served"] if served < LEAST_SERVED_PERCENT else []

@@ -13,8 +13,9 @@ import json
 import resource
 import sys
 import time
+from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
@@ -89,7 +90,7 @@ class LocalScaler:
         common = spent.keys() & before.keys()
         return sum(spent[name] - before[name] for name in common) / (now_s - before_s) * len(spent) / len(common) if common else 0.0
 
-    def _do(self, action: "callable", name: str) -> None:  # type: ignore[valid-type]
+    def _do(self, action: Callable[[str], None], name: str) -> None:
         self._changing.add(name)
         self._actions.append(self._threads.submit(action, name))
 
@@ -133,7 +134,7 @@ def run_ramp(number: int, *, seconds: float, sessions: float) -> tuple[RunReport
     rules = {name: shipped_rules(name).faster(seconds) for name in MOST_HERE}
     least = {name: rule.least for name, rule in rules.items()}
     spare = {kind: MOST_HERE[kind] - rules[kind].least}
-    limited = {name: Rules(**(vars(rule) | {"most": min(rule.most, MOST_HERE[name])})) for name, rule in rules.items()}
+    limited = {name: replace(rule, most=min(rule.most, MOST_HERE[name])) for name, rule in rules.items()}
     with Installation(state_directory() / "load", least, spare=spare, by_name=True) as installation:
         ground = bring_ground(installation)
         warm_up(installation, ground)

@@ -1,7 +1,9 @@
 """Live pages without a browser: each comes back by itself, counts gaps in the sequence, and knows when it was last told anything new."""
 
 import json
+import socket
 import threading
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from types import TracebackType
@@ -37,8 +39,9 @@ class Page:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self._ends.set()
-        if self._socket is not None:
-            self._socket.shutdown()
+        if self._socket is not None and self._socket.sock is not None:
+            with suppress(OSError):
+                self._socket.sock.shutdown(socket.SHUT_RDWR)  # which wakes whoever reads from it
         self._thread.join(2 * SILENT_S)
 
     def _run(self) -> None:
