@@ -1,4 +1,4 @@
-"""Figures of a run as a section of docs/performance.md, with the machine, the day and the versions."""
+"""Figures of a run as a section of docs/performance.md or another document, with the machine, the day and the versions."""
 
 import os
 import platform
@@ -22,9 +22,9 @@ def machine(*packages: str) -> str:
     return f"{today}; {os.cpu_count()} cores, load {load:.1f} at the end; Python {platform.python_version()}, {versions}."
 
 
-def write_section(title: str, text: str) -> None:
+def write_section(title: str, text: str, document: Path = PERFORMANCE) -> None:
     """Put the section in place of the one with this title, or at the end."""
-    sections = PERFORMANCE.read_text().split("\n## ")
+    sections = document.read_text().split("\n## ")
     section = f"{title}\n\n{text.strip()}\n"
     places = [number for number, old in enumerate(sections) if old.split("\n", 1)[0] == title]
     if places:
@@ -32,4 +32,4 @@ def write_section(title: str, text: str) -> None:
     else:
         sections[-1] = sections[-1].rstrip("\n") + "\n"
         sections.append(section)
-    PERFORMANCE.write_text("\n## ".join(sections))
+    document.write_text("\n## ".join(sections))

@@ -10,14 +10,16 @@ get_asgi_application()  # loads the apps, before anything below asks for models
 from channels.routing import ProtocolTypeRouter, URLRouter  # noqa: E402
 from channels.sessions import SessionMiddlewareStack  # noqa: E402
 
-from config.live import OriginCheck, probed_or_upgrade_required  # noqa: E402
+from config.live import OriginCheck, SaysGoodbye, probed_or_upgrade_required  # noqa: E402
 from config.websocket_urls import websocket_urlpatterns  # noqa: E402
 from operation.program import program_begins  # noqa: E402
 
 program_begins("live")
-application = ProtocolTypeRouter(
-    {
-        "http": probed_or_upgrade_required,
-        "websocket": OriginCheck(SessionMiddlewareStack(URLRouter(websocket_urlpatterns))),
-    }
+application = SaysGoodbye(
+    ProtocolTypeRouter(
+        {
+            "http": probed_or_upgrade_required,
+            "websocket": OriginCheck(SessionMiddlewareStack(URLRouter(websocket_urlpatterns))),
+        }
+    )
 )

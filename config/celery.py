@@ -6,6 +6,7 @@ from celery import Celery
 from celery.signals import beat_init, worker_process_init
 
 from config.watched_tasks import LoopPulse, watch_tasks
+from config.worker_end import SoftEnd
 from operation.program import program_begins
 from operation.tracing import begin_tracing
 
@@ -13,7 +14,7 @@ os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
 app = Celery("spanwise")
 app.config_from_object("django.conf:settings", namespace="CELERY")
 app.autodiscover_tasks()
-app.steps["worker"].add(LoopPulse)
+app.steps["worker"].update({LoopPulse, SoftEnd})
 watch_tasks()
 
 

@@ -10,10 +10,13 @@ from django.db import connections
 
 from operation.readiness import Readiness
 from workspace.authentication import bearer_token
+from workspace.farewell import farewell_here
 
 _readiness = Readiness()
 
 BODY = json.dumps({"error": {"code": "upgrade_required", "message": "This address is for websockets.", "details": None}}).encode()
+
+STOPS = json.dumps({"error": {"code": "unavailable", "message": "This program is being stopped; try again.", "details": None}}).encode()
 
 Receive = Callable[[], Awaitable[dict[str, Any]]]
 Send = Callable[[dict[str, Any]], Awaitable[None]]
@@ -31,6 +34,33 @@ class OriginCheck:
         names_none = all(name != b"origin" for name, _ in scope["headers"])
         through = self.application if names_none and bearer_token(scope) is not None else self.checked
         await through(scope, receive, send)
+
+
+class SaysGoodbye:
+    """Around everything: from the first request on it hears that the program is told to stop, and then takes no more websockets.
+
+    They are refused in a way that has the proxy ask the next program.
+    """
+
+    def __init__(self, application: Application) -> None:
+        self.application = application
+        self._hears = False
+
+    async def __call__(self, scope: dict[str, Any], receive: Receive, send: Send) -> None:
+        farewell = farewell_here()
+        if not self._hears:
+            self._hears = True
+            farewell.hear_signal()
+        if farewell.has_begun and scope["type"] == "websocket":
+            await _refuse(send)
+        else:
+            await self.application(scope, receive, send)
+
+
+async def _refuse(send: Send) -> None:
+    headers = [(b"content-type", b"application/json"), (b"retry-after", b"1"), (b"content-length", str(len(STOPS)).encode())]
+    await send({"type": "websocket.http.response.start", "status": 503, "headers": headers})
+    await send({"type": "websocket.http.response.body", "body": STOPS})
 
 
 async def probed_or_upgrade_required(scope: dict[str, Any], receive: Receive, send: Send) -> None:

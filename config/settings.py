@@ -76,8 +76,12 @@ SECURE_HSTS_INCLUDE_SUBDOMAINS = HTTPS
 SECURE_HSTS_PRELOAD = HTTPS
 SECURE_PROXY_SSL_HEADER = ("HTTP_X_FORWARDED_PROTO", "https") if HTTPS else None
 SECURE_REFERRER_POLICY = "strict-origin-when-cross-origin"  # public tile servers, OSM's among them, ask for an origin
+SESSION_ENGINE = "workspace.session_store"
 SESSION_COOKIE_AGE = int(_float("SPANWISE_SESSION_DAYS", 14) * 86_400)  # from signing in, however busy somebody is
+SESSION_IDLE_S = _float("SPANWISE_SESSION_IDLE_MINUTES", 120) * 60  # without any open page
+SESSION_WATCHING_S = _float("SPANWISE_SESSION_WATCHING_HOURS", 12) * 3_600  # of an open page in which nobody does anything
 SESSION_COOKIE_HTTPONLY = True
+MESSAGE_STORAGE = "django.contrib.messages.storage.session.SessionStorage"  # the admin's words need no cookie
 SESSION_COOKIE_SAMESITE = "Lax"
 X_FRAME_OPTIONS = "DENY"
 # Debian's GDAL is older than 3.9. GDAL reads terrain files alone, from the command line, with its driver named (GTiff, SRTMHGT).
@@ -181,7 +185,9 @@ AUTH_PASSWORD_VALIDATORS = [
         "CommonPasswordValidator",
         "NumericPasswordValidator",
     )
-]
+] + [{"NAME": "workspace.password_words.ContextWordsValidator"}]
+PASSWORD_WORDS = _list("SPANWISE_PASSWORD_WORDS", "")  # that no password here may be made of, beside those of the trade
+REQUIRES_SECOND_FACTOR = _flag("SPANWISE_REQUIRE_SECOND_FACTOR", default=False)  # of everybody, whatever their organisation says
 LOGIN_URL = "sign-in"
 LOGIN_REDIRECT_URL = "missions"
 LOGOUT_REDIRECT_URL = "sign-in"
@@ -294,7 +300,7 @@ CELERY_ACCEPT_CONTENT = ["json"]
 CELERY_TASK_TIME_LIMIT = 900
 CELERY_TASK_SOFT_TIME_LIMIT = 870
 CELERY_BROKER_CONNECTION_RETRY_ON_STARTUP = True
-CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 6  # what is not done by then goes back to the queue: a program ends within 10 s
+CELERY_WORKER_SOFT_SHUTDOWN_TIMEOUT = 5  # what is not done by then goes back to the queue: config/worker_end.py
 CELERY_BROKER_TRANSPORT_OPTIONS = {
     "visibility_timeout": 1_000,  # longer than the longest task
     "unacked_restore_interval": 2,
@@ -334,6 +340,8 @@ CELERY_BEAT_SCHEDULE = {
     },
     "forget old uploads": {"task": "inspection.tasks.forget_old_uploads", "schedule": 3_600.0},
     "forget old sign-ins": {"task": "workspace.tasks.forget_old_sign_ins", "schedule": 3_600.0},
+    "forget ended sessions": {"task": "workspace.tasks.forget_ended_sessions", "schedule": 3_600.0},
+    "seal second factors with the key of today": {"task": "workspace.tasks.seal_second_factors", "schedule": 3_600.0},
     "forget old telemetry": {"task": "telemetry.tasks.forget_old_telemetry", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }

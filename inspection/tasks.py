@@ -10,6 +10,7 @@ from inspection.services import subscriptions
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import Progress
 from inspection.services.uploads import forget_old_uploads as forget_uploads
+from workspace.errors import DATABASE_AWAY
 from workspace.job_watch import JobWatch
 from workspace.models import Job
 from workspace.services import JobCancelled, confirm_cancelled, fail_job, start_job
@@ -91,6 +92,8 @@ def _work(job_id: str, do: Callable[..., None]) -> None:
         _fail(job, "took_too_long", f"Not done within {SOFT_LIMIT_S // 60} min. Cut the file into parts.")
     except MemoryError:
         _fail(job, "too_large", "The file needs more memory than there is. Cut it into parts.")
+    except DATABASE_AWAY:
+        raise  # the lease runs out, and the job is taken up again
     except Exception:
         _fail(job, "internal", "Reading the file failed inside Spanwise; the error is in the log.")
         raise

@@ -4,6 +4,7 @@ import json
 import logging
 import os
 import socket
+import sys
 import threading
 from collections.abc import Callable
 from contextlib import suppress
@@ -79,6 +80,11 @@ class _Server(ThreadingHTTPServer):
         self.readiness = readiness
         self.address_family = socket.AF_UNIX if address.path else socket.AF_INET6 if ":" in address.host else socket.AF_INET
         super().__init__(address.path or (address.host, address.port), _Handler)  # type: ignore[arg-type]
+
+    def handle_error(self, request: object, client_address: object) -> None:
+        """Whoever asked may have gone before the answer."""
+        if not isinstance(sys.exc_info()[1], ConnectionError):
+            logger.exception("a question about how this program does was not answered")
 
     def server_bind(self) -> None:
         if self.address_family != socket.AF_UNIX:

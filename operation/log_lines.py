@@ -2,6 +2,7 @@
 
 import json
 import logging
+import os
 from datetime import UTC, datetime
 from typing import Any
 
@@ -30,9 +31,9 @@ class LineFormatter(logging.Formatter):
 class JsonFormatter(logging.Formatter):
     """One object a line: time (RFC 3339, UTC), level, logger, message, and what the work is about."""
 
-    def __init__(self, program: str = "") -> None:
+    def __init__(self, program: str = "", **_: object) -> None:
         super().__init__()
-        self._program = program
+        self._program = program or os.environ.get("SPANWISE_PROGRAM", "")
 
     def format(self, record: logging.LogRecord) -> str:
         told: dict[str, Any] = {

@@ -3,6 +3,7 @@
 All steps run, even when one has failed. Tests that wait have a second try when all is over (scripts.second_try).
 
 python -m scripts.check [--fast | --long] [PYTEST ARGUMENT...]
+python -m scripts.check --chaos [ROW...]      (the fault table: tests.chaos)
 """
 
 import fcntl
@@ -273,4 +274,7 @@ def main(arguments: list[str]) -> int:
 
 
 if __name__ == "__main__":
+    if "--chaos" in sys.argv:
+        arguments = [argument for argument in sys.argv[1:] if argument != "--chaos"]
+        os.execv(sys.executable, _python("-m", "tests.chaos", *arguments))  # noqa: S606 - no shell
     sys.exit(main(sys.argv[1:]))

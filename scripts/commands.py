@@ -3,28 +3,42 @@
 import os
 import sys
 
+from operation.json_lines import is_asked_for
 from scripts.places import PROJECT_DIR
 
+GRANIAN_LOG = PROJECT_DIR / "operation" / "granian_log.json"
 BACKLOG = "4096"  # connections that wait for a program: as many as Linux allows unless told (net.core.somaxconn)
 QUEUES = ("data", "planning", "simulation")
 
 
+def _python(program: str, *arguments: str) -> list[str]:
+    """A module, or a file that ends in .py. Where logs are JSON, whatever it writes is."""
+    if is_asked_for():
+        return [sys.executable, "-m", "operation.json_lines", program, *arguments]
+    return [sys.executable, *([] if program.endswith(".py") else ["-m"]), program, *arguments]
+
+
+def _granian(*arguments: str) -> list[str]:
+    log = ["--log-level", "warning", *(["--log-config", str(GRANIAN_LOG)] if is_asked_for() else [])]
+    return _python("granian", *arguments, *log)
+
+
 def web(*where: str) -> list[str]:
     """Pages and API. One process a program: of several on one socket the first to wake takes most of the work."""
-    command = [sys.executable, "-m", "granian", "--interface", "wsgi", *where, "--workers", "1"]
-    command += ["--no-ws", "--blocking-threads", "4", "--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "10"]
-    return [*command, "--respawn-failed-workers", "--respawn-interval", "0.5", "--log-level", "warning", "config.wsgi:application"]
+    command = ["--interface", "wsgi", *where, "--workers", "1"]
+    command += ["--no-ws", "--blocking-threads", "4", "--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "8"]
+    return _granian(*command, "--respawn-failed-workers", "--respawn-interval", "0.5", "config.wsgi:application")
 
 
 def live(*where: str) -> list[str]:
     """Websockets."""
-    command = [sys.executable, "-m", "granian", "--interface", "asginl", *where, "--workers", "1"]
-    command += ["--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "5", "--respawn-failed-workers", "--respawn-interval", "0.5"]
-    return [*command, "--log-level", "warning", "config.asgi:application"]
+    command = ["--interface", "asginl", *where, "--workers", "1"]
+    command += ["--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "8", "--respawn-failed-workers", "--respawn-interval", "0.5"]
+    return _granian(*command, "config.asgi:application")
 
 
 def celery(*arguments: str) -> list[str]:
-    return [sys.executable, "-m", "celery", "--app", "config.celery", "--quiet", *arguments]
+    return _python("celery", "--app", "config.celery", "--quiet", *arguments)
 
 
 def worker(queue: str, processes: int) -> list[str]:
@@ -40,4 +54,4 @@ def beat() -> list[str]:
 
 
 def management(*arguments: str) -> list[str]:
-    return [sys.executable, str(PROJECT_DIR / "manage.py"), *arguments]
+    return _python(str(PROJECT_DIR / "manage.py"), *arguments)

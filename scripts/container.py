@@ -15,12 +15,17 @@ from typing import NoReturn
 
 from config.private_servers import state_directory
 from config.secret_files import secret
+from operation.json_lines import is_asked_for, write_json_lines
 from scripts import commands, container_health, container_proxy
+from scripts.inner_tls import inner_certificate, look_after
+from scripts.places import PROJECT_DIR
 
 WEB_PORT, LIVE_PORT = 8000, 8001
+SERVING = ("web", "live")  # behind the proxy
 METRICS = "0.0.0.0:9464"
 SECRETS = ("DATABASE_URL", "REDIS_URL", "SPANWISE_SECRET_KEY")
 BACKUPS = "/var/lib/spanwise-backups"
+BY_HAND = ("manage", "backup", "restore")  # somebody reads along
 EXIT_WRONG = 2
 
 # What a container is told beside its command; what the environment says already is kept.
@@ -85,12 +90,14 @@ def _open_as_many_files_as_allowed() -> None:
 
 def main(arguments: list[str]) -> int:
     name, *rest = arguments or ["web"]
+    if is_asked_for() and name not in BY_HAND:
+        write_json_lines()
     if name == "healthy":
         return container_health.main()
     if name == "proxy":
         _open_as_many_files_as_allowed()
         return container_proxy.main()
-    if name not in PROGRAMS and name not in {"manage", "backup", "restore"}:
+    if name not in PROGRAMS and name not in BY_HAND:
         print(f"No program is called {name!r}. {__doc__}", file=sys.stderr)
         return EXIT_WRONG
     if missing := missing_secrets():
@@ -103,8 +110,12 @@ def main(arguments: list[str]) -> int:
     if name == "restore":
         _become(_backups(name, *rest), _with_database())
     if name == "manage":
-        _become(commands.management(*rest), os.environ)
-    _become([*PROGRAMS[name](), *rest], environment(name))
+        _become([sys.executable, str(PROJECT_DIR / "manage.py"), *rest], os.environ)
+    served = inner_certificate(state_directory() / "inner") if name in SERVING else None
+    if served is not None:
+        served.copy()
+        look_after(served)
+    _become([*PROGRAMS[name](), *(served.arguments() if served else []), *rest], environment(name))
 
 
 if __name__ == "__main__":

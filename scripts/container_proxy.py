@@ -4,15 +4,18 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 from pathlib import Path
 from types import FrameType
 
 from config.private_servers import state_directory
+from scripts import proxy_lines
 from scripts.proxy import is_https_asked_for, site_configuration
 from scripts.proxy_site import Site
 from scripts.system_packages import find_program
 
 LOOKS_EVERY_S = 5.0
+ENDS_WITHIN_S = 8.0
 NAME_SERVERS = Path("/etc/resolv.conf")
 
 
@@ -28,6 +31,8 @@ def name_server(text: str) -> str:
 def site_of_environment(folder: Path) -> Site:
     """SPANWISE_PROXY_WEB and SPANWISE_PROXY_LIVE: addresses with commas between them, or one name each with SPANWISE_PROXY_RESOLVES=1.
 
+    Which name server is asked, SPANWISE_PROXY_NAME_SERVER says, else the container's own resolv.conf.
+    SPANWISE_PROXY_TRUST: the authority that the certificates of web and live are checked by; without it they speak plain HTTP.
     SPANWISE_TLS_CERTIFICATE and SPANWISE_TLS_KEY: files; with them TLS is spoken here, on SPANWISE_PROXY_TLS_PORT.
     """
     certificate, key = os.environ.get("SPANWISE_TLS_CERTIFICATE"), os.environ.get("SPANWISE_TLS_KEY")
@@ -42,7 +47,8 @@ def site_of_environment(folder: Path) -> Site:
         certificate=Path(certificate) if certificate and key else None,
         key=Path(key) if certificate and key else None,
         listens_at_tls=os.environ.get("SPANWISE_PROXY_TLS_PORT", "8443"),
-        resolver=name_server(NAME_SERVERS.read_text()) if resolves else "",
+        trust=Path(trust) if (trust := os.environ.get("SPANWISE_PROXY_TRUST")) else None,
+        resolver=(os.environ.get("SPANWISE_PROXY_NAME_SERVER") or name_server(NAME_SERVERS.read_text())) if resolves else "",
     )
 
 
@@ -66,10 +72,13 @@ def main() -> int:
     path = folder / "nginx.conf"
     path.write_text(site_configuration(site))
     command = [find_program("nginx") or "nginx", "-e", "stderr", "-p", str(folder), "-c", str(path)]
-    nginx = subprocess.Popen(command)
+    nginx = proxy_lines.start(command)
 
     def end(number: int, frame: FrameType | None) -> None:
         nginx.send_signal(signal.SIGQUIT)  # takes no new requests and ends when those that it has are answered
+        hurry = threading.Timer(ENDS_WITHIN_S, nginx.terminate)  # websockets have no end of their own
+        hurry.daemon = True
+        hurry.start()
 
     for number in (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT):
         signal.signal(number, end)
@@ -82,4 +91,4 @@ def main() -> int:
             if seen and seen != known and subprocess.run([*command, "-t", "-q"], check=False).returncode == 0:
                 known = seen
                 nginx.send_signal(signal.SIGHUP)
-                print("the certificate has changed: new connections get the new one", file=sys.stderr, flush=True)
+                print(proxy_lines.told("the certificate has changed: new connections get the new one"), file=sys.stderr, flush=True)

@@ -5,6 +5,7 @@ import sys
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from operation.json_lines import is_asked_for
 from scripts import commands
 from scripts.places import DATABASE_USER, TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
 from scripts.postgresql_installations import server_for
@@ -124,6 +125,8 @@ def web_programs(places: Places, sockets: Path) -> list[Program]:
 def _programs(places: Places, sockets: Path) -> list[Program]:
     configuration = places.generated / "nginx.conf"
     nginx = [find_program("nginx") or "nginx", "-e", "stderr", "-p", str(places.process("proxy")), "-c", str(configuration)]
+    if is_asked_for():
+        nginx = [sys.executable, "-m", "scripts.proxy_lines", *nginx]
     return [
         *(_web(places, name, sockets / f"{name}.sock") for name in WEB_PROGRAMS),
         Program(

@@ -1,12 +1,14 @@
 """The reverse proxy (nginx): its configuration for one installation, without anything of the machine's own."""
 
+import json
 import os
 import resource
 from pathlib import Path
 
+from operation.json_lines import is_asked_for
 from scripts import page_headers
 from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
-from scripts.proxy_site import ALIVE, Site, entrances, plain_server, quoted, upstreams
+from scripts.proxy_site import ALIVE, Site, came_over_http, entrances, plain_server, quoted, spoken, upstreams
 
 MOST_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
@@ -57,13 +59,21 @@ def _failures(name: str, media_type: str, headers: str, *, unavailable: str, too
 
 
 def _proxied(
-    location: str, name: str, headers: str, scheme: str, *, to: str, compression: str = "on", faults: str = "warn", again: str = "error"
+    location: str,
+    name: str,
+    headers: str,
+    scheme: str,
+    *,
+    to: tuple[str, str],
+    compression: str = "on",
+    faults: str = "warn",
+    again: str = "error",
 ) -> str:
     return f"""
         location {location} {{
             gzip {compression};
             error_log stderr {faults};
-            proxy_pass http://{to};
+            proxy_pass {to[0]};{to[1]}
             proxy_http_version 1.1;
             proxy_set_header Connection "";
             proxy_set_header Host $http_host;
@@ -83,11 +93,11 @@ def _proxied(
         }}"""
 
 
-def _websockets(scheme: str, *, to: str) -> str:
+def _websockets(scheme: str, *, to: tuple[str, str]) -> str:
     """What /ws/ is passed on to. A socket may be silent for as long as the program that speaks on it, three times over."""
     return f"""
         location /ws/ {{
-            proxy_pass http://{to};
+            proxy_pass {to[0]};{to[1]}
             proxy_http_version 1.1;
             proxy_set_header Upgrade $http_upgrade;
             proxy_set_header Connection $connection_upgrade;
@@ -97,6 +107,7 @@ def _websockets(scheme: str, *, to: str) -> str:
             proxy_connect_timeout 5s;
             proxy_read_timeout 60s;
             proxy_send_timeout 30s;
+            proxy_next_upstream error timeout http_503;
             proxy_buffering off;
             error_page 502 504 = @api_unavailable;
         }}"""
@@ -118,6 +129,16 @@ def _telling(sockets: Path) -> str:
 {locations}
         location / {{ return 404; }}
     }}"""
+
+
+def _line() -> str:
+    """How a request is written down: for people, or as JSON for programs."""
+    if not is_asked_for():
+        return """'$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time $told_id'"""
+    told = {"time": "$time_iso8601", "level": "INFO", "logger": "requests", "message": "$told_request", "program": "proxy"}
+    told |= {"request": "$told_id", "address": "$remote_addr"}
+    numbers = '"status": $status, "bytes": $body_bytes_sent, "seconds": $request_time'
+    return f"escape=json '{json.dumps(told)[:-1]}, {numbers}}}'"
 
 
 def _file_limit() -> int:
@@ -151,7 +172,9 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
     headers = page_headers.headers(tiles, is_https=site.is_https)
     is_behind_https = site.is_behind_https and site.certificate is None
     scheme = "$http_x_forwarded_proto" if is_behind_https else "$scheme"
-    web, live = ("$web", "$live") if site.resolver else ("web", "live")
+    (web_scheme, web_tls), (live_scheme, live_tls) = spoken(site, site.web), spoken(site, site.live)
+    mark = "$" if site.resolver else ""
+    web, live = (f"{web_scheme}://{mark}web", web_tls), (f"{live_scheme}://{mark}live", live_tls)
     # The application takes the last address: behind a TLS proxy the one that this proxy has added, for its own is everybody's.
     visitor = 'map $http_x_forwarded_for $visitor { "" $remote_addr; default $http_x_forwarded_for; }'
     if not is_behind_https:
@@ -197,14 +220,16 @@ http {{
     charset utf-8;
     charset_types text/css text/plain text/javascript image/svg+xml;
 {temporary}
-    # A link to a new password, and an invitation, let their holder in: no log has them, nor faults of the application at them.
+    # A link to a new password, and an invitation, let their holder in: no log has them, nor faults of the application at them. Nor has it
+    # what stands behind a question mark.
     map $request $told_request {{
         "~^(?<told>[A-Z]+ /(new-password|invitation)/)" "$told...";
+        "~^(?<asked>[^? ]+ [^? ]+)\\?" "$asked?...";
         default $request;
     }}
     map $upstream_http_x_request_id $told_id {{ "" "-"; default $upstream_http_x_request_id; }}
     {visitor}
-    log_format line '$time_iso8601 $remote_addr "$told_request" $status $body_bytes_sent $request_time $told_id';
+    log_format line {_line()};
     access_log /dev/stdout line buffer=32k flush=1s;
     server_tokens off;
     sendfile on;
@@ -222,7 +247,7 @@ http {{
     gzip_comp_level 2;
     gzip_types {COMPRESSED};
 {upstreams(site)}
-    map $http_upgrade $connection_upgrade {{
+{came_over_http() if is_behind_https else ""}    map $http_upgrade $connection_upgrade {{
         "" close;
         default upgrade;
     }}

@@ -11,6 +11,11 @@ TLS_1_2_CIPHERS = (
     "ECDHE-ECDSA-AES128-GCM-SHA256:ECDHE-RSA-AES128-GCM-SHA256:ECDHE-ECDSA-AES256-GCM-SHA384:ECDHE-RSA-AES256-GCM-SHA384:"
     "ECDHE-ECDSA-CHACHA20-POLY1305:ECDHE-RSA-CHACHA20-POLY1305"
 )
+FOR_PROGRAMS = "~^/(api/v[0-9]+|ws)/"  # they are not led from http to https: nobody would notice what they send before
+REFUSAL = (
+    '{"error": {"code": "https_required", "message": "Programs are answered over https alone. What was sent here could be read on its way: '
+    'a token that was in it is to be revoked.", "details": {}}}'
+)
 BACKLOG = 4_096  # connections that wait to be accepted; Linux allows so many unless told (net.core.somaxconn)
 
 
@@ -33,6 +38,7 @@ class Site:
     key: Path | None = None
     listens_at_tls: str = ""
     resolver: str = ""
+    trust: Path | None = None  # the authority inside: with it the programs behind are spoken to by TLS alone, each by its own name
 
     @property
     def is_https(self) -> bool:
@@ -65,16 +71,30 @@ def upstreams(site: Site) -> str:
     }}"""
 
 
+def spoken(site: Site, addresses: tuple[str, ...]) -> tuple[str, str]:
+    """How the programs at these addresses are spoken to: the scheme, and what nginx is told of TLS."""
+    if site.trust is None:
+        return "http", ""
+    name = addresses[0].rpartition(":")[0]
+    return (
+        "https",
+        f"""
+            proxy_ssl_verify on;
+            proxy_ssl_trusted_certificate {quoted(site.trust)};
+            proxy_ssl_name {name};
+            proxy_ssl_server_name on;
+            proxy_ssl_protocols TLSv1.3;""",
+    )
+
+
 def entrances(site: Site) -> str:
     """Where this server listens; with a certificate the plain port leads to the one with TLS."""
     plain = f"listen {site.listens_at} backlog={BACKLOG};"
     names = f"        set $web {site.web[0]};\n        set $live {site.live[0]};\n" if site.resolver else ""
     if site.certificate is None:
         # Whoever took the TLS off says how the visitor came; what says nothing comes from inside.
-        redirect = (
-            '        if ($http_x_forwarded_proto = "http") { return 308 https://$host$request_uri; }\n' if site.is_behind_https else ""
-        )
-        return f"        {plain}\n{redirect}{names}"
+        led = refused_or_led() if site.is_behind_https else ""
+        return f"        {plain}\n{led}{names}"
     return f"""        listen {site.listens_at_tls} ssl http2 backlog={BACKLOG};
         ssl_certificate {quoted(site.certificate)};
         ssl_certificate_key {quoted(site.key)};
@@ -87,6 +107,21 @@ def entrances(site: Site) -> str:
 {names}"""
 
 
+def came_over_http() -> str:
+    """A variable: what becomes of a request whose visitor came without TLS, as the one in front says."""
+    return f"""    map $uri $without_tls {{ "{FOR_PROGRAMS}" refused; default led; }}
+    map $http_x_forwarded_proto $over_http {{ "http" $without_tls; default ""; }}
+"""
+
+
+def refused_or_led() -> str:
+    """Pages lead to https, the addresses of programs say that they do not."""
+    return f"""        if ($over_http = led) {{ return 308 https://$host$request_uri; }}
+        if ($over_http = refused) {{ rewrite ^ /.over-http last; }}
+        location = /.over-http {{ internal; default_type application/json; return 403 '{REFUSAL}'; }}
+"""
+
+
 def plain_server(site: Site) -> str:
     """The port without TLS beside the one with it: a way there, and an answer to whoever looks whether the proxy lives."""
     if site.certificate is None:
@@ -95,5 +130,6 @@ def plain_server(site: Site) -> str:
     server {{
         listen {site.listens_at} backlog={BACKLOG};
         location = {ALIVE} {{ access_log off; return 204; }}
+        location {FOR_PROGRAMS.replace("~", "~ ")} {{ default_type application/json; return 403 '{REFUSAL}'; }}
         location / {{ return 308 https://$host$request_uri; }}
     }}"""

@@ -58,20 +58,20 @@ class LiveConsumer(SignedInSocket):
             if self._reader is not None:
                 _heed(self._reader, text_data)
         except ValueError:
-            self._hang_up(NOTHING_TO_SAY)
+            self.hang_up(NOTHING_TO_SAY)
 
     async def _speak(self, reader: Reader, feed: Feed) -> None:
         full_s = 0.0
         while True:
             if await reader.due(STILL_THERE_EVERY_S):
                 if reader.is_ended:
-                    return self._hang_up(GONE)
+                    return self.hang_up(GONE)
                 full_s = 0.0
                 await self.send(feed.next_message(reader))
             elif not reader.is_full:
                 await self.send(message("still-there", reader.sequence))
             elif (full_s := full_s + STILL_THERE_EVERY_S) >= STALLED_S:
-                return self._hang_up(STALLED)
+                return self.hang_up(STALLED)
 
 
 def _heed(reader: Reader, said: str | None) -> None:

@@ -25,9 +25,22 @@ from workspace.people_serializers import (
     with_secret,
 )
 from workspace.permissions import EVERYBODY, InTheBrowserAlone
+from workspace.proof import PASSWORD_NEEDED, require_proof
 from workspace.schema import PAGE_PARAMETERS
 from workspace.sign_in_attempts import PASSWORD_CHANGES, HeldBack, take_turn
 from workspace.sign_in_log import record_sign_in
+
+
+def check_password(request: Request, name: str, password: str) -> None:
+    """Of whoever is signed in. Raises ApiProblem: 400 where it is another one, 429 after too many tries."""
+    try:
+        take_turn(PASSWORD_CHANGES, str(request.user.pk))
+    except HeldBack as held:
+        raise ApiProblem(429, "held_back", _("Too many tries. Wait 15 min, then try again."), retry_after_s=held.wait_s) from held
+    if not request.user.check_password(password):
+        message = _("This is not your password.")
+        record_sign_in(request, SignInOutcome.WRONG, user=request.user)
+        raise ApiProblem(400, "invalid", message, details={name: [message]})
 
 
 class Account(APIView):
@@ -63,32 +76,8 @@ class AccountPassword(APIView):
     def post(self, request: Request) -> Response:
         body = PasswordChangeSerializer(data=request.data, context={"user": request.user})
         body.is_valid(raise_exception=True)
-        try:
-            take_turn(PASSWORD_CHANGES, str(request.user.pk))
-        except HeldBack as held:
-            raise ApiProblem(429, "held_back", _("Too many tries. Wait 15 min, then try again."), retry_after_s=held.wait_s) from held
-        if not request.user.check_password(body.validated_data["old_password"]):
-            message = _("This is not your password.")
-            record_sign_in(request, SignInOutcome.WRONG, user=request.user)
-            raise ApiProblem(400, "invalid", message, details={"old_password": [message]})
+        check_password(request, "old_password", body.validated_data["old_password"])
         accounts.change_password(user=request.user, password=body.validated_data["new_password"])
-        update_session_auth_hash(request, request.user)
-        return Response(status=204)
-
-
-class AccountSessions(APIView):
-    write_roles = EVERYBODY
-    permission_classes = [InTheBrowserAlone]
-
-    @extend_schema(
-        operation_id="sign_out_everywhere",
-        summary="End one's own sessions in all other browsers",
-        description="The session that asks stays. Tokens stay, too. Not with a token.",
-        request=None,
-        responses={204: OpenApiResponse(description="Ended.")},
-    )
-    def post(self, request: Request) -> Response:
-        accounts.end_sessions(user=request.user, actor=request.user)
         update_session_auth_hash(request, request.user)
         return Response(status=204)
 
@@ -109,11 +98,12 @@ class AccountTokens(APIView):
     @extend_schema(
         operation_id="make_token",
         summary="Make a token; only this answer shows it",
-        description="Not with a token.",
+        description="Not with a token, and within 15 min of saying one's password.",
         request=TokenInputSerializer,
-        responses={201: NewTokenSerializer, 409: OpenApiResponse(description="There are too many that work.")},
+        responses={201: NewTokenSerializer, 403: PASSWORD_NEEDED, 409: OpenApiResponse(description="There are too many that work.")},
     )
     def post(self, request: Request) -> Response:
+        require_proof(request)
         body = TokenInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         try:

@@ -44,7 +44,7 @@ def change_password(*, user: User, password: str) -> None:
         _record(user, user, "password changed")
 
 
-def end_sessions(*, user: User, actor: User) -> None:
+def end_sessions(*, user: User, actor: User | None) -> None:
     """Everywhere, at once; the caller may keep the one it works for. Tokens stay."""
     with transaction.atomic():
         User.objects.filter(pk=user.pk).update(session_generation=F("session_generation") + 1)
@@ -91,7 +91,7 @@ def change_person(*, user_id: int, actor: User, seen_revision: int | None, **val
         return save_person(user=user, actor=actor)
 
 
-def _record(user: User, actor: User, action: str) -> None:
+def _record(user: User, actor: User | None, action: str) -> None:
     facts = person_facts(user)
     record_change(
         organisation=user.organisation, actor=actor, action=action, subject_type="user", subject_id=user.pk, before=facts, after=facts

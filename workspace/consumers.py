@@ -48,7 +48,7 @@ class JobConsumer(SignedInSocket):
         self._start(self._follow(user))
 
     async def receive(self, text_data: str | None = None, bytes_data: bytes | None = None) -> None:
-        self._hang_up(NOTHING_TO_SAY)
+        self.hang_up(NOTHING_TO_SAY)
 
     async def _follow(self, user: User) -> None:
         loop = asyncio.get_running_loop()
@@ -60,20 +60,20 @@ class JobConsumer(SignedInSocket):
                     checked_s = loop.time()
                     now = await self._same_user(user)
                     if now is None:
-                        return self._hang_up(SIGNED_OUT)
+                        return self.hang_up(SIGNED_OUT)
                     user = now
                 version = await self._version(user)
                 if version is None:
-                    return self._hang_up(ENDED)  # deleted
+                    return self.hang_up(ENDED)  # deleted
                 if version != seen:
                     try:
                         message, is_open = await self._message(user)
                     except Job.DoesNotExist:
-                        return self._hang_up(ENDED)
+                        return self.hang_up(ENDED)
                     await self.send(message)
                     seen, spoken_s = version, loop.time()
                     if not is_open:
-                        return self._hang_up(ENDED)
+                        return self.hang_up(ENDED)
             if loop.time() - spoken_s >= STILL_THERE_EVERY_S:
                 await self.send('{"type":"still-there"}')
                 spoken_s = loop.time()

@@ -12,10 +12,10 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any
 
-from django.db import connection, connections
+from django.db import DatabaseError, connection, connections
 
 from workspace.models import Job
-from workspace.services import JobCancelled, JobLost, report_progress
+from workspace.services import JobCancelled, JobLost, give_back_job, report_progress
 
 logger = logging.getLogger(__name__)
 
@@ -52,6 +52,15 @@ class JobWatch:
         self._stopped.set()
         if self._thread.ident is not None:
             self._thread.join()
+        if kind is not None and issubclass(kind, SystemExit) and not connection.in_atomic_block:
+            self._give_back()
+
+    def _give_back(self) -> None:
+        """The worker ends before the work does. Without a database the lease runs out by itself."""
+        try:
+            give_back_job(job=self.job)
+        except DatabaseError as error:
+            logger.warning("job %s is not given back: %r", self.job.pk, error)
 
     @property
     def is_cancelled(self) -> bool:

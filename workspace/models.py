@@ -9,11 +9,16 @@ from django.db.models.functions import Now
 from django.utils.crypto import salted_hmac
 from django.utils.translation import gettext_lazy as _
 
+from workspace.door_models import BrowserSession as BrowserSession
+from workspace.door_models import RecoveryCode as RecoveryCode
+from workspace.door_models import SecondFactor as SecondFactor
+
 
 class Organisation(models.Model):
     """A team whose UAVs and missions are its own; assets, zones and the graph are shared ground."""
 
     name = models.CharField(max_length=200, unique=True)
+    requires_second_factor = models.BooleanField(default=False, db_default=False, help_text="of everybody, from the next sign-in on")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
 
     class Meta:
@@ -151,6 +156,7 @@ class Invitation(models.Model):
 class SignInOutcome(models.TextChoices):
     SIGNED_IN = "signed-in", "Signed in"
     WRONG = "wrong", "Wrong name or password"
+    WRONG_CODE = "wrong-code", "Wrong code"
     HELD_BACK = "held-back", "Too many tries"
     SIGNED_OUT = "signed-out", "Signed out"
 

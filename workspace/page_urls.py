@@ -11,14 +11,19 @@ from workspace.account_pages import (
     PasswordChangedPage,
 )
 from workspace.people_pages import AccountPage, AdministrationPage, InvitationPage
+from workspace.second_factor_pages import CodePage, NewCodesPage, RemovePage, SetUpPage
 from workspace.sign_in_pages import SignInPage, SignOutPage
 
 urlpatterns = [
     path("sign-in", SignInPage.as_view(), name="sign-in"),
+    path("sign-in/code", CodePage.as_view(), name="sign-in-code"),
     path("sign-out", SignOutPage.as_view(), name="sign-out"),
     path("account", AccountPage.as_view(), name="account"),
     path("administration", AdministrationPage.as_view(), name="administration"),
     path("invitation/<str:token>", InvitationPage.as_view(), name="invitation"),
+    path("second-factor", SetUpPage.as_view(), name="second-factor"),
+    path("second-factor/codes", NewCodesPage.as_view(), name="second-factor-codes"),
+    path("second-factor/remove", RemovePage.as_view(), name="second-factor-remove"),
     path("lost-password", LostPasswordPage.as_view(), name="lost-password"),
     path("lost-password/sent", LostPasswordSentPage.as_view(), name="lost-password-sent"),
     path("new-password/<uidb64>/<token>", NewPasswordPage.as_view(), name="new-password"),

@@ -6,6 +6,7 @@ from django.conf import settings
 from django.contrib.auth.mixins import LoginRequiredMixin
 from django.views.generic import TemplateView
 
+from workspace.browser_sessions import seconds_left
 from workspace.models import User
 
 
@@ -17,6 +18,7 @@ class SignedInPage(LoginRequiredMixin, TemplateView):
         assert isinstance(user, User)  # noqa: S101 (LoginRequiredMixin lets nobody else in)
         page = {
             "userId": user.pk, "userName": user.username, "role": user.role, "canPlan": user.can_plan, "canCurate": user.can_curate,
+            "sessionEndsIn_s": seconds_left(self.request.session),
         } | self.page(**kwargs)  # fmt: skip
         return super().get_context_data(**kwargs) | {"page": page}
 

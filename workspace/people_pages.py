@@ -2,11 +2,10 @@
 
 from typing import Any
 
-from django.contrib.auth import login
 from django.contrib.auth.forms import BaseUserCreationForm, UserCreationForm
 from django.contrib.auth.mixins import UserPassesTestMixin
 from django.db import IntegrityError, transaction
-from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
+from django.http import HttpRequest, HttpResponse
 from django.shortcuts import render, resolve_url
 from django.utils.decorators import method_decorator
 from django.utils.translation import gettext as _
@@ -17,14 +16,23 @@ from workspace.invitations import InvitationGone, accept_invitation, mail_leaves
 from workspace.models import User
 from workspace.pages import SignedInPage
 from workspace.preferences import TIME_ZONES
-from workspace.sign_in_pages import welcome
-
-BACKEND = "workspace.authentication.RoleBackend"
+from workspace.second_factors import has_second_factor, is_required_of, recovery_codes_left
+from workspace.way_in import let_in
 
 
 class AccountPage(SignedInPage):
     template_name = "account.html"
     extra_context = {"section": "account", "time_zones": sorted(zone for zone in TIME_ZONES if "/" in zone or zone == "UTC")}
+
+    def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
+        user = self.request.user
+        assert isinstance(user, User)  # noqa: S101 (SignedInPage lets nobody else in)
+        has_one = has_second_factor(user)
+        return super().get_context_data(**kwargs) | {
+            "has_second_factor": has_one,
+            "second_factor_is_required": is_required_of(user),
+            "codes_left": recovery_codes_left(user) if has_one else 0,
+        }
 
 
 class AdministrationPage(UserPassesTestMixin, SignedInPage):
@@ -67,6 +75,10 @@ class InvitationPage(FormView):
     def get_initial(self) -> dict[str, Any]:
         return {"email": self.invitation.email}
 
+    def get_form_kwargs(self) -> dict[str, Any]:
+        newcomer = User(organisation=self.invitation.organisation)  # whose name is no password
+        return super().get_form_kwargs() | {"instance": newcomer}
+
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         return super().get_context_data(**kwargs) | {"invitation": self.invitation}
 
@@ -79,10 +91,7 @@ class InvitationPage(FormView):
         except IntegrityError:  # of two that chose the same name at the same moment
             form.add_error("username", _("Somebody has this name already."))
             return self.form_invalid(form)
-        login(self.request, user, backend=BACKEND)
-        response = HttpResponseRedirect(resolve_url("missions"))
-        welcome(self.request, response, user)
-        return response
+        return let_in(self.request, user, resolve_url("missions"))
 
     def _gone(self) -> HttpResponse:
         return render(self.request, "account/invitation_gone.html", status=410)

@@ -1,5 +1,6 @@
 """Shapes of the API about accounts, people, invitations and sign-ins."""
 
+from datetime import datetime
 from typing import Any
 
 from django.contrib.auth.password_validation import validate_password
@@ -8,9 +9,10 @@ from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 from workspace.accounts import revision_of_person
+from workspace.browser_sessions import session_ends_at
 from workspace.invitations import LONGEST_DAYS, state_of
 from workspace.invitations import InvitationState as State
-from workspace.models import ApiToken, Invitation, Language, Role, SignInEntry, SignInOutcome, Theme, Units, User
+from workspace.models import ApiToken, BrowserSession, Invitation, Language, Role, SignInEntry, SignInOutcome, Theme, Units, User
 from workspace.preferences import TIME_ZONES
 
 InvitationState = [state.value for state in State]
@@ -90,17 +92,54 @@ class TokenListSerializer(serializers.Serializer):
     results = TokenSerializer(many=True)
 
 
+class ProofSerializer(serializers.Serializer):
+    password = serializers.CharField(trim_whitespace=False, max_length=4_096)
+
+
+class SessionTimesSerializer(serializers.Serializer):
+    ends_at = serializers.DateTimeField()
+    ends_in_s = serializers.IntegerField()
+
+
+class BrowserSessionSerializer(serializers.ModelSerializer):
+    """A session in a browser, without its key."""
+
+    ends_at = serializers.SerializerMethodField()
+    is_this_one = serializers.SerializerMethodField(help_text="the one that asks")
+
+    class Meta:
+        model = BrowserSession
+        fields = ["id", "user_agent", "began_at", "present_at", "ends_at", "is_this_one"]
+        read_only_fields = fields
+
+    def get_ends_at(self, session: BrowserSession) -> datetime:
+        return session_ends_at(session)
+
+    def get_is_this_one(self, session: BrowserSession) -> bool:
+        return bool(session.pk == self.context.get("own"))
+
+
+class BrowserSessionListSerializer(serializers.Serializer):
+    results = BrowserSessionSerializer(many=True)
+
+
+class SecondFactorRuleSerializer(serializers.Serializer):
+    required = serializers.BooleanField(help_text="of everybody in the organisation, from their next sign-in on")
+    is_of_the_installation = serializers.BooleanField(read_only=True, help_text="required whatever the organisation says")
+
+
 class PersonSerializer(serializers.ModelSerializer):
     """An account as administrators see it."""
 
     revision = serializers.SerializerMethodField(help_text="for If-Match")
     valid_tokens = serializers.IntegerField(read_only=True)
+    has_second_factor = serializers.BooleanField(read_only=True)
 
     class Meta:
         model = User
         fields = [
             "id", "username", "first_name", "last_name", "email", "role", "is_active", "date_joined", "last_login", "last_seen_at",
-            "valid_tokens", "revision",
+            "valid_tokens", "has_second_factor", "revision",
         ]  # fmt: skip
         read_only_fields = fields
 

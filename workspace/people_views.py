@@ -3,7 +3,8 @@
 from datetime import timedelta
 from typing import Any
 
-from django.db.models import Count, Q, QuerySet
+from django.conf import settings
+from django.db.models import Count, Exists, OuterRef, Q, QuerySet
 from django.http import Http404
 from django.urls import reverse
 from django.utils import timezone
@@ -13,10 +14,10 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from workspace import accounts, invitations
+from workspace import accounts, invitations, second_factors
 from workspace.errors import ApiProblem
 from workspace.invitations import InvitationState
-from workspace.models import ApiToken, Invitation, Role, SignInEntry, SignInOutcome, User
+from workspace.models import ApiToken, Invitation, Role, SecondFactor, SignInEntry, SignInOutcome, User
 from workspace.paging import page_of
 from workspace.people_serializers import (
     InvitationInputSerializer,
@@ -26,11 +27,12 @@ from workspace.people_serializers import (
     PersonChangeSerializer,
     PersonPageSerializer,
     PersonSerializer,
+    SecondFactorRuleSerializer,
     SignInPageSerializer,
     SignInSerializer,
     with_secret,
 )
-from workspace.permissions import AdministratorsAlone, AdministratorsInTheBrowser
+from workspace.permissions import ADMINISTRATORS, AdministratorsAlone, AdministratorsInTheBrowser, InTheBrowserAlone
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
 from workspace.services import NoAdministratorLeft
@@ -48,7 +50,9 @@ def _one_of(request: Request, name: str, known: list[str]) -> str:
 
 def _people(request: Request) -> QuerySet[User]:
     valid = Q(api_tokens__revoked_at=None, api_tokens__expires_at__gt=timezone.now())
-    return User.objects.filter(organisation_id=request.user.organisation_id).annotate(valid_tokens=Count("api_tokens", filter=valid))
+    return User.objects.filter(organisation_id=request.user.organisation_id).annotate(
+        valid_tokens=Count("api_tokens", filter=valid), has_second_factor=Exists(SecondFactor.objects.filter(user=OuterRef("pk")))
+    )
 
 
 def _person(request: Request, user_id: int) -> User:
@@ -163,6 +167,58 @@ class PersonTokens(APIView):
         return Response(status=204)
 
 
+class PersonSecondFactor(APIView):
+    permission_classes = [AdministratorsInTheBrowser]
+
+    @extend_schema(
+        operation_id="reset_second_factor_of_person",
+        summary="Take the second factor away from somebody who has lost it",
+        description="Their sessions end. Where the organisation asks for one, their next sign-in sets another one up. Not with a token.",
+        responses={204: OpenApiResponse(description="There is none any more.")},
+    )
+    def delete(self, request: Request, user_id: int) -> Response:
+        person = _person(request, user_id)
+        if person.pk == request.user.pk:
+            raise ApiProblem(409, "own_second_factor", _("Your own is on the page of your account, where a code is asked for."))
+        second_factors.take_away(user=person, actor=request.user)
+        return Response(status=204)
+
+
+class SecondFactorRule(APIView):
+    write_roles = ADMINISTRATORS
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(
+        operation_id="get_second_factor_rule",
+        summary="Whether everybody of one's organisation signs in with a second factor",
+        responses=SecondFactorRuleSerializer,
+    )
+    def get(self, request: Request) -> Response:
+        return self._answer(request)
+
+    @extend_schema(
+        operation_id="set_second_factor_rule",
+        summary="Say whether everybody signs in with a second factor",
+        description="Who has none sets one up at the next sign-in. Administrators alone, with one of their own. Not with a token.",
+        request=SecondFactorRuleSerializer,
+        responses={200: SecondFactorRuleSerializer, 409: OpenApiResponse(description="The administrator has none.")},
+    )
+    def put(self, request: Request) -> Response:
+        body = SecondFactorRuleSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        try:
+            second_factors.require_second_factor(actor=request.user, required=body.validated_data["required"])
+        except second_factors.SetUpFirst as error:
+            raise ApiProblem(409, "set_up_first", _("Set up a second factor for yourself first, under Account.")) from error
+        request.user.organisation.refresh_from_db(fields=["requires_second_factor"])
+        return self._answer(request)
+
+    @staticmethod
+    def _answer(request: Request) -> Response:
+        required = second_factors.is_required_of(request.user)
+        return Response({"required": required, "is_of_the_installation": settings.REQUIRES_SECOND_FACTOR})
+
+
 class InvitationList(APIView):
     """A link is answered once and not kept, so that the same request sent again makes another one."""
 
@@ -199,7 +255,9 @@ class InvitationList(APIView):
 class InvitationDetail(APIView):
     permission_classes = [AdministratorsAlone]
 
-    @extend_schema(operation_id="revoke_invitation", summary="Make an invitation's link stop working", responses=InvitationSerializer)
+    @extend_schema(
+        operation_id="revoke_invitation", summary="Make an invitation's link stop working", responses={200: InvitationSerializer}
+    )
     def delete(self, request: Request, invitation_id: int) -> Response:
         try:
             invitation = invitations.invitations_of(request.user).get(pk=invitation_id)

@@ -9,10 +9,13 @@ from django.http import HttpRequest, HttpResponse
 from django.utils import timezone, translation
 from django.utils.cache import patch_vary_headers
 
+from workspace.browser_sessions import note_session
 from workspace.models import User
 
 TIME_ZONES = frozenset(available_timezones())
 SEEN_EVERY = timedelta(minutes=1)
+ASKS_HOW_LONG = "/api/v1/account/session"  # no sign of anybody being there
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 
 class PreferencesMiddleware:
@@ -30,6 +33,8 @@ class PreferencesMiddleware:
             timezone.override(zone if zone in TIME_ZONES else None),
         ):
             response = self.get_response(request)
+        if user is not None and "Cache-Control" not in response:
+            response["Cache-Control"] = "no-store"  # what is not meant to be kept by the browser, is not
         if not own_language and response.get("Content-Type", "").startswith("text/html"):
             patch_vary_headers(response, ("Accept-Language",))
         return response
@@ -38,6 +43,11 @@ class PreferencesMiddleware:
 def _whoever_has_signed_in(request: HttpRequest) -> User | None:
     if settings.SESSION_COOKIE_NAME not in request.COOKIES or not isinstance(request.user, User):
         return None
+    is_read = request.method in SAFE_METHODS
+    if is_read and request.path == ASKS_HOW_LONG:
+        return request.user
+    is_act = not is_read or not request.path.startswith("/api/")  # what pages read by themselves is none
+    note_session(request.session, request.user, is_act=is_act, user_agent=request.headers.get("User-Agent", ""))
     now = timezone.now()
     if request.user.last_seen_at is None or now - request.user.last_seen_at >= SEEN_EVERY:
         User.objects.filter(pk=request.user.pk).update(last_seen_at=now)

@@ -164,6 +164,12 @@ def report_progress(*, job: Job, progress: float, message: str = "", best: Any =
     publish_job(job.pk)
 
 
+def give_back_job(*, job: Job) -> bool:
+    """The worker is told to stop: whoever gets the job's message next goes on with it at once, without waiting for the lease to run out."""
+    held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts)
+    return bool(held.update(state=JobState.QUEUED, lease_expires_at=timezone.now() + timedelta(seconds=LEASE_S)))
+
+
 def cancel_is_requested(*, job: Job) -> bool:
     return not Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts, cancel_requested_at=None).exists()
 

@@ -9,10 +9,11 @@ from django.http import HttpRequest, HttpResponse
 from django.utils.translation import gettext as _
 from django.utils.translation import ngettext
 
-from workspace.known_browsers import mark_of, remember
+from workspace.known_browsers import mark_of
 from workspace.models import SignInOutcome, User
 from workspace.sign_in_attempts import HeldBack, address_of, try_to_sign_in
 from workspace.sign_in_log import record_sign_in
+from workspace.way_in import let_in
 
 
 class SignInForm(AuthenticationForm):
@@ -65,9 +66,7 @@ class SignInPage(views.LoginView):
     redirect_authenticated_user = True
 
     def form_valid(self, form: AuthenticationForm) -> HttpResponse:
-        response = super().form_valid(form)
-        welcome(self.request, response, form.get_user())
-        return response
+        return let_in(self.request, form.get_user(), self.get_success_url())
 
 
 class SignOutPage(views.LogoutView):
@@ -77,9 +76,3 @@ class SignOutPage(views.LogoutView):
         if isinstance(request.user, User):
             record_sign_in(request, SignInOutcome.SIGNED_OUT, user=request.user)
         return super().post(request, *args, **kwargs)
-
-
-def welcome(request: HttpRequest, response: HttpResponse, user: User) -> None:
-    """After each way in: the log has it, and the browser is known from now on."""
-    record_sign_in(request, SignInOutcome.SIGNED_IN, user=user)
-    remember(request, response, user.username)

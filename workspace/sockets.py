@@ -9,6 +9,7 @@ from typing import Any
 
 from channels.auth import get_user
 from channels.db import database_sync_to_async
+from channels.exceptions import StopConsumer
 from channels.generic.websocket import AsyncWebsocketConsumer
 from django.conf import settings
 from django.db import Error as DatabaseError
@@ -16,6 +17,8 @@ from django.db import Error as DatabaseError
 from operation.log_context import REQUEST_ID_HEADER, about, sane_request_id
 from operation.metrics import WEBSOCKET_MESSAGES, WEBSOCKETS
 from workspace.authentication import bearer_token, user_of_token
+from workspace.browser_sessions import note_session
+from workspace.farewell import farewell_here
 from workspace.models import User
 
 logger = logging.getLogger(__name__)
@@ -23,6 +26,7 @@ logger = logging.getLogger(__name__)
 CHECK_PERSON_EVERY_S = 4.0
 STILL_THERE_EVERY_S = 20.0  # a proxy between here and the page closes what is silent
 
+RETRY_AFTER = b"2"  # seconds
 ENDED, FAILED, SIGNED_OUT, NOTHING_TO_SAY = 1000, 1011, 4401, 4400
 
 
@@ -50,23 +54,36 @@ class SignedInSocket(AsyncWebsocketConsumer):
             for task in (spoken, *self._tasks):
                 task.cancel()
             if self._counted_as is not None:
+                farewell_here().forget(self)
                 WEBSOCKETS.labels(self._counted_as).dec()
 
     def kind(self) -> str:
         """What its page follows, one of a few words."""
         raise NotImplementedError
 
+    async def websocket_connect(self, message: Any) -> None:
+        """Without the database nobody knows who comes: they are told to try again, which pages do by themselves."""
+        try:
+            await super().websocket_connect(message)
+        except DatabaseError as error:
+            logger.warning("a websocket is refused while the database is away: %s", type(error).__name__)
+            await self.base_send({"type": "websocket.http.response.start", "status": 503, "headers": [(b"retry-after", RETRY_AFTER)]})
+            await self.base_send({"type": "websocket.http.response.body", "body": b""})
+            raise StopConsumer from error
+
     async def accept(self, *arguments: Any, **named: Any) -> None:
         await super().accept(*arguments, **named)
         self._counted_as = self.kind()
         WEBSOCKETS.labels(self._counted_as).inc()
+        farewell_here().expect(self)
         self._messages = WEBSOCKET_MESSAGES.labels(self._counted_as)
 
     async def send(self, *arguments: Any, **named: Any) -> None:
         await super().send(*arguments, **named)
         self._messages.inc()
 
-    def _hang_up(self, code: int) -> None:
+    def hang_up(self, code: int) -> None:
+        """Once nobody waits any more for what the browser says. The first code counts."""
         if not self._hung_up.done():
             self._hung_up.set_result(code)
 
@@ -79,7 +96,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
     def _look_how_it_ended(self, task: asyncio.Task[None]) -> None:
         if not task.cancelled() and (error := task.exception()) is not None:
             logger.error("a websocket is closed: %r", error, exc_info=error)
-            self._hang_up(FAILED)
+            self.hang_up(FAILED)
 
     async def _user(self) -> User | None:
         """Whoever listens, if they still may."""
@@ -90,8 +107,12 @@ class SignedInSocket(AsyncWebsocketConsumer):
         if key is None:
             return None
         store = import_module(settings.SESSION_ENGINE).SessionStore
-        user = await get_user({"session": store(session_key=key)})  # a store of its own: the first one keeps what it has read
-        return user if isinstance(user, User) and user.is_active else None
+        session = store(session_key=key)  # of its own: the first one keeps what it has read
+        user = await get_user({"session": session})
+        if not (isinstance(user, User) and user.is_active):
+            return None
+        await database_sync_to_async(note_session)(session, user, is_act=False)  # an open page is somebody's presence
+        return user
 
     async def _same_user(self, before: User) -> User | None:
         """Whoever was there before, as they are now; None once they may not listen any more, or work for somebody else."""
@@ -106,7 +127,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
             with suppress(DatabaseError):  # away for a moment: the next look tells
                 now = await self._same_user(user)
                 if now is None or now.role != user.role:
-                    return self._hang_up(SIGNED_OUT)
+                    return self.hang_up(SIGNED_OUT)
 
 
 def _facts_of(scope: Any) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from django.db import transaction
 from kombu.exceptions import OperationalError
 from redis.exceptions import RedisError
 
-from workspace import services, sign_in_log
+from workspace import browser_sessions, second_factors, services, sign_in_log
 from workspace.models import Job
 
 logger = logging.getLogger(__name__)
@@ -40,3 +40,13 @@ def forget_old_idempotency_keys() -> None:
 @shared_task(time_limit=30, soft_time_limit=25)
 def forget_old_sign_ins() -> None:
     sign_in_log.forget_old_sign_ins()
+
+
+@shared_task(time_limit=60, soft_time_limit=50)
+def forget_ended_sessions() -> None:
+    browser_sessions.forget_ended_sessions()
+
+
+@shared_task(time_limit=60, soft_time_limit=50)
+def seal_second_factors() -> None:
+    second_factors.seal_with_the_key_of_today()

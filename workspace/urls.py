@@ -2,12 +2,16 @@
 
 from django.urls import path
 
-from workspace import account_views, people_views, views
+from workspace import account_views, people_views, session_views, views
 
 urlpatterns = [
     path("account", account_views.Account.as_view(), name="api-account"),
     path("account/password", account_views.AccountPassword.as_view(), name="api-account-password"),
-    path("account/sign-out-everywhere", account_views.AccountSessions.as_view(), name="api-account-sessions"),
+    path("account/sign-out-everywhere", session_views.AccountSessions.as_view(), name="api-account-sessions"),
+    path("account/session", session_views.ThisSession.as_view(), name="api-account-this-session"),
+    path("account/proof", session_views.Proof.as_view(), name="api-account-proof"),
+    path("account/sessions", session_views.AccountSessionList.as_view(), name="api-account-session-list"),
+    path("account/sessions/<int:session_id>", session_views.AccountSession.as_view(), name="api-account-session"),
     path("account/tokens", account_views.AccountTokens.as_view(), name="api-account-tokens"),
     path("account/tokens/<int:token_id>", account_views.AccountToken.as_view(), name="api-account-token"),
     path("account/sign-ins", account_views.AccountSignIns.as_view(), name="api-account-sign-ins"),
@@ -15,6 +19,8 @@ urlpatterns = [
     path("people/<int:user_id>", people_views.PersonDetail.as_view(), name="api-person"),
     path("people/<int:user_id>/sign-out", people_views.PersonSessions.as_view(), name="api-person-sessions"),
     path("people/<int:user_id>/tokens", people_views.PersonTokens.as_view(), name="api-person-tokens"),
+    path("people/<int:user_id>/second-factor", people_views.PersonSecondFactor.as_view(), name="api-person-second-factor"),
+    path("second-factor-rule", people_views.SecondFactorRule.as_view(), name="api-second-factor-rule"),
     path("invitations", people_views.InvitationList.as_view(), name="api-invitations"),
     path("invitations/<int:invitation_id>", people_views.InvitationDetail.as_view(), name="api-invitation"),
     path("sign-ins", people_views.SignInList.as_view(), name="api-sign-ins"),

@@ -15,6 +15,7 @@ that are free. Given a database or a Redis, it uses those. What an earlier, kill
 import json
 import os
 import signal
+import socket
 import ssl
 import subprocess
 import sys
@@ -29,7 +30,8 @@ from typing import Self
 
 from config.private_servers import private_database_url, private_redis_url
 from deploy.load.certificates import make_authority, make_certificate
-from deploy.load.replicas import KINDS, free_port, kind_of, ports_of_simulations, replicas
+from deploy.load.name_server import NameServer
+from deploy.load.replicas import KINDS, at_address, free_port, kind_of, name_of, ports_of_simulations, replicas
 from deploy.load.usage import Usage, usage
 from scripts import database_cluster
 from scripts.places import PROJECT_DIR, prepare_sockets, prepare_state, remove_sockets
@@ -38,6 +40,9 @@ from scripts.programs import PROGRAM_STAGE, SERVERS, Program, database_server, q
 from scripts.supervision import ProgramState, Supervisor
 
 PATIENCE_S = 600.0  # the first start of a checkout that has not been set up compiles the core
+ANSWERS_WITHIN_S = 10.0
+SITE = "load.test"  # RFC 6761: no name of the outside
+HOSTS = {"web": "127.77.0", "live": "127.78.0"}  # every address of 127/8 is this machine
 AS_RUN_STARTS = dict.fromkeys(KINDS, 1) | {"web": 2}
 
 
@@ -46,7 +51,7 @@ class NotReady(Exception):
 
 
 class Installation:
-    """One state folder with its servers and programs. The names of replicas are those of ./run: web-1, web-2; live, live-2; proxy, redis."""
+    """One state folder with its servers and programs. Replicas are named as in ./run: web-1, web-2; live, live-2; proxy, redis."""
 
     def __init__(
         self,
@@ -57,10 +62,13 @@ class Installation:
         settings: Mapping[str, str] | None = None,
         database_url: str = "",
         redis_url: str = "",
+        by_name: bool = False,
     ) -> None:
-        """`counts` of replicas by kind, over those of ./run (0: none); `spare` ones are known to the proxy, and wait for `start`.
+        """`counts` of replicas by kind, over those of ./run (0: none); `spare` ones wait for `start`. `settings` are environment variables
+        of every program.
 
-        `settings` are environment variables of every program.
+        `by_name` puts the proxy in front of web and live as Kubernetes has it: they listen on addresses of their own, and the proxy asks a
+        name server for those that `let_in` has named. Without it they are on unix sockets, all of them known to the proxy, as in ./run.
         """
         self.places = prepare_state(folder.resolve())
         self.sockets = prepare_sockets(self.places.state)
@@ -82,10 +90,13 @@ class Installation:
             "SPANWISE_SIMULATOR_PORTS": ports_of_simulations(),
             **(settings or {}),
         }
+        self.name_server = NameServer() if by_name else None
+        self._let_in: set[str] = set()
+        self._ports = {kind: free_port() for kind in HOSTS}
         spare = spare or {}
         most = {kind: self.counts[kind] + spare.get(kind, 0) for kind in KINDS}
         self._started = {program.name for program in replicas(self.places, self.sockets, self.counts)} | {"proxy"}
-        self._programs = {program.name: program for program in [*replicas(self.places, self.sockets, most), self._proxy(most)]}
+        self._programs = {program.name: program for program in [*self._replicas(most), self._proxy(most)]}
         self._give_settings()
 
     # --- the whole -------------------------------------------------------------------------------------------------------------------
@@ -105,6 +116,8 @@ class Installation:
         """End every program, the servers last. The data stay in the folder."""
         self.supervisor.stop()
         remove_sockets(self.places.state)
+        if self.name_server:
+            self.name_server.close()
 
     def wait_until_ready(self, patience_s: float = PATIENCE_S) -> float:
         """Seconds until the pages answer that they are ready, through the proxy. Raises NotReady."""
@@ -184,6 +197,23 @@ class Installation:
             time.sleep(0.02)
         return time.monotonic() - began_s
 
+    def let_in(self, *names: str) -> None:
+        """From now on the proxy finds these replicas of web and live (by_name)."""
+        self._tell_names(self._let_in | set(names))
+
+    def keep_out(self, *names: str) -> None:
+        """The proxy forgets these within its two seconds, and sends them nothing more; what they have they go on answering (by_name)."""
+        self._tell_names(self._let_in - set(names))
+
+    def is_ready(self, name: str) -> bool:
+        """Whether this replica of web answers that it is ready: itself, not the proxy for it."""
+        try:
+            with self._connection(name) as connection:
+                connection.sendall(b"GET /readyz HTTP/1.0\r\nHost: localhost\r\nX-Forwarded-Proto: https\r\n\r\n")
+                return connection.recv(100).split()[1:2] == [b"200"]
+        except OSError:
+            return False
+
     def state(self, name: str) -> ProgramState:
         """What the supervisor says of it."""
         return next(state for state in self.supervisor.states() if state.name == name)
@@ -211,20 +241,51 @@ class Installation:
     def _proxy(self, most: Mapping[str, int]) -> Program:
         """The proxy of the image, in front of unix sockets as in ./run."""
         certificate, key = make_certificate(self._certificates)
-        programs = replicas(self.places, self.sockets, {kind: most[kind] for kind in ("web", "live")})
-        places = {
-            kind: ",".join(f"unix:{path}" for one in programs if kind_of(one.name) == kind for path in one.stale_files) for kind in most
-        }
         environment = {
-            "SPANWISE_PROXY_WEB": places["web"],
-            "SPANWISE_PROXY_LIVE": places["live"],
+            "SPANWISE_PROXY_WEB": self._addresses("web", most),
+            "SPANWISE_PROXY_LIVE": self._addresses("live", most),
             "SPANWISE_PROXY_PORT": f"127.0.0.1:{self.plain_port}",
             "SPANWISE_PROXY_TLS_PORT": f"127.0.0.1:{self.port}",
             "SPANWISE_TLS_CERTIFICATE": str(certificate),
             "SPANWISE_TLS_KEY": str(key),
         }
+        if self.name_server:
+            environment |= {"SPANWISE_PROXY_RESOLVES": "1", "SPANWISE_PROXY_NAME_SERVER": self.name_server.address}
         command = [sys.executable, "-m", "scripts.container", "proxy"]
         return Program("proxy", PROGRAM_STAGE, command, self.places.process("proxy"), patience_s=20, environment=environment)
+
+    def _addresses(self, kind: str, most: Mapping[str, int]) -> str:
+        if self.name_server:
+            return f"{kind}.{SITE}:{self._ports[kind]}"
+        names = [name_of(kind, number) for number in range(1, max(1, most[kind]) + 1)]
+        return ",".join(f"unix:{self.sockets / name}.sock" for name in names)
+
+    def _replicas(self, most: Mapping[str, int]) -> list[Program]:
+        programs = replicas(self.places, self.sockets, most)
+        if not self.name_server:
+            return programs
+        return [
+            at_address(program, self._host(program.name), self._ports[kind_of(program.name)]) if kind_of(program.name) in HOSTS else program
+            for program in programs
+        ]
+
+    def _host(self, name: str) -> str:
+        return f"{HOSTS[kind_of(name)]}.{_number(name)}"
+
+    def _connection(self, name: str) -> socket.socket:
+        if self.name_server:
+            return socket.create_connection((self._host(name), self._ports[kind_of(name)]), ANSWERS_WITHIN_S)
+        connection = socket.socket(socket.AF_UNIX)
+        connection.settimeout(ANSWERS_WITHIN_S)
+        connection.connect(str(self.sockets / f"{name}.sock"))
+        return connection
+
+    def _tell_names(self, let_in: set[str]) -> None:
+        if self.name_server is None:
+            raise RuntimeError("this installation's proxy does not ask for names")
+        self._let_in = let_in
+        for kind in HOSTS:
+            self.name_server.tell(f"{kind}.{SITE}", sorted(self._host(name) for name in let_in if kind_of(name) == kind))
 
     def _give_settings(self) -> None:
         shared = dict(self.settings)
@@ -250,6 +311,8 @@ class Installation:
         self.manage("migrate", "--verbosity", "0")
         if (PROJECT_DIR / "node_modules").exists():  # else the checkout has not been set up; static files then keep their plain names
             self.manage("collectstatic", "--no-input", "--verbosity", "0")
+        if self.name_server:
+            self.let_in(*self.names("web"), *self.names("live"))
         first = [*self.names("web"), "proxy"]  # the others once those answer, since all of them at once hold each other up
         self.supervisor.start_programs(first)
         self.wait_until_ready()
@@ -267,4 +330,5 @@ class Installation:
 
 
 def _number(name: str) -> int:
-    return int(name.rpartition("-")[2]) if name.rpartition("-")[2].isdigit() else 1
+    number = name.rpartition("-")[2]
+    return int(number) if number.isdigit() else 1

@@ -4,7 +4,8 @@
 
 The graph becomes a snapshot as it is: built from assets it would be another one, linked by Spanwise's own rules. Its towers and bridges
 become assets, so that targets are what an operator picks; lines and railways are in the snapshot alone. Beside the graph it writes
-`tokens.txt` (one bearer token a user, good for a week) and `missions.json` (bodies for POST /api/v1/plans: 2 UAVs, 4 targets).
+`tokens.txt` (one bearer token a user, good for a week), `password.txt` (of all of them: only those who sign in need it),
+`missions.json` (bodies for POST /api/v1/plans: 2 UAVs, 4 targets) and `large_missions.json` (3 UAVs, 16 targets: a worker's).
 """
 
 import argparse
@@ -51,6 +52,7 @@ BRIDGE_HALF_DEG = 1e-4
 M_PER_DEG = 111_195.0
 OSM_DECIMALS = 7  # of a degree, a centimetre: as every position of OpenStreetMap has
 TOKEN_DAYS = 7
+LARGE_MISSIONS = 200
 
 
 @dataclass(frozen=True)
@@ -132,12 +134,13 @@ def store_snapshot(graph: PlainGraph, keys: NDArray[np.int64]) -> GraphSnapshot:
     )
 
 
-def store_users(number: int) -> list[str]:
-    """Operators `load-0` and on, who cannot sign in with a password, and their tokens."""
+def store_users(number: int, password: str) -> list[str]:
+    """Operators `load-0` and on with this password, and their tokens. Hashed once: for each alone it would take an hour."""
+    hashed = make_password(password)
     User.objects.filter(username__startswith="load-").delete()
     users = User.objects.bulk_create(
         (
-            User(username=f"load-{index}", role=Role.OPERATOR, organisation_id=DEFAULT_ORGANISATION_ID, password=make_password(None))
+            User(username=f"load-{index}", role=Role.OPERATOR, organisation_id=DEFAULT_ORGANISATION_ID, password=hashed)
             for index in range(number)
         ),
         batch_size=1_000,
@@ -205,9 +208,12 @@ def main() -> None:
     radius_m = options.radius_km * 1_000 or None
     bodies = request_bodies(graph, keys, uavs=2, targets=4, count=options.missions, radius_m=radius_m, seed=options.seed)
     (folder / "missions.json").write_text(json.dumps(bodies))
-    tokens = folder / "tokens.txt"
-    tokens.touch(mode=0o600)
-    tokens.write_text("\n".join(store_users(options.users)))
+    large = request_bodies(graph, keys, uavs=3, targets=16, count=LARGE_MISSIONS, radius_m=radius_m, seed=options.seed)
+    (folder / "large_missions.json").write_text(json.dumps(large))
+    password = secrets.token_urlsafe(16)
+    for name, text in (("tokens.txt", "\n".join(store_users(options.users, password))), ("password.txt", password)):
+        (folder / name).touch(mode=0o600)
+        (folder / name).write_text(text)
     print(f"graph {newest.version}: {newest.nodes:,} nodes, {newest.edges:,} edges; {Asset.objects.count():,} assets")
     print(f"{options.users:,} users, {len(bodies):,} missions, in {perf_counter() - began_s:.0f} s")
 

@@ -1,4 +1,4 @@
-"""Several of each program, with the commands of ./run: what a replica has for itself are its name, its folder, its sockets and its ports."""
+"""Several of each program, with the commands of ./run: a replica has its own name, folder, sockets and ports."""
 
 import socket
 from collections.abc import Mapping
@@ -42,8 +42,9 @@ def replicas(places: Places, sockets: Path, counts: Mapping[str, int]) -> list[P
 
 
 def at_address(program: Program, host: str, port: int) -> Program:
-    """The same web program at a port of its own, as in a container."""
-    return replace(program, command=commands.web("--host", host, "--port", str(port)), stale_files=[])
+    """The same web or live program at a port, as in a container, in place of a unix socket."""
+    command = {"web": commands.web, "live": commands.live}[kind_of(program.name)]
+    return replace(program, command=command("--host", host, "--port", str(port)), stale_files=[])
 
 
 def _again(first: Program, name: str, places: Places, sockets: Path) -> Program:

@@ -97,6 +97,11 @@ def test_behind_an_ingress_the_proxy_asks_for_names_again(tmp_path: Path, monkey
     assert "Strict-Transport-Security" in text
 
 
+def test_the_proxy_asks_the_name_server_that_it_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    told = {"SPANWISE_PROXY_NAME_SERVER": "127.0.0.1:5353", "SPANWISE_PROXY_RESOLVES": "1", "SPANWISE_PROXY_WEB": "web.site:8000"}
+    assert "resolver 127.0.0.1:5353 valid=2s;" in proxy_configuration(tmp_path, monkeypatch, **told)
+
+
 def test_with_a_certificate_the_proxy_speaks_nothing_older_than_tls_1_2(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     key, certificate = tmp_path / "tls.key", tmp_path / "tls.crt"
     command = ["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-subj", "/CN=x"]

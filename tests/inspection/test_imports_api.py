@@ -1,10 +1,13 @@
 """What came in is looked at before it counts; of two curators one wins, and nothing is applied that nobody saw."""
 
 import json
+from datetime import timedelta
 from typing import Any
 
 import pytest
+from django.db import OperationalError
 from django.test import Client
+from django.utils import timezone
 
 from inspection.models import ImportProposal, NoFlyZone, ProposedChange, ZoneSetVersion
 from inspection.selectors import ground_revision
@@ -13,8 +16,8 @@ from inspection.services.proposals import pipeline
 from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal, settle_proposals
 from tests.workspace.people import client_of, somebody
-from workspace.models import AuditEntry, Job, Role, User
-from workspace.services import MAX_ATTEMPTS, start_job
+from workspace.models import AuditEntry, Job, JobState, Role, User
+from workspace.services import MAX_ATTEMPTS, requeue_lost_jobs, start_job
 
 pytestmark = pytest.mark.django_db
 
@@ -173,6 +176,23 @@ def test_a_cancelled_reading_is_discarded_and_a_cancelled_applying_waits_again(c
     settle_proposals()
     assert client.get(f"/api/v1/imports/{ready['id']}").json()["state"] == "ready"
     assert names() == []
+
+
+def test_a_file_is_not_given_up_for_a_database_that_is_away_for_a_moment(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is back before the worker could have written down that it failed: the job waits for its lease to end, and is taken up again."""
+    proposal = propose(client, zone_file(("A", 9.0)))
+
+    def away(**_: Any) -> None:
+        raise OperationalError("the connection is lost")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(pipeline, "read_proposal", away)
+        with pytest.raises(OperationalError):
+            read_proposal(proposal["job"]["id"])
+    assert Job.objects.get().state == JobState.RUNNING
+    Job.objects.update(lease_expires_at=timezone.now() - timedelta(seconds=1))
+    requeue_lost_jobs()
+    assert read(client, proposal)["state"] == "ready"
 
 
 def test_a_worker_that_lost_its_job_writes_nothing(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:

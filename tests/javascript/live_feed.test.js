@@ -43,9 +43,9 @@ class Socket {
     this.readyState = 3;
   }
 
-  isLost() {
+  isLost(code = 1006) {
     this.readyState = 3;
-    this.listeners.close();
+    this.listeners.close({ code });
   }
 }
 
@@ -164,6 +164,20 @@ test("a socket that opens and says nothing is not waited for", async (context) =
   await pass(500);
   assert.equal(Socket.all.length, 2);
   feed.close();
+});
+
+test("a page whose program is being stopped goes to the next one at once, and stays live", async (context) => {
+  const { asked, states, feed, pass } = page(context);
+  Socket.last.says(snapshot(1, { uavs: [{ id: 1, name: "Tern" }] }));
+  Socket.last.isLost(1012);
+  assert.equal(Socket.all.length, 2);
+  Socket.last.says(snapshot(1, { uavs: [{ id: 1, name: "Gull" }] }));
+  assert.equal(feed.shown.uavs.get(1).name, "Gull");
+  assert.deepEqual([states, asked], [["connecting", "live"], []]);
+  Socket.last.isLost(1012);
+  Socket.last.isLost(); // nobody is there
+  await pass(0);
+  assert.deepEqual([states.at(-1), asked.length], ["connecting", 1]);
 });
 
 test("a live socket that falls silent is replaced after 45 s", async (context) => {

@@ -49,14 +49,16 @@ def environment(state_dir: Path, **more: str) -> dict[str, str]:
 
 
 @contextmanager
-def worker(queue: str, state_dir: Path, *, processes: int = 1, **more: str) -> Iterator[subprocess.Popen[bytes]]:
+def worker(
+    queue: str, state_dir: Path, *, app: str = "config.celery", processes: int = 1, **more: str
+) -> Iterator[subprocess.Popen[bytes]]:
     """A real Celery worker with a process pool."""
     command = [
         sys.executable,
         "-m",
         "celery",
         "--app",
-        "config.celery",
+        app,
         "--quiet",
         "worker",
         "--queues",
@@ -136,7 +138,9 @@ def test_a_plan_whose_worker_is_killed_is_taken_over(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
-def test_twenty_killed_workers_lose_no_job_and_end_none_twice(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_twenty_killed_workers_lose_no_job_and_end_none_twice(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], record_property: Any
+) -> None:
     author, here, draw = somebody(Role.OPERATOR), world(), random.Random(5)
     jobs = [mission_to_plan(author, here) for _ in range(JOBS)]
     killed_at_work = 0
@@ -170,6 +174,7 @@ def test_twenty_killed_workers_lose_no_job_and_end_none_twice(tmp_path: Path, ca
     ended = Counter(Job.objects.values_list("state", flat=True))
     plans = Counter(AuditEntry.objects.filter(action="plan", subject_type="mission").values_list("subject_id", flat=True))
     attempts = sum(Job.objects.values_list("attempts", flat=True))
+    record_property("figure", f"{KILLS} kills ({killed_at_work} at work), {JOBS} jobs, {attempts} attempts, {ended[JobState.DONE]} done")
     with capsys.disabled():
         print(f"\n{KILLS} kills ({killed_at_work} with jobs running), {JOBS} jobs, {attempts} attempts, {dict(ended)}, {took_s:.0f} s")
     assert ended == {JobState.DONE: JOBS}

@@ -9,6 +9,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from datetime import timedelta
+from typing import Any
 
 import numpy as np
 import pytest
@@ -95,7 +96,9 @@ def kinds_of(count: int, chance: random.Random) -> tuple[list[CommandKind], list
 
 
 @pytest.mark.parametrize("count", [1_000, pytest.param(10_000, marks=pytest.mark.long)])
-def test_no_command_is_lost_or_applied_out_of_order_and_the_urgent_wait_least(count: int, capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_command_is_lost_or_applied_out_of_order_and_the_urgent_wait_least(
+    count: int, capsys: pytest.CaptureFixture[str], record_property: Any
+) -> None:
     chance, person = random.Random(count), somebody()
     uavs = fleet_of(count // 2)
     backlog, later = kinds_of(count, chance)
@@ -136,6 +139,7 @@ def test_no_command_is_lost_or_applied_out_of_order_and_the_urgent_wait_least(co
     states = defaultdict(int)
     for state in UavCommand.objects.values_list("state", flat=True):
         states[str(state)] += 1
+    record_property("figure", f"{count:,} commands: p99 {top:.2f} s and {lowest:.2f} s, {top / lowest:.1%}")
     with capsys.disabled():
         print(f"\n{count} commands, {KILLS} kills, {LOSS:.0%} loss each way: {dict(states)}; {len(heard.applied)} datagrams heard;")
         print(f"p99 from given to applied: top {top:.2f} s, lowest {lowest:.2f} s: {top / lowest:.1%}")

@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 from django.apps import apps
 from django.contrib.gis.geos import Point
+from django.contrib.sessions.models import Session
 from django.core import serializers
 from django.db.models import Model
 from django.test import Client
@@ -34,7 +35,7 @@ from tests.missions.outbox import a_uav, give
 from tests.missions.worlds import UAV_AT
 from tests.workspace.people import client_of, somebody
 from tests.workspace.test_roles import SAFE, stand_in
-from workspace.models import ApiToken, Invitation, Organisation, Role
+from workspace.models import ApiToken, BrowserSession, Invitation, Organisation, Role, User
 from workspace.services import create_job
 
 pytestmark = pytest.mark.django_db
@@ -47,7 +48,7 @@ SHARED = {
 PLACES_WITHIN = {"uav", "kind", "zoom", "column", "row", "first_byte"}
 APPS = ("workspace", "missions", "telemetry", "simulation")
 REFUSED = {403, 404, 409}  # 409: it was not deleted, so that nothing is brought back
-OWN_DOINGS = {"workspace.signinentry", "workspace.idempotencykey"}  # of the stranger
+OWN_DOINGS = {"workspace.signinentry", "workspace.idempotencykey", "workspace.browsersession"}  # of the stranger
 
 
 def rows_of(home: Organisation) -> dict[str, Model]:
@@ -82,8 +83,16 @@ def rows_of(home: Organisation) -> dict[str, Model]:
         ),
         "user_id": keeper,
         "invitation_id": Invitation.objects.create(organisation=home, role=Role.VIEWER, token_sha256="0" * 64, expires_at=soon),
+        "session_id": BrowserSession.objects.create(
+            session=session_of(keeper), user=keeper, began_at=timezone.now(), acted_at=timezone.now(), present_at=timezone.now()
+        ),
         "token_id": ApiToken.objects.create(user=keeper, token_sha256="0" * 64, expires_at=soon),
     }
+
+
+def session_of(user: User) -> Session:
+    client_of(user)
+    return Session.objects.latest("expire_date")
 
 
 def named(path: str) -> Iterator[str]:

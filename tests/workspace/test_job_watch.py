@@ -130,3 +130,15 @@ def test_the_thread_and_its_connection_are_gone_afterwards(job: Job) -> None:
         watch.progress("reading", 0.1)
         wait_until(lambda: Job.objects.get(pk=job.pk).message == "reading")
     wait_until(lambda: (connections(), threading.active_count()) == before)
+
+
+def test_a_worker_that_is_told_to_stop_gives_the_job_back_to_whoever_is_next(job: Job) -> None:
+    """Without waiting for the lease to run out; what this attempt still writes meets no row."""
+    with pytest.raises(SystemExit), JobWatch(job, interval_s=OFTEN_S), transaction.atomic():
+        raise SystemExit
+    assert stored(job).state == JobState.QUEUED
+    again = start_job(job_id=job.pk)
+    assert again is not None
+    assert again.attempts == job.attempts + 1
+    assert not finish_job(job=job)
+    assert finish_job(job=again)

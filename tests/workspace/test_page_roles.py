@@ -17,7 +17,7 @@ OPEN_TO_ALL = {
     "api/schema", "api/docs", "sign-in", "lost-password", "lost-password/sent", "new-password/x/x", "new-password/set",
     "invitation/x",
 }  # fmt: skip
-SENDS_BACK_TO_THE_DOOR = {"sign-out"}
+SENDS_BACK_TO_THE_DOOR = {"sign-out", "sign-in/code"}  # the code is asked of whoever has just typed the password
 FOR_ADMINISTRATORS = {"administration"}
 OF_THE_API = "api/v1/"  # see test_roles.py
 OF_THE_ADMIN = "admin/"  # Django's own; see test_people_admin.py

@@ -1,13 +1,13 @@
 /** The account: each preference is kept as soon as it is chosen; the password, tokens and sign-ins. */
 
-import { ApiError, get, patch, post, signInAddress } from "../api.js";
+import { ApiError, get, patch, signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { startChrome } from "../page/chrome.js";
 import { chooseTheme, chosenTheme, onTheme } from "../page/theme.js";
-import { toast } from "../page/toast.js";
 import { language, localeOf, t } from "../text.js";
 import { heightText, lengthText, speedText } from "../units.js";
 import { mountPassword } from "./password.js";
+import { mountSessions } from "./sessions.js";
 import { signInRow } from "./sign_in_row.js";
 import { mountTokens } from "./tokens.js";
 
@@ -68,6 +68,7 @@ showZone();
 
 mountPassword({ tell, settle });
 const tokens = mountTokens({ tell, settle });
+const sessions = mountSessions({ tell, settle });
 
 let nextSignIns = null;
 async function loadSignIns(address = "/account/sign-ins?limit=5") {
@@ -82,17 +83,7 @@ async function loadSignIns(address = "/account/sign-ins?limit=5") {
 }
 
 byId("more-sign-ins").addEventListener("click", () => loadSignIns(nextSignIns));
-byId("sign-out-everywhere").addEventListener("click", async () => {
-  try {
-    await post("/account/sign-out-everywhere");
-    settle();
-    toast(t("Signed out in all other browsers."));
-  } catch (error) {
-    tell(t("Nobody was signed out."), error);
-  }
-});
-
-Promise.all([tokens.load(), loadSignIns()]).then(() => {
+Promise.all([tokens.load(), sessions.load(), loadSignIns()]).then(() => {
   document.documentElement.dataset.loaded = "true";
   if (location.hash) document.getElementById(location.hash.slice(1))?.focus({ preventScroll: false });
 });

@@ -7,6 +7,7 @@ import { exactText, whenText } from "../units.js";
 export const OUTCOMES = {
   "signed-in": { icon: "check", words: t("Signed in") },
   wrong: { icon: "circle-x", words: t("Wrong name or password") },
+  "wrong-code": { icon: "circle-x", words: t("Wrong code") },
   "held-back": { icon: "octagon-alert", words: t("Held back, too many tries") },
   "signed-out": { icon: "log-out", words: t("Signed out") },
 };

@@ -6,6 +6,7 @@ import { shownOnce } from "../page/shown_once.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { dayText, exactText, whenText } from "../units.js";
+import { proved } from "./proof.js";
 
 export function mountTokens({ tell, settle }) {
   async function load() {
@@ -60,7 +61,9 @@ export function mountTokens({ tell, settle }) {
       return;
     }
     try {
-      const { data } = await post("/account/tokens", { name, days: Number(byId("token_days").value) });
+      const answer = await proved(() => post("/account/tokens", { name, days: Number(byId("token_days").value) }));
+      if (answer === null) return;
+      const { data } = answer;
       settle();
       byId("token-form").reset();
       byId("new-token").replaceChildren(shownOnce({ title: t("“{name}” is made. Copy it now: it is not shown again.", { name }), secret: data.token, label: t("Token") }));

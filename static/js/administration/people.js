@@ -62,6 +62,7 @@ export function mountPeople({ tell, settle }) {
       { icon: "pencil", label: t("Name and address"), act: () => editPerson(person) },
       { icon: "log-out", label: t("Sign out everywhere"), act: () => signOut(person) },
       person.valid_tokens && { icon: "key-round", label: t("Revoke all tokens"), act: () => askToRevoke(person) },
+      person.has_second_factor && person.id !== me && { icon: "lock-open", label: t("Reset the second factor"), act: () => askToReset(person) },
       person.id === me
         ? null
         : person.is_active
@@ -108,26 +109,49 @@ export function mountPeople({ tell, settle }) {
     }
   }
 
-  function askToRevoke(person) {
-    const revoke = async () => {
-      dialog.close();
-      try {
-        await remove(`/people/${person.id}/tokens`);
-        settle();
-        redraw({ ...person, valid_tokens: 0 }, ".icon-button");
-        toast(t("All tokens of {name} work no more.", { name: person.username }));
-      } catch (error) {
-        tell(t("Nothing was revoked."), error);
-      }
-    };
+  function ask({ title, words, keep, go, act }) {
+    const doIt = () => (dialog.close(), act());
     const dialog = h(
       "dialog",
-      { "aria-labelledby": "revoke-title" },
-      h("h2", { id: "revoke-title" }, t("Revoke all tokens of {name}?", { name: person.username })),
-      h("p", {}, t("Programs that use them stop working at once. This cannot be taken back; new tokens can be made.")),
-      h("form", { method: "dialog", class: "acts" }, h("button", { class: "button", autofocus: true }, t("Keep them")), h("button", { type: "button", class: "button danger filled", onclick: revoke }, t("Revoke"))),
+      { "aria-labelledby": "ask-title" },
+      h("h2", { id: "ask-title" }, title),
+      h("p", {}, words),
+      h("form", { method: "dialog", class: "acts" }, h("button", { class: "button", autofocus: true }, keep), h("button", { type: "button", class: "button danger filled", onclick: doIt }, go)),
     );
     open(dialog);
+  }
+
+  async function take(path, person, without, { done, title }) {
+    try {
+      await remove(path);
+      settle();
+      redraw({ ...person, ...without }, ".icon-button");
+      toast(done);
+    } catch (error) {
+      tell(title, error);
+    }
+  }
+
+  function askToRevoke(person) {
+    const name = person.username;
+    ask({
+      title: t("Revoke all tokens of {name}?", { name }),
+      words: t("Programs that use them stop working at once. This cannot be taken back; new tokens can be made."),
+      keep: t("Keep them"),
+      go: t("Revoke"),
+      act: () => take(`/people/${person.id}/tokens`, person, { valid_tokens: 0 }, { done: t("All tokens of {name} work no more.", { name }), title: t("Nothing was revoked.") }),
+    });
+  }
+
+  function askToReset(person) {
+    const name = person.username;
+    ask({
+      title: t("Reset the second factor of {name}?", { name }),
+      words: t("For somebody who has lost the telephone and the recovery codes. Be sure that it is really they who ask. They are signed out everywhere, and the password alone lets them in until they set up another one."),
+      keep: t("Keep it"),
+      go: t("Reset"),
+      act: () => take(`/people/${person.id}/second-factor`, person, { has_second_factor: false }, { done: t("{name} has no second factor any more.", { name }), title: t("Nothing was changed.") }),
+    });
   }
 
   function editPerson(person) {

@@ -1,35 +1,47 @@
-/** What an organisation asks for before a mission is approved. */
+/** What an organisation asks for: of a mission before it is approved, and of everybody at the door. */
 
 import { get, request } from "../api.js";
 import { byId } from "../dom.js";
 import { t } from "../text.js";
 
+const RULES = [
+  { id: "requires-rehearsal", path: "/rehearsal-rule", name: "requires_green" },
+  { id: "requires-second-factor", path: "/second-factor-rule", name: "required" },
+];
+
 export function mountRules({ tell, settle }) {
-  const asks = byId("requires-rehearsal");
+  async function show({ id, path, name }) {
+    const { data } = await get(path);
+    byId(id).checked = data[name];
+    byId(id).disabled = Boolean(data.is_of_the_installation);
+    byId(id).title = data.is_of_the_installation ? t("Whoever runs this installation asks for it.") : "";
+  }
 
   async function load() {
     try {
-      asks.checked = (await get("/rehearsal-rule")).data.requires_green;
-      asks.disabled = false;
+      await Promise.all(RULES.map(show));
     } catch (error) {
       tell(t("The rules could not be read."), error);
     }
   }
 
-  asks.addEventListener("change", async () => {
-    const wanted = asks.checked;
-    asks.disabled = true;
-    try {
-      await request("PUT", "/rehearsal-rule", { body: { requires_green: wanted } });
-      settle();
-    } catch (error) {
-      asks.checked = !wanted;
-      tell(t("The rule was not changed."), error);
-    } finally {
-      asks.disabled = false;
-      asks.focus();
-    }
-  });
+  for (const { id, path, name } of RULES) {
+    const rule = byId(id);
+    rule.addEventListener("change", async () => {
+      const wanted = rule.checked;
+      rule.disabled = true;
+      try {
+        await request("PUT", path, { body: { [name]: wanted } });
+        settle();
+      } catch (error) {
+        rule.checked = !wanted;
+        tell(t("The rule was not changed."), error);
+      } finally {
+        rule.disabled = false;
+        rule.focus();
+      }
+    });
+  }
 
   return { load };
 }

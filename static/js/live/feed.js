@@ -16,6 +16,7 @@ const ASK_EVERY_MS = 2_000;
 const ASK_WITHIN_MS = 8_000;
 const FIRST_PAUSE_MS = 500;
 const LONGEST_PAUSE_MS = 5_000;
+const RESTARTS = 1012; // the code of a websocket whose program is being stopped
 
 /** How long to wait before the nth try in a row: longer each time, and not all pages at once. */
 export function pauseBefore_ms(failures, random = Math.random) {
@@ -72,7 +73,7 @@ export function openFeed({
     const opened = (socket = new Socket(socketAddress(mission)));
     const isCurrent = () => socket === opened && !isOver;
     opened.addEventListener("message", ({ data }) => isCurrent() && hear(JSON.parse(data)));
-    opened.addEventListener("close", () => isCurrent() && lose());
+    opened.addEventListener("close", (event) => isCurrent() && (event?.code === RESTARTS && feed.state === LIVE ? comeBack() : lose()));
     expectWord();
     timers.first = setTimeout(startAsking, FIRST_WORD_MS);
   }
@@ -119,6 +120,12 @@ export function openFeed({
     if (feed.state !== ASKED) become(CONNECTING);
     timers.connect = setTimeout(connect, pauseBefore_ms(failures++, random));
     startAsking();
+  }
+
+  /** Its program is being stopped, and has told its pages one by one: another one is there. */
+  function comeBack() {
+    hangUp();
+    connect();
   }
 
   function hangUp() {

@@ -3,6 +3,7 @@
 import { ApiError, get } from "../api.js";
 import { byId } from "../dom.js";
 import { readPage, startChrome } from "../page/chrome.js";
+import { KEEP_NO_MORE, KEEP_NOW } from "../page/signing_out.js";
 import { mountWorkbench } from "../page/workbench.js";
 import { mountSceneOpener } from "../scene/opener.js";
 import { createHistory, createStore } from "../store.js";
@@ -204,6 +205,11 @@ store.listen(["selection", "name", "savedBasis", "mission", "conflict"], () => {
 });
 addEventListener("pagehide", () => {
   if (page.canPlan && isLoaded) actions.settleDraft();
+});
+addEventListener(KEEP_NOW, () => page.canPlan && isLoaded && actions.settleDraft());
+addEventListener(KEEP_NO_MORE, () => {
+  clearTimeout(keepTimer);
+  isLoaded = false;
 });
 addEventListener("beforeunload", (event) => {
   if (page.canPlan && !isKept && isUnsaved(store.state)) event.preventDefault(); // storage is closed: ask

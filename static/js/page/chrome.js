@@ -4,6 +4,8 @@ import { byId, h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { chosenTheme, nextTheme, onTheme, THEME_ICONS } from "./theme.js";
 import { listenToKeys, showKeys } from "./keyboard.js";
+import { watchSessionEnd } from "./session_end.js";
+import { askBeforeSigningOut } from "./signing_out.js";
 
 const THEME_WORDS = { system: t("as the system"), light: t("light"), dark: t("dark") };
 
@@ -41,6 +43,7 @@ export function startChrome({ bindings = [] } = {}) {
 
   const account = byId("open-account");
   account.addEventListener("click", () => toggleMenu(account, () => accountMenu(all)));
+  watchSessionEnd(readPage().sessionEndsIn_s);
   byId("open-more").addEventListener("click", () => toggleMenu(account, () => accountMenu(all)));
 }
 
@@ -48,6 +51,7 @@ function accountMenu(bindings) {
   const menu = byId("account-menu").content.cloneNode(true).firstElementChild;
   menu.querySelector("[data-theme-name]").textContent = THEME_WORDS[chosenTheme()];
   menu.querySelector("[data-act=theme]").addEventListener("click", nextTheme);
+  askBeforeSigningOut(menu.querySelector("form"), readPage().userId);
   menu.querySelector("[data-act=keys]").addEventListener("click", () => (closeMenu(), showKeys(bindings)));
   return menu;
 }

@@ -29,14 +29,16 @@ def keeps_bars(every_s: float, score: Score) -> None:
 
 
 @pytest.mark.long
-def test_200_flights_keep_the_bars(shared_data):
+def test_200_flights_keep_the_bars(shared_data, record_property):
     files = [shared_data(f"osm/{name}") for name in ("nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf")]
     lines = [line for path in files for line in lines_of(path)]
     for every_s, score in score_flights(range(200), lines).items():
+        record_property("figure", f"a report in {every_s:g} s: inside {share(score.inside):.1%}")
         keeps_bars(every_s, score)
 
 
 @pytest.mark.long
-def test_200_flights_along_drawn_lines_keep_the_bars():
+def test_200_flights_along_drawn_lines_keep_the_bars(record_property):
     for every_s, score in score_flights(range(200)).items():
+        record_property("figure", f"drawn lines, a report in {every_s:g} s: inside {share(score.inside):.1%}")
         keeps_bars(every_s, score)

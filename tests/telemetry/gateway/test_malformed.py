@@ -48,7 +48,7 @@ def malformed(chance: random.Random, frames: list[bytes]) -> bytes:
 
 
 @pytest.mark.parametrize("number", [100_000, pytest.param(1_000_000, marks=pytest.mark.long)])
-def test_malformed_datagrams(number, tmp_path):
+def test_malformed_datagrams(number, tmp_path, record_property):
     unsigned_uav()
     chance = random.Random(number)
     writer, signed = FrameWriter(1, 1), FrameWriter(1, 1, key=b"k" * 32)
@@ -77,4 +77,7 @@ def test_malformed_datagrams(number, tmp_path):
         assert gateway.listeners.damages.total() >= number * 0.95
         assert resident_mib() - began_mib < MOST_GROWTH_MIB
         assert not gateway.damages
+        dropped = gateway.listeners.damages.total()
+        grown_mib = resident_mib() - began_mib
+    record_property("figure", f"{dropped:,} of {number:,} dropped, {len(sent):,} of {len(sent):,} good ones stored, {grown_mib:+.1f} MiB")
     assert sorted(TelemetryRecord.objects.values_list("sequence", flat=True)) == sent

@@ -3,14 +3,23 @@
 import json
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
-from websocket import WebSocket, WebSocketTimeoutException
+from websocket import ABNF, WebSocket, WebSocketException, WebSocketTimeoutException
 
 from tests.workspace.front_door import PATIENCE_S
 
 KINDS = ("uavs", "missions", "alerts", "commands", "offers")
+
+
+class HungUp(WebSocketException):
+    """The other end has said goodbye, with a code."""
+
+    def __init__(self, code: int) -> None:
+        super().__init__(f"hung up with {code}")
+        self.code = code
 
 
 @dataclass
@@ -28,8 +37,11 @@ class Page:
         return message
 
     def hear(self) -> dict[str, Any]:
-        """Takes in a message that it does not confirm."""
-        message: dict[str, Any] = json.loads(self.socket.recv())
+        """Takes in a message that it does not confirm. Raises HungUp."""
+        frame = self.socket.recv_frame()
+        if frame.opcode == ABNF.OPCODE_CLOSE:
+            raise HungUp(int.from_bytes(frame.data[:2], "big"))
+        message: dict[str, Any] = json.loads(frame.data)
         if message["type"] == "snapshot":
             self.shows = {kind: {entry["id"]: entry for entry in message["live"][kind]} for kind in KINDS}
             self.sequence = message["sequence"]
@@ -55,4 +67,5 @@ class Page:
         return found
 
     def say(self, word: object) -> None:
-        self.socket.send(json.dumps(word))
+        with suppress(BrokenPipeError, ConnectionResetError):  # hung up meanwhile: with which code it has yet to hear
+            self.socket.send(json.dumps(word))

@@ -1,0 +1,122 @@
+"""What an installation holds at one moment: memory and files of each program, connections, Redis, queues, tables."""
+
+import os
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import psycopg
+from redis import Redis
+from redis.exceptions import RedisError
+
+QUEUES = ("data", "planning", "simulation")
+KIB = 1_024
+
+
+@dataclass(frozen=True)
+class Sample:
+    """`own_bytes` by program is its proportional set size without shared segments, which are `shared_bytes`: PostgreSQL's buffers.
+
+    `files` by program are those open; `tables` by name are bytes and dead rows.
+    """
+
+    at_s: float
+    own_bytes: Mapping[str, int]
+    shared_bytes: int
+    files: Mapping[str, int]
+    processes: Mapping[str, int]
+    connections: int
+    redis_bytes: int
+    redis_keys: int
+    waiting: int  # in the queues of workers
+    open_jobs: int
+    tables: Mapping[str, tuple[int, int]]
+
+    @property
+    def all_bytes(self) -> int:
+        return sum(self.own_bytes.values())
+
+    @property
+    def dead_rows(self) -> int:
+        return sum(dead for _, dead in self.tables.values())
+
+    @property
+    def tables_bytes(self) -> int:
+        return sum(size for size, _ in self.tables.values())
+
+
+def families(roots: Mapping[str, int]) -> dict[str, list[int]]:
+    """By name: each of these processes with all below it."""
+    children: dict[int, list[int]] = {}
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            try:
+                parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
+            except OSError:
+                continue
+            children.setdefault(parent, []).append(int(entry.name))
+
+    def below(pid: int) -> list[int]:
+        return [pid, *(grandchild for child in children.get(pid, []) for grandchild in below(child))]
+
+    return {name: below(pid) for name, pid in roots.items()}
+
+
+def memory_of(pid: int) -> tuple[int, int]:
+    """Bytes of its own and of shared segments, each page divided among those that have it; nothing of a process that has gone."""
+    try:
+        text = Path(f"/proc/{pid}/smaps_rollup").read_text()
+    except OSError:
+        return 0, 0
+    told = {line.split(":")[0]: int(line.split()[1]) * KIB for line in text.splitlines()[1:]}
+    shared = told.get("Pss_Shmem", 0)
+    return told.get("Pss", 0) + told.get("SwapPss", 0) - shared, shared
+
+
+def files_of(pid: int) -> int:
+    try:
+        return len(os.listdir(f"/proc/{pid}/fd"))  # noqa: PTH208 (counted, not looked at)
+    except OSError:
+        return 0
+
+
+def sample(roots: Mapping[str, int], database_url: str, redis_url: str) -> Sample:
+    """`roots` are process ids of programs by name. What a server that is away would say is 0."""
+    found = families(roots)
+    memory = {name: [memory_of(pid) for pid in pids] for name, pids in found.items()}
+    connections, open_jobs, tables = _database(database_url)
+    redis_bytes, redis_keys, waiting = _redis(redis_url)
+    return Sample(
+        at_s=time.time(),
+        own_bytes={name: sum(own for own, _ in parts) for name, parts in memory.items()},
+        shared_bytes=sum(shared for parts in memory.values() for _, shared in parts),
+        files={name: sum(map(files_of, pids)) for name, pids in found.items()},
+        processes={name: len(pids) for name, pids in found.items()},
+        connections=connections,
+        redis_bytes=redis_bytes,
+        redis_keys=redis_keys,
+        waiting=waiting,
+        open_jobs=open_jobs,
+        tables=tables,
+    )
+
+
+def _database(url: str) -> tuple[int, int, dict[str, tuple[int, int]]]:
+    try:
+        with psycopg.connect(url.replace("postgis://", "postgres://", 1), connect_timeout=5, autocommit=True) as connection:
+            asked = "SELECT count(*) FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid()"
+            connections = connection.execute(asked).fetchone()
+            jobs = connection.execute("SELECT count(*) FROM workspace_job WHERE state IN ('queued', 'running')").fetchone()
+            told = connection.execute("SELECT relname, pg_total_relation_size(relid), n_dead_tup FROM pg_stat_user_tables").fetchall()
+    except psycopg.OperationalError:
+        return 0, 0, {}
+    return connections[0] if connections else 0, jobs[0] if jobs else 0, {name: (size, dead) for name, size, dead in told}
+
+
+def _redis(url: str) -> tuple[int, int, int]:
+    try:
+        with Redis.from_url(url, socket_timeout=5) as asked:
+            return int(asked.info("memory")["used_memory"]), int(asked.dbsize()), sum(int(asked.llen(queue)) for queue in QUEUES)
+    except RedisError:
+        return 0, 0, 0

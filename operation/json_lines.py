@@ -1,0 +1,130 @@
+"""Every line that a program writes is JSON, whoever writes it: python -m operation.json_lines MODULE [ARGUMENT...]
+
+Lines of logging are (operation/log_lines.py); this is for all others: what is printed, warned of, raised and not caught, also before
+logging is set up, and in processes that are forked off. A file that ends in .py may stand for the module.
+"""
+
+import io
+import json
+import logging
+import os
+import runpy
+import sys
+import threading
+import warnings
+from datetime import UTC, datetime
+from types import TracebackType
+from typing import Any, TextIO
+
+from operation.log_lines import JsonFormatter
+from operation.redaction import without_secrets
+
+LONGEST = 100_000  # signs; a line without an end is cut
+
+
+def is_asked_for() -> bool:
+    return os.environ.get("SPANWISE_LOG_FORMAT") == "json"
+
+
+def json_line(message: str, *, level: str = "INFO", logger: str = "output") -> str:
+    told = {"time": datetime.now(UTC).isoformat(timespec="milliseconds"), "level": level, "logger": logger}
+    told["message"] = without_secrets(message)
+    if program := os.environ.get("SPANWISE_PROGRAM"):
+        told["program"] = program
+    return json.dumps(told)
+
+
+def is_json(line: str) -> bool:
+    """Whether it is an object already."""
+    if not line.startswith("{"):
+        return False
+    try:
+        json.loads(line)
+    except ValueError:
+        return False
+    return True
+
+
+class JsonLines(io.TextIOBase):
+    """In place of a stream. Whole lines are written at once, so that those of several processes do not mix."""
+
+    def __init__(self, stream: TextIO, name: str) -> None:
+        self._stream, self._name = stream, name
+        self._forget()
+        os.register_at_fork(after_in_child=self._forget)
+
+    def _forget(self) -> None:
+        """What a parent has begun is the parent's."""
+        self._begun, self._lock = "", threading.RLock()
+
+    @property
+    def encoding(self) -> str:  # type: ignore[override]
+        return "utf-8"
+
+    def writable(self) -> bool:
+        return True
+
+    def fileno(self) -> int:
+        return self._stream.fileno()
+
+    def isatty(self) -> bool:
+        return False
+
+    def write(self, text: str) -> int:
+        with self._lock:
+            *lines, self._begun = (self._begun + text).split("\n")
+            if len(self._begun) > LONGEST:
+                lines, self._begun = [*lines, self._begun], ""
+            if told := "".join(self._line(line) + "\n" for line in lines if line.strip()):
+                self._stream.write(told)
+                self._stream.flush()
+        return len(text)
+
+    def flush(self) -> None:
+        self._stream.flush()
+
+    def close(self) -> None:
+        """At the end of the program: what has no end yet is told as well."""
+        if self._begun:
+            self.write("\n")
+
+    def _line(self, line: str) -> str:
+        return line if is_json(line) else json_line(line.rstrip(), logger=self._name)
+
+
+def write_json_lines() -> None:
+    """From here on, in this process and those that it forks."""
+    sys.stdout = sys.__stdout__ = JsonLines(sys.stdout, "stdout")  # type: ignore[assignment,misc]
+    sys.stderr = sys.__stderr__ = JsonLines(sys.stderr, "stderr")  # type: ignore[assignment,misc]
+    sys.excepthook = _tell_uncaught
+    threading.excepthook = lambda told: _tell_uncaught(told.exc_type, told.exc_value, told.exc_traceback)
+    warnings.showwarning = _tell_warning
+
+
+def _tell(level: int, message: str, error: Any = None) -> None:
+    record = logging.LogRecord("python", level, "", 0, message, None, error)
+    sys.stderr.write(JsonFormatter(os.environ.get("SPANWISE_PROGRAM", "")).format(record) + "\n")
+
+
+def _tell_uncaught(kind: type[BaseException], error: BaseException | None, trace: TracebackType | None) -> None:
+    if not issubclass(kind, SystemExit | KeyboardInterrupt):
+        _tell(logging.CRITICAL, f"{kind.__name__} was not caught", (kind, error, trace))
+
+
+def _tell_warning(message: Any, category: type[Warning], filename: str, lineno: int, file: Any = None, line: Any = None) -> None:
+    _tell(logging.WARNING, f"{category.__name__}: {message} ({filename}:{lineno})")
+
+
+def main() -> None:
+    _, target, *arguments = sys.argv
+    write_json_lines()
+    sys.argv = [target, *arguments]
+    if target.endswith(".py"):
+        sys.path[0] = os.path.dirname(os.path.abspath(target))  # noqa: PTH100, PTH120 - as Python itself has it
+        runpy.run_path(target, run_name="__main__")
+    else:
+        runpy.run_module(target, run_name="__main__", alter_sys=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,28 @@
+/** What pages keep of somebody in this browser, and how it goes when they sign out. Preferences of the browser itself stay. */
+
+const DRAFT = /^spanwise\.([a-z]+-)?draft\./;
+
+const isOf = (user) => {
+  const own = new RegExp(`^spanwise\\.[a-z-]+\\.${user}(\\.|$)`);
+  return (key) => own.test(key);
+};
+
+function keysOf(storage) {
+  try {
+    return Array.from({ length: storage.length }, (_, place) => storage.key(place));
+  } catch {
+    return []; // closed
+  }
+}
+
+/** How many drafts of the user are not saved on the server: pages drop a draft once it is. */
+export function draftsOf(user, storages = [globalThis.localStorage]) {
+  return storages.flatMap((storage) => keysOf(storage).filter(isOf(user)).filter((key) => DRAFT.test(key))).length;
+}
+
+/** Everything of the user, but the drafts where they are to stay. */
+export function forget(user, { keepsDrafts = false, storages = [globalThis.localStorage, globalThis.sessionStorage] } = {}) {
+  for (const storage of storages) {
+    for (const key of keysOf(storage).filter(isOf(user))) if (!(keepsDrafts && DRAFT.test(key))) storage.removeItem(key);
+  }
+}

@@ -1,0 +1,70 @@
+/** A word before the session ends because nobody was there, and one after it. What is not saved stays in this browser meanwhile. */
+
+import { ApiError, get, post, signInAddress } from "../api.js";
+import { h, icon } from "../dom.js";
+import { t } from "../text.js";
+import { clockText } from "../units.js";
+
+export const WARNS_S = 300;
+const ASKS_AGAIN_S = 30; // while it is about to end, or the server is away: somebody may be busy in another window
+const LONGEST_TIMER_S = 86_400;
+
+/**
+ * Looks when the session is about to end, and no earlier. `ask()` and `stay()` answer in how many seconds it ends; `show` is told null,
+ * { ends_at_ms } or { isOver: true }. Returns the functions of its two buttons: { look, keep }.
+ */
+export function createSessionWatch({ endsIn_s, ask, stay, show, setTimer = setTimeout, clearTimer = clearTimeout, now_ms = Date.now }) {
+  let timer = 0;
+  let shown = null;
+
+  function tell(state) {
+    if (state === null && shown === null) return;
+    show((shown = state));
+  }
+
+  function plan(left_s) {
+    clearTimer(timer);
+    const isSoon = left_s <= WARNS_S;
+    tell(isSoon ? { ends_at_ms: now_ms() + left_s * 1_000 } : null);
+    const wait_s = isSoon ? Math.min(ASKS_AGAIN_S, left_s + 1) : Math.min(left_s - WARNS_S, LONGEST_TIMER_S);
+    timer = setTimer(look, wait_s * 1_000);
+  }
+
+  async function by(asked) {
+    try {
+      plan(await asked());
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      clearTimer(timer);
+      if (error.isSignedOut) tell({ isOver: true });
+      else timer = setTimer(look, ASKS_AGAIN_S * 1_000);
+    }
+  }
+
+  const look = () => by(ask);
+  plan(endsIn_s);
+  return { look, keep: () => by(stay) };
+}
+
+/** On every page with the bar. A computer that slept asks as soon as somebody looks at the page again. */
+export function watchSessionEnd(endsIn_s) {
+  let box = null;
+  const answered = (send) => async () => (await send("/account/session")).data.ends_in_s;
+  const watch = createSessionWatch({ endsIn_s, ask: answered(get), stay: answered(post), show });
+  let hidden_ms = 0;
+  document.addEventListener("visibilitychange", () => {
+    if (document.hidden) hidden_ms = Date.now();
+    else if (Date.now() - hidden_ms > ASKS_AGAIN_S * 1_000) watch.look();
+  });
+
+  function show(state) {
+    box?.remove();
+    if (state === null) return (box = null);
+    const act = state.isOver ? h("a", { class: "button primary", href: signInAddress() }, t("Sign in")) : h("button", { type: "button", class: "button primary", onclick: () => watch.keep() }, t("Stay signed in"));
+    const why = state.isOver
+      ? t("You are signed out, as nobody was here for a while. What is not saved is kept in this browser.")
+      : t("You will be signed out at {time}, as nothing was done here. What is not saved is kept in this browser.", { time: clockText(new Date(state.ends_at_ms).toISOString()) });
+    box = h("div", { class: "session-word", role: "alert" }, icon("calendar-clock"), h("p", {}, why), act);
+    document.body.append(box);
+  }
+}

@@ -1,0 +1,50 @@
+"""Passwords made of words that everybody here would try first: the product, its trade, the organisation, the site's name."""
+
+import re
+from typing import Any
+
+from django.conf import settings
+from django.core.exceptions import ValidationError
+from django.utils.translation import gettext as _
+
+PRODUCT_AND_TRADE = (
+    "spanwise", "inspection", "inspector", "inspect", "powerline", "pylon", "tower", "bridge", "railway", "uav", "drone", "mavlink",
+    "pilot", "operator", "curator", "viewer", "administrator", "admin", "mission", "password", "passwort",
+)  # fmt: skip
+SHORTEST_WORD = 3  # of an organisation's name: what is shorter is in every password
+SHORTEST_REST = 8  # characters that have to be something else
+LIKE_LETTERS = str.maketrans({"0": "o", "1": "i", "!": "i", "3": "e", "4": "a", "@": "a", "5": "s", "$": "s", "7": "t"})
+
+
+def context_words(organisation: str) -> set[str]:
+    """As they are compared: small letters and digits, written out."""
+    site = [host for host in settings.ALLOWED_HOSTS if not re.fullmatch(r"[\d.:\[\]*]+|localhost", host)]
+    named = re.findall(r"[^\W_]+", " ".join([organisation, *site, *settings.PASSWORD_WORDS]).casefold())
+    return {_plain(word) for word in (*PRODUCT_AND_TRADE, *named) if len(word) >= SHORTEST_WORD}
+
+
+def rest_beside(password: str, words: set[str]) -> str:
+    """What is left of a password without such words, whichever digits stand for letters, and without what is between words."""
+    rest = _plain(password)
+    for word in sorted(words, key=len, reverse=True):
+        rest = rest.replace(word, "")
+    return rest
+
+
+class ContextWordsValidator:
+    """Refuses what is such a word with little beside it: "Spanwise2026!", not a long sentence that has one in it."""
+
+    def validate(self, password: str, user: Any = None) -> None:
+        organisation = "" if user is None else user.organisation.name
+        words = context_words(organisation)
+        rest = rest_beside(password, words)
+        if rest != _plain(password) and len(rest) < SHORTEST_REST:
+            message = _("This is made of words that everybody here would try first. Add something of your own, 8 characters or more.")
+            raise ValidationError(message, code="password_of_context_words")
+
+    def get_help_text(self) -> str:
+        return _("Not only the name of this program, of your organisation, or of what you do here.")
+
+
+def _plain(text: str) -> str:
+    return re.sub(r"[\W_]", "", text.casefold().translate(LIKE_LETTERS))
