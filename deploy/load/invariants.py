@@ -9,6 +9,7 @@ long as jobs or commands are open.
 
 import argparse
 import os
+import statistics
 import sys
 import time
 from collections.abc import Callable
@@ -81,7 +82,8 @@ def main() -> int:
     print(table(["invariant", "verdict"], [[one.name, one.verdict] for one in looked]))
     print(
         f"\n{promised.count:,} acknowledged items; {promised.retried} tries that failed and were made again, "
-        f"{len(promised.unanswered)} given up; {promised.live_messages:,} words to live pages"
+        f"{len(promised.unanswered)} given up; {promised.live_messages:,} words to live pages; "
+        + "; ".join(f"{name}: {statistics.median(took):.1f} s, at most {max(took):.1f}" for name, took in promised.seen_s.items())
     )
     for one in looked:
         for words in one.violations[:SHOWN]:

@@ -5,6 +5,7 @@ import copy
 import http.client
 import json
 import os
+import signal
 import subprocess
 import time
 from collections.abc import Iterable
@@ -14,6 +15,7 @@ from typing import Any
 
 import yaml
 
+from operation.json_lines import is_json
 from scripts.places import PROJECT_DIR
 
 Manifest = dict[str, Any]
@@ -199,11 +201,25 @@ def look_at_rights(podman: Podman, pod: Pod) -> None:
 
 def stop_softly(podman: Podman, pod: Pod, patience_s: float) -> None:
     """SIGTERM to the container's first process, and how long it took to end."""
-    process = Path("/proc") / podman("inspect", pod.container, "--format", "{{.State.Pid}}")
+    process = int(podman("inspect", pod.container, "--format", "{{.State.Pid}}"))
     began_s = time.monotonic()
-    podman("kill", "--signal", "TERM", pod.container)
-    while process.exists() and time.monotonic() - began_s < patience_s:
+    os.kill(process, signal.SIGTERM)  # podman would take seconds of its own on a busy machine
+    while _is_running(process) and time.monotonic() - began_s < patience_s:
         time.sleep(0.02)
     pod.exit_s = time.monotonic() - began_s
-    if process.exists():
+    if _is_running(process):
         pod.faults.append(f"still there {patience_s:.0f} s after SIGTERM")
+
+
+def _is_running(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def look_at_lines(pod: Pod, written: str) -> None:
+    """Where logs are JSON, every line is."""
+    others = [line for line in written.splitlines() if line.strip() and not is_json(line)]
+    if others:
+        pod.faults.append(f"{len(others)} lines are no JSON, first: {others[0][:120]!r}")

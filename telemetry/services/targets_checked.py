@@ -44,11 +44,12 @@ class TargetChecks:
         with connection.cursor() as cursor:
             cursor.execute(_COMPLETE, {"uav_ids": uav_ids, "back_s": LOOKED_BACK_S, "settled_s": SETTLED_S})
             found = cursor.fetchall()
-        missed = 0
+        missed, looked_at = 0, {}
         for mission_id, approval_id, uav_id, places, newest in found:
             if self._looked_at.get((mission_id, uav_id)) != newest:
                 missed += _skip_missed(mission_id, approval_id, uav_id, set(places))
-                self._looked_at[mission_id, uav_id] = newest
+            looked_at[mission_id, uav_id] = newest
+        self._looked_at = looked_at  # what is no longer recent is not found again
         return missed
 
 

@@ -19,6 +19,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.long]  # UAVs fly in real time
 
 LIVE_SOCKET = re.compile(r"/ws/missions/[^/]+/live$")
 ASKED = "**/api/v1/live*"
+BEGINS_M = 3_000.0  # along the route, where there are towers
 AGAIN_S = 30  # the page reads the record of a flight anew
 
 
@@ -73,7 +74,7 @@ def test_beside_the_map_a_flight_moves_and_what_is_measured_is_told_from_what_is
     starts(page, mission)
     page.goto(f"/missions/{mission}/fly")
     wait_for_map(page)
-    along_m = flies_until(page, lambda: page.locator(".map-flyer.measured").count() == 2, flyers, 300.0)
+    along_m = flies_until(page, lambda: page.locator(".map-flyer.measured").count() == 2, flyers, BEGINS_M)
     page.get_by_role("button", name="3D view").click()
     view = page.get_by_role("region", name="3D view")
     certainty = view.locator(".scene-certainty")
@@ -102,7 +103,7 @@ def test_a_view_that_is_cut_off_says_so_and_goes_on_when_the_line_is_mended(visi
     page.goto(f"/missions/{mission}/3d?source=live")
     page.locator("html[data-loaded]").wait_for(state="attached", timeout=PATIENCE_MS)
     certainty = page.locator(".scene-certainty")
-    along_m = flies_until(page, lambda: is_said(certainty, "measured"), flyers, 300.0)
+    along_m = flies_until(page, lambda: is_said(certainty, "measured"), flyers, BEGINS_M)
     cut_off = page.get_by_role("status").filter(has_text="What you see is from then. Connecting again.")
     expect(cut_off).to_have_count(0)
     line.cut()
@@ -118,7 +119,7 @@ def test_the_view_over_a_record_goes_with_a_flight_that_is_under_way(visitor: Vi
     mission, flyers = flight
     page = visitor.signs_in("opal")
     starts(page, mission)
-    along_m = flies_until(page, lambda: asks(page, f"/missions/{mission}")["state"] == "active", flyers, 300.0)
+    along_m = flies_until(page, lambda: asks(page, f"/missions/{mission}")["state"] == "active", flyers, BEGINS_M)
     for _ in range(3):
         along_m += STEP_M
         for flyer in flyers:

@@ -180,6 +180,8 @@ def test_what_one_picked_is_not_shown_to_the_next_at_the_same_browser(visitor: V
     for name, count in (("rory", 0), ("opal", 1)):
         page.get_by_role("button", name=re.compile("^Account of")).click()
         page.get_by_role("button", name="Sign out").click()
+        if name == "rory":  # opal has a draft and is asked what becomes of it
+            page.get_by_role("dialog").get_by_role("button", name="Keep here").click()
         page.get_by_label("User name").fill(name)
         page.get_by_label("Password").fill(PASSWORD)
         page.get_by_role("button", name="Sign in").click()

@@ -104,5 +104,5 @@ def working_day(
             command += [f"--{what}", str(size[what])]
         subprocess.run(command, env=installation.environment(), cwd=PROJECT_DIR, check=True)  # noqa: S603
         told = json.loads((folder / "day.json").read_text())
-        site = Site(installation, people_of(installation))
+        site = Site(installation, people_of(installation, told["organisation"]))
         yield Day(site, folder, size["users"], tuple(uav["uav"] for uav in told["in_air"]))

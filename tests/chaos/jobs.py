@@ -24,7 +24,8 @@ def large_plan_body(site: Site, chance: random.Random) -> dict[str, Any]:
 
 def job_of(told: dict[str, Any]) -> str:
     """Its id, of an answer 202."""
-    return str(told["job"]["id"] if "job" in told else told["id"])
+    job = told.get("job", told)
+    return str(job["id"] if isinstance(job, dict) else job)
 
 
 def states_at_the_end(installation: Installation, jobs: list[str], patience_s: float) -> list[str]:

@@ -1,7 +1,9 @@
 """Live pages without a browser: each comes back by itself, counts gaps in the sequence, and knows when it was last told anything new."""
 
 import json
+import socket
 import threading
+from contextlib import suppress
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from types import TracebackType
@@ -9,7 +11,7 @@ from typing import Any, Self
 
 from websocket import WebSocket, WebSocketException, create_connection
 
-from tests.chaos.site import Site
+from tests.chaos.site import Site, wait_until
 
 SILENT_S = 45.0
 AGAIN_AFTER_S = 0.3
@@ -37,8 +39,9 @@ class Page:
 
     def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
         self._ends.set()
-        if self._socket is not None:
-            self._socket.shutdown()
+        if self._socket is not None and self._socket.sock is not None:
+            with suppress(OSError):
+                self._socket.sock.shutdown(socket.SHUT_RDWR)  # which wakes whoever reads from it
         self._thread.join(2 * SILENT_S)
 
     def _run(self) -> None:
@@ -100,6 +103,11 @@ class Pages:
 
     def are_live_since(self, moment: datetime) -> bool:
         return all(page.measured_at > moment for page in self.all)
+
+    def wait_until_live(self) -> None:
+        """Until each shows something that was reported from now on."""
+        begins_at = datetime.now(UTC)
+        wait_until(lambda: self.are_live_since(begins_at), "live pages")
 
     @property
     def gaps(self) -> int:

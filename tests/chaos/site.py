@@ -1,5 +1,6 @@
 """The shipped programs over the demo region, with people and UAVs, for one experiment; nothing of it is left afterwards."""
 
+import fcntl
 import json
 import os
 import shutil
@@ -14,7 +15,8 @@ from typing import Any
 
 from config.private_servers import state_directory
 from deploy.load.installation import Installation
-from scripts.places import PROJECT_DIR
+from scripts.places import PROJECT_DIR, CannotStart, Places
+from scripts.supervision import Supervisor
 from tests.chaos.asking import Client
 
 DEMO = (
@@ -52,15 +54,21 @@ def shipped(
 ) -> Iterator[Installation]:
     """The programs with an empty database, in a folder of their own (or in the one that is given)."""
     place = folder or state_directory() / "chaos" / name
-    _forget(place)
     place.mkdir(parents=True, exist_ok=True)
     place.chmod(0o755)  # for PostgreSQL's user
-    try:
-        with Installation(place, counts, spare=spare, settings=settings) as installation:
-            yield installation
-    finally:
-        if KEEPS not in os.environ:
+    with place.with_suffix(".lock").open("w") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise CannotStart(f"this experiment is running already on {place}") from None
+        try:
+            Supervisor(Places(place), place).end_leftovers()  # of a run that was killed, before their folder goes
             _forget(place)
+            with Installation(place, counts, spare=spare, settings=settings) as installation:
+                yield installation
+        finally:
+            if KEEPS not in os.environ:
+                _forget(place)
 
 
 @contextmanager
@@ -78,9 +86,9 @@ def demo_site(
         yield Site(installation, people_of(installation))
 
 
-def people_of(installation: Installation) -> dict[str, Any]:
-    """Operators with tokens, made beside those that may be there."""
-    command = [sys.executable, "-m", "tests.chaos.people"]
+def people_of(installation: Installation, organisation: int = 1) -> dict[str, Any]:
+    """Operators with tokens, made beside those that may be there, and what they ask with."""
+    command = [sys.executable, "-m", "tests.chaos.people", str(organisation)]
     told = subprocess.run(  # noqa: S603
         command, env=installation.environment(), cwd=PROJECT_DIR, stdout=subprocess.PIPE, text=True, check=True
     ).stdout

@@ -15,7 +15,7 @@ from missions.models import Approval, InspectionTarget, Mission, MissionState, O
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_started, mark_waypoint_reached
 from telemetry.models import AlertLevel, InspectionResult, PositionEstimate, TelemetryRecord, TelemetryStream
 from telemetry.services.alerts import open_alert
-from telemetry.services.targets_checked import TargetChecks
+from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks
 from tests.missions.flights import an_operator, dispatched, fleet
 from tests.missions.worlds import World, world
 from tests.telemetry.flown import fly, route_of
@@ -184,6 +184,18 @@ def test_targets_that_were_reached_stay_complete_however_seldom_it_reports(missi
     age_states(mission)
     assert TargetChecks().check([tern.pk]) == 0
     assert {state for state, _ in states(mission)} == {"complete"}
+
+
+def test_a_watch_forgets_what_it_looked_at_long_ago(mission: Mission, approval: Approval, tern: Uav) -> None:
+    fly(approval, tern, began())
+    end(mission, tern)
+    age_states(mission)
+    checks = TargetChecks()
+    checks.check([tern.pk])
+    assert checks != TargetChecks()
+    mission.targets.update(state_at=timezone.now() - 2 * timedelta(seconds=LOOKED_BACK_S))
+    checks.check([tern.pk])
+    assert checks == TargetChecks()
 
 
 def test_what_a_uav_reports_of_a_target_itself_is_not_overruled(mission: Mission, approval: Approval, tern: Uav) -> None:

@@ -21,8 +21,9 @@ from websocket import WebSocket, WebSocketBadStatusException
 from tests.workspace.front_door import PATIENCE_S, Door, close_code, front_door, redis_at, running, through_its_redis, wait_until
 from tests.workspace.people import somebody
 from workspace import live as words
+from workspace.browser_sessions import end_session
 from workspace.consumers import ENDED, JobConsumer
-from workspace.models import ApiToken, Job, Organisation, User
+from workspace.models import ApiToken, BrowserSession, Job, Organisation, User
 from workspace.services import cancel_job, create_api_token, create_job, finish_job, report_progress, start_job
 
 pytestmark = pytest.mark.django_db(transaction=True)
@@ -118,12 +119,17 @@ def test_a_socket_is_closed_soon_after_its_session_or_token_ends_or_its_user_is_
     by_session, by_token = here.open(at(job), user=user), here.open(at(job), token=token)
     moved = somebody()
     of_old_organisation = here.open(at(running_job(moved)), user=moved)
-    told(by_session), told(by_token), told(of_old_organisation)
+    ended, idle = somebody(), somebody()
+    of_ended, of_idle = (here.open(at(running_job(person)), user=person) for person in (ended, idle))
+    told(by_session), told(by_token), told(of_old_organisation), told(of_ended), told(of_idle)
     ended_s = time.monotonic()
     User.objects.filter(pk=user.pk).update(session_generation=1)
     ApiToken.objects.update(revoked_at=timezone.now())
     User.objects.filter(pk=moved.pk).update(organisation=Organisation.objects.create(name="Elsewhere"))
-    assert [close_code(by_session), close_code(by_token), close_code(of_old_organisation)] == [4401, 4401, 4401]
+    end_session(BrowserSession.objects.get(user=ended), actor=ended)
+    long_ago = timezone.now() - timedelta(hours=3)
+    BrowserSession.objects.filter(user=idle).update(acted_at=long_ago, present_at=long_ago)
+    assert {close_code(live) for live in (by_session, by_token, of_old_organisation, of_ended, of_idle)} == {4401}
     assert time.monotonic() - ended_s < 8.0  # four seconds, and a busy machine
 
 

@@ -34,6 +34,7 @@ ZONE_GONE = "zone-gone"  # id
 SENT = "sent"  # uav, datagrams: MAVLink, which nobody acknowledges
 UNANSWERED = "unanswered"  # method, path, key: given up
 RETRIED = "retried"  # name, why: failed, and was tried again
+SEEN = "seen"  # name, took_s: until somebody saw what was to come
 GAP = "gap"  # a page saw one: by, expected, got
 WATCHED = "watched"  # a page: by, messages, gaps, opened
 

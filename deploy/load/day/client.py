@@ -93,6 +93,16 @@ class Client(FastHttpUser):
     def headers_for(self, method: str) -> dict[str, str]:
         return {}
 
+    def note_seen(self, name: str, took_s: float) -> None:
+        """What somebody waited for came; that is no request, and not among their times."""
+        self.book.note(kinds.SEEN, name=name, took_s=round(took_s, 2))
+
+    def blame(self, name: str, fault: Exception) -> None:
+        """A failure that no answer's status tells: a wrong word in it, or what never came."""
+        self.environment.events.request.fire(
+            request_type="SEEN", name=name, response_time=0, response_length=0, exception=fault, context={}
+        )
+
 
 class Bearer(Client):
     """A program or a companion computer with a token."""

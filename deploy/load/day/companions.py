@@ -93,7 +93,7 @@ class Companion(Bearer):
             return
         answer = self.ask("POST", "/api/v1/uav-link/telemetry", "companion: records", {"stream": self.stream, "records": records}).json()
         if answer["refused"] or answer["stored"] + answer["known"] != len(records):
-            self.blame("companion: records", f"sound records were refused: {answer['refused'][:1]}")
+            self.blame("companion: records", AssertionError(f"sound records were refused: {answer['refused'][:1]}"))
             return
         self.book.note(kinds.RECORDS, uav=self.desk.uav, stream=self.stream, sequences=[record["sequence"] for record in records])
 
@@ -141,14 +141,9 @@ class Companion(Bearer):
         answer = self.ask("POST", "/api/v1/uav-link/results", "companion: results", route["told"]).json()
         told, self.flying = route["told"], None
         if answer["refused"] or answer["refused_flights"]:
-            self.blame("companion: results", f"refused: {answer['refused'][:1]} {answer['refused_flights'][:1]}")
+            refused = f"refused: {answer['refused'][:1]} {answer['refused_flights'][:1]}"
+            self.blame("companion: results", AssertionError(refused))
             return
         sequences = [result["sequence"] for result in told["results"]]
         self.book.note(kinds.RESULTS, uav=self.desk.uav, stream=self.stream, sequences=sequences)
         self.book.note(kinds.FLIGHT, uav=self.desk.uav, approval=route["approval"], flight=told["flights"][0]["flight"])
-
-    def blame(self, name: str, why: str) -> None:
-        """A well-formed answer that says something wrong is a failure, too."""
-        self.environment.events.request.fire(
-            request_type="SAYS", name=name, response_time=0, response_length=0, exception=AssertionError(why), context={}
-        )

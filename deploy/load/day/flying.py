@@ -132,16 +132,15 @@ class FlyingOperator(Browser):
         return str(page.shown["commands"].get(command, {}).get("state", ""))
 
     def seen(self, name: str, is_so: Callable[[], bool]) -> bool:
-        """Whether the page shows it in time, which Locust counts."""
+        """Whether the page shows it in time."""
         began_s = time.monotonic()
         while not is_so() and time.monotonic() - began_s < SEEN_WITHIN_S:
             gevent.sleep(0.2)
-        late = None if is_so() else TimeoutError(f"not in {SEEN_WITHIN_S:.0f} s")
-        took_ms = (time.monotonic() - began_s) * 1000
-        self.environment.events.request.fire(
-            request_type="SEEN", name=name, response_time=took_ms, response_length=0, exception=late, context={}
-        )
-        return late is None
+        if not is_so():
+            self.blame(name, TimeoutError(f"not in {SEEN_WITHIN_S:.0f} s"))
+            return False
+        self.note_seen(name, time.monotonic() - began_s)
+        return True
 
     def pause(self) -> None:
         gevent.sleep(self.draw.uniform(1.0, 4.0))

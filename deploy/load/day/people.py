@@ -96,12 +96,11 @@ class PlansMissions(Person):
             told = self.get(f"jobs/{job}", "plan: job")
             if told["state"] in {"done", "failed", "cancelled"}:
                 break
-        late = None if told["state"] == "done" else TimeoutError(f"{told['state']} after {waited_s:.0f} s: {told.get('error')}")
-        self.environment.events.request.fire(
-            request_type="SEEN", name="plan: large, done", response_time=waited_s * 1000, response_length=0, exception=late, context={}
-        )
-        if late is None:
+        if told["state"] == "done":
+            self.note_seen("plan: large, done", waited_s)
             self.book.note(kinds.PLAN, job=job)
+        else:
+            self.blame("plan: large, done", TimeoutError(f"{told['state']} after {waited_s:.0f} s: {told.get('error')}"))
 
     def save_and_edit(self) -> None:
         """Two windows on one mission: the second one that saves is told that it has changed, and saves on top."""

@@ -84,9 +84,20 @@ def _number(text: str) -> float:
 
 @contextmanager
 def playing(
-    folder: Path, address: str, authority: Path | None, udp: tuple[str, int], *, users: int, spawn_rate: float = 5.0, name: str = "day"
+    folder: Path,
+    address: str,
+    authority: Path | None,
+    udp: tuple[str, int],
+    *,
+    users: int,
+    spawn_rate: float = 5.0,
+    name: str = "day",
+    counts_ramp: bool = True,
 ) -> Iterator[Playing]:
-    """Begins at once; ends both processes at the end of the block. Logs and figures lie in the folder."""
+    """Begins at once; ends both processes at the end of the block. Logs and figures lie in the folder.
+
+    Without `counts_ramp` the figures begin when all users are there.
+    """
     results = folder / name
     for old in folder.glob(f"{name}_*.csv"):
         old.unlink()
@@ -97,7 +108,7 @@ def playing(
     }
     locust = [sys.executable, "-m", "locust", "-f", str(ROOT / "deploy" / "load" / "working_day.py"), "--headless", "--host", address]
     locust += ["--users", str(users), "--spawn-rate", str(spawn_rate), "--csv", str(results), "--only-summary", "--loglevel", "WARNING"]
-    locust += ["--stop-timeout", "60"]
+    locust += ["--stop-timeout", "60", *([] if counts_ramp else ["--reset-stats"])]
     fleet = [sys.executable, "-m", "deploy.load.day.fleet", "--day", str(folder), "--udp", f"{udp[0]}:{udp[1]}"]
     with (folder / f"{name}-locust.log").open("wb") as locust_log, (folder / f"{name}-fleet.log").open("wb") as fleet_log:
         day = Playing(

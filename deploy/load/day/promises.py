@@ -29,6 +29,7 @@ class Promises:
     zones: dict[int, str] = field(default_factory=dict)
     zones_gone: set[int] = field(default_factory=set)
     sent: dict[int, int] = field(default_factory=dict)  # UAV, reports by MAVLink, unacknowledged
+    seen_s: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))  # how long until somebody saw what was to come
     gaps: list[str] = field(default_factory=list)
     live_messages: int = 0
     pages_opened: int = 0
@@ -94,6 +95,8 @@ def _take(found: Promises, line: dict[str, Any]) -> None:
             found.unsure.discard(str(line["id"]))
         case kinds.SENT:
             found.sent[line["uav"]] = found.sent.get(line["uav"], 0) + line["reports"]
+        case kinds.SEEN:
+            found.seen_s[line["name"]].append(line["took_s"])
         case kinds.GAP:
             found.gaps.append(f"{line['by']}: {line['expected']} was to come, and {line['got']} came")
         case kinds.WATCHED:

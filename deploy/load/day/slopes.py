@@ -4,29 +4,31 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import t as student
 
 S_PER_H = 3_600.0
 GROWS, FLAT, NOT_DECIDED = "grows", "flat", "not decided"
-SURE = 2.0  # standard errors
+SURE = 0.95
 MOST_HANGING = 0.98
 
 
 @dataclass(frozen=True)
 class Slope:
-    """In percent of the mean, an hour; `error` is the standard error of it."""
+    """In percent of the mean, an hour; `error` is its standard error, and 95 of 100 times the truth lies within `bound` of it."""
 
     percent_per_h: float
     error: float
+    bound: float
     mean: float
 
     def verdict(self, bar: float) -> str:
         """GROWS where it is above the bar for sure, FLAT where it is below it for sure."""
-        if self.percent_per_h - SURE * self.error > bar:
+        if self.percent_per_h - self.bound > bar:
             return GROWS
-        return FLAT if self.percent_per_h + SURE * self.error < bar else NOT_DECIDED
+        return FLAT if self.percent_per_h + self.bound < bar else NOT_DECIDED
 
     def __str__(self) -> str:
-        return f"{self.percent_per_h:+.2f} ± {self.error:.2f}"
+        return f"{self.percent_per_h:+.2f} ± {self.bound:.2f}"
 
 
 def slope(at_s: NDArray[np.float64], values: NDArray[np.float64]) -> Slope:
@@ -39,7 +41,7 @@ def slope(at_s: NDArray[np.float64], values: NDArray[np.float64]) -> Slope:
     hours = (at_s - at_s.mean()) / S_PER_H
     mean = float(values.mean())
     if mean == 0.0 or not hours.any():
-        return Slope(0.0, 0.0, mean)
+        return Slope(0.0, 0.0, 0.0, mean)
     spread = float((hours**2).sum())
     steepness = float((hours * (values - mean)).sum()) / spread
     rest = values - mean - steepness * hours
@@ -48,4 +50,5 @@ def slope(at_s: NDArray[np.float64], values: NDArray[np.float64]) -> Slope:
     hanging = min(max(hanging, 0.0), MOST_HANGING)
     independent = max(len(values) * (1.0 - hanging) / (1.0 + hanging), 3.0)
     error = float(np.sqrt(power / (independent - 2.0) / spread))
-    return Slope(100.0 * steepness / mean, 100.0 * error / mean, mean)
+    errors = float(student.ppf(0.5 + SURE / 2.0, independent - 2.0))
+    return Slope(100.0 * steepness / mean, 100.0 * error / mean, 100.0 * errors * error / mean, mean)

@@ -178,8 +178,10 @@ def alerts_add_up() -> list[str]:
         *_told(
             """
             SELECT id, code, (closed_at IS NULL) FROM telemetry_alert
-            WHERE course->0->>'what' IS DISTINCT FROM 'opened' OR (course->-1->>'what' = 'closed') <> (closed_at IS NOT NULL)
-                OR (SELECT count(*) FROM jsonb_array_elements(course) step WHERE step->>'what' IN ('opened', 'closed')) > 2
+            WHERE course->0->>'what' IS DISTINCT FROM 'opened'
+                OR (SELECT count(*) FROM jsonb_array_elements(course) step WHERE step->>'what' = 'opened') <> 1
+                OR (SELECT count(*) FROM jsonb_array_elements(course) step WHERE step->>'what' = 'closed')
+                    <> (CASE WHEN closed_at IS NULL THEN 0 ELSE 1 END)
             """,
             "alert {} ({}) is open: {}, and its course says otherwise",
         ),

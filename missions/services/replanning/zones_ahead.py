@@ -30,13 +30,15 @@ def zone_ahead(rest: Rest, now: datetime) -> MetZone | None:
 def suggest_for_zones() -> list[ReplanOffer]:
     """For missions that fly while the ground changes: once for each zone that has come across what is left of one.
 
-    What has been looked at is kept in the cache: without it, it is looked at again, and suggested no more than once all the same.
+    What has been looked at is kept in the cache, once it has been: a worker that is killed or runs out of time on the way leaves the rest
+    to the next. Without the cache it is looked at again, and suggested no more than once all the same.
     """
     revision, now = ground_revision(), timezone.now()
     flying = Mission.objects.filter(state=MissionState.ACTIVE, deleted_at=None).exclude(ground_revision=revision)
     found = []
     for mission in flying.select_related("organisation"):
-        if not cache.add(f"replan-zones:{mission.pk}:{revision}", 1, LOOKED_AT_FOR_S):
+        looked_at = f"replan-zones:{mission.pk}:{revision}"
+        if cache.get(looked_at):
             continue
         loaded = mission_of_organisation(mission.organisation, mission.pk)
         for rest in rests_of(loaded, Cause(ZONE_ACTIVE), now):
@@ -53,4 +55,5 @@ def suggest_for_zones() -> list[ReplanOffer]:
             }
             offer = suggest(mission_id=mission.pk, code=ZONE_ACTIVE, cause=cause)
             found += [] if offer is None else [offer]
+        cache.set(looked_at, 1, LOOKED_AT_FOR_S)
     return found

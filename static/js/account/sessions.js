@@ -22,7 +22,6 @@ export function mountSessions({ tell, settle }) {
     try {
       const { data } = await get("/account/sessions");
       byId("sessions").replaceChildren(...data.results.map(row));
-      byId("sign-out-everywhere").disabled = data.results.every((session) => session.is_this_one);
     } catch (error) {
       tell(t("Sessions could not be loaded."), error);
     }

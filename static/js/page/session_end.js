@@ -60,7 +60,7 @@ export function watchSessionEnd(endsIn_s) {
   function show(state) {
     box?.remove();
     if (state === null) return (box = null);
-    const act = state.isOver ? h("a", { class: "button primary", href: signInAddress() }, t("Sign in")) : h("button", { type: "button", class: "button primary", onclick: watch.keep }, t("Stay signed in"));
+    const act = state.isOver ? h("a", { class: "button primary", href: signInAddress() }, t("Sign in")) : h("button", { type: "button", class: "button primary", onclick: () => watch.keep() }, t("Stay signed in"));
     const why = state.isOver
       ? t("You are signed out, as nobody was here for a while. What is not saved is kept in this browser.")
       : t("You will be signed out at {time}, as nothing was done here. What is not saved is kept in this browser.", { time: clockText(new Date(state.ends_at_ms).toISOString()) });

@@ -18,6 +18,8 @@ export function askBeforeSigningOut(form, user) {
     event.preventDefault();
     ask(drafts, (keepsDrafts) => {
       leave(user, keepsDrafts);
+      form.hidden = true;
+      document.body.append(form); // the menu that it was in has closed meanwhile
       form.submit();
     });
   });
@@ -34,13 +36,13 @@ function ask(drafts, signOut) {
     "dialog",
     { "aria-labelledby": "drafts-title" },
     h("h2", { id: "drafts-title" }, tn(drafts, "{count} draft is not saved on the server", "{count} drafts are not saved on the server")),
-    h("p", {}, t("They are in this browser alone. Whoever uses this computer after you could find them; kept ones come back when you sign in here again.")),
+    h("p", {}, t("Drafts are in this browser alone. Whoever uses this computer after you could find them; what you keep comes back when you sign in here again.")),
     h(
       "form",
       { method: "dialog", class: "acts" },
       h("button", { class: "button", autofocus: true }, t("Stay signed in")),
-      h("button", { type: "button", class: "button", onclick: answer(true) }, t("Keep them here")),
-      h("button", { type: "button", class: "button danger filled", onclick: answer(false) }, t("Delete them")),
+      h("button", { type: "button", class: "button", onclick: answer(true) }, t("Keep here")),
+      h("button", { type: "button", class: "button danger filled", onclick: answer(false) }, t("Delete")),
     ),
   );
   open(dialog);

@@ -14,7 +14,7 @@ export function createCameraBar({ routes, acts, isPanel, openAddress }) {
   const name = `scene-camera-${Math.random().toString(36).slice(2)}`;
   const cameras = Object.keys(CAMERA_WORDS).map((mode) => ({ mode, input: h("input", { type: "radio", name, value: mode, onchange: () => acts.setCamera(mode) }) }));
   const uavs = routes.map(({ place, name: uav }) => ({ place, button: h("button", { type: "button", class: `scene-uav route-${routeNumber(place)}`, "aria-pressed": "false", "aria-label": t("Follow {name}", { name: `${routeLetter(place)} ${uav}` }), title: uav, onclick: () => acts.choose(place) }, h("span", { class: `letter route-${routeNumber(place)}` }, routeLetter(place))) }));
-  const button = (image, words, key, act) => h("button", { class: "icon-button", type: "button", "aria-label": words, title: key ? `${words} (${key})` : words, onclick: act }, icon(image));
+  const button = (image, words, key, act, { isOfPage = true } = {}) => h("button", { class: `icon-button${isOfPage ? "" : " of-panel"}`, type: "button", "aria-label": words, title: key ? `${words} (${key})` : words, onclick: act }, icon(image));
   const element = h(
     "div",
     { class: "scene-bar", role: "group", "aria-label": t("Camera") },
@@ -24,8 +24,8 @@ export function createCameraBar({ routes, acts, isPanel, openAddress }) {
       button("maximize-2", t("See all of it"), "F", () => acts.fit()),
       button("camera", t("Keep a picture (PNG)"), "P", () => void acts.keepPicture()),
       button("link", t("Copy the link to this moment"), "L", () => void acts.copyLink()),
-      isPanel && h("a", { class: "icon-button", href: openAddress(), "aria-label": t("Open the whole 3D view"), title: t("Open the whole 3D view"), onclick: (event) => (event.currentTarget.href = openAddress()) }, icon("external-link")),
-      isPanel && button("x", t("Close the 3D view"), "", () => acts.close()),
+      isPanel && h("a", { class: "icon-button of-panel", href: openAddress(), "aria-label": t("Open the whole 3D view"), title: t("Open the whole 3D view"), onclick: (event) => (event.currentTarget.href = openAddress()) }, icon("external-link")),
+      isPanel && button("x", t("Close the 3D view"), "", () => acts.close(), { isOfPage: false }),
     ),
   );
   return {

@@ -15,6 +15,7 @@ from workspace.one_time_codes import STEP_S, code_of
 
 pytestmark = pytest.mark.browser
 Picture = Callable[[Page, str], None]
+DRAFTS = "Object.keys(localStorage).filter((key) => key.startsWith('spanwise.draft.')).length"
 
 
 def pictures(page: Page, picture: Picture, name: str) -> None:
@@ -47,12 +48,12 @@ def test_a_second_factor_is_set_up_asked_for_and_replaced_by_a_recovery_code(vis
     assert box["width"] > 140
     pictures(page, picture, "second-factor")
     seed = seed_on(page)
-    page.get_by_label("Code").fill("000000")
+    page.get_by_role("textbox", name="Code").fill("000000")
     page.get_by_label("Password").fill(PASSWORD)
     page.get_by_role("button", name="Set up").click()
     expect(page.get_by_role("alert")).to_contain_text("This is not the app’s code of now.")
     assert seed_on(page) == seed, "the app need not read another picture"
-    page.get_by_label("Code").fill(code_now(seed, -1))
+    page.get_by_role("textbox", name="Code").fill(code_now(seed, -1))
     page.get_by_label("Password").fill(PASSWORD)
     page.get_by_role("button", name="Set up").click()
     codes = page.locator(".recovery-codes li").all_text_contents()
@@ -64,12 +65,12 @@ def test_a_second_factor_is_set_up_asked_for_and_replaced_by_a_recovery_code(vis
 
     other = visitor.opens(size=(390, 844))
     types_password(other, "frieda")
-    expect(other.get_by_label("Code")).to_be_focused()
+    expect(other.get_by_role("textbox", name="Code")).to_be_focused()
     pictures(other, picture, "sign-in-code-phone")
-    other.get_by_label("Code").fill("999999")
+    other.get_by_role("textbox", name="Code").fill("999999")
     other.get_by_role("button", name="Sign in").click()
     expect(other.get_by_role("alert")).to_contain_text("4 tries left for 15 min.")
-    other.get_by_label("Code").fill(codes[0])
+    other.get_by_role("textbox", name="Code").fill(codes[0])
     other.get_by_role("button", name="Sign in").click()
     expect(other.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
 
@@ -96,10 +97,9 @@ def test_a_word_stands_on_the_page_before_the_session_ends(visitor: Visitor, pic
 
 
 def module(page: Page, name: str) -> str:
-    """The address of a module of pages, as the import map has it."""
-    found = page.evaluate(
-        "name => performance.getEntriesByType('resource').map(({ name }) => name).find((url) => url.includes(name))", name
-    )
+    """The address of a module of pages, by which it has been fetched."""
+    entries = "performance.getEntriesByType('resource').map((entry) => entry.name)"
+    found = page.evaluate(f"name => {entries}.find((address) => address.includes(name))", name)
     assert isinstance(found, str)
     return found
 
@@ -108,13 +108,12 @@ def test_signing_out_tells_of_drafts_and_deletes_them(visitor: Visitor, picture:
     page = newcomer(visitor, "dora")
     page.goto("/missions/new")
     page.get_by_label("Name of the mission").fill("Half a plan")
-    drafts = "() => Object.keys(localStorage).filter((key) => key.includes('.draft.')).length"
-    page.wait_for_function(f"({drafts})() === 1")
+    page.wait_for_function(f"() => {DRAFTS} === 1")
     page.get_by_role("button", name=re.compile("^Account of")).click()
     page.get_by_role("button", name="Sign out").click()
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text("1 draft is not saved on the server")
     pictures(page, picture, "signing-out")
-    dialog.get_by_role("button", name="Delete them").click()
+    dialog.get_by_role("button", name="Delete").click()
     expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
-    assert page.evaluate(drafts) == 0
+    assert page.evaluate(DRAFTS) == 0

@@ -6,13 +6,13 @@ The file system is a small one in memory, which only root can mount.
 import os
 import shutil
 import subprocess
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from uuid import uuid4
 
-from config.private_servers import state_directory
 from scripts.system_packages import find_program
 from tests.chaos.asking import Askers
 from tests.chaos.experiment import Course, main
@@ -51,14 +51,15 @@ def run(course: Course) -> None:
 
 @contextmanager
 def small_disk() -> Iterator[Path]:
-    place = state_directory() / "chaos" / "small-disk"
-    place.mkdir(parents=True, exist_ok=True)
+    place = Path(tempfile.mkdtemp(prefix="sw-disk-", dir="/tmp"))  # where PostgreSQL's user gets to, and short enough for sockets
+    place.chmod(0o755)
     subprocess.run([find_program("mount") or "mount", "-t", "tmpfs", "-o", f"size={SIZE_MIB}m,mode=0755", "tmpfs", str(place)], check=True)  # noqa: S603
     try:
         (place / "state").mkdir()
         yield place
     finally:
         subprocess.run([find_program("umount") or "umount", "--lazy", str(place)], check=True)  # noqa: S603
+        place.rmdir()
 
 
 def _fill(ballast: Path, for_s: float) -> None:

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
+from celery.exceptions import SoftTimeLimitExceeded
 from django.utils import timezone
 from shapely.geometry import LineString
 
@@ -13,7 +14,7 @@ from inspection.models import NoFlyZone
 from inspection.services import mark_ground_changed
 from missions import tasks
 from missions.models import CommandKind, OfferState, ReplanOffer
-from missions.services.replanning import accept_offer, suggest, suggest_for_zones
+from missions.services.replanning import accept_offer, suggest, suggest_for_zones, zones_ahead
 from tests.missions import worlds
 from tests.missions.flights import carry, ground
 from tests.missions.outbox import give
@@ -39,6 +40,19 @@ def middle_of_last_visits(flight: Flight, place: int) -> tuple[float, float]:
     rows = list(flight.route(place).waypoints.filter(kind="target").order_by("sequence"))[-2:]
     lon, lat = np.mean([row.position.coords[:2] for row in rows], axis=0)
     return float(lon), float(lat)
+
+
+def test_a_worker_that_ends_while_it_looks_for_zones_leaves_them_to_the_next(flight, monkeypatch):
+    zone = worlds.zone_around(middle_of_last_visits(flight, 1), half_deg=0.0008)
+
+    def out_of_time(*_: object) -> None:
+        raise SoftTimeLimitExceeded
+
+    with monkeypatch.context() as slow, pytest.raises(SoftTimeLimitExceeded):
+        slow.setattr(zones_ahead, "zones_met", out_of_time)
+        suggest_for_zones()
+    (offer,) = suggest_for_zones()
+    assert offer.cause["zone"] == zone.pk
 
 
 def test_a_zone_that_comes_across_a_route_is_gone_round(flight):

@@ -1,0 +1,77 @@
+"""PostgreSQL and Redis with TLS as deployments have them: every way to them verifies the certificate, and none goes without it."""
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from deploy.proof.servers import Servers, running_servers
+from scripts.places import PROJECT_DIR
+
+pytestmark = pytest.mark.long
+
+LOOPBACK = "127.0.0.1/32"
+WAYS_TO_REDIS = ("cached", "queue", "pages", "hints")
+WAYS = ("database", "dump", *WAYS_TO_REDIS)
+
+
+@pytest.fixture(scope="module")
+def servers() -> Iterator[Servers]:
+    if os.geteuid() != 0:
+        pytest.skip("PostgreSQL runs as a user of its own: this needs root")
+    with tempfile.TemporaryDirectory(prefix="sw-tls-") as folder, running_servers(Path(folder), LOOPBACK) as servers:
+        yield servers
+
+
+def addresses(servers: Servers, host: str = "localhost", authority: Path | None = None) -> dict[str, str]:
+    """As deploy/make-secrets writes them, but for where the servers and the authority's certificate are."""
+    authority = authority or servers.secrets / "ca.crt"
+    named = {"DATABASE_URL": servers.database_url, "REDIS_URL": servers.redis_url}
+    told = {name: url.replace("/run/secrets/ca-certificate", str(authority)) for name, url in named.items()}
+    return {name: url.replace("@postgresql:", f"@{host}:").replace("@redis:", f"@{host}:") for name, url in told.items()}
+
+
+def tried(folder: Path, addresses: dict[str, str]) -> dict[str, str]:
+    """What came of each way."""
+    own = {"SPANWISE_VAR": str(folder), "SPANWISE_SECRET_KEY": "of-the-test", "DJANGO_SETTINGS_MODULE": "config.settings"}
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.deploy.tls_clients"],
+        cwd=PROJECT_DIR, env=os.environ | own | addresses, capture_output=True, text=True, check=False, timeout=600,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    told: dict[str, str] = json.loads(done.stdout.splitlines()[-1])
+    assert set(told) == set(WAYS)
+    return told
+
+
+def refused(told: dict[str, str]) -> set[str]:
+    return {way for way, said in told.items() if said.startswith("refused")}
+
+
+def test_every_way_to_the_servers_speaks_tls(servers: Servers, tmp_path: Path) -> None:
+    told = tried(tmp_path, addresses(servers))
+    assert refused(told) == set(), json.dumps(told)
+    assert told["database"] in {"TLSv1.2", "TLSv1.3"}
+
+
+def test_a_server_with_another_name_than_its_certificate_is_refused(servers: Servers, tmp_path: Path) -> None:
+    assert refused(tried(tmp_path, addresses(servers, host="127.0.0.1"))) == set(WAYS)
+
+
+def test_a_server_that_another_authority_has_signed_is_refused(servers: Servers, tmp_path: Path) -> None:
+    other = tmp_path / "other.crt"
+    make = ["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-subj", "/CN=Another"]
+    subprocess.run([*make, "-keyout", str(tmp_path / "other.key"), "-out", str(other)], check=True, capture_output=True)
+    assert refused(tried(tmp_path, addresses(servers, authority=other))) == set(WAYS)
+
+
+def test_nobody_gets_in_without_tls(servers: Servers, tmp_path: Path) -> None:
+    plain = addresses(servers)
+    plain["DATABASE_URL"] = plain["DATABASE_URL"].partition("?")[0] + "?sslmode=disable"
+    plain["REDIS_URL"] = plain["REDIS_URL"].partition("?")[0].replace("rediss://", "redis://")
+    assert refused(tried(tmp_path, plain)) == set(WAYS)
