@@ -29,6 +29,7 @@ class Sample:
     connections: int
     redis_bytes: int
     redis_keys: int
+    redis_lasting: int  # keys that never expire
     waiting: int  # in the queues of workers
     open_jobs: int
     tables: Mapping[str, tuple[int, int]]
@@ -86,7 +87,7 @@ def sample(roots: Mapping[str, int], database_url: str, redis_url: str) -> Sampl
     found = families(roots)
     memory = {name: [memory_of(pid) for pid in pids] for name, pids in found.items()}
     connections, open_jobs, tables = _database(database_url)
-    redis_bytes, redis_keys, waiting = _redis(redis_url)
+    redis_bytes, redis_keys, redis_lasting, waiting = _redis(redis_url)
     return Sample(
         at_s=time.time(),
         own_bytes={name: sum(own for own, _ in parts) for name, parts in memory.items()},
@@ -96,6 +97,7 @@ def sample(roots: Mapping[str, int], database_url: str, redis_url: str) -> Sampl
         connections=connections,
         redis_bytes=redis_bytes,
         redis_keys=redis_keys,
+        redis_lasting=redis_lasting,
         waiting=waiting,
         open_jobs=open_jobs,
         tables=tables,
@@ -114,9 +116,11 @@ def _database(url: str) -> tuple[int, int, dict[str, tuple[int, int]]]:
     return connections[0] if connections else 0, jobs[0] if jobs else 0, {name: (size, dead) for name, size, dead in told}
 
 
-def _redis(url: str) -> tuple[int, int, int]:
+def _redis(url: str) -> tuple[int, int, int, int]:
     try:
         with Redis.from_url(url, socket_timeout=5) as asked:
-            return int(asked.info("memory")["used_memory"]), int(asked.dbsize()), sum(int(asked.llen(queue)) for queue in QUEUES)
+            spaces = asked.info("keyspace").values()
+            keys, expiring = sum(space["keys"] for space in spaces), sum(space["expires"] for space in spaces)
+            return int(asked.info("memory")["used_memory"]), keys, keys - expiring, sum(int(asked.llen(queue)) for queue in QUEUES)
     except RedisError:
-        return 0, 0, 0
+        return 0, 0, 0, 0
