@@ -10,15 +10,17 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from http.client import HTTPException
 from pathlib import Path
 from uuid import uuid4
 
+from config.private_servers import state_directory
 from scripts.system_packages import find_program
 from tests.chaos.asking import Askers
 from tests.chaos.experiment import Course, main
 from tests.chaos.jobs import job_of, large_plan_body, one_of, states_at_the_end
 from tests.chaos.plans import plan_body, reader
-from tests.chaos.site import Site, demo_site, wait_until
+from tests.chaos.site import KEEPS, Site, demo_site, wait_until
 
 SIZE_MIB = 900
 FULL_S, SHORT_FULL_S = 40.0, 15.0
@@ -58,6 +60,8 @@ def small_disk() -> Iterator[Path]:
         (place / "state").mkdir()
         yield place
     finally:
+        if KEEPS in os.environ:
+            shutil.copytree(place / "state" / "log", state_directory() / "chaos" / "disk-log", dirs_exist_ok=True)
         subprocess.run([find_program("umount") or "umount", "--lazy", str(place)], check=True)  # noqa: S603
         place.rmdir()
 
@@ -101,7 +105,10 @@ def _question(course: Course, site: Site, number: int, written: list[str], jobs:
 
 def _is_written(site: Site, course: Course) -> bool:
     client = site.client(11, keeps=False)
-    return client.ask("POST", "/api/v1/missions", {**plan_body(site, course.chance), "name": "After"}).status == 201
+    try:
+        return client.ask("POST", "/api/v1/missions", {**plan_body(site, course.chance), "name": "After"}).status == 201
+    except (OSError, HTTPException):
+        return False
 
 
 def _tell(course: Course, site: Site, askers: Askers, written: list[str], before: int, refused_s: float) -> None:
