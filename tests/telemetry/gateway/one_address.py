@@ -48,8 +48,8 @@ class OneAddress:
             for readable in select.select([self._front, *senders], [], [], LOOK_S)[0]:
                 try:
                     datagram, sender = readable.recvfrom(65_535)
-                except ConnectionError:
-                    continue  # nobody is there any more
+                except OSError:
+                    continue  # nobody is there any more, or the flow has just been forgotten
                 if readable is self._front:
                     self._pass_on(datagram, sender)
                 else:
