@@ -5,7 +5,7 @@
 
 Starts the shipped programs with TLS (installation.py) in a folder of its own, prepares the day, plays it, and takes a sample each 10 s.
 The peak is the most users with 0 failures and a 95th percentile under --p95-ms over all requests, once everybody has signed in. Half of
-it: half of those at desks; what is fixed, the 200 UAVs among it, stays. Memory is the proportional set size without shared segments, its
+it: half of those at desks; what is fixed, the 200 UAVs among it, stays. Memory is what each program has taken for itself (anonymous), its
 slope a straight line through the samples after --warm-up-min, in percent an hour, with what it lies within 95 of 100 times. Ends with 1
 where
 

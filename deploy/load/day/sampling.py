@@ -16,7 +16,9 @@ KIB = 1_024
 
 @dataclass(frozen=True)
 class Sample:
-    """`own_bytes` by program is its proportional set size without shared segments, which are `shared_bytes`: PostgreSQL's buffers.
+    """`own_bytes` by program is what it has taken for itself; `shared_bytes` are shared segments: PostgreSQL's buffers.
+
+    Files that are mapped are left out: the system takes them back at will, and a page of a library counts for more when others end.
 
     `files` by program are those open; `tables` by name are bytes and dead rows.
     """
@@ -65,14 +67,13 @@ def families(roots: Mapping[str, int]) -> dict[str, list[int]]:
 
 
 def memory_of(pid: int) -> tuple[int, int]:
-    """Bytes of its own and of shared segments, each page divided among those that have it; nothing of a process that has gone."""
+    """Bytes of anonymous memory and of shared segments, each page divided among those that have it; none of a process that has gone."""
     try:
         text = Path(f"/proc/{pid}/smaps_rollup").read_text()
     except OSError:
         return 0, 0
     told = {line.split(":")[0]: int(line.split()[1]) * KIB for line in text.splitlines()[1:]}
-    shared = told.get("Pss_Shmem", 0)
-    return told.get("Pss", 0) + told.get("SwapPss", 0) - shared, shared
+    return told.get("Pss_Anon", 0) + told.get("SwapPss", 0), told.get("Pss_Shmem", 0)
 
 
 def files_of(pid: int) -> int:
