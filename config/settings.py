@@ -177,15 +177,11 @@ CHANNEL_LAYERS = {
 AUTH_USER_MODEL = "workspace.User"
 AUTHENTICATION_BACKENDS = ["workspace.authentication.RoleBackend"]
 CURATED_APPS = ["inspection"]  # what curators may change in the admin; administrators may change everything
+_DJANGOS_VALIDATORS = ("UserAttributeSimilarity", "MinimumLength", "CommonPassword", "NumericPassword")
 AUTH_PASSWORD_VALIDATORS = [
-    {"NAME": f"django.contrib.auth.password_validation.{name}"}
-    for name in (
-        "UserAttributeSimilarityValidator",
-        "MinimumLengthValidator",
-        "CommonPasswordValidator",
-        "NumericPasswordValidator",
-    )
-] + [{"NAME": "workspace.password_words.ContextWordsValidator"}]
+    *({"NAME": f"django.contrib.auth.password_validation.{name}Validator"} for name in _DJANGOS_VALIDATORS),
+    {"NAME": "workspace.password_words.ContextWordsValidator"},
+]
 PASSWORD_WORDS = _list("SPANWISE_PASSWORD_WORDS", "")  # that no password here may be made of, beside those of the trade
 REQUIRES_SECOND_FACTOR = _flag("SPANWISE_REQUIRE_SECOND_FACTOR", default=False)  # of everybody, whatever their organisation says
 LOGIN_URL = "sign-in"

@@ -17,9 +17,11 @@ from config.private_servers import state_directory
 from config.secret_files import secret
 from operation.json_lines import is_asked_for, write_json_lines
 from scripts import commands, container_health, container_proxy
+from scripts.inner_tls import inner_certificate, look_after
 from scripts.places import PROJECT_DIR
 
 WEB_PORT, LIVE_PORT = 8000, 8001
+SERVING = ("web", "live")  # behind the proxy
 METRICS = "0.0.0.0:9464"
 SECRETS = ("DATABASE_URL", "REDIS_URL", "SPANWISE_SECRET_KEY")
 BACKUPS = "/var/lib/spanwise-backups"
@@ -109,7 +111,11 @@ def main(arguments: list[str]) -> int:
         _become(_backups(name, *rest), _with_database())
     if name == "manage":
         _become([sys.executable, str(PROJECT_DIR / "manage.py"), *rest], os.environ)
-    _become([*PROGRAMS[name](), *rest], environment(name))
+    served = inner_certificate(state_directory() / "inner") if name in SERVING else None
+    if served is not None:
+        served.copy()
+        look_after(served)
+    _become([*PROGRAMS[name](), *(served.arguments() if served else []), *rest], environment(name))
 
 
 if __name__ == "__main__":

@@ -32,6 +32,7 @@ def site_of_environment(folder: Path) -> Site:
     """SPANWISE_PROXY_WEB and SPANWISE_PROXY_LIVE: addresses with commas between them, or one name each with SPANWISE_PROXY_RESOLVES=1.
 
     Which name server is asked, SPANWISE_PROXY_NAME_SERVER says, else the container's own resolv.conf.
+    SPANWISE_PROXY_TRUST: the authority that the certificates of web and live are checked by; without it they speak plain HTTP.
     SPANWISE_TLS_CERTIFICATE and SPANWISE_TLS_KEY: files; with them TLS is spoken here, on SPANWISE_PROXY_TLS_PORT.
     """
     certificate, key = os.environ.get("SPANWISE_TLS_CERTIFICATE"), os.environ.get("SPANWISE_TLS_KEY")
@@ -46,6 +47,7 @@ def site_of_environment(folder: Path) -> Site:
         certificate=Path(certificate) if certificate and key else None,
         key=Path(key) if certificate and key else None,
         listens_at_tls=os.environ.get("SPANWISE_PROXY_TLS_PORT", "8443"),
+        trust=Path(trust) if (trust := os.environ.get("SPANWISE_PROXY_TRUST")) else None,
         resolver=(os.environ.get("SPANWISE_PROXY_NAME_SERVER") or name_server(NAME_SERVERS.read_text())) if resolves else "",
     )
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from operation.json_lines import is_asked_for
 from scripts import page_headers
 from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
-from scripts.proxy_site import ALIVE, Site, came_over_http, entrances, plain_server, quoted, upstreams
+from scripts.proxy_site import ALIVE, Site, came_over_http, entrances, plain_server, quoted, spoken, upstreams
 
 MOST_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
@@ -59,13 +59,21 @@ def _failures(name: str, media_type: str, headers: str, *, unavailable: str, too
 
 
 def _proxied(
-    location: str, name: str, headers: str, scheme: str, *, to: str, compression: str = "on", faults: str = "warn", again: str = "error"
+    location: str,
+    name: str,
+    headers: str,
+    scheme: str,
+    *,
+    to: tuple[str, str],
+    compression: str = "on",
+    faults: str = "warn",
+    again: str = "error",
 ) -> str:
     return f"""
         location {location} {{
             gzip {compression};
             error_log stderr {faults};
-            proxy_pass http://{to};
+            proxy_pass {to[0]};{to[1]}
             proxy_http_version 1.1;
             proxy_set_header Connection "";
             proxy_set_header Host $http_host;
@@ -85,11 +93,11 @@ def _proxied(
         }}"""
 
 
-def _websockets(scheme: str, *, to: str) -> str:
+def _websockets(scheme: str, *, to: tuple[str, str]) -> str:
     """What /ws/ is passed on to. A socket may be silent for as long as the program that speaks on it, three times over."""
     return f"""
         location /ws/ {{
-            proxy_pass http://{to};
+            proxy_pass {to[0]};{to[1]}
             proxy_http_version 1.1;
             proxy_set_header Upgrade $http_upgrade;
             proxy_set_header Connection $connection_upgrade;
@@ -164,7 +172,9 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
     headers = page_headers.headers(tiles, is_https=site.is_https)
     is_behind_https = site.is_behind_https and site.certificate is None
     scheme = "$http_x_forwarded_proto" if is_behind_https else "$scheme"
-    web, live = ("$web", "$live") if site.resolver else ("web", "live")
+    (web_scheme, web_tls), (live_scheme, live_tls) = spoken(site, site.web), spoken(site, site.live)
+    mark = "$" if site.resolver else ""
+    web, live = (f"{web_scheme}://{mark}web", web_tls), (f"{live_scheme}://{mark}live", live_tls)
     # The application takes the last address: behind a TLS proxy the one that this proxy has added, for its own is everybody's.
     visitor = 'map $http_x_forwarded_for $visitor { "" $remote_addr; default $http_x_forwarded_for; }'
     if not is_behind_https:

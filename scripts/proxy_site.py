@@ -38,6 +38,7 @@ class Site:
     key: Path | None = None
     listens_at_tls: str = ""
     resolver: str = ""
+    trust: Path | None = None  # the authority inside: with it the programs behind are spoken to by TLS alone, each by its own name
 
     @property
     def is_https(self) -> bool:
@@ -68,6 +69,22 @@ def upstreams(site: Site) -> str:
     upstream live {{
 {servers(site.live)}
     }}"""
+
+
+def spoken(site: Site, addresses: tuple[str, ...]) -> tuple[str, str]:
+    """How the programs at these addresses are spoken to: the scheme, and what nginx is told of TLS."""
+    if site.trust is None:
+        return "http", ""
+    name = addresses[0].rpartition(":")[0]
+    return (
+        "https",
+        f"""
+            proxy_ssl_verify on;
+            proxy_ssl_trusted_certificate {quoted(site.trust)};
+            proxy_ssl_name {name};
+            proxy_ssl_server_name on;
+            proxy_ssl_protocols TLSv1.3;""",
+    )
 
 
 def entrances(site: Site) -> str:

@@ -142,7 +142,7 @@ class Supervisor:
         log = self.places.logs / "supervisor.log"
         with log.open("a") as words:
             child = subprocess.Popen(
-                [sys.executable, "-m", "supervisor.supervisord", "--nodaemon", "--configuration", str(path)],
+                [sys.executable, "-m", "scripts.supervisor_program", "--nodaemon", "--configuration", str(path)],
                 cwd=folder,
                 env=environment,
                 stdin=subprocess.DEVNULL,

@@ -9,6 +9,7 @@ from typing import Any
 
 from channels.auth import get_user
 from channels.db import database_sync_to_async
+from channels.exceptions import StopConsumer
 from channels.generic.websocket import AsyncWebsocketConsumer
 from django.conf import settings
 from django.db import Error as DatabaseError
@@ -25,6 +26,7 @@ logger = logging.getLogger(__name__)
 CHECK_PERSON_EVERY_S = 4.0
 STILL_THERE_EVERY_S = 20.0  # a proxy between here and the page closes what is silent
 
+RETRY_AFTER = b"2"  # seconds
 ENDED, FAILED, SIGNED_OUT, NOTHING_TO_SAY = 1000, 1011, 4401, 4400
 
 
@@ -58,6 +60,16 @@ class SignedInSocket(AsyncWebsocketConsumer):
     def kind(self) -> str:
         """What its page follows, one of a few words."""
         raise NotImplementedError
+
+    async def websocket_connect(self, message: Any) -> None:
+        """Without the database nobody knows who comes: they are told to try again, which pages do by themselves."""
+        try:
+            await super().websocket_connect(message)
+        except DatabaseError as error:
+            logger.warning("a websocket is refused while the database is away: %s", type(error).__name__)
+            await self.base_send({"type": "websocket.http.response.start", "status": 503, "headers": [(b"retry-after", RETRY_AFTER)]})
+            await self.base_send({"type": "websocket.http.response.body", "body": b""})
+            raise StopConsumer from error
 
     async def accept(self, *arguments: Any, **named: Any) -> None:
         await super().accept(*arguments, **named)

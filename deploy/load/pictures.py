@@ -7,6 +7,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter, StrMethodFormatter
 from numpy.typing import NDArray
 
 Series = Mapping[str, NDArray[np.float64]]
@@ -23,6 +24,17 @@ def _panels(number: int) -> tuple[Figure, list[Axes]]:
         panel.spines[["top", "right"]].set_visible(False)
     panels[-1].set_xlabel("seconds")
     return figure, list(panels)
+
+
+def _times(panel: Axes) -> None:
+    """Milliseconds over three decades or more, with room for the legend above."""
+    panel.set_ylabel("answer, ms")
+    panel.set_yscale("log")
+    low, high = panel.get_ylim()
+    panel.set_ylim(min(low, 5.0), max(high * 8, 5_000.0))
+    panel.yaxis.set_major_formatter(StrMethodFormatter("{x:,.0f}"))
+    panel.yaxis.set_minor_formatter(NullFormatter())
+    panel.legend(loc="upper left", frameon=False, ncols=2)
 
 
 def _save(figure: Figure, path: Path) -> None:
@@ -44,10 +56,8 @@ def scenario_picture(path: Path, runs: Sequence[tuple[str, Series]], title: str)
         time.plot(series["at_s"], series["p95_ms"], color=colour, linewidth=0.9, linestyle=":", label=f"{name}: 95 %")
     rate.set_ylabel("requests/s")
     users.set_ylabel("users")
-    time.set_ylabel("answer, ms")
-    time.set_yscale("log")
+    _times(time)
     rate.legend(loc="upper left", frameon=False)
-    time.legend(loc="upper left", frameon=False, ncols=2)
     for panel in (rate, users):
         panel.set_ylim(bottom=0)
     figure.suptitle(title, fontsize=10)
@@ -63,15 +73,15 @@ def replicas_picture(path: Path, series: Series, title: str, *, replicas: Mappin
     load.plot(series["at_s"], series["users"], color=GREY, label="users")
     load.plot(series["at_s"], series["plans_per_s"], color=COLOURS[0], label="requests/s")
     signals.plot(series["signal_at_s"], series["signal"], color=COLOURS[0])
+    signals.axhline(1.0, color=GREY, linewidth=0.8)
     signals.set_ylabel(signal)
     for colour, (name, steps) in zip(COLOURS, replicas.items(), strict=False):
         counts.step(steps[:, 0], steps[:, 1], where="post", color=colour, label=name)
     counts.set_ylabel("replicas")
     time.plot(series["at_s"], series["median_ms"], color=COLOURS[0], label="median")
     time.plot(series["at_s"], series["p95_ms"], color=COLOURS[0], linewidth=0.9, linestyle=":", label="95 %")
-    time.set_ylabel("answer, ms")
-    time.set_yscale("log")
-    for panel in (load, counts, time):
+    _times(time)
+    for panel in (load, counts):
         panel.legend(loc="upper left", frameon=False)
     for panel in (load, signals, counts):
         panel.set_ylim(bottom=0)

@@ -89,6 +89,8 @@ class Operator(FastHttpUser):
             fault = f"answered {answer.status_code}" if answer.status_code != 200 else look(answer.content, body)
             if fault:
                 answer.failure(fault)
+            if answer.status_code in {401, 403} and "Authorization" not in self.headers:
+                self.is_in = False  # the session has ended: this user signs in again
 
     def large_plan(self, sent: bytes, body: dict[str, Any]) -> None:
         """A worker's: asked for, and looked at each second until it is done. The whole time counts as the plan's."""

@@ -1,6 +1,6 @@
 """A local scaler in a cluster's place: starts and stops replicas by the rules of the shipped autoscalers, while a ramp of users goes on.
 
-    python deploy/load/scaler.py --write                  plans in web (17 min) and large plans in workers (13 min): docs/load-tests.md
+    python deploy/load/scaler.py --write                  plans in web (17 min) and large plans in workers (15 min): docs/load-tests.md
     python deploy/load/scaler.py --ramp 6 --seconds 0.2   five times as fast, the autoscalers' own times included, to develop with
 
 The proxy asks a name server for the replicas of web, as in Kubernetes. A new one is named once it says that it is ready; one that goes is
@@ -13,7 +13,6 @@ import json
 import resource
 import sys
 import time
-from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -36,7 +35,7 @@ from deploy.load.scenarios import RAMPS_TO_SCALE_BY
 
 MOST_HERE = {"web": 8, "worker-planning": 12}  # what the machine's memory has room for
 KINDS = {5: "web", 6: "worker-planning"}
-READY_S = 180.0
+READY_S = 300.0
 FORGETS_S = 3.0  # the proxy asks for names every two seconds
 
 
@@ -50,7 +49,8 @@ class LocalScaler:
         self._book = Book()
         self._wanted = len(installation.names(kind))
         self._serving = set(installation.names(kind))
-        self._changing: set[str] = set()
+        self._starting: set[str] = set()
+        self._leaving: set[str] = set()
         self._next_look_s = 0.0
         self._last: tuple[float, dict[str, float]] = (0.0, {})
         self._queue = Redis.from_url(installation.settings["REDIS_URL"])
@@ -67,14 +67,17 @@ class LocalScaler:
         total = float(self._queue.llen(self.rules.queue)) if self.rules.queue else self._cores()  # type: ignore[arg-type]
         self.signals.append((at_s, total / (self.rules.target * self._wanted)))
         wanted, self._book = decide(self.rules, self._book, now_s=at_s, replicas=self._wanted, total=total)
-        if wanted > self._wanted:
-            free = [name for name in self.installation.spare_names(self.kind) if name not in self._changing]
-            for name in free[: wanted - self._wanted]:
-                self._do(self._bring, name)
-        elif wanted < self._wanted:
-            for name in sorted(self._serving, key=_number)[wanted - self._wanted :]:
-                self._do(self._take_away, name)
         self._wanted = wanted
+        missing = wanted - len(self._serving) - len(self._starting)
+        free = [name for name in self.installation.spare_names(self.kind) if name not in self._leaving | self._starting]
+        for name in free[: max(0, missing)]:
+            self._starting.add(name)
+            self._actions.append(self._threads.submit(self._bring, name))
+        serving = sorted(self._serving, key=_number)  # the newest go first; what is still starting does not serve in their place
+        for name in serving[max(wanted, len(serving) + min(0, missing)) :]:
+            self._serving.discard(name)
+            self._leaving.add(name)
+            self._actions.append(self._threads.submit(self._take_away, name))
 
     def close(self) -> list[str]:
         """Waits for what is being done; what has gone wrong in it."""
@@ -84,35 +87,34 @@ class LocalScaler:
     def _cores(self) -> float:
         """Cores in use by those that serve, since the last look. What a replica takes to start does not count, as with the autoscaler."""
         usage, now_s = self.installation.usage(), time.monotonic()
-        spent = {name: usage[name].cpu_s for name in self._serving if name in usage}
+        spent = {name: usage[name].cpu_s for name in list(self._serving) if name in usage}
         before_s, before = self._last
         self._last = now_s, spent
         common = spent.keys() & before.keys()
         return sum(spent[name] - before[name] for name in common) / (now_s - before_s) * len(spent) / len(common) if common else 0.0
 
-    def _do(self, action: Callable[[str], None], name: str) -> None:
-        self._changing.add(name)
-        self._actions.append(self._threads.submit(action, name))
-
     def _bring(self, name: str) -> None:
-        self.installation.start(name)
-        if self.kind == "web":
-            end_s = time.monotonic() + READY_S
-            while not self.installation.is_ready(name):
-                if time.monotonic() > end_s:
-                    raise TimeoutError(f"{name} was not ready in {READY_S:.0f} s")
-                time.sleep(0.2)
-            self.installation.let_in(name)
-        self._serving.add(name)
-        self._changing.discard(name)
+        try:
+            self.installation.start(name)
+            if self.kind == "web":
+                end_s = time.monotonic() + READY_S
+                while not self.installation.is_ready(name):
+                    if time.monotonic() > end_s:
+                        raise TimeoutError(f"{name} was not ready in {READY_S:.0f} s")
+                    time.sleep(0.2)
+                self.installation.let_in(name)
+            self._serving.add(name)
+        finally:
+            self._starting.discard(name)
 
     def _take_away(self, name: str) -> None:
-        self._serving.discard(name)
-        if self.kind == "web":
-            self.installation.keep_out(name)
-            time.sleep(self.drains_s)
-        self.installation.stop(name)
-        self._changing.discard(name)
+        try:
+            if self.kind == "web":
+                self.installation.keep_out(name)
+                time.sleep(self.drains_s)
+            self.installation.stop(name)
+        finally:
+            self._leaving.discard(name)
 
 
 def _number(name: str) -> int:
@@ -128,7 +130,7 @@ def pre_stop_s(program: str) -> float:
     return float(container["lifecycle"]["preStop"]["exec"]["command"][1]) if "lifecycle" in container else 0.0
 
 
-def run_ramp(number: int, *, seconds: float, sessions: float) -> tuple[RunReport, LocalScaler, list[str]]:
+def run_ramp(number: int, *, users: float, seconds: float, sessions: float) -> tuple[RunReport, LocalScaler, list[str]]:
     """One ramp on an installation that begins with as few replicas as its autoscalers allow."""
     kind = KINDS[number]
     rules = {name: shipped_rules(name).faster(seconds) for name in MOST_HERE}
@@ -143,7 +145,7 @@ def run_ramp(number: int, *, seconds: float, sessions: float) -> tuple[RunReport
             installation,
             ground,
             RAMPS_TO_SCALE_BY[number],
-            users=1.0,
+            users=users,
             seconds=seconds,
             sessions=sessions,
             bodies="missions.json" if kind == "web" else "large_missions.json",
@@ -177,7 +179,7 @@ def write(number: int, report: RunReport, scaler: LocalScaler) -> None:
         replicas={scaler.kind: np.array([*scaler.steps, (series["at_s"][-1], scaler.steps[-1][1])], dtype=float)},
         signal="load a replica / target",
     )
-    scaled = f" --seconds {report.seconds_share:g}" if report.is_scaled else ""
+    scaled = f" --users {report.users_share:g} --seconds {report.seconds_share:g}" if report.is_scaled else ""
     steps = ", ".join(f"{count} from {at_s:.0f} s" for at_s, count in scaler.steps)
     target = f"{scaler.rules.target:g} messages of its queue" if scaler.rules.queue else f"{scaler.rules.target:g} cores"
     text = "\n\n".join(
@@ -197,6 +199,7 @@ def main() -> int:
     parser.add_argument(
         "--ramp", type=int, nargs="+", choices=KINDS, default=list(KINDS), help="5: plans in web; 6: large plans in workers"
     )
+    parser.add_argument("--users", type=float, default=1.0, help="share of the ramp's users")
     parser.add_argument("--seconds", type=float, default=1.0, help="share of the ramp's time and of the autoscalers' own")
     parser.add_argument("--sessions", type=float, default=0.05, help="share of users who sign in with a password")
     parser.add_argument("--json", type=Path)
@@ -207,7 +210,7 @@ def main() -> int:
     resource.setrlimit(resource.RLIMIT_NOFILE, (most_files, most_files))
     told, problems = [], []
     for number in options.ramp:
-        report, scaler, faults = run_ramp(number, seconds=options.seconds, sessions=options.sessions)
+        report, scaler, faults = run_ramp(number, users=options.users, seconds=options.seconds, sessions=options.sessions)
         print(report.text())
         print(f"replicas of {scaler.kind}: {', '.join(f'{count} from {at_s:.0f} s' for at_s, count in scaler.steps)}", flush=True)
         problems += [f"ramp {number}: {problem}" for problem in missed(report, scaler, faults)]

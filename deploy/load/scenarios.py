@@ -110,7 +110,7 @@ RAMPS_TO_SCALE_BY = {
     6: Scenario(
         6,
         (5.0, 5.0),
-        (Stage(4, 1, 60.0), Stage(24, 1, 180.0), Stage(12, 1, 60.0), Stage(4, 1, 480.0)),
+        (Stage(4, 1, 60.0), Stage(24, 1, 180.0), Stage(12, 1, 60.0), Stage(4, 1, 600.0)),
         "Not among its scenarios: plans of 16 targets for 3 UAVs, each a worker's for some 10 s.",
     ),
 }

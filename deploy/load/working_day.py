@@ -43,7 +43,7 @@ DAY: list[tuple[type[User], tuple[str, int], dict[str, int], str]] = [
      "a short flight every three minutes: a busy shift, one UAV a desk"),
     (AsksForPlans, (FIXED, 4), {"plan": 240, "ask_live": 1_200},
      "a program that plans its customers' wishes as they come, and follows what flies where it has no websocket"),
-    (KeepsZones, (FIXED, 1), {"zone_comes_and_goes": 12},
+    (KeepsZones, (FIXED, 1), {"zone_comes_and_goes": 20},
      "short-lived zones of a busy day; each changes the ground for everybody"),
     (Administers, (FIXED, 1), {"look_after_people": 30, "look_after_uavs": 30},
      "somebody new, somebody who left, a battery that was replaced"),

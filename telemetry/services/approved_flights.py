@@ -1,7 +1,6 @@
 """What detectors know of an approved flight, worked out once: an approval never changes."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Any
 from uuid import UUID
 
@@ -14,6 +13,7 @@ from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_l
 from telemetry.alerting.energy import energy_plan
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import FlightModel
+from telemetry.services.of_flight import OfFlight
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +24,7 @@ class ApprovedContent:
     items: int | None
 
 
-@lru_cache(maxsize=1_024)
+@OfFlight
 def flight_model(approval_id: UUID, uav_id: int, flight: int) -> FlightModel | None:
     """None after its last flight, and of a document that is damaged."""
     found = _approved(approval_id, uav_id, flight)
@@ -46,7 +46,7 @@ def flight_model(approval_id: UUID, uav_id: int, flight: int) -> FlightModel | N
     )
 
 
-@lru_cache(maxsize=1_024)
+@OfFlight
 def approved_content(approval_id: UUID, uav_id: int, flight: int) -> ApprovedContent | None:
     found = _approved(approval_id, uav_id, flight)
     if found is None:

@@ -1,6 +1,5 @@
 """What the estimator may know of a flight: the approved route, and what it was approved with."""
 
-from functools import lru_cache
 from uuid import UUID
 
 from missions.flight_plan.conditions import conditions_from_json
@@ -10,9 +9,10 @@ from missions.models import Approval
 from missions.services.dispatch import DamagedApproval, approved_load
 from missions.services.requests import lost_link_from_json
 from telemetry.estimation.knowledge import Knowledge
+from telemetry.services.of_flight import OfFlight
 
 
-@lru_cache(maxsize=1_024)
+@OfFlight
 def knowledge_of(approval_id: UUID, uav_id: int, flight: int) -> Knowledge:
     """An approval never changes. After its last flight, and of a document that is damaged, nothing is known."""
     approval = Approval.objects.filter(pk=approval_id).first()

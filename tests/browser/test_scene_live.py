@@ -87,7 +87,7 @@ def test_beside_the_map_a_flight_moves_and_what_is_measured_is_told_from_what_is
     along_m = flies_until(page, lambda: is_said(certainty, "estimated, ±"), flyers[1:], along_m)
     assert reading(page, "tower").startswith("~")
     view.get_by_role("button", name=re.compile("^Follow B")).click()
-    expect(certainty).to_have_text("measured")
+    along_m = flies_until(page, lambda: is_said(certainty, "measured"), flyers[1:], along_m)
     page.keyboard.press("o")
     in_both_themes(page, picture, "scene-live")
     view.get_by_role("button", name=re.compile("^Follow A")).click()

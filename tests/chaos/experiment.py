@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from scripts.places import CannotStart
 from tests.chaos.figures import Figure, Verdict, write
 
 
@@ -46,7 +47,10 @@ def main(do: Callable[[Course], None]) -> None:
     parser.add_argument("--figures", type=Path)
     options = parser.parse_args()
     course = Course(options.row, options.seed, options.short, options.figures)
-    do(course)
+    try:
+        do(course)
+    except CannotStart as error:
+        course.tell("could not begin", str(error), "begins", False)
     sys.exit(1 if any(figure.verdict == Verdict.MISSED for figure in course.figures) else 0)
 
 

@@ -11,7 +11,7 @@ from typing import Any, Self
 
 from websocket import WebSocket, WebSocketException, create_connection
 
-from tests.chaos.site import Site
+from tests.chaos.site import Site, wait_until
 
 SILENT_S = 45.0
 AGAIN_AFTER_S = 0.3
@@ -103,6 +103,11 @@ class Pages:
 
     def are_live_since(self, moment: datetime) -> bool:
         return all(page.measured_at > moment for page in self.all)
+
+    def wait_until_live(self) -> None:
+        """Until each shows something that was reported from now on."""
+        begins_at = datetime.now(UTC)
+        wait_until(lambda: self.are_live_since(begins_at), "live pages")
 
     @property
     def gaps(self) -> int:

@@ -169,6 +169,21 @@ def test_names_that_programs_are_told_are_services(objects: Objects) -> None:
             assert name in of_kind(objects, "Service")
 
 
+@pytest.mark.parametrize("overlay", ["production", "production-keda"])
+def test_programs_behind_the_proxy_are_certified_by_the_names_that_it_asks_for(overlay: str) -> None:
+    objects = rendered(overlay)
+    (settings,) = [one["data"] for name, one in of_kind(objects, "ConfigMap").items() if name.startswith("settings")]
+    certificates = {one["spec"]["secretName"]: one["spec"] for one in of_kind(objects, "Certificate").values()}
+    for name in ("web", "live"):
+        secrets = [volume["secret"]["secretName"] for volume in pods(objects)[name]["volumes"] if volume["name"] == "inner"]
+        (certificate,) = [certificates[secret] for secret in secrets]
+        assert certificate["issuerRef"]["name"] == "internal"
+        assert certificate["dnsNames"] == [settings[f"SPANWISE_PROXY_{name.upper()}"].rpartition(":")[0]]
+        assert pods(objects)[name]["containers"][0]["startupProbe"]["httpGet"]["scheme"] == "HTTPS"
+    proxy = pods(objects)["proxy"]["containers"][0]
+    assert {"name": "SPANWISE_PROXY_TRUST", "value": "/run/trust/ca.crt"} in proxy["env"]
+
+
 def test_settings_that_pods_are_given_are_described(objects: Objects) -> None:
     described = DOCUMENTATION.read_text() + (DEPLOY.parent / "docs" / "operations.md").read_text()
     (settings,) = [one["data"] for name, one in of_kind(objects, "ConfigMap").items() if name.startswith("settings")]

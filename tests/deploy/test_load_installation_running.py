@@ -8,6 +8,7 @@ import urllib.error
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -20,9 +21,12 @@ WITHOUT = dict.fromkeys(("live", "worker-data", "worker-planning", "worker-simul
 
 
 @pytest.fixture(params=[False, True], ids=["sockets", "names"])
-def installation(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Installation]:
-    with Installation(tmp_path, WITHOUT | {"web": 2}, spare={"web": 1} if request.param else {}, by_name=request.param) as running:
-        yield running
+def installation(request: pytest.FixtureRequest) -> Iterator[Installation]:
+    with TemporaryDirectory(prefix="sw-load-") as folder:
+        Path(folder).chmod(0o711)  # PostgreSQL's own user goes through it
+        spare = {"web": 1} if request.param else {}
+        with Installation(Path(folder), WITHOUT | {"web": 2}, spare=spare, by_name=request.param) as running:
+            yield running
 
 
 class Visitors:
@@ -70,6 +74,8 @@ def test_a_killed_replica_and_one_that_goes_lose_no_request(installation: Instal
         visitors.wait_for_more(20)
         pid = installation.kill("web-1")
         installation.wait_for_another("web-1", pid)
+        while not installation.is_ready("web-1"):
+            visitors.wait_for_more(1)
         visitors.wait_for_more(20)
         if installation.name_server:
             (spare,) = installation.spare_names("web")

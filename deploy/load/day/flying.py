@@ -15,7 +15,7 @@ from deploy.load.day.client import Browser, GaveUp, trusted
 from deploy.load.day.live_page import LivePage
 from deploy.load.day.site import Desk
 
-SEEN_WITHIN_S = 120.0  # on the page: that the UAV has its mission, that it flies, that it is down
+SEEN_WITHIN_S = 300.0  # on the page: that the UAV has its mission, that it flies, that it is down
 STALE_SHARE = 0.2  # of edits made from a second window that has not seen the first one's
 _numbers = count()
 

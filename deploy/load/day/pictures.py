@@ -20,7 +20,8 @@ def soak_picture(path: Path, samples: Sequence[Sample], warm_up_s: float, title:
     figure = Figure(figsize=(8.0, 7.5), layout="constrained")
     programs, whole, beside = figure.subplots(3, 1, sharex=True, height_ratios=(2, 1, 1))
     base = min(int(np.searchsorted(minutes, warm_up_s / 60.0)), len(samples) - 1)
-    for number, name in enumerate(sorted(samples[-1].own_bytes)):
+    names = sorted(name for name in samples[-1].own_bytes if name != "redis")  # a few MiB, which would be all over the panel
+    for number, name in enumerate(names):
         values = np.array([one.own_bytes.get(name, 0) for one in samples]) / MIB
         reference = values[base] or 1.0
         style = "-" if number < 10 else "--"  # the colours of a cycle come again

@@ -16,7 +16,9 @@ KIB = 1_024
 
 @dataclass(frozen=True)
 class Sample:
-    """`own_bytes` by program is its proportional set size without shared segments, which are `shared_bytes`: PostgreSQL's buffers.
+    """`own_bytes` by program is what it has taken for itself; `shared_bytes` are shared segments: PostgreSQL's buffers.
+
+    Files that are mapped are left out: the system takes them back at will, and a page of a library counts for more when others end.
 
     `files` by program are those open; `tables` by name are bytes and dead rows.
     """
@@ -29,6 +31,7 @@ class Sample:
     connections: int
     redis_bytes: int
     redis_keys: int
+    redis_lasting: int  # keys that never expire
     waiting: int  # in the queues of workers
     open_jobs: int
     tables: Mapping[str, tuple[int, int]]
@@ -64,14 +67,13 @@ def families(roots: Mapping[str, int]) -> dict[str, list[int]]:
 
 
 def memory_of(pid: int) -> tuple[int, int]:
-    """Bytes of its own and of shared segments, each page divided among those that have it; nothing of a process that has gone."""
+    """Bytes of anonymous memory and of shared segments, each page divided among those that have it; none of a process that has gone."""
     try:
         text = Path(f"/proc/{pid}/smaps_rollup").read_text()
     except OSError:
         return 0, 0
     told = {line.split(":")[0]: int(line.split()[1]) * KIB for line in text.splitlines()[1:]}
-    shared = told.get("Pss_Shmem", 0)
-    return told.get("Pss", 0) + told.get("SwapPss", 0) - shared, shared
+    return told.get("Pss_Anon", 0) + told.get("SwapPss", 0), told.get("Pss_Shmem", 0)
 
 
 def files_of(pid: int) -> int:
@@ -86,7 +88,7 @@ def sample(roots: Mapping[str, int], database_url: str, redis_url: str) -> Sampl
     found = families(roots)
     memory = {name: [memory_of(pid) for pid in pids] for name, pids in found.items()}
     connections, open_jobs, tables = _database(database_url)
-    redis_bytes, redis_keys, waiting = _redis(redis_url)
+    redis_bytes, redis_keys, redis_lasting, waiting = _redis(redis_url)
     return Sample(
         at_s=time.time(),
         own_bytes={name: sum(own for own, _ in parts) for name, parts in memory.items()},
@@ -96,6 +98,7 @@ def sample(roots: Mapping[str, int], database_url: str, redis_url: str) -> Sampl
         connections=connections,
         redis_bytes=redis_bytes,
         redis_keys=redis_keys,
+        redis_lasting=redis_lasting,
         waiting=waiting,
         open_jobs=open_jobs,
         tables=tables,
@@ -114,9 +117,11 @@ def _database(url: str) -> tuple[int, int, dict[str, tuple[int, int]]]:
     return connections[0] if connections else 0, jobs[0] if jobs else 0, {name: (size, dead) for name, size, dead in told}
 
 
-def _redis(url: str) -> tuple[int, int, int]:
+def _redis(url: str) -> tuple[int, int, int, int]:
     try:
         with Redis.from_url(url, socket_timeout=5) as asked:
-            return int(asked.info("memory")["used_memory"]), int(asked.dbsize()), sum(int(asked.llen(queue)) for queue in QUEUES)
+            spaces = asked.info("keyspace").values()
+            keys, expiring = sum(space["keys"] for space in spaces), sum(space["expires"] for space in spaces)
+            return int(asked.info("memory")["used_memory"]), keys, keys - expiring, sum(int(asked.llen(queue)) for queue in QUEUES)
     except RedisError:
-        return 0, 0, 0
+        return 0, 0, 0, 0

@@ -18,6 +18,8 @@ export function askBeforeSigningOut(form, user) {
     event.preventDefault();
     ask(drafts, (keepsDrafts) => {
       leave(user, keepsDrafts);
+      form.hidden = true;
+      document.body.append(form); // the menu that it was in has closed meanwhile
       form.submit();
     });
   });

@@ -26,7 +26,7 @@ BEFORE_S = 10.0
 READY_WITHIN_S = 5.0
 GIVEN_UP_S = 90.0
 PAGES = 3
-READ = ("/api/v1/missions?limit=5", "/api/v1/uavs", "/api/v1/live", "/api/v1/alerts", "/api/v1/jobs", "/missions", "/api/v1/ground")
+READ = ("/api/v1/missions?limit=5", "/api/v1/uavs", "/api/v1/live", "/api/v1/alerts", "/api/v1/jobs", "/sign-in", "/api/v1/ground")
 
 
 def run(course: Course) -> None:
@@ -35,7 +35,7 @@ def run(course: Course) -> None:
         ready_s: dict[str, float] = {}
         with Pages(day.site, PAGES) as pages, day.at_work() as played:
             wait_until(lambda: all(is_ready(day.installation, name) for name in KILLED), "every program")
-            wait_until(lambda: pages.are_live_since(_ago(3.0)), "live pages")
+            pages.wait_until_live()
             pids = {name: day.installation.pid(name) for name in KILLED}
             with Askers(lambda number: _question(course, day, number, written), 6, pause_s=0.1) as askers:
                 time.sleep(BEFORE_S)
@@ -50,10 +50,6 @@ def run(course: Course) -> None:
         _tell(course, day, askers, written, ready_s)
         course.tell("programs that had to be started again", ", ".join(again) or "none", "none", not again)
         day.judge(course, played)
-
-
-def _ago(seconds: float) -> datetime:
-    return datetime.fromtimestamp(time.time() - seconds, UTC)
 
 
 def _question(course: Course, day: Day, number: int, written: list[str]) -> Callable[[], str]:

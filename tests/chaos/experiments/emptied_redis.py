@@ -24,7 +24,7 @@ def run(course: Course) -> None:
         jobs: list[str] = []
         live_again_s: list[float] = []
         with Pages(day.site, PAGES) as pages, day.at_work() as played:
-            wait_until(lambda: pages.are_live_since(_ago(3.0)), "live pages")
+            pages.wait_until_live()
             for _ in range(SHORT_TIMES if course.is_short else TIMES):
                 time.sleep(BETWEEN_S * course.chance.uniform(0.2, 1.8))
                 jobs += [_large_plan(course, day) for _ in range(JOBS_EACH_TIME)]
@@ -38,7 +38,7 @@ def run(course: Course) -> None:
             last_s = time.monotonic()
             ends = states_at_the_end(day.installation, jobs, JOBS_END_WITHIN_S)
             took_s = time.monotonic() - last_s
-            wait_until(lambda: pages.are_live_since(_ago(3.0)), "live pages")
+            pages.wait_until_live()
         course.tell(
             f"{len(live_again_s)} times killed, emptied and {AWAY_S:.0f} s away: {PAGES} open pages show what was reported later",
             f"after {max(live_again_s):.1f} s at most, {pages.gaps} gaps, {sum(page.opened - 1 for page in pages.all)} opened again",
@@ -48,10 +48,6 @@ def run(course: Course) -> None:
         figure = f"{done} of {len(jobs)} done, the last {took_s:.0f} s after Redis was there"
         course.tell("large plans asked for just before and just after", figure, "all, from PostgreSQL", done == len(jobs))
         day.judge(course, played)
-
-
-def _ago(seconds: float) -> datetime:
-    return datetime.fromtimestamp(time.time() - seconds, UTC)
 
 
 def _kill_and_empty(day: Day) -> None:

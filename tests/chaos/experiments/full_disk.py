@@ -6,9 +6,11 @@ The file system is a small one in memory, which only root can mount.
 import os
 import shutil
 import subprocess
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from http.client import HTTPException
 from pathlib import Path
 from uuid import uuid4
 
@@ -18,7 +20,7 @@ from tests.chaos.asking import Askers
 from tests.chaos.experiment import Course, main
 from tests.chaos.jobs import job_of, large_plan_body, one_of, states_at_the_end
 from tests.chaos.plans import plan_body, reader
-from tests.chaos.site import Site, demo_site, wait_until
+from tests.chaos.site import KEEPS, Site, demo_site, wait_until
 
 SIZE_MIB = 900
 FULL_S, SHORT_FULL_S = 40.0, 15.0
@@ -51,14 +53,17 @@ def run(course: Course) -> None:
 
 @contextmanager
 def small_disk() -> Iterator[Path]:
-    place = state_directory() / "chaos" / "small-disk"
-    place.mkdir(parents=True, exist_ok=True)
+    place = Path(tempfile.mkdtemp(prefix="sw-disk-", dir="/tmp"))  # where PostgreSQL's user gets to, and short enough for sockets
+    place.chmod(0o755)
     subprocess.run([find_program("mount") or "mount", "-t", "tmpfs", "-o", f"size={SIZE_MIB}m,mode=0755", "tmpfs", str(place)], check=True)  # noqa: S603
     try:
         (place / "state").mkdir()
         yield place
     finally:
+        if KEEPS in os.environ:
+            shutil.copytree(place / "state" / "log", state_directory() / "chaos" / "disk-log", dirs_exist_ok=True)
         subprocess.run([find_program("umount") or "umount", "--lazy", str(place)], check=True)  # noqa: S603
+        place.rmdir()
 
 
 def _fill(ballast: Path, for_s: float) -> None:
@@ -100,7 +105,10 @@ def _question(course: Course, site: Site, number: int, written: list[str], jobs:
 
 def _is_written(site: Site, course: Course) -> bool:
     client = site.client(11, keeps=False)
-    return client.ask("POST", "/api/v1/missions", {**plan_body(site, course.chance), "name": "After"}).status == 201
+    try:
+        return client.ask("POST", "/api/v1/missions", {**plan_body(site, course.chance), "name": "After"}).status == 201
+    except (OSError, HTTPException):
+        return False
 
 
 def _tell(course: Course, site: Site, askers: Askers, written: list[str], before: int, refused_s: float) -> None:

@@ -27,7 +27,9 @@ PAGES = 3
 def run(course: Course) -> None:
     with working_day("killed", course) as day:
         with Pages(day.site, PAGES) as pages, day.at_work() as played:
-            wait_until(lambda: all(_works(day, pages, name, datetime.now(UTC), 3.0) for name in KILLED), "every program at work")
+            begins_at = datetime.now(UTC)
+            for name in KILLED:
+                wait_until(lambda name=name: _works(day, pages, name, begins_at), f"{name} at work")  # type: ignore[misc]
             recovered_s = _kill_all(course, day, pages)
             time.sleep(5.0)
         _tell(course, recovered_s, pages)
@@ -54,16 +56,15 @@ def _kill_all(course: Course, day: Day, pages: Pages) -> list[tuple[str, float]]
     return recovered_s
 
 
-def _works(day: Day, pages: Pages, name: str, since: datetime, at_most_old_s: float = 0.0) -> bool:
-    """Whether it does its work again; in the beginning what is so many seconds old counts, too."""
-    begins_at = datetime.fromtimestamp(since.timestamp() - at_most_old_s, UTC)
+def _works(day: Day, pages: Pages, name: str, since: datetime) -> bool:
+    """Whether it has done its work since then."""
     match kind_of(name):
         case "live":
-            return pages.are_live_since(begins_at)
+            return pages.are_live_since(since)
         case "gateway":
-            return (at := day.newest_record_at()) is not None and at > begins_at
+            return (at := day.newest_record_at()) is not None and at > since
         case "estimator":
-            return (at := day.newest_estimate_at()) is not None and at > begins_at
+            return (at := day.newest_estimate_at()) is not None and at > since
     return is_ready(day.installation, name)
 
 

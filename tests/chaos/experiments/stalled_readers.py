@@ -24,6 +24,7 @@ STALLED = 10
 LASTS_S, SHORT_LASTS_S = 180.0, 20.0
 SETTLES_S, SHORT_SETTLES_S = 60.0, 10.0
 OPEN_WITHIN_S = 240.0
+MOST_AHEAD = 2**16  # bytes that come in before a page that reads nothing takes no more
 AT_ONCE = 20  # pages that open at the same time
 MOST_GROWTH = 0.05
 COUNTS = {"worker-data": 0, "worker-planning": 0, "worker-simulation": 0, "simulator": 0, "beat": 0}
@@ -69,7 +70,7 @@ class Reader:
 
 
 async def _open(port: int, trust: ssl.SSLContext, token: str) -> Socket:
-    reader, writer = await asyncio.open_connection("localhost", port, ssl=trust, limit=2**24)
+    reader, writer = await asyncio.open_connection("localhost", port, ssl=trust, limit=MOST_AHEAD)
     key = base64.b64encode(secrets.token_bytes(16)).decode()
     head = f"GET /ws/live HTTP/1.1\r\nHost: localhost:{port}\r\nAuthorization: Bearer {token}\r\nConnection: Upgrade\r\n"
     writer.write(f"{head}Upgrade: websocket\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: {key}\r\n\r\n".encode())

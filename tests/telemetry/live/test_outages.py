@@ -4,20 +4,24 @@ import os
 import signal
 import subprocess
 import time
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
-from websocket import WebSocketException
+from django.utils import timezone
+from websocket import WebSocketBadStatusException, WebSocketException
 
 from missions.models import Uav
 from telemetry.models import TelemetryRecord
 from telemetry.services import store_records
 from tests.missions.outbox import a_uav
+from tests.telemetry.gateway.test_outages import database_away
 from tests.telemetry.live.page import Page
 from tests.telemetry.records import record
 from tests.workspace.front_door import Door, redis_at, running, wait_until
 from tests.workspace.people import somebody
 from workspace.models import User
+from workspace.services import create_api_token
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
@@ -90,6 +94,16 @@ def test_a_redis_that_is_back_brings_word_at_once_again(without_redis: Door) -> 
             began_s = time.monotonic()
             page.take_until(flight.is_shown_by, AGAIN_WITHIN_S)
             waits_s.append(time.monotonic() - began_s)
+
+
+def test_who_comes_while_the_database_is_away_is_told_to_try_again(here: Door) -> None:
+    token = create_api_token(user=somebody(), name="test", expires_at=timezone.now() + timedelta(hours=1))
+    with database_away(), pytest.raises(WebSocketBadStatusException) as refused:
+        here.open("/ws/live", token=token, origin=None)
+    assert refused.value.status_code == 503
+    assert int(refused.value.resp_headers["retry-after"]) > 0
+    page = Page(here.open("/ws/live", token=token, origin=None))
+    assert page.take()["type"] == "snapshot"
 
 
 def processes_below(pid: int) -> list[int]:
