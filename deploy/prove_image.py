@@ -24,6 +24,8 @@ from pathlib import Path
 PROJECT_DIR = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(PROJECT_DIR))
 
+from deploy.load.certificates import make_certificate  # noqa: E402
+from deploy.load.name_server import NameServer  # noqa: E402
 from deploy.proof.load import Counted, Proxy, plan_bodies, under_load  # noqa: E402
 from deploy.proof.pods import (  # noqa: E402
     Pod,
@@ -42,6 +44,7 @@ from deploy.proof.servers import Servers, running_servers  # noqa: E402
 READY_S, END_S = 60.0, 10.0
 PATIENCE_S = 900.0  # after which there is nothing to be proven
 USER = 10001  # of the image
+SERVICES = "spanwise.svc.cluster.local"
 BACKUP = "/var/lib/spanwise-files/backups/proof"
 PROGRAMS = ("live", "gateway", "estimator", "simulator", "worker-data", "worker-planning", "worker-simulation", "beat")
 NETWORK = "podman-default-kube-network"  # what podman play kube puts pods into
@@ -67,6 +70,7 @@ class Proof:
     def run(self) -> int:
         network = json.loads(self.podman("network", "inspect", NETWORK))[0]["subnets"][0]
         with running_servers(self.folder, network["subnet"]) as servers:
+            self.names = NameServer("0.0.0.0")  # noqa: S104 - which a cluster has; pods reach it at their gateway, once there is one
             self.site = self._site(servers, network["gateway"])
             try:
                 self._migrate()
@@ -82,6 +86,7 @@ class Proof:
                     if self.options.keep_logs:
                         (self.options.keep_logs / f"{pod.name}.log").write_text(self.podman.logs(pod.container))
                     self.site.end(pod)
+                self.names.close()
         return self._report()
 
     def _tell(self, what: str, figure: str) -> None:
@@ -100,12 +105,26 @@ class Proof:
             "secret-key": (servers.secrets / "secret-key").read_text().strip(),
             "email-url": "console://",
         }
-        own = {"SPANWISE_PROXY_RESOLVES": "0", "SPANWISE_PLAN_RATE": "1000/second", "SPANWISE_SIMULATOR_GATEWAY": f"{gateway}:14550"}
+        own = {
+            "SPANWISE_PROXY_NAME_SERVER": f"{gateway}:{self.names.address.rpartition(':')[2]}",
+            "SPANWISE_PLAN_RATE": "1000/second",
+            "SPANWISE_SIMULATOR_GATEWAY": f"{gateway}:14550",
+        }
         folders = {
             "secrets": secret_folder(self.folder / "program-secrets", secrets, USER),
             "trust": secret_folder(self.folder / "trust", {"ca.crt": (servers.secrets / "ca.crt").read_text()}, USER),
+            **{f"inner-{program}-certificate": self._inner_certificate(servers, program) for program in ("web", "live")},
         }
         return Site(self.podman, shipped(self.options.overlay), self.options.image, files, folders, gateway, own)
+
+    def _inner_certificate(self, servers: Servers, program: str) -> Path:
+        """What cert-manager makes: by the authority inside, for the name of the program's Service."""
+        made = self.folder / f"inner-{program}"
+        made.mkdir()
+        for name in ("ca.crt", "ca.key"):
+            shutil.copyfile(servers.secrets / name, made / name)
+        files = make_certificate(made, f"DNS:{program}.{SERVICES}")
+        return secret_folder(self.folder / f"inner-{program}-secret", {path.name: path.read_text() for path in files}, USER)
 
     def _start(self, pod: Pod) -> Pod:
         self.pods.append(pod)
@@ -121,15 +140,15 @@ class Proof:
         self._tell("migration of an empty database", f"{time.monotonic() - began_s:.1f} s")
 
     def _start_all(self) -> None:
-        """All at once, as a cluster does; the two web replicas first in line, for the proxy needs their addresses here."""
+        """All at once, as a cluster does."""
         began_s = time.monotonic()
         first = [self.site.pod("web", 1), self.site.pod("web", 2), *(self.site.pod(program, 1) for program in PROGRAMS)]
         with ThreadPoolExecutor(4) as several:
             started = list(several.map(self._start, first))
         self.web, live = started[:2], next(pod for pod in started if pod.program == "live")
-        web = ",".join(f"{pod.address}:8000" for pod in self.web)
-        self.addresses = {"SPANWISE_PROXY_WEB": web, "SPANWISE_PROXY_LIVE": f"{live.address}:8001"}
-        self.proxy_pod = self._start(self.site.pod("proxy", 1, **self.addresses))
+        self.names.tell(f"web.{SERVICES}", [pod.address for pod in self.web])  # also of one that is gone: the proxy finds out by itself
+        self.names.tell(f"live.{SERVICES}", [live.address])
+        self.proxy_pod = self._start(self.site.pod("proxy", 1))
         self.running = [*started, self.proxy_pod]
         wait_until_ready(self.running, PATIENCE_S)
         whole_s = time.monotonic() - began_s
@@ -184,9 +203,7 @@ class Proof:
         certificates = servers.secrets / "web"
         for file in certificates.iterdir():
             shutil.chown(file, USER, USER)
-        pod = self.site.pod(
-            "proxy", 2, **self.addresses, SPANWISE_TLS_CERTIFICATE="/run/certificate/tls.crt", SPANWISE_TLS_KEY="/run/certificate/tls.key"
-        )
+        pod = self.site.pod("proxy", 2, SPANWISE_TLS_CERTIFICATE="/run/certificate/tls.crt", SPANWISE_TLS_KEY="/run/certificate/tls.key")
         template = pod.manifest["spec"]["template"]["spec"]
         template["containers"][0]["volumeMounts"].append({"name": "certificate", "mountPath": "/run/certificate"})
         template["volumes"].append({"name": "certificate", "hostPath": {"path": str(certificates), "type": "Directory"}})

@@ -27,13 +27,13 @@ def make_authority(folder: Path) -> Path:
     return certificate
 
 
-def make_certificate(folder: Path) -> tuple[Path, Path]:
+def make_certificate(folder: Path, names: str = NAMES) -> tuple[Path, Path]:
     """A new certificate of the authority in this folder, and its key, put in place of those that may be there: tls.crt and tls.key."""
     certificate, key, request, rights = (folder / name for name in ("tls.crt", "tls.key", "tls.csr", "tls.extensions"))
     drafts = certificate.with_suffix(".crt.new"), key.with_suffix(".key.new")
     _key(drafts[1])
     _openssl("req", "-new", "-key", str(drafts[1]), "-subj", "/CN=localhost", "-out", str(request))
-    rights.write_text(f"subjectAltName={NAMES}\nextendedKeyUsage=serverAuth\nbasicConstraints=CA:FALSE\n")
+    rights.write_text(f"subjectAltName={names}\nextendedKeyUsage=serverAuth\nbasicConstraints=CA:FALSE\n")
     signing = ["-CA", str(folder / "ca.crt"), "-CAkey", str(folder / "ca.key"), "-CAcreateserial", "-days", DAYS]
     _openssl("x509", "-req", "-in", str(request), *signing, "-extfile", str(rights), "-out", str(drafts[0]))
     drafts[1].replace(key)

@@ -1,4 +1,4 @@
-"""A small name server on the loopback, in a cluster's place: the proxy asks it which replicas there are."""
+"""A small name server, in a cluster's place: the proxy asks it which replicas there are."""
 
 import socket
 import struct
@@ -41,11 +41,11 @@ def answer(question: bytes, addresses_of: dict[str, tuple[str, ...]]) -> bytes:
 class NameServer:
     """Answers in a thread of its own until it is closed."""
 
-    def __init__(self) -> None:
+    def __init__(self, host: str = "127.0.0.1") -> None:
         self._addresses: dict[str, tuple[str, ...]] = {}
         self._socket = socket.socket(type=socket.SOCK_DGRAM)
-        self._socket.bind(("127.0.0.1", 0))
-        self.address = f"127.0.0.1:{self._socket.getsockname()[1]}"
+        self._socket.bind((host, 0))
+        self.address = f"{host}:{self._socket.getsockname()[1]}"
         self._thread = threading.Thread(target=self._serve, name="name server", daemon=True)
         self._thread.start()
 

@@ -6,6 +6,7 @@ import http.client
 import json
 import os
 import signal
+import ssl
 import subprocess
 import time
 from collections.abc import Iterable
@@ -161,7 +162,13 @@ def secret_folder(folder: Path, values: dict[str, str], user: int) -> Path:
 def answers(pod: Pod, probe: str, timeout_s: float = 5.0) -> bool:
     """Whether the pod passes a probe of its Deployment now, as a kubelet would ask it."""
     asked = pod.probes[probe]["httpGet"]
-    connection = http.client.HTTPConnection(pod.address, pod.ports[asked["port"]], timeout=timeout_s)
+    connection: http.client.HTTPConnection
+    if asked.get("scheme") == "HTTPS":  # a kubelet looks at no certificate
+        unchecked = ssl.create_default_context()
+        unchecked.check_hostname, unchecked.verify_mode = False, ssl.CERT_NONE
+        connection = http.client.HTTPSConnection(pod.address, pod.ports[asked["port"]], timeout=timeout_s, context=unchecked)
+    else:
+        connection = http.client.HTTPConnection(pod.address, pod.ports[asked["port"]], timeout=timeout_s)
     try:
         connection.request("GET", asked["path"])
         return 200 <= connection.getresponse().status < 400
