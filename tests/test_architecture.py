@@ -191,7 +191,7 @@ def test_options_of_run_and_check_in_a_document_exist(document: Path) -> None:
 @pytest.mark.parametrize("document", DOCUMENTS, ids=relative)
 def test_settings_and_paths_in_a_document_exist(document: Path) -> None:
     text = document.read_text()
-    sources = "".join(path.read_text() for path in own_files("*.py", "run", "check", "scripts/*", "*.conf", "*.sh", "*.yaml"))
+    sources = "".join(path.read_text() for path in own_files("*.py", "run", "check", "scripts/*", "deploy/*", "*.conf", "*.sh", "*.yaml"))
     names = set(re.findall(r"\bSPANWISE_[A-Z_]*[A-Z]\b", text))
     assert sorted(name for name in names if name not in sources) == []
     paths = re.findall(r"`((?:config|workspace|inspection|missions|tests|docs|scripts|templates|static|benchmarks)/[\w./-]*)`", text)

@@ -31,8 +31,20 @@ class Client:
     def __init__(self, port: int, trust: ssl.SSLContext | None, token: str = "", *, keeps: bool = True) -> None:
         self._port, self._trust, self._token, self._keeps = port, trust, token, keeps
         self._connection: http.client.HTTPConnection | None = None
+        self.opened_again = 0
 
     def ask(self, method: str, path: str, body: Any = None, **headers: str) -> Answer:
+        """A kept connection that was closed before any of the answer came is opened once more, as browsers do."""
+        is_kept = self._connection is not None
+        try:
+            return self._ask(method, path, body, headers)
+        except (ConnectionError, ssl.SSLEOFError):  # RemoteDisconnected is one
+            if not is_kept:
+                raise
+            self.opened_again += 1
+            return self._ask(method, path, body, headers)
+
+    def _ask(self, method: str, path: str, body: Any, headers: Mapping[str, str]) -> Answer:
         connection = self._connection or self._open()
         head = {"Host": f"localhost:{self._port}", **({"Authorization": f"Bearer {self._token}"} if self._token else {}), **headers}
         try:

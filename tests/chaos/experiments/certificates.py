@@ -7,7 +7,7 @@ import time
 import warnings
 from collections.abc import Callable
 
-from tests.chaos.asking import Askers
+from tests.chaos.asking import Askers, Client
 from tests.chaos.experiment import Course, main
 from tests.chaos.plans import planner, reader
 from tests.chaos.site import ONLY_WEB, Site, demo_site, wait_until
@@ -34,8 +34,14 @@ def _redirects(course: Course, site: Site) -> None:
         answer.read()
         found.append((answer.status, answer.getheader("Location", "")))
     connection.close()
-    are_led = all(status in (301, 308) and address.startswith("https://localhost") for status, address in found)
-    course.tell("plain HTTP", f"{', '.join(str(status) for status, _ in found)} to https", "301 or 308 to https", are_led)
+    are_led = all(status in (301, 308) and address.startswith("https://localhost") for status, address in (found[0], found[2]))
+    are_led &= found[1][0] in (301, 308, 403)  # a program that sends its token in the clear is better refused than led on
+    course.tell(
+        "plain HTTP",
+        f"{', '.join(str(status) for status, _ in found)} (page, API, page)",
+        "pages led to https, the API led or refused",
+        are_led,
+    )
     said = site.client().ask("GET", "/sign-in").headers.get("strict-transport-security", "")
     age_s = next((int(part.partition("=")[2]) for part in said.split(";") if part.strip().startswith("max-age")), 0)
     course.tell("HSTS", said or "not said", f"max-age of {HSTS_S:,} s or more", age_s >= HSTS_S)
@@ -77,10 +83,12 @@ def _certificate(site: Site) -> str:
 def _swaps(course: Course, site: Site) -> None:
     swaps = SHORT_SWAPS if course.is_short else SWAPS
     seen, waits_s = [_certificate(site)], []
+    clients: list[Client] = []
 
     def question(number: int) -> Callable[[], str]:
         keeps = number % 2 == 0  # the others shake hands each time
         client = site.client(number, keeps=keeps)
+        clients.append(client)
         return planner(site, client, course.seed + number) if number % 3 == 0 else reader(client)
 
     with Askers(question, CLIENTS, pause_s=0.05) as askers:
@@ -92,6 +100,7 @@ def _swaps(course: Course, site: Site) -> None:
         time.sleep(BETWEEN_S)
     dropped = askers.counted.total() - askers.counted["200"]
     told = f"{dropped} of {askers.counted.total():,} requests dropped at {swaps} swaps, {len(set(seen))} certificates seen"
+    told += f", {sum(client.opened_again for client in clients)} asked again over a kept connection that was closed"
     told += f", the new one within {max(waits_s):.1f} s"
     course.tell(
         "a new certificate under load",
