@@ -82,12 +82,16 @@ class Proof:
                 self._stop_all()
                 self._restore()
             finally:
-                for pod in self.pods:
-                    if self.options.keep_logs:
-                        (self.options.keep_logs / f"{pod.name}.log").write_text(self.podman.logs(pod.container))
-                    self.site.end(pod)
+                for pod in list(self.pods):
+                    self._end(pod)
                 self.names.close()
         return self._report()
+
+    def _end(self, pod: Pod) -> None:
+        if self.options.keep_logs:
+            (self.options.keep_logs / f"{pod.name}.log").write_text(self.podman.logs(pod.container))
+        self.site.end(pod)
+        self.pods.remove(pod)
 
     def _tell(self, what: str, figure: str) -> None:
         """At once: a run that ends early has not been for nothing."""
@@ -224,9 +228,9 @@ class Proof:
                 for file in certificates.iterdir():
                     shutil.chown(file, USER, USER)
                 end_s = time.monotonic() + PATIENCE_S
-                while _serial(pod.address) in seen and time.monotonic() < end_s:
+                while (serial := _serial(pod.address)) in seen and time.monotonic() < end_s:
                     time.sleep(0.2)
-                seen.add(_serial(pod.address))
+                seen.add(serial)
 
         self._note("certificate swapped twice under load", under_load(proxy, self.bodies, self.options.people, self.options.lasts_s, swap))
         if len(seen) != 3:
@@ -265,6 +269,7 @@ class Proof:
         for pod in reversed(self.running):
             stop_softly(self.podman, pod, END_S)
             look_at_lines(pod, self.podman.logs(pod.container))
+            self._end(pod)  # or it would be started again, as a cluster does
 
     def _report(self) -> int:
         print(f"{'program':<20} {'ready s':>8} {'end s':>8}")

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import threading
+from dataclasses import replace
 from pathlib import Path
 from types import FrameType
 
@@ -12,6 +13,7 @@ from config.private_servers import state_directory
 from scripts import proxy_lines
 from scripts.proxy import is_https_asked_for, site_configuration
 from scripts.proxy_site import Site
+from scripts.served_certificate import ServedCertificate
 from scripts.system_packages import find_program
 
 LOOKS_EVERY_S = 5.0
@@ -68,7 +70,15 @@ def fingerprint(site: Site) -> tuple[int, ...]:
 def main() -> int:
     folder = state_directory() / "proxy"
     folder.mkdir(parents=True, exist_ok=True)
-    site = site_of_environment(folder)
+    site = named = site_of_environment(folder)
+    known = fingerprint(named)
+    served: ServedCertificate | None = None
+    if named.certificate is not None and named.key is not None:
+        served = ServedCertificate(folder / "certificate", named.certificate, named.key)
+        if not served.take():
+            print(f"{named.certificate} and {named.key} are no certificate and its key", file=sys.stderr, flush=True)
+            return 1
+        site = replace(named, certificate=served.certificate, key=served.key)
     path = folder / "nginx.conf"
     path.write_text(site_configuration(site))
     command = [find_program("nginx") or "nginx", "-e", "stderr", "-p", str(folder), "-c", str(path)]
@@ -82,13 +92,11 @@ def main() -> int:
 
     for number in (signal.SIGTERM, signal.SIGINT, signal.SIGQUIT):
         signal.signal(number, end)
-    known = fingerprint(site)
     while True:
         try:
             return nginx.wait(LOOKS_EVERY_S)
         except subprocess.TimeoutExpired:
-            seen = fingerprint(site)
-            if seen and seen != known and subprocess.run([*command, "-t", "-q"], check=False).returncode == 0:
+            seen = fingerprint(named)
+            if served is not None and seen and seen != known and served.take():
                 known = seen
-                nginx.send_signal(signal.SIGHUP)
                 print(proxy_lines.told("the certificate has changed: new connections get the new one"), file=sys.stderr, flush=True)

@@ -8,7 +8,7 @@ from pathlib import Path
 from operation.json_lines import is_asked_for
 from scripts import page_headers
 from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
-from scripts.proxy_site import ALIVE, Site, came_over_http, entrances, plain_server, quoted, spoken, upstreams
+from scripts.proxy_site import ALIVE, Site, came_over_http, certificates, entrances, plain_server, quoted, spoken, upstreams
 
 MOST_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
@@ -247,7 +247,7 @@ http {{
     gzip_comp_level 2;
     gzip_types {COMPRESSED};
 {upstreams(site)}
-{came_over_http() if is_behind_https else ""}    map $http_upgrade $connection_upgrade {{
+{certificates(site)}{came_over_http() if is_behind_https else ""}    map $http_upgrade $connection_upgrade {{
         "" close;
         default upgrade;
     }}

@@ -71,6 +71,15 @@ def upstreams(site: Site) -> str:
     }}"""
 
 
+def certificates(site: Site) -> str:
+    """Variables: nginx reads a file that a variable names at each handshake, so that a new one takes no reload."""
+    if site.certificate is None:
+        return ""
+    return f"""    map $ssl_server_name $served_certificate {{ default {quoted(site.certificate)}; }}
+    map $ssl_server_name $served_key {{ default {quoted(site.key)}; }}
+"""
+
+
 def spoken(site: Site, addresses: tuple[str, ...]) -> tuple[str, str]:
     """How the programs at these addresses are spoken to: the scheme, and what nginx is told of TLS."""
     if site.trust is None:
@@ -96,8 +105,8 @@ def entrances(site: Site) -> str:
         led = refused_or_led() if site.is_behind_https else ""
         return f"        {plain}\n{led}{names}"
     return f"""        listen {site.listens_at_tls} ssl http2 backlog={BACKLOG};
-        ssl_certificate {quoted(site.certificate)};
-        ssl_certificate_key {quoted(site.key)};
+        ssl_certificate $served_certificate;
+        ssl_certificate_key $served_key;
         ssl_protocols TLSv1.2 TLSv1.3;
         ssl_ciphers {TLS_1_2_CIPHERS};
         ssl_prefer_server_ciphers off;

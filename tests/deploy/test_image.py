@@ -11,6 +11,7 @@ import yaml
 from scripts import container, container_health, container_proxy, sbom
 from scripts.places import PROJECT_DIR
 from scripts.proxy import site_configuration
+from scripts.served_certificate import ServedCertificate
 from scripts.system_packages import find_program
 from tests.deploy.conftest import DEPLOY
 
@@ -111,6 +112,7 @@ def test_with_a_certificate_the_proxy_speaks_nothing_older_than_tls_1_2(tmp_path
         SPANWISE_PROXY_WEB="10.0.0.1:8000,10.0.0.2:8000", SPANWISE_PROXY_LIVE="10.0.0.3:8001",
     )  # fmt: skip
     assert "ssl_protocols TLSv1.2 TLSv1.3;" in text
+    assert "ssl_certificate $served_certificate;" in text
     assert 'server "10.0.0.2:8000"' in text
     assert "X-Forwarded-Proto $scheme;" in text
     assert "default $remote_addr;" in text  # nobody in front of it may say who a visitor is
@@ -129,6 +131,22 @@ def test_a_new_certificate_is_noticed_and_half_of_one_is_not(tmp_path: Path, mon
     assert container_proxy.fingerprint(site) == ()
     key.write_text("another")
     assert container_proxy.fingerprint(site) not in {before, ()}
+
+
+def test_a_certificate_is_served_as_a_whole_and_half_of_one_never(tmp_path: Path) -> None:
+    command = ["openssl", "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:prime256v1", "-nodes", "-subj", "/CN=x"]
+    pairs = [(tmp_path / f"{number}.crt", tmp_path / f"{number}.key") for number in range(3)]
+    for certificate, key in pairs:
+        subprocess.run([*command, "-keyout", str(key), "-out", str(certificate)], check=True, capture_output=True)
+    named = tmp_path / "tls.crt", tmp_path / "tls.key"
+    served = ServedCertificate(tmp_path / "served", *named)
+    assert not served.take()  # there is none yet
+    for pair in pairs:
+        named[0].write_bytes(pair[0].read_bytes())
+        assert not served.take(), "a new certificate with the key of the one before, or none"
+        named[1].write_bytes(pair[1].read_bytes())
+        assert served.take()
+        assert (served.certificate.read_bytes(), served.key.read_bytes()) == tuple(path.read_bytes() for path in pair)
 
 
 def test_everything_that_the_image_takes_is_in_the_checkout() -> None:

@@ -54,12 +54,16 @@ def test_nginx_writes_requests_and_faults_without_queries(form: str, tmp_path: P
                 break
             except OSError:
                 time.sleep(0.1)
+        told = {"json": '"status": 503', "line": '/sign-in?..." 503'}[form]
+        while told not in (tmp_path / "log").read_text():  # requests are written once a second
+            assert time.monotonic() < end_s
+            time.sleep(0.05)
         process.terminate()
         assert process.wait(60) == 0
     lines = (tmp_path / "log").read_text().splitlines()
     assert "abc" not in "\n".join(lines)
     assert any("/sign-in?..." in line for line in lines)
     if form == "json":
-        told = [json.loads(line) for line in lines]
-        assert [one["status"] for one in told if one["logger"] == "requests"] == [503]
-        assert {"ERROR", "CRITICAL"} & {one["level"] for one in told if one["logger"] == "nginx"}
+        objects = [json.loads(line) for line in lines]
+        assert [one["status"] for one in objects if one["logger"] == "requests"] == [503]
+        assert {"ERROR", "CRITICAL"} & {one["level"] for one in objects if one["logger"] == "nginx"}
