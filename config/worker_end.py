@@ -15,6 +15,7 @@ from contextlib import suppress
 from types import FrameType
 from typing import Any
 
+from celery import signals
 from celery.bootsteps import StartStopStep
 from celery.worker import state
 from django.conf import settings
@@ -33,12 +34,23 @@ class SoftEnd(StartStopStep):
 
     requires = ("celery.worker.components:Timer",)
 
-    def start(self, worker: Any) -> None:
+    def __init__(self, worker: Any, **named: Any) -> None:
+        super().__init__(worker, **named)
         self._worker, self._process = worker, os.getpid()
         self._told_s: float | None = None
         self._cancelled_s: float | None = None
-        for number in SIGNALS:
-            signal.signal(number, self._end)
+        self._hears = False
+        signals.worker_before_create_process.connect(self._hear, weak=False)
+
+    def _hear(self, **_: Any) -> None:
+        """Before the first process is begun: from then on Celery's own way to end may wait for one that does not hear."""
+        if not self._hears and os.getpid() == self._process:
+            self._hears = True
+            for number in SIGNALS:
+                signal.signal(number, self._end)
+
+    def start(self, worker: Any) -> None:
+        self._hear()
         self._timer = worker.timer.call_repeatedly(LOOK_EVERY_S, self._look)
 
     def stop(self, worker: Any) -> None:
@@ -86,6 +98,7 @@ class SoftEnd(StartStopStep):
         for process in list(getattr(pool, "_pool", [])):
             with suppress(ProcessLookupError):
                 os.kill(process.pid, signal.SIGKILL)
+        _later(GO_S, self._kill_processes)  # a pool that has not been closed yet starts others
 
 
 def _later(after_s: float, do: Callable[..., object], *arguments: object) -> None:
