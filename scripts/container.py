@@ -91,6 +91,7 @@ def _open_as_many_files_as_allowed() -> None:
 def main(arguments: list[str]) -> int:
     name, *rest = arguments or ["web"]
     if is_asked_for() and name not in BY_HAND:
+        os.environ.setdefault("SPANWISE_PROGRAM", name)
         write_json_lines()
     if name == "healthy":
         return container_health.main()

@@ -5,6 +5,7 @@ import copy
 import http.client
 import json
 import os
+import shutil
 import signal
 import ssl
 import subprocess
@@ -114,6 +115,9 @@ class Site:
             if "persistentVolumeClaim" in volume:
                 volume.pop("persistentVolumeClaim")
                 volume["hostPath"] = {"path": str(self.files), "type": "Directory"}
+            if "emptyDir" in volume:  # which podman would share between pods, by its name
+                volume.pop("emptyDir")
+                volume["hostPath"] = {"path": str(self._own_folder(f"proof-{program}-{number}", volume["name"])), "type": "Directory"}
             if "secret" in volume:
                 volume["hostPath"] = {"path": str(self.secrets[volume.pop("secret")["secretName"]]), "type": "Directory"}
         name = f"proof-{program}-{number}"
@@ -121,6 +125,13 @@ class Site:
         template["spec"]["restartPolicy"] = "Never" if program == "migrate" else "Always"
         whole["spec"]["selector"] = {"matchLabels": template["metadata"]["labels"]}
         return Pod(program, number, whole, probes, ports, own)
+
+    def _own_folder(self, pod: str, volume: str) -> Path:
+        folder = self.files.parent / "own" / pod / volume
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        folder.chmod(0o1777)
+        return folder
 
     def settings_of(self, pod: Pod) -> Manifest:
         """The settings as they are shipped, with this site's own and the pod's."""

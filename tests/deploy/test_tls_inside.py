@@ -75,3 +75,28 @@ def test_nobody_gets_in_without_tls(servers: Servers, tmp_path: Path) -> None:
     plain["DATABASE_URL"] = plain["DATABASE_URL"].partition("?")[0] + "?sslmode=disable"
     plain["REDIS_URL"] = plain["REDIS_URL"].partition("?")[0].replace("rediss://", "redis://")
     assert refused(tried(tmp_path, plain)) == set(WAYS)
+
+
+def test_a_backup_is_made_and_brought_back_by_a_role_without_rights_of_its_own(servers: Servers, tmp_path: Path) -> None:
+    """As in a deployment: the role is no superuser, and PostGIS belongs to somebody else."""
+    own = {"SPANWISE_VAR": str(tmp_path), "SPANWISE_SECRET_KEY": "of-the-test", "DJANGO_SUPERUSER_PASSWORD": "nobody-guesses-it-48"}
+
+    def run(*command: str) -> str:
+        done = subprocess.run(
+            [sys.executable, *command],
+            cwd=PROJECT_DIR, env=os.environ | own | addresses(servers), capture_output=True, text=True, check=False, timeout=600,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    def count(*also: str) -> int:
+        program = "from workspace.models import User; " + "; ".join(also or ["pass"]) + "; print(User.objects.count())"
+        return int(run("manage.py", "shell", "-v", "0", "-c", program).splitlines()[-1])
+
+    run("manage.py", "migrate", "--no-input")
+    run("manage.py", "createsuperuser", "--no-input", "--username", "somebody", "--email", "somebody@example.org")
+    assert count() == 1
+    run("-m", "scripts.backups", "backup", str(tmp_path / "kept"), "--without-key")
+    assert count("User.objects.all().delete()") == 0
+    run("-m", "scripts.backups", "restore", str(tmp_path / "kept"), "--replace")
+    assert count() == 1
