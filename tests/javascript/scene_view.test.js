@@ -4,6 +4,7 @@ import { test } from "node:test";
 import { directionOf, lengthOf, minus } from "../../static/js/scene/cameras/vectors.js";
 import { drawFlight } from "../../static/js/scene/flight/drawn_flight.js";
 import { makeFrame } from "../../static/js/scene/frame.js";
+import { stepped } from "../../static/js/scene/geometry/ribbon.js";
 import { nearestTower, nearestWire, nearestZone, roomRound, surroundingsOf } from "../../static/js/scene/instruments/distances.js";
 import { headingText, readingsOf } from "../../static/js/scene/instruments/readings.js";
 import { taskOf } from "../../static/js/scene/instruments/task.js";
@@ -222,6 +223,14 @@ test("paths stand within half a metre of what the data say, at 100 random points
     near(reported.positions[index * 3 + 1], hills(takeOff[0], takeOff[2]) + altitude_relative_m, 0.5);
   });
   assert.ok(Math.abs(line.positions[1] - hills(line.positions[0], line.positions[2])) < 0.5, "it rises from the ground");
+});
+
+test("a long stretch of a way gets points in between, with their times; a short one stays", () => {
+  const { positions, at_s, place } = stepped({ place: 3, positions: [0, 0, 0, 4, 0, 0, 4, 50, 0], at_s: [0, 1, 11] }, 20);
+  assert.equal(place, 3);
+  assert.deepEqual(positions.filter((_, number) => number % 3 === 1).map((y) => Math.round(y * 10) / 10), [0, 0, 16.7, 33.3, 50]);
+  assert.deepEqual(at_s.map((time) => Math.round(time * 10) / 10), [0, 1, 4.3, 7.7, 11]);
+  assert.equal(stepped({ positions: [0, 0, 0, 4, 0, 0], at_s: null }, 20).at_s, null);
 });
 
 test("over flat ground heights are those above take-off, and nothing flies under the ground", () => {

@@ -1,13 +1,14 @@
 /** Planned and flown ways as ribbons with height poles: one drawing for all routes of a kind, cut off at the moment that is shown. */
 
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineSegments, Mesh, ShaderMaterial, Vector4 } from "../three.js";
-import { heightPoles, ribbon } from "../geometry/ribbon.js";
+import { heightPoles, ribbon, stepped } from "../geometry/ribbon.js";
 import { ESTIMATED } from "../sources/pieces.js";
 
 const ROUTES = 8;
 const PLANNED = { width_m: 0.16, least_px: 1.4, most_px: 3, poles_m: 120 };
 const FLOWN = { width_m: 0.42, least_px: 3.2, most_px: 8, poles_m: 60 };
 const APART_M = 0.4; // points of a way that are nearer to each other show nothing more
+const LONGEST_M = 20; // of a stretch: between its ends its width is in proportion, which is right for a short one alone
 const ALWAYS_S = -1e9; // a time that is over
 const FOR_EVER_S = 1e30;
 
@@ -21,8 +22,9 @@ const VERTEX = `
     vec3 way = (modelViewMatrix * vec4(tangent, 0.0)).xyz;
     vec3 across = cross(way, normalize(seen.xyz));
     across = length(across) > 1e-4 ? normalize(across) : vec3(1.0, 0.0, 0.0);
-    float metresPerPixel = 2.0 * max(-seen.z, 0.01) / (projectionMatrix[1][1] * viewport.y);
-    seen.xyz += across * side * clamp(halfWidth, 0.5 * leastPx * metresPerPixel, 0.5 * mostPx * metresPerPixel);
+    float metresPerPixel = 2.0 * -seen.z / (projectionMatrix[1][1] * viewport.y);
+    float most = 0.5 * mostPx * metresPerPixel; // behind the camera less than nothing, so that what is before it is as wide as it ought to be
+    seen.xyz += across * side * (seen.z < 0.0 ? clamp(halfWidth, 0.5 * leastPx * metresPerPixel, most) : most);
     vAlong = along; vAt = at; vDashed = dashed; vRoute = route;
     gl_Position = projectionMatrix * seen;
   }`;
@@ -98,7 +100,7 @@ export function thinned({ positions, at_s, ...line }) {
 
 /** lines: [{ place, positions, at_s, dashed }] → attributes and index of all of them together. */
 export function ribbonArrays(lines) {
-  const drawn = lines.map(thinned).filter(({ positions }) => positions.length >= 6).map((line) => ({ ...line, band: ribbon(line.positions), tangents: tangentsOf(line.positions) }));
+  const drawn = lines.map(thinned).filter(({ positions }) => positions.length >= 6).map((line) => stepped(line, LONGEST_M)).map((line) => ({ ...line, band: ribbon(line.positions), tangents: tangentsOf(line.positions) }));
   const count = drawn.reduce((sum, { positions }) => sum + (positions.length / 3) * 2, 0);
   const arrays = Object.fromEntries(Object.entries(ATTRIBUTES).map(([name, size]) => [name, new Float32Array(count * size)]));
   const index = new Uint32Array(drawn.reduce((sum, { band }) => sum + band.index.length, 0));

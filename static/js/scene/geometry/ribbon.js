@@ -82,3 +82,18 @@ export function heightPoles(positions, groundAt, { spacing_m = 50 } = {}) {
   if (positions.length >= 3) stand(...positions.slice(-3));
   return { segments: new Float32Array(segments), heights_m: new Float32Array(heights_m) };
 }
+
+/** With points in between, where a stretch is longer than longest_m: { positions, at_s }. */
+export function stepped({ positions, at_s, ...line }, longest_m) {
+  const [all, times] = [[...positions.slice(0, 3)], at_s ? [at_s[0]] : null];
+  for (let end = 3; end < positions.length; end += 3) {
+    const [from, to] = [positions.slice(end - 3, end), positions.slice(end, end + 3)];
+    const steps = Math.max(1, Math.ceil(Math.hypot(...to.map((metres, axis) => metres - from[axis])) / longest_m));
+    for (let step = 1; step <= steps; step += 1) {
+      const between = (one, other) => (step === steps ? other : one + ((other - one) * step) / steps);
+      all.push(...to.map((metres, axis) => between(from[axis], metres)));
+      times?.push(between(at_s[end / 3 - 1], at_s[end / 3]));
+    }
+  }
+  return { ...line, positions: all, at_s: times };
+}
