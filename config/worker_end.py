@@ -44,7 +44,8 @@ class SoftEnd(StartStopStep):
 
     def _hear(self, **_: Any) -> None:
         """Before the first process is begun: from then on Celery's own way to end may wait for one that does not hear."""
-        if not self._hears and os.getpid() == self._process:
+        is_main = threading.current_thread() is threading.main_thread()  # no other hears signals
+        if is_main and not self._hears and os.getpid() == self._process:
             self._hears = True
             for number in SIGNALS:
                 signal.signal(number, self._end)

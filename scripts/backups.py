@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -35,6 +36,7 @@ from scripts.supervision import Supervisor
 REFERENCE_SYSTEMS = "spatial_ref_sys"
 DUMP, MANIFEST, SUMS, KEY, LOGS = "database.dump", "manifest.json", "SHA256SUMS", "secret_key", "flight-logs"
 PIECE_BYTES = 1024 * 1024
+GONE_WITHIN_S = 5.0
 OWN_TABLES = """
 SELECT format('%I.%I', n.nspname, c.relname) FROM pg_class c JOIN pg_namespace n ON n.oid = c.relnamespace
 WHERE n.nspname = 'public' AND c.relkind IN ('r', 'p')
@@ -214,10 +216,14 @@ def _emptying(connection: psycopg.Connection[tuple[object, ...]]) -> str:
 
 
 def _refuse_if_used(connection: psycopg.Connection[tuple[object, ...]]) -> None:
+    """Connections of programs that have just ended may take a moment to be gone."""
     query = "SELECT count(*) FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid() AND backend_type = {}"
-    row = connection.execute(sql.SQL(query).format(sql.Literal("client backend"))).fetchone()
-    if row is not None and row[0]:
-        raise Refused(f"{row[0]} connections use the database: stop Spanwise's programs first")
+    others = sql.SQL(query).format(sql.Literal("client backend"))
+    deadline_s = time.monotonic() + GONE_WITHIN_S
+    while (row := connection.execute(others).fetchone()) is not None and row[0]:
+        if time.monotonic() > deadline_s:
+            raise Refused(f"{row[0]} connections use the database: stop Spanwise's programs first")
+        time.sleep(0.1)
 
 
 def _default_folder(places: Places) -> Path:

@@ -20,7 +20,7 @@ def _python(program: str, *arguments: str) -> list[str]:
 
 def _granian(*arguments: str) -> list[str]:
     log = ["--log-level", "warning", *(["--log-config", str(GRANIAN_LOG)] if is_asked_for() else [])]
-    return _python("granian", *arguments, *log)
+    return _python("granian", *log, *arguments)
 
 
 def web(*where: str) -> list[str]:

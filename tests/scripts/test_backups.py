@@ -12,6 +12,7 @@ import pytest
 from psycopg import sql
 
 from config.private_servers import private_database_url, state_directory
+from scripts import backups
 from scripts.backups import OWN_TABLES, SUMS, Refused, back_up, database_at, main, restore, verify
 from scripts.places import PROJECT_DIR, Places
 
@@ -123,7 +124,10 @@ def test_a_restore_that_fails_leaves_what_was_there(one: Places, databases: list
     assert hashes(databases[0]) == before
 
 
-def test_a_database_that_somebody_uses_is_left_alone(one: Places, databases: list[str], tmp_path: Path) -> None:
+def test_a_database_that_somebody_uses_is_left_alone(
+    one: Places, databases: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(backups, "GONE_WITHIN_S", 0.1)
     made = back_up(one, tmp_path / "backup")
     with database_at(databases[0]).connect(), pytest.raises(Refused, match="1 connections use the database"):
         restore(one, made, replaces=True)
