@@ -11,7 +11,6 @@ from django.conf import settings
 from simulation.vehicle_endpoint.radio import Address, address_of
 
 LEASE_S = 10.0  # a killed simulator's simulations are taken over within this and one round
-SURE_SHARE = 0.8  # of a lease: clocks do not run quite alike, and what is on its way still arrives
 
 
 @dataclass(frozen=True)
@@ -28,10 +27,6 @@ class Options:
     host: str
     run: str = field(default_factory=lambda: secrets.token_hex(4))
     lease_s: float = LEASE_S
-
-    def held_until_s(self, asked_s: float) -> float:
-        """Until when what was asked for at a time, and granted, is surely nobody else's; monotonic seconds."""
-        return asked_s + SURE_SHARE * self.lease_s
 
     @property
     def holder(self) -> str:

@@ -30,6 +30,7 @@ from simulation.simulator.launches import NoGateway, launch_of
 from simulation.simulator.options import Options
 from simulation.vehicle_endpoint.fleet import Change, WrongPace
 from workspace.errors import DATABASE_AWAY
+from workspace.lease_times import held_until_s
 
 logger = logging.getLogger(__name__)
 
@@ -89,7 +90,7 @@ class Simulator:
         for key in self.flights.keys() - still:
             self.flights.pop(key).end()
         for flight in self.flights.values():
-            flight.held_until_s = options.held_until_s(asked_s)
+            flight.held_until_s = held_until_s(asked_s, options.lease_s)
             if flight.has_fallen:
                 fail_simulation(simulation=flight.simulation, reason="simulator-fault")
         for vehicle in end_single_ones(holder=options.holder, ids=list(self.flights)):
@@ -108,8 +109,8 @@ class Simulator:
                 return
             try:
                 launches = [launch_of(vehicle, held.simulation, options) for vehicle in held.vehicles]
-                held_until_s = options.held_until_s(asked_s)
-                self.flights[held.simulation.pk] = flight_of(held.simulation, held.vehicles, launches, held_until_s=held_until_s)
+                until_s = held_until_s(asked_s, options.lease_s)
+                self.flights[held.simulation.pk] = flight_of(held.simulation, held.vehicles, launches, held_until_s=until_s)
             except DATABASE_AWAY:
                 raise
             except NoGateway:

@@ -18,9 +18,9 @@ from missions.models import CommandAxis, LinkKind, UavCommand
 from missions.services.commands import claim_commands, expire_overdue, note_released, renew_claims
 from telemetry.gateway.carriage import Carriage
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.leases import held_until_s
 from telemetry.gateway.preparation import LOADING
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
+from workspace.lease_times import held_until_s
 
 logger = logging.getLogger(__name__)
 
