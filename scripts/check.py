@@ -25,6 +25,7 @@ import pytest
 from config.private_servers import private_database_url, private_redis_url, state_directory
 from scripts import database_cluster
 from scripts.places import PROJECT_DIR, CannotStart, prepare_sockets, prepare_state, remove_sockets
+from scripts.processes import end_session
 from scripts.programs import Program, database_server, queue_server
 from scripts.second_try import cache_arguments, failed_tests, second_command
 from scripts.supervision import Supervisor
@@ -177,18 +178,6 @@ def _start(step: Step, environment: dict[str, str], output: BinaryIO | None) -> 
     )
 
 
-def _end(process: subprocess.Popen[bytes]) -> None:
-    """Nothing of a step outlives the check: it may stop its own site first, and is killed with its children if it does not."""
-    if process.poll() is not None:
-        return
-    process.send_signal(signal.SIGINT)
-    try:
-        process.wait(STOP_S)
-    except subprocess.TimeoutExpired:
-        os.killpg(process.pid, signal.SIGKILL)
-        process.wait()
-
-
 def _run_here(step: Step, environment: dict[str, str]) -> Result:
     _headline(step)
     began = time.monotonic()
@@ -196,7 +185,7 @@ def _run_here(step: Step, environment: dict[str, str]) -> Result:
     try:
         process.wait()
     finally:
-        _end(process)
+        end_session(process, within_s=STOP_S)
     return Result(step.name, process.returncode, time.monotonic() - began)
 
 
@@ -240,7 +229,7 @@ def run_all(to_run: list[Step], environment: dict[str, str], logs: Path) -> list
                 results.append(Result(step.name, process.returncode, max(0.0, log.stat().st_mtime - began_s)))  # until its last word
         finally:
             for _, _, process in started:
-                _end(process)
+                end_session(process, within_s=STOP_S)
     by_name = {step.name: step for step in to_run}
     return [_with_second_try(by_name[result.name], result, environment) for result in results]
 

@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import time
 from collections.abc import Iterable
 from pathlib import Path
@@ -51,3 +52,15 @@ def end_processes(folders: Iterable[Path], *, first_signal: signal.Signals = sig
         seen.update(remaining)
         time.sleep(0.05)
     return len(seen)
+
+
+def end_session(process: subprocess.Popen[bytes], *, within_s: float) -> None:
+    """Of a process with a session of its own: it may stop what it has started first, and is killed with its children if it does not."""
+    if process.poll() is not None:
+        return
+    process.send_signal(signal.SIGINT)
+    try:
+        process.wait(within_s)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()

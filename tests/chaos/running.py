@@ -2,7 +2,6 @@
 
 import json
 import os
-import signal
 import subprocess
 import sys
 import tempfile
@@ -11,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from scripts.places import PROJECT_DIR
+from scripts.processes import end_session
 from tests.chaos.figures import Figure, Verdict, written
 from tests.chaos.rows import Elsewhere, Experiment, Part, Row, Tests
 
@@ -76,10 +76,4 @@ def _run(command: list[str], environment: dict[str, str], limit_s: float) -> int
     except subprocess.TimeoutExpired:
         return f"no end after {limit_s:.0f} s"
     finally:
-        if process.poll() is None:
-            process.send_signal(signal.SIGINT)
-            try:
-                process.wait(STOP_S)
-            except subprocess.TimeoutExpired:
-                os.killpg(process.pid, signal.SIGKILL)
-                process.wait()
+        end_session(process, within_s=STOP_S)
