@@ -25,26 +25,41 @@ class Usage:
 
 def usage(roots: Mapping[str, Iterable[int]]) -> dict[str, Usage]:
     """By name: what the processes with these ids and all below them have taken so far. One look at /proc for all of them."""
+    stats = _stats()
+    return {name: sum((_usage(stats[pid]) for pid in pids), Usage(0, 0.0, 0)) for name, pids in _families(roots, stats).items()}
+
+
+def families(roots: Mapping[str, Iterable[int]]) -> dict[str, list[int]]:
+    """By name: each of these processes with all below it. One that stands below two of them belongs to the nearer."""
+    return _families(roots, _stats())
+
+
+def _families(roots: Mapping[str, Iterable[int]], stats: Mapping[int, list[str]]) -> dict[str, list[int]]:
     owner = {pid: name for name, pids in roots.items() for pid in pids}
-    parents, found = {}, {}
+    found: dict[str, list[int]] = {name: [] for name in roots}
+    for pid in stats:
+        above = pid
+        while above > 1 and above not in owner:
+            above = int(stats[above][1]) if above in stats else 0
+        if above in owner:
+            found[owner[above]].append(pid)
+    return found
+
+
+def _stats() -> dict[int, list[str]]:
+    """What /proc tells of each process behind its name."""
+    found = {}
     for entry in Path("/proc").iterdir():
         if entry.name.isdigit():
             try:
-                fields = (entry / "stat").read_text().rpartition(")")[2].split()
+                found[int(entry.name)] = (entry / "stat").read_text().rpartition(")")[2].split()
             except OSError:
                 continue
-            pid = int(entry.name)
-            parents[pid] = int(fields[1])
-            found[pid] = Usage(1, sum(map(int, fields[11:15])) / TICKS_PER_S, int(fields[21]) * PAGE_BYTES)
+    return found
 
-    total = dict.fromkeys(roots, Usage(0, 0.0, 0))
-    for pid, taken in found.items():
-        above = pid
-        while above > 1 and above not in owner:
-            above = parents.get(above, 0)
-        if above in owner:
-            total[owner[above]] += taken
-    return total
+
+def _usage(fields: list[str]) -> Usage:
+    return Usage(1, sum(map(int, fields[11:15])) / TICKS_PER_S, int(fields[21]) * PAGE_BYTES)
 
 
 def machine_busy_s() -> float:

@@ -5,8 +5,9 @@ import os
 import numpy as np
 import pytest
 
-from deploy.load.day.sampling import families, files_of, memory_of
+from deploy.load.day.sampling import files_of, memory_of
 from deploy.load.day.slopes import FLAT, GROWS, NOT_DECIDED, slope
+from deploy.load.usage import families
 
 EVERY_S, SAMPLES = 10.0, 180  # half an hour
 AT_S = np.arange(SAMPLES) * EVERY_S
@@ -51,7 +52,7 @@ def test_what_does_not_change_has_no_slope() -> None:
 
 def test_memory_and_files_of_this_very_process_are_found() -> None:
     here = os.getpid()
-    assert here in families({"tests": os.getppid()})["tests"]
+    assert here in families({"tests": [os.getppid()]})["tests"]
     own, _ = memory_of(here)
     assert own > 2**20
     assert files_of(here) >= 3

@@ -10,6 +10,8 @@ import psycopg
 from redis import Redis
 from redis.exceptions import RedisError
 
+from deploy.load.usage import families
+
 QUEUES = ("data", "planning", "simulation")
 KIB = 1_024
 
@@ -49,23 +51,6 @@ class Sample:
         return sum(size for size, _ in self.tables.values())
 
 
-def families(roots: Mapping[str, int]) -> dict[str, list[int]]:
-    """By name: each of these processes with all below it."""
-    children: dict[int, list[int]] = {}
-    for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            try:
-                parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1])
-            except OSError:
-                continue
-            children.setdefault(parent, []).append(int(entry.name))
-
-    def below(pid: int) -> list[int]:
-        return [pid, *(grandchild for child in children.get(pid, []) for grandchild in below(child))]
-
-    return {name: below(pid) for name, pid in roots.items()}
-
-
 def memory_of(pid: int) -> tuple[int, int]:
     """Bytes of anonymous memory and of shared segments, each page divided among those that have it; none of a process that has gone."""
     try:
@@ -85,7 +70,7 @@ def files_of(pid: int) -> int:
 
 def sample(roots: Mapping[str, int], database_url: str, redis_url: str) -> Sample:
     """`roots` are process ids of programs by name. What a server that is away would say is 0."""
-    found = families(roots)
+    found = families({name: [pid] for name, pid in roots.items()})
     memory = {name: [memory_of(pid) for pid in pids] for name, pids in found.items()}
     connections, open_jobs, tables = _database(database_url)
     redis_bytes, redis_keys, redis_lasting, waiting = _redis(redis_url)
