@@ -94,7 +94,7 @@ def working_day(
 ) -> Iterator[Day]:
     """An installation with the ground, people and UAVs of the day."""
     if find_spec("locust") is None:
-        raise CannotStart("Locust is not installed: .venv/bin/python -m pip install --no-deps --require-hashes -r requirements-benchmarks.txt")
+        raise CannotStart("Locust is not installed: the command for it is in deploy/load/README.md")
     size = SIZES[course.is_short]
     with shipped(name, counts, settings={**QUICK, **(settings or {})}) as installation:
         folder = installation.places.state / "day"
