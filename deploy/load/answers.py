@@ -33,6 +33,9 @@ class Recorder:
         self.began_s = at_s
 
     def note_users(self, users: int) -> None:
+        """Before the run has begun there are none: Locust asks the shape once before it says so."""
+        if not self.began_s:
+            return
         self.users.append((time.time() - self.began_s, users))
 
     def note_answer(self, name: str, took_ms: float, fault: Exception | None) -> None:

@@ -1,5 +1,6 @@
 """The shapes of the load tests against the article's table."""
 
+import time
 from pathlib import Path
 
 import numpy as np
@@ -73,6 +74,18 @@ def test_a_run_tells_what_was_served_and_what_failed(tmp_path: Path) -> None:
     series = run.by_second(20.0, window_s=5.0)
     assert series["users"].tolist() == [10, 10, 10, 10]
     assert series["plans_per_s"].sum() * 5 == len(run.at_s) - 1
+
+
+def test_users_are_counted_from_the_begin_of_a_run(tmp_path: Path) -> None:
+    scenario = Scenario(9, (1.0, 1.0), (Stage(10, 10, 20.0),), "")
+    recorder = Recorder(scenario)
+    recorder.note_users(0)  # Locust's first look at the shape, before it says that the test starts
+    recorder.begin(time.time() - 18.0)
+    recorder.note_users(10)
+    recorder.begin(recorder.began_s - 2.0)
+    recorder.note_users(10)
+    recorder.write(tmp_path / "run.npz")
+    assert Run.read(tmp_path / "run.npz").stage(scenario, 0).users_there == 10
 
 
 ASKED = {"uavs": [{}, {}], "targets": [{}, {}]}
