@@ -7,9 +7,7 @@ an account of their own, and a connection that is kept. Every answer is noted: w
 """
 
 import os
-import ssl
 import time
-from functools import cache
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -22,6 +20,7 @@ from locust.env import Environment
 from deploy.load.answers import PLAN, Recorder
 from deploy.load.plan_answers import fault_of, fault_of_plan, plain_fault_of
 from deploy.load.scenarios import RAMPS_TO_SCALE_BY, SCENARIOS
+from deploy.load.trust import trusting
 
 FOLDER = Path(os.environ["SPANWISE_LOAD_FOLDER"])  # what prepare_ground.py has written
 RESULT = Path(os.environ["SPANWISE_LOAD_RESULT"])
@@ -41,12 +40,6 @@ _users, _bodies = count(), count()
 recorder = Recorder(SCENARIO)
 
 
-@cache
-def trust() -> ssl.SSLContext:
-    """One for all: the authority of the installation, and nobody else's."""
-    return ssl.create_default_context(cafile=os.environ["SPANWISE_LOAD_AUTHORITY"])
-
-
 class Shape(LoadTestShape):
     """Users as the scenario has them at this second."""
 
@@ -64,7 +57,7 @@ class Operator(FastHttpUser):
     connection_timeout = 60.0
     max_retries = 0
     insecure = False
-    ssl_context_factory = staticmethod(trust)
+    ssl_context_factory = staticmethod(trusting(os.environ["SPANWISE_LOAD_AUTHORITY"]))
 
     def on_start(self) -> None:
         number = next(_users)

@@ -7,7 +7,6 @@ the end counts as a failure. A 500 is one at once.
 
 import os
 import re
-import ssl
 import time
 from collections.abc import Collection
 from typing import Any
@@ -20,17 +19,14 @@ from locust import FastHttpUser
 from deploy.load.day import book as kinds
 from deploy.load.day.book import Book
 from deploy.load.day.site import Site
+from deploy.load.trust import trusting
 
 LATER = {0, 408, 425, 429, 502, 503, 504}
 PATIENCE_S = 60.0
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 0.5, 5.0
 FORM_TOKEN = re.compile(rb'name="csrfmiddlewaretoken" value="([^"]+)"')
 UNSAFE = {"POST", "PATCH", "PUT", "DELETE"}
-
-
-def trusted() -> ssl.SSLContext:
-    """Of the authority that SPANWISE_DAY_AUTHORITY names; the system's without one."""
-    return ssl.create_default_context(cafile=os.environ.get("SPANWISE_DAY_AUTHORITY") or None)
+trusted = trusting(os.environ.get("SPANWISE_DAY_AUTHORITY") or None)
 
 
 class GaveUp(Exception):
