@@ -18,6 +18,7 @@ from locust import FastHttpUser, LoadTestShape, between, events, task
 from locust.env import Environment
 
 from deploy.load.answers import PLAN, Recorder
+from deploy.load.kept_connections import keep_all_connections
 from deploy.load.plan_answers import fault_of, fault_of_plan, plain_fault_of
 from deploy.load.scenarios import RAMPS_TO_SCALE_BY, SCENARIOS
 from deploy.load.trust import trusting
@@ -38,6 +39,7 @@ LOOKS_EVERY_S = 1.0
 LONGEST_JOB_S = 300.0
 _users, _bodies = count(), count()
 recorder = Recorder(SCENARIO)
+keep_all_connections()
 
 
 class Shape(LoadTestShape):

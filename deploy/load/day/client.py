@@ -19,6 +19,7 @@ from locust import FastHttpUser
 from deploy.load.day import book as kinds
 from deploy.load.day.book import Book
 from deploy.load.day.site import Site
+from deploy.load.kept_connections import keep_all_connections
 from deploy.load.trust import trusting
 
 LATER = {0, 408, 425, 429, 502, 503, 504}
@@ -27,6 +28,7 @@ FIRST_PAUSE_S, LONGEST_PAUSE_S = 0.5, 5.0
 FORM_TOKEN = re.compile(rb'name="csrfmiddlewaretoken" value="([^"]+)"')
 UNSAFE = {"POST", "PATCH", "PUT", "DELETE"}
 trusted = trusting(os.environ.get("SPANWISE_DAY_AUTHORITY") or None)
+keep_all_connections()
 
 
 class GaveUp(Exception):

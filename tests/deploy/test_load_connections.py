@@ -1,0 +1,42 @@
+"""Locust's client keeps its connections, those with high file descriptors, too; skipped where Locust is not installed."""
+
+import os
+import resource
+import socket
+from collections.abc import Iterator
+
+import pytest
+
+pytest.importorskip("geventhttpclient")
+from geventhttpclient.connectionpool import ConnectionPool
+
+from deploy.load.kept_connections import keep_all_connections
+
+MOST_SELECT_KNOWS = 1_024
+
+
+@pytest.fixture
+def pair() -> Iterator[tuple[socket.socket, socket.socket]]:
+    """Two ends, the first with a file descriptor that select(2) does not know."""
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (max(before[0], 2 * MOST_SELECT_KNOWS), before[1]))
+    here, there = socket.socketpair()
+    high = socket.socket(fileno=os.dup2(here.detach(), MOST_SELECT_KNOWS + 100))
+    with high, there:
+        yield high, there
+    resource.setrlimit(resource.RLIMIT_NOFILE, before)
+
+
+def test_an_open_connection_is_kept_and_one_that_has_ended_is_not(
+    pair: tuple[socket.socket, socket.socket], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(ConnectionPool, "_is_socket_alive", ConnectionPool._is_socket_alive)  # brought back afterwards
+    keep_all_connections()
+    pool = ConnectionPool("localhost", 1, "localhost", 1)
+    mine, theirs = pair
+    assert pool._is_socket_alive(mine)
+    theirs.close()
+    assert not pool._is_socket_alive(mine)
+    mine.close()
+    assert not pool._is_socket_alive(mine)
+    assert not pool._is_socket_alive(None)
