@@ -64,7 +64,11 @@ class Recorder:
 
 @dataclass(frozen=True)
 class StageFigures:
-    """One stage of a run. The hold is the stage once all its users are there; demand is users / (mean wait + mean answer)."""
+    """One stage of a run. The hold is the stage once all its users are there.
+
+    Demand is users / (mean wait + mean answer of the first hold). Who waits longer for an answer asks less often: by the answers of its
+    own hold, a stage would always be served all of its demand.
+    """
 
     users: int
     users_there: int  # at its end, as Locust has counted them
@@ -106,29 +110,36 @@ class Run:
 
     def stage(self, scenario: Scenario, index: int) -> StageFigures:
         stage, begins_s = scenario.stages[index], scenario.begins_s()[index]
-        ends_s, hold_begins_s = begins_s + stage.lasts_s, begins_s + scenario.ramp_s(index) + SETTLES_S
-        good = self.is_plan & ~self.is_fault
-        in_hold = good & (self.at_s >= hold_begins_s) & (self.at_s < ends_s)
-        in_ramp = good & (self.at_s >= begins_s) & (self.at_s < hold_begins_s)
+        hold_begins_s, ends_s = _hold(scenario, index)
+        in_ramp = self._is_good & (self.at_s >= begins_s) & (self.at_s < hold_begins_s)
         in_stage = (self.at_s >= begins_s) & (self.at_s < ends_s)
-        hold_s, took_ms = max(0.0, ends_s - hold_begins_s), self.took_ms[in_hold]
+        hold_s, took_ms = max(0.0, ends_s - hold_begins_s), self._took_in_hold_ms(scenario, index)
+        unhurried_ms = self._took_in_hold_ms(scenario, 0)
         wait_s = sum(scenario.wait_s) / 2
         return StageFigures(
             users=stage.users,
             users_there=int(np.interp(ends_s - 1.0, self.users_at_s, self.users)),
             hold_s=hold_s,
             plans_per_s=len(took_ms) / hold_s if hold_s else 0.0,
-            demand_per_s=stage.users / (wait_s + (took_ms.mean() / 1_000 if len(took_ms) else 0.0)),
+            demand_per_s=stage.users / (wait_s + (unhurried_ms.mean() / 1_000 if len(unhurried_ms) else 0.0)),
             median_ms=float(np.median(took_ms)) if len(took_ms) else float("nan"),
             p95_ms=float(np.percentile(took_ms, 95)) if len(took_ms) else float("nan"),
             ramp_median_ms=float(np.median(self.took_ms[in_ramp])) if in_ramp.any() else float("nan"),
             failures=int((self.is_fault & in_stage).sum()),
         )
 
+    @property
+    def _is_good(self) -> NDArray[np.bool_]:
+        return self.is_plan & ~self.is_fault
+
+    def _took_in_hold_ms(self, scenario: Scenario, index: int) -> NDArray[np.float64]:
+        begins_s, ends_s = _hold(scenario, index)
+        return self.took_ms[self._is_good & (self.at_s >= begins_s) & (self.at_s < ends_s)]
+
     def by_second(self, lasts_s: float, window_s: float = 5.0) -> dict[str, NDArray[np.float64]]:
         """For pictures: at_s, users, answers a second, median and p95 [ms] of windows, each shape (lasts_s / window_s,)."""
         edges = np.arange(0.0, lasts_s + window_s, window_s)
-        plans = self.is_plan & ~self.is_fault
+        plans = self._is_good
         place = np.digitize(self.at_s[plans], edges) - 1
         took_ms = self.took_ms[plans]
         windows = [took_ms[place == number] for number in range(len(edges) - 1)]
@@ -140,3 +151,9 @@ class Run:
             "median_ms": np.array([np.median(window) if len(window) else np.nan for window in windows]),
             "p95_ms": np.array([np.percentile(window, 95) if len(window) else np.nan for window in windows]),
         }
+
+
+def _hold(scenario: Scenario, index: int) -> tuple[float, float]:
+    """From when to when [s] all users of a stage are there."""
+    begins_s = scenario.begins_s()[index]
+    return begins_s + scenario.ramp_s(index) + SETTLES_S, begins_s + scenario.stages[index].lasts_s

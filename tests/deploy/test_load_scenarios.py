@@ -76,6 +76,24 @@ def test_a_run_tells_what_was_served_and_what_failed(tmp_path: Path) -> None:
     assert series["plans_per_s"].sum() * 5 == len(run.at_s) - 1
 
 
+def test_demand_does_not_fall_with_the_answers_that_take_long(tmp_path: Path) -> None:
+    scenario = Scenario(9, (1.0, 1.0), (Stage(10, 100, 20.0), Stage(20, 100, 20.0)), "")
+    recorder = Recorder(scenario)
+    recorder.users = [(0.0, 10), (21.0, 20), (40.0, 20)]
+    for at_s, took_ms in [
+        *((at_s, 1_000.0) for at_s in np.arange(0.5, 20.0, 0.2)),
+        *((at_s, 3_000.0) for at_s in np.arange(20.0, 40.0, 0.2)),
+    ]:
+        recorder.at_s.append(float(at_s))
+        recorder.took_ms.append(took_ms)
+        recorder.is_plan.append(1)
+        recorder.is_fault.append(0)
+    recorder.write(tmp_path / "run.npz")
+    later = Run.read(tmp_path / "run.npz").stage(scenario, 1)
+    assert later.demand_per_s == pytest.approx(10.0)  # and not 20 / (1 + 3), which would be served
+    assert later.served_percent == pytest.approx(50.0, abs=2.0)
+
+
 def test_users_are_counted_from_the_begin_of_a_run(tmp_path: Path) -> None:
     scenario = Scenario(9, (1.0, 1.0), (Stage(10, 10, 20.0),), "")
     recorder = Recorder(scenario)
