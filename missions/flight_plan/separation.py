@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
 from missions.flight_plan.closest_approach import NOTHING, box_tree, nearest, shared_places
+from missions.flight_plan.route_pieces import ARRIVAL, FOREVER_S, HEIGHT, HOLD, ON_GROUND, QUICKEST_S, route_pieces, runs_on
 from missions.flight_plan.rules import FlightRules, SeparationRules
 from missions.flight_plan.waypoints import BASE, END, NONE, TARGET, RoutePoints, Waypoints
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
-FOREVER_S = 1e7  # a UAV that hovers at its end keeps its place for so long, 115 days: no wait is longer
-QUICKEST_S = 1e-6  # what a change of place takes at least
 SLACK_S = 1e-3  # a UAV that is put off is put off by so much more than it has to be, whatever rounding does
 MOST_LAYERS = 8
+ALWAYS_FREE = np.empty((0, 2))
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,10 +56,29 @@ class TimedRoute:
             raise ValueError("position, height_m, arrival_s and hold_s must have one entry for each waypoint")
         if not count:
             return
-        moments = np.ravel(np.column_stack([self.arrival_s, self.arrival_s + self.hold_s]))
-        on_the_ground_s = moments[-1] if self.lands_s is None else self.lands_s
-        if not (np.diff([self.take_off_s, *moments, on_the_ground_s]) >= -QUICKEST_S).all():
+        is_never_told = self.lands_s is not None and math.isnan(self.lands_s)
+        if is_never_told or not runs_on(self._table, float(self.take_off_s), self._lands_s):
             raise ValueError("a route's times must be known and must not run backwards")
+
+    @property
+    def _lands_s(self) -> float:
+        """NaN where it hovers, as compiled code reads it."""
+        return math.nan if self.lands_s is None else float(self.lands_s)
+
+    @cached_property
+    def _table(self) -> FloatArray:
+        table = np.zeros((len(self.position), 6))
+        table[:, :HEIGHT] = self.position
+        table[:, HEIGHT], table[:, ARRIVAL], table[:, HOLD] = self.height_m, self.arrival_s, self.hold_s
+        if self.on_ground is not None:
+            table[:, ON_GROUND] = self.on_ground
+        return table
+
+    def pieces(self, about_lon: float) -> tuple[FloatArray, IntArray]:
+        """As `route_pieces` has them."""
+        if not len(self.position):
+            return np.empty((0, 8)), np.empty(0, dtype=np.int64)
+        return route_pieces(self._table, float(self.take_off_s), float(self.take_off_m), self._lands_s, float(self.landing_m), about_lon)
 
     @property
     def end_s(self) -> float:
@@ -74,36 +93,6 @@ class TimedRoute:
             return self
         lands_s = None if self.lands_s is None else self.lands_s + delay_s
         return replace(self, arrival_s=self.arrival_s + delay_s, take_off_s=self.take_off_s + delay_s, lands_s=lands_s)
-
-    @cached_property
-    def _pieces(self) -> tuple[FloatArray, IntArray]:
-        """The climb after take-off, each hold and leg, and the descent or hover at the end: (k, 8) as `closest_approach` has them.
-
-        With each piece's leg, (k,): leg i leads from waypoint i to the next; the climb belongs to the first, the end to the last.
-        """
-        count = len(self.position)
-        if not count:
-            return np.empty((0, 8)), np.empty(0, dtype=np.int64)
-        here = np.column_stack([self.position, self.height_m])
-        leaves_s = self.arrival_s + self.hold_s
-        first, last = here[0].copy(), here[-1].copy()
-        first[2] = self.take_off_m
-        last[2] = here[-1, 2] if self.lands_s is None else self.landing_m
-        end_s = leaves_s[-1] + FOREVER_S if self.lands_s is None else self.lands_s
-        climb = np.concatenate([first, [self.take_off_s], here[0], self.arrival_s[:1]])[None]
-        hold = np.column_stack([here, self.arrival_s, here, leaves_s])
-        fly = np.column_stack([here[:-1], leaves_s[:-1], here[1:], np.maximum(self.arrival_s[1:], leaves_s[:-1] + QUICKEST_S)])
-        end = np.concatenate([here[-1], leaves_s[-1:], last, [end_s]])[None]
-        waypoint = np.arange(count)
-        pieces = np.concatenate([climb, hold, fly, end])
-        order = np.concatenate([[-1.0], waypoint, waypoint[:-1] + 0.5, [count]])
-        in_order = np.argsort(order, kind="stable")
-        lasts = pieces[:, 7] > pieces[:, 3]
-        if self.on_ground is not None:
-            lasts[1 : 1 + count] &= ~self.on_ground
-        in_order = in_order[lasts[in_order]]
-        leg = np.clip(np.floor(order[in_order]), 0, max(count - 2, 0)).astype(np.int64)
-        return np.ascontiguousarray(pieces[in_order]), leg
 
 
 def timed_route(
@@ -174,10 +163,7 @@ class _Flown:
 
 
 def _flown(route: TimedRoute, about_lon: float) -> _Flown:
-    pieces, leg = route._pieces
-    if len(pieces) and np.abs(pieces[:, ::4] - about_lon).max() > 180.0:  # over the antimeridian
-        pieces = pieces.copy()
-        pieces[:, ::4] = about_lon + (pieces[:, ::4] - about_lon + 180.0) % 360.0 - 180.0
+    pieces, leg = route.pieces(about_lon)
     return _Flown(route, pieces, box_tree(pieces), leg)
 
 
@@ -373,7 +359,7 @@ class _Search:
     def _to_all_fixed(self, route: int, layer: int) -> FloatArray:
         if (route, layer) not in self._to_fixed:
             found = [self._shared(other, self.variant(route, layer)) for other in self.fixed]
-            self._to_fixed[route, layer] = np.concatenate([np.empty((0, 2)), *found])
+            self._to_fixed[route, layer] = np.concatenate(found) if found else ALWAYS_FREE
         return self._to_fixed[route, layer]
 
     def _shared(self, one: _Flown, other: _Flown) -> FloatArray:
@@ -392,7 +378,8 @@ class _Search:
                 if self._variant(route, higher) is None:
                     break
                 against = [self.between(other, layer[other], route, higher) + delay_s[other] for other in done]
-                wait_s, blocked = _least_wait_s(np.concatenate([self._to_all_fixed(route, higher), *against]))
+                barred = [intervals for intervals in (self._to_all_fixed(route, higher), *against) if len(intervals)]
+                wait_s, blocked = _least_wait_s(np.concatenate(barred)) if barred else (0.0, False)
                 choices.append((blocked, self.variant(route, higher).route.end_s + wait_s, higher, wait_s))
                 if not blocked and wait_s == 0.0:
                     break

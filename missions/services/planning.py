@@ -29,6 +29,7 @@ from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.refusals import Scene
 from missions.services.requests import PlanRequest
 from missions.services.scenes import scene_on
+from missions.services.turns import one_at_a_time
 from missions.services.unreached import WIND
 from missions.services.warnings import warnings_of
 from missions.services.worth import Worth, value_of, worth_of
@@ -221,7 +222,8 @@ def make_plan(
     ground = read.ground()
     for _ in range(MOST_GROUNDS):
         terrain = terrain_at(ground.edition)  # before any height is read
-        plan, freest = planner.best_on(ground)
+        with one_at_a_time:
+            plan, freest = planner.best_on(ground)
         if edition_now() == ground.edition:
             break
         # Only what was checked against the zones of this moment, over the ground that its heights belong to, leaves.
@@ -230,19 +232,20 @@ def make_plan(
             break
     else:
         raise GraphOutdated
-    return plan_to_json(
-        request,
-        plan.routes,
-        plan.found.left_out,
-        warnings_of(request, plan.found.grounded, is_by_length=plan.found.scene.is_by_length),
-        graph_version=plan.found.scene.graph.version,
-        ground_revision=ground.edition[0],
-        has_terrain=plan.has_terrain,
-        separation=separation_json(plan.separation, plan.others.untimed),
-        lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.network, heights_at(ground.edition)),
-        quality=_quality(request, plan, freest),
-        as_text=as_text,
-    )
+    with one_at_a_time:
+        return plan_to_json(
+            request,
+            plan.routes,
+            plan.found.left_out,
+            warnings_of(request, plan.found.grounded, is_by_length=plan.found.scene.is_by_length),
+            graph_version=plan.found.scene.graph.version,
+            ground_revision=ground.edition[0],
+            has_terrain=plan.has_terrain,
+            separation=separation_json(plan.separation, plan.others.untimed),
+            lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.network, heights_at(ground.edition)),
+            quality=_quality(request, plan, freest),
+            as_text=as_text,
+        )
 
 
 def _others_in_the_air(request: PlanRequest, window_s: float) -> OtherFlights:
