@@ -224,28 +224,30 @@ def make_plan(
         terrain = terrain_at(ground.edition)  # before any height is read
         with one_at_a_time:
             plan, freest = planner.best_on(ground)
+            answer = _answer(request, ground, plan, freest, as_text=as_text)
         if edition_now() == ground.edition:
-            break
+            return answer
         # Only what was checked against the zones of this moment, over the ground that its heights belong to, leaves.
-        now = ground = planning_read().ground()
-        if terrain_at(now.edition) == terrain and not keys_of_zones_met(plan.routes, request.departs_at, now.table):
-            break
-    else:
-        raise GraphOutdated
-    with one_at_a_time:
-        return plan_to_json(
-            request,
-            plan.routes,
-            plan.found.left_out,
-            warnings_of(request, plan.found.grounded, is_by_length=plan.found.scene.is_by_length),
-            graph_version=plan.found.scene.graph.version,
-            ground_revision=ground.edition[0],
-            has_terrain=plan.has_terrain,
-            separation=separation_json(plan.separation, plan.others.untimed),
-            lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.network, heights_at(ground.edition)),
-            quality=_quality(request, plan, freest),
-            as_text=as_text,
-        )
+        ground = planning_read().ground()
+        if terrain_at(ground.edition) == terrain and not keys_of_zones_met(plan.routes, request.departs_at, ground.table):
+            return _answer(request, ground, plan, freest, as_text=as_text)
+    raise GraphOutdated
+
+
+def _answer(request: PlanRequest, ground: PlanningGround, plan: Finished, freest: Finished, *, as_text: bool) -> dict[str, Any]:
+    return plan_to_json(
+        request,
+        plan.routes,
+        plan.found.left_out,
+        warnings_of(request, plan.found.grounded, is_by_length=plan.found.scene.is_by_length),
+        graph_version=plan.found.scene.graph.version,
+        ground_revision=ground.edition[0],
+        has_terrain=plan.has_terrain,
+        separation=separation_json(plan.separation, plan.others.untimed),
+        lost_link=lost_link_check(request, plan.routes, ground.table, plan.found.scene.network, heights_at(ground.edition)),
+        quality=_quality(request, plan, freest),
+        as_text=as_text,
+    )
 
 
 def _others_in_the_air(request: PlanRequest, window_s: float) -> OtherFlights:
