@@ -123,6 +123,12 @@ class Browser(Client):
         self.sign_in()
 
     def sign_in(self) -> None:
+        """With the page and its form, from the beginning where the site says that it cannot just now."""
+        began_s = time.monotonic()
+        while not self._is_let_in(time.monotonic() - began_s < PATIENCE_S):
+            gevent.sleep(LONGEST_PAUSE_S)
+
+    def _is_let_in(self, may_try_again: bool) -> bool:
         page = self.ask("GET", "/sign-in", "sign in: page")
         form = FORM_TOKEN.search(page.content)
         if form is None:
@@ -132,8 +138,14 @@ class Browser(Client):
         with self.client.post("/sign-in", name="sign in", data=body, headers=headers, catch_response=True, allow_redirects=False) as answer:
             if answer.status_code == 302:
                 answer.success()
-                return
-            answer.failure(f"answered {answer.status_code}")
+                return True
+            why = f"answered {answer.status_code}"
+            if answer.status_code in LATER and may_try_again:
+                answer.request_meta["name"] = "again: sign in"
+                answer.success()
+                self.book.note(kinds.RETRIED, name="sign in", why=why)
+                return False
+            answer.failure(why)
         raise GaveUp("not signed in")
 
     def headers_for(self, method: str) -> dict[str, str]:
