@@ -6,10 +6,11 @@ from django.conf import settings
 from django.contrib.auth.backends import ModelBackend
 from django.db import DEFAULT_DB_ALIAS
 from django.db.models import Model
+from django.http import HttpRequest
 from django.utils.translation import gettext as _
 from drf_spectacular.extensions import OpenApiAuthenticationExtension
 from drf_spectacular.plumbing import build_bearer_security_scheme_object
-from rest_framework.authentication import BaseAuthentication, get_authorization_header
+from rest_framework.authentication import BaseAuthentication, SessionAuthentication, get_authorization_header
 from rest_framework.exceptions import AuthenticationFailed
 from rest_framework.request import Request
 
@@ -50,7 +51,7 @@ def user_of_token(token: bytes) -> User | None:
 
 
 class Holder(NamedTuple):
-    """Whom a token belongs to, as far as a program's plainest requests need to know."""
+    """Whom a token or a session belongs to, as far as the plainest requests need to know."""
 
     key: int
     role: Role
@@ -65,6 +66,14 @@ def holder_of(authorization: str) -> Holder | None:
     token_key, last_used_at, holder, role = rows[0]
     note_use(token=token_key, last_used_at=last_used_at)
     return Holder(holder, Role(role))
+
+
+def holder_of_session(request: HttpRequest) -> Holder | None:
+    """Who has signed in and asks with the CSRF token of their page; None, or an APIException, where SessionAuthentication has to look."""
+    if not isinstance(request.user, User) or not request.user.is_active:
+        return None
+    SessionAuthentication().enforce_csrf(request)
+    return Holder(request.user.pk, Role(request.user.role))
 
 
 def _valid_token(token: bytes) -> ApiToken | None:

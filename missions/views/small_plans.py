@@ -1,8 +1,8 @@
-"""The shortest way from a program's request to a small plan.
+"""The shortest way from a request to a small plan.
 
-Most requests of a busy installation are the same: a bearer token, a plain body of a few targets. REST framework's ceremony costs such a
-request as much as its plan. Here the same functions are asked in the same order - who is it, may they, is the body what it should be, is
-it too often - and wherever an answer is not a plain yes, the view begins anew and says what is wrong.
+Most requests of a busy installation are the same: a bearer token or a session, a plain body of a few targets. REST framework's ceremony
+costs such a request as much as its plan. Here the same functions are asked in the same order - who is it, may they, is the body what it
+should be, is it too often - and wherever an answer is not a plain yes, the view begins anew and says what is wrong.
 """
 
 from typing import Any
@@ -15,7 +15,7 @@ from rest_framework.exceptions import APIException
 from inspection.selectors import NoGraph
 from missions import services
 from missions.serializers.plain_request import plain_request
-from workspace.authentication import holder_of
+from workspace.authentication import holder_of, holder_of_session
 from workspace.errors import DATABASE_AWAY
 from workspace.parsers import read_json
 from workspace.permissions import PLANNERS
@@ -36,7 +36,8 @@ def small_plan(request: HttpRequest, *, throttle_scope: str) -> HttpResponse | N
 
 
 def _plan_of(request: HttpRequest, throttle_scope: str) -> dict[str, Any] | None:
-    holder = holder_of(request.META.get("HTTP_AUTHORIZATION", ""))
+    authorization = request.META.get("HTTP_AUTHORIZATION")
+    holder = holder_of_session(request) if authorization is None else holder_of(authorization)
     if holder is None or holder.role not in PLANNERS:
         return None
     asked = plain_request(read_json(request.body))

@@ -1,4 +1,4 @@
-"""The short way of a program's small plan: the view's own answers, the view's own refusals."""
+"""The short way of a small plan: the view's own answers, the view's own refusals."""
 
 import json
 from datetime import timedelta
@@ -6,6 +6,7 @@ from typing import Any
 from unittest import mock
 
 import pytest
+from django.conf import settings
 from django.db import OperationalError
 from django.test import Client
 from django.utils import timezone
@@ -15,13 +16,15 @@ from missions.views.plans import PlanList
 from tests.missions.api import plan_body
 from tests.missions.worlds import World, world
 from tests.workspace.counters import forget_counts
-from tests.workspace.people import client_of, somebody
+from tests.workspace.people import somebody
 from workspace.models import ApiToken, Role, User
 from workspace.services import create_api_token
 from workspace.throttling import ScopedRate
 
 pytestmark = pytest.mark.django_db
 SHORT_WAY = "missions.views.plans.small_plan"
+CSRF_TOKEN = "k" * 32
+TOLD = ("Content-Type", "Cache-Control", "Vary", "X-Frame-Options", "X-Content-Type-Options")
 
 
 @pytest.fixture
@@ -124,9 +127,49 @@ def test_no_token_no_plan(here: World) -> None:
     assert refused(Client(), here) == 401
 
 
-def test_a_session_goes_the_long_way_with_its_csrf_token(here: World) -> None:
-    _, _, gone = both_ways(client_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
+def session_of(user: User) -> Client:
+    """A browser whose CSRF token is asked for, with a cookie for one."""
+    client = Client(enforce_csrf_checks=True, raise_request_exception=False)
+    client.force_login(user)
+    client.cookies[settings.CSRF_COOKIE_NAME] = CSRF_TOKEN
+    return client
+
+
+def test_a_session_with_its_csrf_token_has_the_views_answer(here: World) -> None:
+    client = session_of(somebody(Role.OPERATOR))
+    first, second, gone = both_ways(client, plan_body(here.towers[2], here.towers[4]), headers={"X-CSRFToken": CSRF_TOKEN})
+    assert gone
+    assert first.status_code == second.status_code == 200
+    assert first.content == second.content
+    assert {name: first[name] for name in TOLD} == {name: second[name] for name in TOLD}
+
+
+@pytest.mark.parametrize("token", [None, "", "another" + 25 * "x", 40 * "x"])
+def test_a_session_without_its_csrf_token_is_refused_as_by_the_view(here: World, token: str | None) -> None:
+    client = session_of(somebody(Role.OPERATOR))
+    headers = {} if token is None else {"X-CSRFToken": token}
+    first, second, gone = both_ways(client, plan_body(here.towers[2]), headers=headers)
     assert not gone
+    assert first.status_code == second.status_code == 403
+    assert first.json() == second.json()
+
+
+def test_a_session_of_another_site_is_refused(here: World) -> None:
+    client = session_of(somebody(Role.OPERATOR))
+    headers = {"X-CSRFToken": CSRF_TOKEN, "Origin": "https://elsewhere.example"}
+    first, second, gone = both_ways(client, plan_body(here.towers[2]), headers=headers)
+    assert not gone
+    assert first.status_code == second.status_code == 403
+
+
+def test_a_session_that_may_not_plan_is_refused(here: World) -> None:
+    viewer, operator = somebody(Role.VIEWER), somebody(Role.OPERATOR)
+    left = session_of(operator)
+    User.objects.filter(pk=operator.pk).update(is_active=False)
+    for client, status in ((session_of(viewer), 403), (left, 401)):
+        first, second, gone = both_ways(client, plan_body(here.towers[2]), headers={"X-CSRFToken": CSRF_TOKEN})
+        assert not gone
+        assert first.status_code == second.status_code == status
 
 
 def test_a_key_and_a_preference_are_for_the_view(here: World) -> None:
