@@ -250,7 +250,7 @@ SECURITY = (
                 ("tests/inspection/zones",), "{passed} of {all} tests",
             ),
             Tests(
-                "2,500 random missions over real regions, judged by an exact test of their own", "0 routes cross a zone",
+                "2,200 random missions over real regions, judged by an exact test of their own", "0 routes cross a zone",
                 ("tests/missions/test_random_missions.py", "tests/missions/test_zone_race.py"), "{passed} of {all} runs",
             ),
         ),

@@ -120,16 +120,22 @@ def test_a_job_that_ends_in_the_work_stays_ended(job: Job) -> None:
 
 
 def test_the_thread_and_its_connection_are_gone_afterwards(job: Job) -> None:
-    def connections() -> int:
-        with connection.cursor() as cursor:
-            cursor.execute("SELECT count(*) FROM pg_stat_activity WHERE datname = current_database()")
-            return int(cursor.fetchone()[0])
+    """By name: a count would change with whatever else comes and goes, as autovacuum and what earlier tests have left."""
 
-    before = connections(), threading.active_count()
+    def connections() -> set[int]:
+        with connection.cursor() as cursor:
+            cursor.execute("SELECT pid FROM pg_stat_activity WHERE datname = current_database() AND backend_type = 'client backend'")
+            return {pid for (pid,) in cursor.fetchall()}
+
+    connections_before, threads_before = connections(), set(threading.enumerate())
     with JobWatch(job, interval_s=OFTEN_S) as watch:
         watch.progress("reading", 0.1)
         wait_until(lambda: Job.objects.get(pk=job.pk).message == "reading")
-    wait_until(lambda: (connections(), threading.active_count()) == before)
+        own_connections, own_threads = connections() - connections_before, set(threading.enumerate()) - threads_before
+    assert own_connections
+    assert own_threads
+    wait_until(lambda: not own_connections & connections())
+    wait_until(lambda: not own_threads & set(threading.enumerate()))
 
 
 def test_a_worker_that_is_told_to_stop_gives_the_job_back_to_whoever_is_next(job: Job) -> None:

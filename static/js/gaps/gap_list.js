@@ -1,13 +1,13 @@
 /** The side of the page: which gaps, and the list of them. */
 
-import { byId, h, icon, keyedList } from "../dom.js";
+import { byId, h, icon, keyedList, refill } from "../dom.js";
 import { t } from "../text.js";
 import { numberText } from "../units.js";
 import { cutOffText, KINDS, STATES } from "./kinds.js";
 
 const TYPED_MS = 250;
 
-/** on: { narrow(filter), choose(id), point(gap or null), more() }. Returns { filter, show(…), counts(…), mark(id), step(±1), openNext(), focusText() }. */
+/** on: { narrow(filter), choose(id), point(gap or null), more() }. Returns { filter, busy(whether), show(…), counts(…), mark(id), step(±1), openNext(), focusText() }. */
 export function mountGapList(on) {
   const filter = { state: "open", kinds: new Set(), text: "", inView: false };
   const list = byId("gap-list");
@@ -66,11 +66,12 @@ export function mountGapList(on) {
     const { kind, title, asset, cut_off_m, details } = gap.properties;
     const row = item.firstElementChild;
     item.dataset.id = gap.id;
-    row.replaceChildren(
+    const words = [title, whose(asset), cutOffText({ kind, cut_off_m }) || (details.is_advisory ? t("may be right") : "")];
+    refill(row, [kind, ...words].join("\n"), () => [
       icon(KINDS[kind].icon),
-      h("span", { class: "what" }, h("strong", {}, title), h("small", {}, whose(asset))),
-      h("span", { class: "figure" }, cutOffText({ kind, cut_off_m }) || (details.is_advisory ? t("may be right") : "")),
-    );
+      h("span", { class: "what" }, h("strong", {}, words[0]), h("small", {}, words[1])),
+      h("span", { class: "figure" }, words[2]),
+    ]);
     row.onpointerenter = row.onfocus = () => on.point(gap);
     row.onpointerleave = row.onblur = () => on.point(null);
     row.setAttribute("aria-current", String(gap.id === chosenId));
@@ -99,6 +100,8 @@ export function mountGapList(on) {
   return {
     filter,
     focusText: () => text.focus(),
+    /** Whether the list is still that of the filter before. */
+    busy: (isBusy) => list.setAttribute("aria-busy", String(isBusy)),
     /** The loaded gaps, and whether there are more. */
     show(gaps, { hasMore, hasSearched }) {
       draw(gaps);

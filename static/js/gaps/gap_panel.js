@@ -10,16 +10,20 @@ const LONGEST_NOTE = 500;
 /**
  * on: { repair(body), dismiss(note), reopen(), preview(collection or null), place(tell), placeDone(offer), placeBack(), placeCancel(), next(), close() };
  * canCurate says whether they are offered. `place` begins to take places from the map and tells how many there are.
- * Returns { show(gap or null), busy(whether), fault(sentence) }.
+ * Returns { show(gap or null), refresh(the same gap), busy(whether), fault(sentence) }. `refresh` leaves alone what is being done in the panel.
  */
 export function mountGapPanel(canCurate, on) {
   const dock = byId("dock");
   const panel = byId("gap-panel");
   let acts = null;
   let said = null;
+  let drawn = ""; // the gap as it is shown
+  let noting = null; // the form of a note, with the gap's id: it outlives a new drawing of the gap
 
   function show(gap) {
     dock.hidden = !gap;
+    drawn = JSON.stringify(gap);
+    if (gap?.id !== noting?.id || gap?.properties.state !== "open") noting = null;
     if (!gap) {
       panel.replaceChildren();
       return;
@@ -43,13 +47,20 @@ export function mountGapPanel(canCurate, on) {
     );
   }
 
+  function refresh(gap) {
+    if (JSON.stringify(gap) === drawn) return;
+    const focused = panel.contains(document.activeElement) ? document.activeElement : null;
+    show(gap);
+    if (focused?.isConnected) focused.focus();
+  }
+
   function actsOf(gap) {
-    const { repairs, state, kind } = gap.properties;
+    const { repairs, state } = gap.properties;
     if (!canCurate) return [h("p", { class: "caption" }, state === "open" ? t("Curators can repair this.") : "")];
     const following = h("button", { class: "button primary", type: "button", onclick: on.next }, t("Next gap"));
     if (state === "dismissed") return [following, h("button", { class: "button", type: "button", onclick: on.reopen }, icon("undo-2"), t("Open it again"))];
     if (state === "repaired") return [following];
-    return [...repairs.flatMap((offer, index) => offerActs(offer, index === 0)), dismissAct(kind)];
+    return [...repairs.flatMap((offer, index) => offerActs(offer, index === 0)), dismissAct(gap)];
   }
 
   function offerActs(offer, isFirst) {
@@ -96,8 +107,9 @@ export function mountGapPanel(canCurate, on) {
     );
   }
 
-  function dismissAct(kind) {
-    const opener = h("button", { class: "button quiet", type: "button" }, dismissWords(kind));
+  function dismissAct({ id, properties }) {
+    if (noting) return noting.form;
+    const opener = h("button", { class: "button quiet", type: "button" }, dismissWords(properties.kind));
     opener.addEventListener("click", () => {
       const note = h("input", { class: "input", id: "gap-note", maxlength: LONGEST_NOTE, placeholder: t("Why it is right"), "aria-label": t("Note"), autocomplete: "off" });
       const form = h(
@@ -105,8 +117,9 @@ export function mountGapPanel(canCurate, on) {
         { class: "gap-form", onsubmit: (event) => (event.preventDefault(), on.dismiss(note.value.trim())) },
         note,
         h("button", { class: "button primary" }, t("Leave it")),
-        h("button", { class: "button quiet", type: "button", onclick: () => (form.replaceWith(opener), opener.focus()) }, t("Cancel")),
+        h("button", { class: "button quiet", type: "button", onclick: () => ((noting = null), form.replaceWith(opener), opener.focus()) }, t("Cancel")),
       );
+      noting = { id, form };
       opener.replaceWith(form);
       note.focus();
     });
@@ -115,6 +128,7 @@ export function mountGapPanel(canCurate, on) {
 
   /** While places are clicked on the map the acts say how many there are. */
   function placing(offer, count) {
+    drawn = "";
     const words = count ? tn(count, "Place {count} tower", "Place {count} towers") : t("Click along the span");
     acts.replaceChildren(
       h("button", { class: "button primary", type: "button", disabled: !count, onclick: () => on.placeDone(offer) }, words),
@@ -129,6 +143,7 @@ export function mountGapPanel(canCurate, on) {
 
   return {
     show,
+    refresh,
     fault,
     busy(isBusy) {
       panel.setAttribute("aria-busy", String(isBusy));

@@ -21,7 +21,11 @@ let next = null;
 let chosen = null;
 let summary = null;
 let placed = null; // positions that are being clicked, with what to tell of them
-let asked = 0;
+let asked = 0; // for the list
+let choices = 0;
+let refreshes = 0; // of the chosen gap
+let looks = 0;
+let lastLook = 0; // of those that were answered
 
 const { page, map, layout, open } = mountGroundPage({
   ringsItself: true,
@@ -64,6 +68,7 @@ function query() {
 
 async function load({ more = false } = {}) {
   const turn = ++asked;
+  list.busy(true);
   try {
     const { data } = await get(more && next ? next : query());
     if (turn !== asked) return; // the filter has changed since
@@ -71,7 +76,9 @@ async function load({ more = false } = {}) {
     next = data.next;
     draw();
   } catch (error) {
-    toast(error.message, { label: t("Try again"), act: () => load({ more }) });
+    if (turn === asked) toast(error.message, { label: t("Try again"), act: () => load({ more }) });
+  } finally {
+    if (turn === asked) list.busy(false);
   }
 }
 
@@ -82,9 +89,13 @@ function draw() {
 }
 
 async function look() {
+  const turn = ++looks;
   try {
+    const { data } = await get("/gaps/summary");
+    if (turn < lastLook) return; // a later look was answered first
+    lastLook = turn;
     const before = summary?.searched_at;
-    summary = (await get("/gaps/summary")).data;
+    summary = data;
     list.counts(summary.kinds);
     tellFacts();
     if (before !== undefined && before !== summary.searched_at) {
@@ -113,21 +124,13 @@ function tellFacts() {
 }
 
 async function choose(id, { stay = false } = {}) {
+  const turn = ++choices;
   stopPlacing();
   layer.showRepair(map.map, null);
-  if (id === null) {
-    const row = document.querySelector(".gap-row[aria-current=true]");
-    const hadFocus = byId("gap-panel").contains(document.activeElement);
-    chosen = null;
-    panel.show(null);
-    layer.showGap(map.map, null);
-    list.mark(null);
-    remember();
-    if (hadFocus) row?.focus();
-    return;
-  }
+  if (id === null) return chooseNone();
   try {
     const { data } = await get(`/gaps/${id}`);
+    if (turn !== choices) return; // another has been chosen since
     chosen = data;
     panel.show(data);
     layer.showGap(map.map, data);
@@ -138,18 +141,35 @@ async function choose(id, { stay = false } = {}) {
     if (!stay) map.fit(boxOf(data));
     say(data.properties.sentence);
   } catch (error) {
-    toast(error.status === 404 ? t("This gap is gone: its asset was taken away.") : error.message);
+    if (turn === choices) toast(error.status === 404 ? t("This gap is gone: its asset was taken away.") : error.message);
   }
 }
 
+function chooseNone() {
+  const row = document.querySelector(".gap-row[aria-current=true]");
+  const hadFocus = byId("gap-panel").contains(document.activeElement);
+  chosen = null;
+  panel.show(null);
+  layer.showGap(map.map, null);
+  list.mark(null);
+  remember();
+  if (hadFocus) row?.focus();
+}
+
+/** What has become of the chosen gap; nothing where another has been chosen, or places are being clicked, before the answer comes. */
 async function refreshChosen() {
+  const turn = ++refreshes;
+  const { id } = chosen;
+  const isLate = () => turn !== refreshes || chosen?.id !== id || placed !== null;
   try {
-    chosen = (await get(`/gaps/${chosen.id}`)).data;
-    panel.show(chosen);
-    layer.showGap(map.map, chosen.properties.state === "repaired" ? null : chosen);
-    list.mark(chosen.id);
+    const { data } = await get(`/gaps/${id}`);
+    if (isLate()) return;
+    chosen = data;
+    panel.refresh(data);
+    layer.showGap(map.map, data.properties.state === "repaired" ? null : data);
+    list.mark(id);
   } catch {
-    await choose(null);
+    if (!isLate()) chooseNone();
   }
 }
 
@@ -179,8 +199,9 @@ async function repair(body) {
     toast(data.said, { label: t("Undo"), act: undo });
     await afterChange(id);
   } catch (error) {
-    panel.busy(false);
     panel.fault(error.message);
+  } finally {
+    panel.busy(false);
   }
 }
 
@@ -193,8 +214,9 @@ async function act(change, words, back = null) {
     toast(words, back && { label: t("Undo"), act: () => settle(back(id), t("On the open list again."), id) });
     await afterChange(id);
   } catch (error) {
-    panel.busy(false);
     panel.fault(error.message);
+  } finally {
+    panel.busy(false);
   }
 }
 

@@ -69,13 +69,14 @@ export function showKeys(bindings) {
   open(dialog);
 }
 
-/** Shows a dialog, takes it away when it closes, and gives focus back to where it was. */
+/** Shows a dialog, takes it away when it closes, and gives focus back to where it was, unless something else has it by then: the event comes a frame late. */
 export function open(dialog) {
   const opener = document.activeElement;
   document.body.append(dialog);
   dialog.addEventListener("close", () => {
     dialog.remove();
-    if (opener instanceof HTMLElement && opener.isConnected) opener.focus();
+    const isFree = !document.activeElement || document.activeElement === document.body;
+    if (isFree && opener instanceof HTMLElement && opener.isConnected) opener.focus();
   });
   dialog.addEventListener("click", (event) => {
     if (event.target === dialog) dialog.close();

@@ -2,9 +2,10 @@
 
 import re
 from collections.abc import Callable
+from datetime import UTC, datetime
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, place_of, wait_for_map
@@ -14,14 +15,28 @@ pytestmark = pytest.mark.browser
 UNTAGGED_KM = "86 of 88 vertices have no tower"
 
 
-def opens_gaps(visitor: Visitor, name: str, *, kind: str = "", size: tuple[int, int] = (1440, 900), theme: str = "light") -> Page:
+def opens_gaps(
+    visitor: Visitor, name: str, *, kind: str = "", size: tuple[int, int] = (1440, 900), theme: str = "light", keeps_searching: bool = False
+) -> Page:
     page = visitor.signs_in(name, size=size, theme=theme, touch=size[0] < 721)
+    if keeps_searching:
+        page.route("**/gaps/summary", just_searched)
     page.goto("/assets/gaps")
     wait_for_map(page)
-    expect(page.locator("#page-facts")).to_contain_text("open · searched", timeout=30_000)  # beat looks every 10 s
+    expect(page.locator("#page-facts")).to_contain_text("open · search", timeout=30_000)  # beat looks every 10 s
     if kind:
         page.locator(".kind-chip", has_text=kind).click()
+        expect(page.locator("#gap-list")).to_have_attribute("aria-busy", "false")  # or the first row were still one of all kinds
     return page
+
+
+def just_searched(route: Route) -> None:
+    """As while others change the ground: at each look, every 2 s, it has been searched anew, and has changed again."""
+    answer = route.fetch()
+    summary = answer.json()
+    if summary["searched_at"]:
+        summary |= {"searched_at": datetime.now(UTC).isoformat(), "is_current": False}
+    route.fulfill(response=answer, json=summary)
 
 
 def rows(page: Page) -> list[str]:
@@ -73,10 +88,13 @@ def test_keys_go_along_the_list_and_to_the_place(visitor: Visitor) -> None:
 
 
 def test_a_gap_that_is_right_is_left_with_a_note_and_opened_again(visitor: Visitor) -> None:
-    page = opens_gaps(visitor, "cora", kind="Bridges without a way")
+    page = opens_gaps(visitor, "cora", kind="Bridges without a way", keeps_searching=True)
     page.locator(".gap-row").first.click()
     page.get_by_role("button", name="Leave it as it is").click()
     page.get_by_role("textbox", name="Note").fill("A pipe bridge, seen on site.")
+    for _ in range(2):  # of the second look the first answer has been taken in
+        page.wait_for_event("response", lambda response: re.search(r"/gaps/\d+$", response.url) is not None)
+    expect(page.get_by_role("textbox", name="Note")).to_be_focused()
     page.get_by_role("button", name="Leave it", exact=True).click()
     expect(page.locator(".gap-decided")).to_contain_text("A pipe bridge, seen on site.")
     page.get_by_role("radio", name="Left as it is").check()
