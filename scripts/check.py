@@ -33,14 +33,19 @@ from scripts.supervision import Supervisor
 PROGRAMS = PROJECT_DIR / ".venv" / "bin"
 POLL_S = 0.5
 STOP_S = 60
-BROWSER_TESTS_AFTER = ("tests/browser/ground", "tests/browser/people")  # in line with the others; the rest run beside, about as long
+# Three lines side by side, about as long as each other: what computes and then what waits for workers and simulated UAVs; what waits
+# for the gateway and then some pages, on a site of their own; the other pages.
 WAITING_TESTS = (  # for other processes, more than they compute: beside the others they cost little
     "tests/telemetry/gateway", "tests/telemetry/live", "tests/telemetry/watch", "tests/telemetry/test_companion.py",
-    "tests/telemetry/test_command_delivery.py",
-    "tests/missions/test_lost_planners.py", "tests/inspection/test_lost_workers.py", "tests/workspace/test_live.py", "tests/scripts",
-    "tests/config/test_drained_workers.py",
+    "tests/telemetry/test_command_delivery.py", "tests/workspace/test_live.py", "tests/scripts", "tests/config/test_drained_workers.py",
+)  # fmt: skip
+WAITING_TESTS_AFTER = (
+    "tests/missions/test_lost_planners.py", "tests/inspection/test_lost_workers.py",
     "tests/simulation/test_fleet.py", "tests/simulation/test_mavproxy.py", "tests/simulation/test_mavsdk.py",
     "tests/simulation/test_pool_connections.py", "tests/simulation/test_simulator.py", "tests/simulation/test_through_the_gateway.py",
+)  # fmt: skip
+BROWSER_TESTS_AFTER = (  # those that wait for the gateway
+    "tests/browser/ground", "tests/browser/people", "tests/browser/test_offline.py", "tests/browser/test_unsaved_changes.py",
 )  # fmt: skip
 
 
@@ -78,7 +83,9 @@ def steps(arguments: list[str]) -> list[Step]:
     if rest:
         expression = "not browser" if is_fast else "browser or not browser"
         return [Step("pytest", _pytest(f"({expression}){without_long}", rest))]
-    quick = f"not browser{without_long}"
+    quick, pages = f"not browser{without_long}", f"browser{without_long}"
+    beside = quick if is_fast else f"(browser or not browser){without_long}"
+    beside_places = [*WAITING_TESTS, *(() if is_fast else BROWSER_TESTS_AFTER)]
     found = [
         Step("ruff check", [str(PROGRAMS / "ruff"), "check", "."]),
         Step("ruff format", [str(PROGRAMS / "ruff"), "format", "--check", "."]),
@@ -86,18 +93,15 @@ def steps(arguments: list[str]) -> list[Step]:
         Step("import contracts", [str(PROGRAMS / "lint-imports")]),
         Step("migrations complete", _python("manage.py", "makemigrations", "--check", "--dry-run")),
         Step("check --deploy", _python("manage.py", "check", "--deploy", "--fail-level", "WARNING"), {"SPANWISE_HTTPS": "1"}),
-        Step("pytest", _pytest(quick, [f"--ignore={place}" for place in WAITING_TESTS])),
-        _waiting(
-            Step("tests that wait", _pytest(f"not browser{without_long}", list(WAITING_TESTS)), runs_beside=True, has_own_database=True)
-        ),
+        Step("pytest", _pytest(quick, [f"--ignore={place}" for place in (*WAITING_TESTS, *WAITING_TESTS_AFTER)])),
+        _waiting(Step("tests that wait for workers and simulated UAVs", _pytest(quick, list(WAITING_TESTS_AFTER)))),
+        _waiting(Step("tests that wait", _pytest(beside, beside_places), runs_beside=True, has_own_database=True)),
     ]
     if scripts := sorted(str(path) for path in (PROJECT_DIR / "tests" / "javascript").glob("**/*.test.*js")):
         found.append(Step("JavaScript tests", [str(PROGRAMS / "node"), "--test", *scripts]))
     if not is_fast:
-        expression = f"browser{without_long}"
-        found.append(_waiting(Step("browser tests of the ground and its people", _pytest(expression, list(BROWSER_TESTS_AFTER)))))
-        others = [f"--ignore={folder}" for folder in BROWSER_TESTS_AFTER]
-        found.append(_waiting(Step("browser tests", _pytest(expression, ["tests/browser", *others]), runs_beside=True)))
+        others = [f"--ignore={place}" for place in BROWSER_TESTS_AFTER]
+        found.append(_waiting(Step("browser tests", _pytest(pages, ["tests/browser", *others]), runs_beside=True)))
     return found
 
 

@@ -150,31 +150,34 @@ def _expressions(arguments: list[str]) -> dict[str, str]:
 
 
 def test_fast_leaves_the_browser_out_and_long_takes_the_long_tests_in() -> None:
-    ground, others, quick = "browser tests of the ground and its people", "browser tests", "not browser and not long"
+    later, quick, all_kinds = "tests that wait for workers and simulated UAVs", "not browser and not long", "(browser or not browser)"
     assert _expressions([]) == {
-        "pytest": quick, "tests that wait": quick, ground: "browser and not long", others: "browser and not long",
+        "pytest": quick, later: quick, "tests that wait": f"{all_kinds} and not long", "browser tests": "browser and not long",
     }  # fmt: skip
-    assert not {ground, others} & {step.name for step in steps(["--fast"])}
-    assert _expressions(["--long"]) == {"pytest": "not browser", "tests that wait": "not browser", ground: "browser", others: "browser"}
+    assert _expressions(["--fast"]) == {"pytest": quick, later: quick, "tests that wait": quick}
+    assert _expressions(["--long"]) == {
+        "pytest": "not browser", later: "not browser", "tests that wait": all_kinds, "browser tests": "browser",
+    }  # fmt: skip
 
 
-def test_every_browser_test_runs_in_one_of_two_steps() -> None:
-    after, beside = (
-        [argument for argument in step.command if argument.startswith(("tests/", "--ignore"))]
-        for step in steps([])
-        if step.name.startswith("browser")
-    )
-    assert beside == ["tests/browser", *(f"--ignore={folder}" for folder in after)]
-    assert all((PROJECT_DIR / folder).is_dir() for folder in after)
+def _places(name: str, arguments: list[str]) -> list[str]:
+    """What the step of this name runs of the tests, or leaves to others."""
+    [command] = [step.command for step in steps(arguments) if step.name == name]
+    return [argument for argument in command if argument.startswith(("tests/", "--ignore"))]
 
 
-def test_what_waits_runs_beside_and_nowhere_else() -> None:
-    by_name = {step.name: step for step in steps([])}
-    waiting = [argument for argument in by_name["tests that wait"].command if argument.startswith("tests/")]
-    assert waiting and all((PROJECT_DIR / place).exists() for place in waiting)
-    assert [argument for argument in by_name["pytest"].command if argument.startswith("--ignore")] == [
-        f"--ignore={place}" for place in waiting
-    ]
+@pytest.mark.parametrize("arguments", [[], ["--long"], ["--fast"]])
+def test_what_one_step_leaves_out_is_run_by_another(arguments: list[str]) -> None:
+    beside, later = _places("tests that wait", arguments), _places("tests that wait for workers and simulated UAVs", arguments)
+    pages = [place for place in beside if place.startswith("tests/browser")]
+    waiting = [place for place in beside if place not in pages] + later
+    assert waiting and all((PROJECT_DIR / place).exists() for place in (*waiting, *pages))
+    assert len({*waiting, *pages}) == len([*waiting, *pages])
+    assert _places("pytest", arguments) == [f"--ignore={place}" for place in waiting]
+    if "--fast" in arguments:
+        assert not pages
+    else:
+        assert _places("browser tests", arguments) == ["tests/browser", *(f"--ignore={place}" for place in pages)]
 
 
 def test_other_arguments_go_to_pytest_alone() -> None:

@@ -291,9 +291,20 @@ def test_the_time_between_two_is_what_dense_sampling_finds(pair):
     assert bool(conflicts(pair, rules=RULES)) == (exact_s < RULES.time_s)
 
 
-@settings(max_examples=40)
+@settings(max_examples=15)
 @given(flights())
 def test_what_is_kept_apart_breaks_the_rule_nowhere_but_where_it_says(routes):
+    is_kept_apart(routes)
+
+
+@pytest.mark.long
+@settings(max_examples=200)
+@given(flights())
+def test_what_is_kept_apart_of_many_breaks_the_rule_nowhere_but_where_it_says(routes):
+    is_kept_apart(routes)
+
+
+def is_kept_apart(routes: list[TimedRoute]) -> None:
     separation = keep_apart(routes, rules=RULES)
     left = {encounter.uavs for encounter in separation.unresolved}
     assert all(delay_s >= 0.0 for delay_s in separation.delays_s)
