@@ -89,6 +89,7 @@ class Proof:
 
     def _end(self, pod: Pod) -> None:
         if self.options.keep_logs:
+            self.options.keep_logs.mkdir(parents=True, exist_ok=True)
             (self.options.keep_logs / f"{pod.name}.log").write_text(self.podman.logs(pod.container))
         self.site.end(pod)
         self.pods.remove(pod)
