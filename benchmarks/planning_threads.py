@@ -12,11 +12,10 @@ import resource
 import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import nullcontext
 from pathlib import Path
 from threading import Lock
 from time import perf_counter
-from typing import Any
 from unittest import mock
 
 import django
@@ -33,8 +32,6 @@ from inspection.selectors import current_graph  # noqa: E402
 from missions.models import EndAction  # noqa: E402
 from missions.routing.problem import Objective  # noqa: E402
 from missions.services import PlanRequest, TargetRequest, UavRequest, make_plan, planning  # noqa: E402
-
-AT_ONCE: AbstractContextManager[Any] = nullcontext()
 
 
 def requests(uavs: int, targets: int, count: int, seed: int) -> list[PlanRequest]:
@@ -87,7 +84,7 @@ def main() -> None:
     measured(asked[:100], 1)  # the first ones load the graph and its indices
     for threads in options.threads:
         print(f"{threads} threads by turns: {measured(asked, threads)}")
-        with mock.patch.object(planning, "one_at_a_time", AT_ONCE):
+        with mock.patch.object(planning, "in_turn", nullcontext):
             print(f"{threads} threads at once:  {measured(asked, threads)}", flush=True)
 
 

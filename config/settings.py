@@ -110,6 +110,7 @@ INSTALLED_APPS = [
 MIDDLEWARE = [
     "config.observed_requests.ObservedRequests",
     "django.middleware.security.SecurityMiddleware",
+    "missions.views.short_way.PlansShortWay",
     "django.contrib.sessions.middleware.SessionMiddleware",
     "django.middleware.common.CommonMiddleware",
     "django.middleware.csrf.CsrfViewMiddleware",

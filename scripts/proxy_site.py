@@ -16,6 +16,7 @@ REFUSAL = (
     '{"error": {"code": "https_required", "message": "Programs are answered over https alone. What was sent here could be read on its way: '
     'a token that was in it is to be revoked.", "details": {}}}'
 )
+KEPT = 1_024  # connections to web that wait for their next request: as many as may be under way at once when much is asked
 BACKLOG = 4_096  # connections that wait to be accepted; Linux allows so many unless told (net.core.somaxconn)
 
 
@@ -64,7 +65,7 @@ def upstreams(site: Site) -> str:
     return f"""    upstream web {{
         least_conn;
 {servers(site.web)}
-        keepalive 64;
+        keepalive {KEPT};
     }}
     upstream live {{
 {servers(site.live)}

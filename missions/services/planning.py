@@ -29,7 +29,7 @@ from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.refusals import Scene
 from missions.services.requests import PlanRequest
 from missions.services.scenes import scene_on
-from missions.services.turns import one_at_a_time
+from missions.services.turns import in_turn
 from missions.services.unreached import WIND
 from missions.services.warnings import warnings_of
 from missions.services.worth import Worth, value_of, worth_of
@@ -222,7 +222,7 @@ def make_plan(
     ground = read.ground()
     for _ in range(MOST_GROUNDS):
         terrain = terrain_at(ground.edition)  # before any height is read
-        with one_at_a_time:
+        with in_turn():
             plan, freest = planner.best_on(ground)
             answer = _answer(request, ground, plan, freest, as_text=as_text)
         if edition_now() == ground.edition:

@@ -52,7 +52,8 @@ class PlanList(APIView):
     throttle_scope = "plans"
 
     def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponseBase:
-        return small_plan(request, throttle_scope=self.throttle_scope) or super().dispatch(request, *args, **kwargs)
+        answer = small_plan(request, throttle_scope=self.throttle_scope) if request.META.get("HTTP_COOKIE") else None  # else: short_way.py
+        return super().dispatch(request, *args, **kwargs) if answer is None else answer
 
     @extend_schema(
         operation_id="make_plan",

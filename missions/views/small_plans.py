@@ -28,11 +28,14 @@ _BEGIN_ANEW = (APIException, services.InvalidRequest, NoGraph, services.GraphOut
 
 def small_plan(request: HttpRequest, *, throttle_scope: str) -> HttpResponse | None:
     """The plan as JSON; None where the view has to look at the request itself. A request that fails after it was counted counts twice."""
+    if not _is_ordinary(request):
+        return None
     try:
-        plan = _plan_of(request, throttle_scope) if _is_ordinary(request) else None
+        with services.in_turn():
+            plan = _plan_of(request, throttle_scope)
+            return None if plan is None else HttpResponse(orjson.dumps(plan, default=str), content_type="application/json")
     except _BEGIN_ANEW:
         return None
-    return None if plan is None else HttpResponse(orjson.dumps(plan, default=str), content_type="application/json")
 
 
 def _plan_of(request: HttpRequest, throttle_scope: str) -> dict[str, Any] | None:

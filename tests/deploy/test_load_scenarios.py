@@ -107,7 +107,7 @@ def test_users_are_counted_from_the_begin_of_a_run(tmp_path: Path) -> None:
 
 
 ASKED = {"uavs": [{}, {}], "targets": [{}, {}]}
-ROUTE = b'{"uav":"UAV %d","end_action":"stay","waypoints":[{"target":null,"task":null},{"target":%d,"task":null}]}'
+ROUTE = b'{"uav":"UAV %d","end_action":"stay","waypoints":[{"target":null,"task":null},{"target":%d,"task":{"kind":"photo"}}]}'
 
 
 def plan(*, routes: bytes, unassigned: bytes = b"[]", unresolved: bytes = b"[]", warnings: bytes = b"[]") -> bytes:

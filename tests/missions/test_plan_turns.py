@@ -1,4 +1,4 @@
-"""Threads of a process work their plans out by turns; nobody waits for the database, or after the last look, within one."""
+"""Threads of a process make small plans by turns; what waits for the database, or after the last look, is held up by nobody's."""
 
 import threading
 import time
@@ -9,8 +9,7 @@ from unittest import mock
 import pytest
 from django.db import connections
 
-from missions.services import make_plan, planning
-from missions.services.turns import one_at_a_time
+from missions.services import in_turn, make_plan, planning, turns
 from tests.missions.worlds import World, request, uav, world
 
 PLANNERS = 4
@@ -20,8 +19,23 @@ def asked(here: World) -> Any:
     return request(here.towers[5], here.bridge, uavs=(uav((10.0, 55.9999)),))
 
 
+def has_room() -> bool:
+    """Whether another thread could have a turn now."""
+    had = []
+
+    def look() -> None:
+        with mock.patch.object(turns, "PATIENCE_S", 0.0), in_turn() as has_turn:
+            had.append(has_turn)
+
+    another = threading.Thread(target=look)
+    another.start()
+    another.join()
+    return had[0]
+
+
 @pytest.mark.django_db(transaction=True)
-def test_plans_of_several_threads_are_worked_out_one_after_another() -> None:
+def test_plans_of_several_threads_are_worked_out_one_after_another(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(turns, "PATIENCE_S", 60.0)
     here = world()
     inside, most, best_on = [0], [0], planning._Planner.best_on
     together = threading.Barrier(PLANNERS)
@@ -53,7 +67,7 @@ def test_the_zones_of_now_are_asked_for_outside_of_turns_and_nothing_waits_after
     told: list[str] = []
 
     def edition_now() -> Any:
-        told.append("held" if one_at_a_time.locked() else "free")
+        told.append("room" if has_room() else "held")
         return now()
 
     def written(*args: Any, **kwargs: Any) -> Any:
@@ -63,7 +77,7 @@ def test_the_zones_of_now_are_asked_for_outside_of_turns_and_nothing_waits_after
     now, write = planning.edition_now, planning.plan_to_json
     with mock.patch.object(planning, "edition_now", edition_now), mock.patch.object(planning, "plan_to_json", written):
         make_plan(request=asked(here))
-    assert told == ["written", "free"]
+    assert told == ["written", "room"]
 
 
 @pytest.mark.django_db
@@ -71,4 +85,30 @@ def test_a_plan_that_fails_gives_its_turn_up() -> None:
     here = world()
     with mock.patch.object(planning._Planner, "best_on", side_effect=RuntimeError), pytest.raises(RuntimeError):
         make_plan(request=asked(here))
-    assert not one_at_a_time.locked()
+    assert has_room()
+
+
+def test_who_waits_too_long_goes_on_without_a_turn_and_gives_none_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(turns, "PATIENCE_S", 0.05)
+    holds, over = threading.Event(), threading.Event()
+
+    def hold() -> None:
+        with in_turn():
+            holds.set()
+            over.wait(60.0)
+
+    holder = threading.Thread(target=hold)
+    holder.start()
+    holds.wait(60.0)
+    with in_turn() as has_turn:
+        assert not has_turn
+    assert not has_room()
+    over.set()
+    holder.join()
+    assert has_room()
+
+
+def test_a_turn_within_a_turn_is_the_same_one() -> None:
+    with in_turn() as outer, in_turn() as inner:
+        assert (outer, inner) == (True, True)
+    assert has_room()

@@ -1,6 +1,8 @@
 """The short way of a small plan: the view's own answers, the view's own refusals."""
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import timedelta
 from typing import Any
 from unittest import mock
@@ -9,10 +11,11 @@ import pytest
 from django.conf import settings
 from django.db import OperationalError
 from django.test import Client
-from django.utils import timezone
+from django.utils import timezone, translation
 
 from inspection.models import GraphSnapshot
-from missions.views.plans import PlanList
+from missions import services
+from missions.views.small_plans import small_plan
 from tests.missions.api import plan_body
 from tests.missions.worlds import World, world
 from tests.workspace.counters import forget_counts
@@ -22,7 +25,7 @@ from workspace.services import create_api_token
 from workspace.throttling import ScopedRate
 
 pytestmark = pytest.mark.django_db
-SHORT_WAY = "missions.views.plans.small_plan"
+SHORT_WAYS = ("missions.views.short_way.small_plan", "missions.views.plans.small_plan")
 CSRF_TOKEN = "k" * 32
 TOLD = ("Content-Type", "Cache-Control", "Vary", "X-Frame-Options", "X-Content-Type-Options")
 
@@ -46,15 +49,20 @@ def both_ways(client: Client, body: Any, **options: Any) -> tuple[Any, Any, bool
     taken = []
 
     def noted(*args: Any, **kwargs: Any) -> Any:
-        taken.append(short(*args, **kwargs))
-        return taken[0]
+        taken.append(small_plan(*args, **kwargs))
+        return taken[-1]
 
-    short = PlanList.dispatch.__globals__["small_plan"]
-    with mock.patch(SHORT_WAY, noted):
+    with mock.patch(SHORT_WAYS[0], noted), mock.patch(SHORT_WAYS[1], noted):
         first = asked(client, body, **options)
-    with mock.patch(SHORT_WAY, return_value=None):
+    with the_view_alone():
         second = asked(client, body, **options)
-    return first, second, taken[0] is not None
+    return first, second, any(answer is not None for answer in taken)
+
+
+@contextmanager
+def the_view_alone() -> Iterator[None]:
+    with mock.patch(SHORT_WAYS[0], return_value=None), mock.patch(SHORT_WAYS[1], return_value=None):
+        yield
 
 
 def test_the_answer_is_the_views_byte_for_byte(here: World) -> None:
@@ -95,6 +103,40 @@ def test_what_is_wrong_is_said_by_the_view(here: World, body: bytes) -> None:
     assert not gone
     assert short.status_code == long.status_code == 400
     assert short.content == long.content
+
+
+def test_the_headers_are_the_views(here: World) -> None:
+    first, second, gone = both_ways(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
+    assert gone
+    told = {*first.headers, *second.headers} - {"X-Request-ID", "Allow"}
+    assert {name: first.headers.get(name) for name in told} == {name: second.headers.get(name) for name in told}
+
+
+def test_another_hosts_name_is_refused(here: World) -> None:
+    first, second, gone = both_ways(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]), headers={"Host": "elsewhere.example"})
+    assert not gone
+    assert first.status_code == second.status_code == 400
+
+
+def test_a_plan_is_made_in_the_language_that_is_asked_for(here: World) -> None:
+    make_plan = services.make_plan
+    languages = []
+
+    def noted(**kwargs: Any) -> Any:
+        languages.append(translation.get_language())
+        return make_plan(**kwargs)
+
+    with mock.patch.object(services, "make_plan", noted):
+        for language in ("de", "en"):
+            _, _, gone = both_ways(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]), headers={"Accept-Language": language})
+            assert gone
+    assert languages == ["de", "de", "en", "en"]
+
+
+def test_requests_are_counted_by_the_address_they_came_to(here: World) -> None:
+    answer, _, gone = both_ways(program_of(somebody(Role.OPERATOR)), plan_body(here.towers[2]))
+    assert gone
+    assert answer.resolver_match.route == "api/v1/plans"
 
 
 @pytest.mark.parametrize("role", Role)
@@ -196,7 +238,7 @@ def test_both_ways_count_as_one(here: World) -> None:
     forget_counts()
     with mock.patch.object(ScopedRate, "THROTTLE_RATES", {"plans": "4/hour"}):
         statuses = [asked(client, plan_body(here.towers[2])).status_code for _ in range(2)]
-        with mock.patch(SHORT_WAY, return_value=None):
+        with the_view_alone():
             statuses += [asked(client, plan_body(here.towers[2])).status_code for _ in range(2)]
         answer = asked(client, plan_body(here.towers[2]))
     forget_counts()
