@@ -81,6 +81,7 @@ SESSION_COOKIE_AGE = int(_float("SPANWISE_SESSION_DAYS", 14) * 86_400)  # from s
 SESSION_IDLE_S = _float("SPANWISE_SESSION_IDLE_MINUTES", 120) * 60  # without any open page
 SESSION_WATCHING_S = _float("SPANWISE_SESSION_WATCHING_HOURS", 12) * 3_600  # of an open page in which nobody does anything
 SESSION_COOKIE_HTTPONLY = True
+PASSWORD_HASHERS = ["workspace.password_hashing.Argon2id", "django.contrib.auth.hashers.PBKDF2PasswordHasher"]  # new, old
 MESSAGE_STORAGE = "django.contrib.messages.storage.session.SessionStorage"  # the admin's words need no cookie
 SESSION_COOKIE_SAMESITE = "Lax"
 X_FRAME_OPTIONS = "DENY"

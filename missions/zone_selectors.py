@@ -63,7 +63,9 @@ def zones_met(routes: Sequence[FlownRoute], table: ZoneTable | None = None) -> l
     """For each route the zones that it meets, those of now or of the table; a route without times at any time."""
     margins = zone_margins()
     table = zone_table() if table is None else table
-    found = []
+    found: list[list[MetZone]] = []
+    if not len(table):
+        return [[] for _ in routes]
     for route in routes:
         near, facts = zones_near(table, route.position, margins, _window(route))
         met = breaches(route, facts, margins)

@@ -70,20 +70,32 @@ def legs_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHe
 def spans_near(spans: Spans, position: FloatArray, lowest_m: float) -> IntArray:
     """Spans that are higher, and of which the box comes near that of the route."""
     if spans not in _by_west:
-        west = np.minimum(spans.start[:, 0], spans.end[:, 0])
-        order = np.argsort(west, kind="stable")
-        _by_west[spans] = order, west[order], float(np.abs(spans.end[:, 0] - spans.start[:, 0]).max(initial=0.0))
-    order, west, widest = _by_west[spans]
+        low, high = np.minimum(spans.start, spans.end), np.maximum(spans.start, spans.end)
+        order = np.argsort(low[:, 0], kind="stable")
+        boxes = np.ascontiguousarray(np.column_stack([low, high, spans.highest_m])[order])
+        _by_west[spans] = order, boxes, float((high - low)[:, 0].max(initial=0.0))
+    order, boxes, widest = _by_west[spans]
     low, high = position.min(axis=0), position.max(axis=0)
     stretch = max(np.cos(np.radians(np.abs(position[:, 1]).max())), 0.01)
     about = np.array([NEAR_DEG / stretch, NEAR_DEG])
-    low, high = low - about, high + about
-    rows = order[np.searchsorted(west, low[0] - widest) : np.searchsorted(west, high[0], side="right")]
-    rows = rows[spans.highest_m[rows] > lowest_m]
-    start, end = spans.start[rows], spans.end[rows]
-    near = (np.maximum(start, end) >= low).all(axis=1) & (np.minimum(start, end) <= high).all(axis=1)
-    chosen: IntArray = rows[near]
+    chosen: IntArray = order[_boxes_near(boxes, widest, low - about, high + about, lowest_m)]
     return chosen
+
+
+@njit(cache=True, nogil=True)
+def _boxes_near(boxes: FloatArray, widest: float, low: FloatArray, high: FloatArray, lowest_m: float) -> IntArray:
+    """Rows of boxes (n, 5): west, south, east, north, height; by their west, none wider than so many degrees."""
+    west = boxes[:, 0]
+    found = np.empty(64, dtype=np.int64)
+    count = 0
+    for row in range(np.searchsorted(west, low[0] - widest), np.searchsorted(west, high[0], side="right")):
+        if boxes[row, 1] > high[1] or boxes[row, 3] < low[1] or boxes[row, 2] < low[0] or not boxes[row, 4] > lowest_m:
+            continue
+        if count == len(found):
+            found = np.concatenate((found, found))
+        found[count] = row
+        count += 1
+    return found[:count].copy()
 
 
 @njit(cache=True, nogil=True)
