@@ -37,9 +37,10 @@ STOP_S = 60
 # for the gateway and then some pages, on a site of their own; the other pages.
 WAITING_TESTS = (  # for other processes, more than they compute: beside the others they cost little
     "tests/telemetry/gateway", "tests/telemetry/live", "tests/telemetry/watch", "tests/telemetry/test_companion.py",
-    "tests/telemetry/test_command_delivery.py", "tests/workspace/test_live.py", "tests/scripts", "tests/config/test_drained_workers.py",
+    "tests/telemetry/test_command_delivery.py", "tests/workspace/test_live.py", "tests/config/test_drained_workers.py",
 )  # fmt: skip
 WAITING_TESTS_AFTER = (
+    "tests/scripts",
     "tests/missions/test_lost_planners.py", "tests/inspection/test_lost_workers.py",
     "tests/simulation/test_fleet.py", "tests/simulation/test_mavproxy.py", "tests/simulation/test_mavsdk.py",
     "tests/simulation/test_pool_connections.py", "tests/simulation/test_simulator.py", "tests/simulation/test_through_the_gateway.py",
