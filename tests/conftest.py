@@ -9,9 +9,16 @@ from django.db.models.signals import post_migrate
 from hypothesis import settings
 
 settings.register_profile("spanwise", deadline=None)  # tests do not time
+settings.register_profile("check", deadline=None, derandomize=True)
 settings.load_profile("spanwise")
 
 SHARED_DATA = Path(__file__).resolve().parents[2] / "shared" / "data"
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Where the long tests are left out, each change is judged by the same cases; new ones are sought by the long tests and by hand."""
+    if "not long" in config.getoption("markexpr", ""):
+        settings.load_profile("check")
 
 
 @pytest.fixture(scope="session")
