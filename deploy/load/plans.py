@@ -7,6 +7,7 @@ an account of their own, and a connection that is kept. Every answer is noted: w
 """
 
 import os
+import random
 import time
 from itertools import count
 from pathlib import Path
@@ -62,7 +63,9 @@ class Operator(FastHttpUser):
     ssl_context_factory = staticmethod(trusting(os.environ["SPANWISE_LOAD_AUTHORITY"]))
 
     def on_start(self) -> None:
+        """Locust makes all users of a second at once; they come at moments of their own in it, or they would ask together ever after."""
         number = next(_users)
+        gevent.sleep(random.random())
         signs_in = int((number + 1) * SESSIONS) > int(number * SESSIONS)  # evenly among those who come
         self.name = f"load-{number % len(TOKENS)}"
         self.headers: dict[str, str] = {"Content-Type": "application/json"}
