@@ -30,20 +30,21 @@ def small_plan(request: HttpRequest, *, throttle_scope: str) -> HttpResponse | N
     """The plan as JSON; None where the view has to look at the request itself. A request that fails after it was counted counts twice."""
     if not _is_ordinary(request):
         return None
+    body = request.body  # which may come slowly: nobody waits for that in a turn
     try:
         with services.in_turn():
-            plan = _plan_of(request, throttle_scope)
+            plan = _plan_of(request, body, throttle_scope)
             return None if plan is None else HttpResponse(orjson.dumps(plan, default=str), content_type="application/json")
     except _BEGIN_ANEW:
         return None
 
 
-def _plan_of(request: HttpRequest, throttle_scope: str) -> dict[str, Any] | None:
+def _plan_of(request: HttpRequest, body: bytes, throttle_scope: str) -> dict[str, Any] | None:
     authorization = request.META.get("HTTP_AUTHORIZATION")
     holder = holder_of_session(request) if authorization is None else holder_of(authorization)
     if holder is None or holder.role not in PLANNERS:
         return None
-    asked = plain_request(read_json(request.body))
+    asked = plain_request(read_json(body))
     if asked is None or len(asked.targets) > settings.ROUTING_RULES.small_plan_targets:
         return None
     if not ScopedRate.allows(throttle_scope, holder.key):
