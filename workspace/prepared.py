@@ -16,6 +16,8 @@ from django.db import InterfaceError, OperationalError, connection
 from psycopg import pq
 from psycopg.adapt import PyFormat, Transformer
 
+from workspace.turns import waiting
+
 _known: WeakKeyDictionary[psycopg.Connection[Any], set[bytes]] = WeakKeyDictionary()  # names of statements its server has
 
 
@@ -51,7 +53,7 @@ def _rows_at_once(server: psycopg.Connection[Any], statement: str, parameters: S
     known = _known.setdefault(server, set())
     result = None
     if name in known:
-        result = server.pgconn.exec_prepared(name, values)
+        result = waiting(server.pgconn.exec_prepared, name, values)
         state = result.error_field(pq.DiagnosticField.SQLSTATE)
         if state == _TYPES_CHANGED:  # a migration beside us
             _checked(server.pgconn.exec_(b"DEALLOCATE " + name), server)
@@ -60,7 +62,7 @@ def _rows_at_once(server: psycopg.Connection[Any], statement: str, parameters: S
     if result is None:
         _checked(server.pgconn.prepare(name, _numbered(statement).encode()), server)
         known.add(name)
-        result = server.pgconn.exec_prepared(name, values)
+        result = waiting(server.pgconn.exec_prepared, name, values)
     transformer.set_pgresult(_checked(result, server))
     return transformer.load_rows(0, result.ntuples, tuple)
 

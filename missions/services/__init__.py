@@ -45,7 +45,6 @@ from missions.services.requests import (
     request_from_json,
     request_to_json,
 )
-from missions.services.turns import in_turn
 from missions.services.uavs import change_uav, create_uav, delete_uav, restore_uav
 from missions.services.warming_up import warm_up
 from missions.services.why_route import explain_route
@@ -93,7 +92,6 @@ __all__ = [
     "duplicate_mission",
     "explain_route",
     "explain_unreached_target",
-    "in_turn",
     "lock_to_json",
     "locked_targets",
     "look_by_hand",

@@ -29,11 +29,11 @@ from missions.services.plan_json import PlannedRoute, plan_to_json
 from missions.services.refusals import Scene
 from missions.services.requests import PlanRequest
 from missions.services.scenes import scene_on
-from missions.services.turns import in_turn
 from missions.services.unreached import WIND
 from missions.services.warnings import warnings_of
 from missions.services.worth import Worth, value_of, worth_of
 from missions.services.zone_choice import BoolArray, ZoneChoice, zone_choice
+from workspace.turns import end_turn, in_turn
 
 MOST_GROUNDS = 5  # that may follow one another while one plan is made
 MOST_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before
@@ -225,6 +225,7 @@ def make_plan(
         with in_turn():
             plan, freest = planner.best_on(ground)
             answer = _answer(request, ground, plan, freest, as_text=as_text)
+        end_turn()  # which is the caller's, if it had one already: nobody waits for another turn after the last look
         if edition_now() == ground.edition:
             return answer
         # Only what was checked against the zones of this moment, over the ground that its heights belong to, leaves.

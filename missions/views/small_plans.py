@@ -20,6 +20,7 @@ from workspace.errors import DATABASE_AWAY
 from workspace.parsers import read_json
 from workspace.permissions import PLANNERS
 from workspace.throttling import ScopedRate
+from workspace.turns import in_turn
 
 LARGEST_BODY = 64 * 1024
 _ORDINARY_ACCEPT = frozenset({"*/*", "application/json"})
@@ -32,7 +33,7 @@ def small_plan(request: HttpRequest, *, throttle_scope: str) -> HttpResponse | N
         return None
     body = request.body  # which may come slowly: nobody waits for that in a turn
     try:
-        with services.in_turn():
+        with in_turn():
             plan = _plan_of(request, body, throttle_scope)
             return None if plan is None else HttpResponse(orjson.dumps(plan, default=str), content_type="application/json")
     except _BEGIN_ANEW:

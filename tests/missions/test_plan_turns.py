@@ -9,8 +9,11 @@ from unittest import mock
 import pytest
 from django.db import connections
 
-from missions.services import in_turn, make_plan, planning, turns
+from missions.services import make_plan, planning
 from tests.missions.worlds import World, request, uav, world
+from workspace import turns
+from workspace.prepared import prepared_rows
+from workspace.turns import in_turn
 
 PLANNERS = 4
 
@@ -77,7 +80,34 @@ def test_the_zones_of_now_are_asked_for_outside_of_turns_and_nothing_waits_after
     now, write = planning.edition_now, planning.plan_to_json
     with mock.patch.object(planning, "edition_now", edition_now), mock.patch.object(planning, "plan_to_json", written):
         make_plan(request=asked(here))
-    assert told == ["written", "room"]
+        with in_turn():  # the caller's, as for a small plan
+            make_plan(request=asked(here))
+            assert has_room()
+    assert told == ["written", "room"] * 2
+
+
+@pytest.mark.django_db(transaction=True)
+def test_another_has_the_turn_while_one_waits_for_the_database() -> None:
+    told: list[bool] = []
+    asks = threading.Thread(target=ask_slowly, args=(told,))
+    with in_turn():
+        asks.start()
+        asks.join(0.05)
+        assert (has_room(), asks.is_alive()) == (False, True)  # it waits for its turn, with its question unasked
+    time.sleep(0.3)
+    assert (has_room(), asks.is_alive()) == (True, True)  # it had its turn, and the database has its question
+    asks.join(60.0)
+    assert told == [True, False]  # and its turn again with the answer
+    assert has_room()
+
+
+def ask_slowly(told: list[bool]) -> None:
+    try:
+        with in_turn() as has_turn:
+            prepared_rows("SELECT pg_sleep(1.0)::text")
+            told += [has_turn, has_room()]
+    finally:
+        connections.close_all()
 
 
 @pytest.mark.django_db
