@@ -25,9 +25,11 @@ class Shown:
         return self.is_in_whole if mission is None else mission in self.missions
 
 
-# UAVs that fly a mission or were heard within a day; missions on their way or ended within the hour; alerts that are open or were closed
-# within the hour; commands and offers that are open or ended within ten minutes. And all of it that belongs to the missions asked for.
-_LOOK = """
+# UAVs that fly a mission or were heard within a day; missions on their way or ended within the hour; alerts that are open, and the newest
+# that were closed within the hour, of the organisation and of each mission asked for; commands and offers that are open or ended within
+# ten minutes. And all of it that belongs to the missions asked for.
+MOST_CLOSED = 100
+_LOOK = f"""
 WITH asked AS (SELECT %s::bigint AS organisation_id, %s::uuid[] AS missions),
 flown AS (
     SELECT DISTINCT ON (place.uav_id) place.uav_id, mission.id AS mission_id, place.sequence
@@ -42,12 +44,31 @@ member AS (
         AND mission.deleted_at IS NULL
     JOIN missions_missionuav place ON place.mission_id = mission.id
     WHERE place.uav_id IS NOT NULL GROUP BY place.uav_id
+),
+told AS (
+    SELECT id, bool_or(is_in_whole) AS is_in_whole FROM (
+        SELECT alert.id, true AS is_in_whole FROM asked JOIN telemetry_alert alert ON alert.organisation_id = asked.organisation_id
+        WHERE alert.closed_at IS NULL
+        UNION ALL
+        SELECT newest.id, true FROM asked, LATERAL (
+            SELECT alert.id FROM telemetry_alert alert
+            WHERE alert.organisation_id = asked.organisation_id AND alert.closed_at > now() - interval '1 hour'
+            ORDER BY alert.closed_at DESC LIMIT {MOST_CLOSED}
+        ) newest
+        UNION ALL
+        SELECT newest.id, false FROM asked, unnest(asked.missions) AS mission(id), LATERAL (
+            SELECT alert.id FROM telemetry_alert alert
+            WHERE alert.organisation_id = asked.organisation_id AND alert.mission_id = mission.id
+                AND alert.closed_at > now() - interval '1 hour'
+            ORDER BY alert.closed_at DESC LIMIT {MOST_CLOSED}
+        ) newest
+    ) found GROUP BY id
 )
 SELECT 'uavs', uav.id::text, hashtextextended(ROW(watch.version, floor(extract(epoch FROM link.heard_at)), link.mode, link.is_armed,
         link.is_in_air, link.autopilot, link.loaded_sha256, link.loaded_approval, link.loaded_flight, link.loaded_read_at,
         link.loaded_doubt, link.waypoint_sequence, round(link.clock_rate::numeric, 1), uav.name, uav.link, uav.is_simulated,
         flown.mission_id, flown.sequence)::text, 0),
-    flown.uav_id IS NOT NULL OR heard.recently, coalesce(member.missions, '{}')
+    flown.uav_id IS NOT NULL OR heard.recently, coalesce(member.missions, '{{}}')
 FROM asked JOIN missions_uav uav ON uav.organisation_id = asked.organisation_id
     LEFT JOIN telemetry_uavlink link ON link.uav_id = uav.id LEFT JOIN telemetry_uavwatch watch ON watch.uav_id = uav.id
     LEFT JOIN flown ON flown.uav_id = uav.id LEFT JOIN member ON member.uav_id = uav.id,
@@ -66,14 +87,12 @@ WHERE mission.deleted_at IS NULL AND (mission.state IN ('dispatched', 'active') 
 UNION ALL
 SELECT 'alerts', alert.id::text, hashtextextended(ROW(alert.revision, alert.level, alert.code, alert.message, alert.values, alert.details,
         alert.closed_at, alert.acknowledged_at, (SELECT count(*) FROM telemetry_alertnote note WHERE note.alert_id = alert.id))::text, 0),
-    true, CASE WHEN alert.mission_id IS NULL THEN coalesce(member.missions, '{}') ELSE ARRAY[alert.mission_id] END
-FROM asked JOIN telemetry_alert alert ON alert.organisation_id = asked.organisation_id
-    LEFT JOIN member ON member.uav_id = alert.uav_id
-WHERE alert.closed_at IS NULL OR alert.closed_at > now() - interval '1 hour'
+    told.is_in_whole, CASE WHEN alert.mission_id IS NULL THEN coalesce(member.missions, '{{}}') ELSE ARRAY[alert.mission_id] END
+FROM told JOIN telemetry_alert alert ON alert.id = told.id LEFT JOIN member ON member.uav_id = alert.uav_id
 UNION ALL
 SELECT 'commands', command.id::text, hashtextextended(ROW(command.state, command.attempts, command.expires_at, command.sent_at,
         command.acknowledged_at, command.finished_at, command.progress, command.outcome_code, command.outcome)::text, 0),
-    true, CASE WHEN command.mission_id IS NULL THEN coalesce(member.missions, '{}') ELSE ARRAY[command.mission_id] END
+    true, CASE WHEN command.mission_id IS NULL THEN coalesce(member.missions, '{{}}') ELSE ARRAY[command.mission_id] END
 FROM asked JOIN missions_uavcommand command ON command.organisation_id = asked.organisation_id
     LEFT JOIN member ON member.uav_id = command.uav_id
 WHERE command.finished_at IS NULL OR command.finished_at > now() - interval '10 minutes'
@@ -83,7 +102,7 @@ SELECT 'offers', offer.id::text, hashtextextended(ROW(offer.state, offer.code, o
 FROM asked JOIN missions_mission mission ON mission.organisation_id = asked.organisation_id AND mission.deleted_at IS NULL
     JOIN missions_replanoffer offer ON offer.mission_id = mission.id
 WHERE offer.state IN ('computing', 'open') OR coalesce(offer.decided_at, offer.created_at) > now() - interval '10 minutes'
-"""
+"""  # noqa: S608 - a number of ours
 
 
 def shown_live(organisation_id: int, missions: Collection[UUID] = ()) -> dict[Key, Shown]:

@@ -33,7 +33,7 @@ LARGEST = 2_048
 
 
 class Flying:
-    """One UAV, there and back along its way, again and again."""
+    """One UAV that flies its way once and hovers at its end: to and fro would be an alert for each turn, 20,000 an hour."""
 
     def __init__(self, uav: InAir, number: int) -> None:
         self.uav, self.number = uav, number
@@ -54,8 +54,7 @@ class Flying:
         whole_m = self.marks_m[-1]
         if whole_m <= 0.0:
             return self.uav.way[0]
-        there_m = self.along_m % (2 * whole_m)
-        there_m = min(there_m, 2 * whole_m - there_m)
+        there_m = min(self.along_m, whole_m)
         leg = min(bisect_right(self.marks_m, there_m), len(self.marks_m) - 1)
         start_m, end_m = self.marks_m[leg - 1], self.marks_m[leg]
         share = (there_m - start_m) / (end_m - start_m) if end_m > start_m else 0.0

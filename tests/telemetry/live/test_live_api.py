@@ -10,6 +10,7 @@ from django.utils import timezone
 from missions.models import CommandKind, LinkKind, Mission, MissionUav, OfferState, ReplanOffer, Uav, UavCommand
 from missions.services.flying import mark_started, mark_target
 from telemetry.models import Alert, AlertLevel, UavLink, UavWatch
+from telemetry.selectors.live import MOST_CLOSED
 from telemetry.serializers.live import LiveAnswerSerializer
 from telemetry.services import store_records
 from tests.missions.flights import carry, dispatched, fleet, ground
@@ -97,6 +98,21 @@ def test_only_what_goes_on_or_has_just_ended_is_shown() -> None:
         "alerts": ["closed"],
         "commands": [str(done.pk)],
     }
+
+
+def test_of_alerts_that_were_closed_the_newest_are_shown_of_all_and_of_each_mission() -> None:
+    user, uav, now = somebody(), a_uav("busy"), timezone.now()
+    quiet, busy = Mission.objects.create(name="quiet"), Mission.objects.create(name="busy")
+    facts = {"uav": uav, "level": AlertLevel.ADVISORY, "opened_at": now - timedelta(minutes=50)}
+    Alert.objects.create(**facts, code="open", message="open", mission=busy)
+    Alert.objects.create(**facts, code="calm", message="calm", mission=quiet, closed_at=now - timedelta(minutes=49))
+    for number in range(MOST_CLOSED + 5):
+        closed_at = now - timedelta(seconds=10 * number)
+        Alert.objects.create(**facts, code=f"a{number}", message="over", mission=busy, closed_at=closed_at)
+    newest = {"open", *(f"a{number}" for number in range(MOST_CLOSED))}
+    assert {alert["code"] for alert in shown(user)["alerts"]} == newest
+    assert {alert["code"] for alert in shown(user, f"?mission={busy.pk}")["alerts"]} == newest
+    assert {alert["code"] for alert in shown(user, f"?mission={quiet.pk}")["alerts"]} == {"calm"}
 
 
 def test_of_a_mission_only_what_belongs_to_it_is_shown_whatever_its_state() -> None:
