@@ -7,6 +7,7 @@ from celery.signals import beat_init, worker_process_init
 
 from config.watched_tasks import LoopPulse, watch_tasks
 from config.worker_end import SoftEnd
+from operation.garbage import keep_what_is_there
 from operation.program import program_begins
 from operation.tracing import begin_tracing
 
@@ -24,12 +25,12 @@ MAKES_NO_PLANS = {"simulation"}
 @worker_process_init.connect
 def warm_up_process(**_: object) -> None:
     """A worker's process loads what plans are made with before it takes a task, unless its queues bring it none."""
-    if set(app.amqp.queues.consume_from) <= MAKES_NO_PLANS:
-        return
-    from missions.services import warm_up  # noqa: PLC0415 (Django is set up by then, not when this module is read)
+    if not set(app.amqp.queues.consume_from) <= MAKES_NO_PLANS:
+        from missions.services import warm_up  # noqa: PLC0415 (Django is set up by then, not when this module is read)
 
-    begin_tracing("worker")
-    warm_up()
+        begin_tracing("worker")
+        warm_up()
+    keep_what_is_there()
 
 
 @beat_init.connect

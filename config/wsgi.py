@@ -1,6 +1,5 @@
 """The HTTP application (WSGI)."""
 
-import gc
 import os
 
 from django.core.wsgi import get_wsgi_application
@@ -12,11 +11,9 @@ begin_tracing("web")  # before the middleware is put together, of which it is a 
 application = get_wsgi_application()
 
 from missions.services import warm_up  # noqa: E402 (Django first)
+from operation.garbage import keep_what_is_there  # noqa: E402
 from operation.program import program_begins  # noqa: E402
 
 program_begins("web")
 warm_up()  # before the first request comes in
-
-# What is there by now stays: the collector need not walk through graphs and models again for each few plans.
-gc.collect()
-gc.freeze()
+keep_what_is_there()

@@ -1,6 +1,7 @@
-"""What every program does first: it tells how it does, and is traced, where that is asked for."""
+"""What every program does once it has begun: it tells how it does, is traced where that is asked for, and keeps what its start has made."""
 
 from operation.exposition import tell_how_it_does
+from operation.garbage import keep_what_is_there
 from operation.readiness import Check
 from operation.tracing import begin_tracing
 
@@ -9,3 +10,4 @@ def program_begins(program: str, *checks: Check) -> None:
     """`checks` are what it needs to work, else database and Redis."""
     begin_tracing(program)
     tell_how_it_does(program, *checks)
+    keep_what_is_there()

@@ -1,8 +1,10 @@
 """What live pages show, for where there are no websockets."""
 
+from typing import Any
 from uuid import UUID
 
-from django.http import Http404, HttpResponse
+from django.http import Http404, HttpRequest, HttpResponse
+from django.http.response import HttpResponseBase
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.exceptions import ValidationError
 from rest_framework.request import Request
@@ -15,6 +17,12 @@ from workspace.spoken import language_of_request
 
 
 class Live(APIView):
+    def dispatch(self, request: HttpRequest, *args: Any, **kwargs: Any) -> HttpResponseBase:
+        """A view and its request know each other, and wait for the collector; the answer, often 1 MB, need not wait with them."""
+        response = super().dispatch(request, *args, **kwargs)
+        del self.response
+        return response
+
     @extend_schema(
         operation_id="get_live",
         summary="What flies: UAVs as measured and estimated, missions, alerts, commands, offers of another plan",
