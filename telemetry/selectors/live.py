@@ -25,10 +25,10 @@ class Shown:
         return self.is_in_whole if mission is None else mission in self.missions
 
 
+MOST_CLOSED = 100
 # UAVs that fly a mission or were heard within a day; missions on their way or ended within the hour; alerts that are open, and the newest
 # that were closed within the hour, of the organisation and of each mission asked for; commands and offers that are open or ended within
 # ten minutes. And all of it that belongs to the missions asked for.
-MOST_CLOSED = 100
 _LOOK = f"""
 WITH asked AS (SELECT %s::bigint AS organisation_id, %s::uuid[] AS missions),
 flown AS (
