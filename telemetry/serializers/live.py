@@ -140,7 +140,7 @@ class LiveOfferSerializer(serializers.Serializer):
 class LiveSerializer(serializers.Serializer):
     uavs = LiveUavSerializer(many=True, help_text="that fly a mission or were heard within a day; the mission's, if one is asked for")
     missions = LiveMissionSerializer(many=True, help_text="on their way, or ended within the hour; the one asked for, whatever its state")
-    alerts = AlertSerializer(many=True, help_text="open, or closed within the hour")
+    alerts = AlertSerializer(many=True, help_text="open, and the newest 100 that were closed within the hour")
     commands = CommandSerializer(many=True, help_text="not finished, or finished within ten minutes")
     offers = LiveOfferSerializer(many=True, help_text="of another plan: undecided, or decided within ten minutes")
 
