@@ -1,4 +1,4 @@
-"""What a request leaves in circles goes again, however much a program's start has made that stays."""
+"""What is made once stays and is shared; what a request leaves in circles goes again."""
 
 import subprocess
 import sys
@@ -27,3 +27,18 @@ def test_what_grew_old_while_it_was_used_is_found_once_it_is_garbage():
     told = subprocess.run([sys.executable, "-c", ANSWERS], capture_output=True, text=True, check=True, timeout=60)
 
     assert told.stdout.split() == ["True", "0"]
+
+BEFORE_A_FORK = """
+import gc
+import config
+from celery.signals import worker_before_create_process
+before = len(gc.get_objects())
+worker_before_create_process.send(sender=None)
+print(gc.get_freeze_count() > 0.9 * before)
+"""
+
+
+def test_a_worker_keeps_its_start_before_it_makes_processes_which_then_share_it():
+    told = subprocess.run([sys.executable, "-c", BEFORE_A_FORK], capture_output=True, text=True, check=True, timeout=60)
+
+    assert told.stdout.split() == ["True"]
