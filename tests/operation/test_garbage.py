@@ -28,6 +28,7 @@ def test_what_grew_old_while_it_was_used_is_found_once_it_is_garbage():
 
     assert told.stdout.split() == ["True", "0"]
 
+
 BEFORE_A_FORK = """
 import gc
 import config
