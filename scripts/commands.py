@@ -10,6 +10,10 @@ GRANIAN_LOG = PROJECT_DIR / "operation" / "granian_log.json"
 BACKLOG = "4096"  # connections that wait for a program: as many as Linux allows unless told (net.core.somaxconn)
 QUEUES = ("data", "planning", "simulation")
 
+# The C library gives each thread a pool of its own, up to eight a core, and returns little of what a pool has held once. Python's
+# threads take turns, so that two pools do.
+MEMORY = {"MALLOC_ARENA_MAX": "2"}
+
 
 def _python(program: str, *arguments: str) -> list[str]:
     """A module, or a file that ends in .py. Where logs are JSON, whatever it writes is."""

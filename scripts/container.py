@@ -54,7 +54,7 @@ PROGRAMS: dict[str, Callable[[], list[str]]] = {
 
 def environment(program: str) -> dict[str, str]:
     """The environment of a program: what is told, and what every container of it has."""
-    usual = {"SPANWISE_PROGRAM": program}
+    usual = {"SPANWISE_PROGRAM": program, **commands.MEMORY}
     if program != "migrate":
         usual["SPANWISE_METRICS"] = METRICS
     if program.startswith("worker-"):

@@ -114,7 +114,8 @@ def _told(places: Places, sockets: Path, program: Program) -> Program:
     if program.name.startswith("worker-"):
         environment["PROMETHEUS_MULTIPROC_DIR"] = str(places.process(program.name) / "metrics")
         environment["REMAP_SIGTERM"] = "SIGQUIT"  # to a worker TERM says the same as QUIT
-    return replace(program, environment=program.environment | environment)
+    memory = {name: os.environ.get(name, usual) for name, usual in commands.MEMORY.items()}
+    return replace(program, environment=program.environment | memory | environment)
 
 
 def web_programs(places: Places, sockets: Path) -> list[Program]:

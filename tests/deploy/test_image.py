@@ -45,6 +45,13 @@ def test_sigterm_ends_a_worker_softly() -> None:
     assert "REMAP_SIGTERM" not in container.environment("web")
 
 
+def test_memory_is_taken_from_two_pools_unless_the_site_says_otherwise(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("MALLOC_ARENA_MAX", raising=False)
+    assert container.environment("web")["MALLOC_ARENA_MAX"] == "2"
+    monkeypatch.setenv("MALLOC_ARENA_MAX", "8")
+    assert container.environment("web")["MALLOC_ARENA_MAX"] == "8"
+
+
 @pytest.mark.parametrize(
     ("command_line", "program"),
     [
