@@ -34,6 +34,7 @@ from django.conf import settings  # noqa: E402 (Django first)
 from django.contrib.auth.hashers import make_password  # noqa: E402
 from django.contrib.gis.geos import Point, Polygon  # noqa: E402
 from django.core.management import call_command  # noqa: E402
+from django.db import transaction  # noqa: E402
 from django.utils import timezone  # noqa: E402
 
 from inspection.geodesy import distance_m  # noqa: E402
@@ -99,7 +100,6 @@ def store_assets(graph: PlainGraph) -> NDArray[np.int64]:
 
 def store_snapshot(graph: PlainGraph, keys: NDArray[np.int64]) -> GraphSnapshot:
     """The graph as it is, with the weights of our own geodesy; the newest snapshot of the present ground."""
-    mark_ground_changed()
     ends = graph.kind[graph.edge]
     edge_kind = np.full(len(graph.edge), EdgeKind.LINE, dtype=np.uint8)
     edge_kind[(ends == RAILWAY).all(axis=1)] = EdgeKind.RAILWAY
@@ -119,19 +119,21 @@ def store_snapshot(graph: PlainGraph, keys: NDArray[np.int64]) -> GraphSnapshot:
         edge_kind=edge_kind,
         edge_asset=np.full(len(graph.edge), -1, dtype=np.int64),
     )
-    content = to_bytes(arrays)
-    return GraphSnapshot.objects.create(
-        ground_revision=ground_revision(),
-        rules=rules_of_snapshots(),
-        nodes=arrays.node_count,
-        edges=arrays.edge_count,
-        components=int(graph.components().max()) + 1,
-        excluded_nodes=0,
-        excluded_edges=0,
-        arrays=content,
-        arrays_sha256=sha256(content).hexdigest(),
-        build_s=0.0,
-    )
+    content, components = to_bytes(arrays), int(graph.components().max()) + 1
+    with transaction.atomic():  # or a worker that sees the new ground without its graph builds another one, without these edges
+        mark_ground_changed()
+        return GraphSnapshot.objects.create(
+            ground_revision=ground_revision(),
+            rules=rules_of_snapshots(),
+            nodes=arrays.node_count,
+            edges=arrays.edge_count,
+            components=components,
+            excluded_nodes=0,
+            excluded_edges=0,
+            arrays=content,
+            arrays_sha256=sha256(content).hexdigest(),
+            build_s=0.0,
+        )
 
 
 def store_users(number: int, password: str) -> list[str]:
