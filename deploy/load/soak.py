@@ -182,7 +182,8 @@ def section(
         for name, found in sorted(slopes.items(), key=lambda item: item[0] == "all programs")
     ]
     peak = table(["users", "requests/s", "failures", "p50 ms", "p95 ms"], steps) + "\n\n" if steps else ""
-    return f"""`python deploy/load/soak.py --peak {users[0]} --minutes {options.minutes:g} --write`: {users[1]} users and 200 UAVs at 1 Hz
+    asked = f"--peak {users[0]} --minutes {options.minutes:g} --warm-up-min {options.warm_up_min:g}"
+    return f"""`python deploy/load/soak.py {asked} --write`: {users[1]} users and 200 UAVs at 1 Hz
 for {options.minutes:g} min after {options.warm_up_min:g} min of warm-up, half of the peak of {users[0]} users (0 failures, p95 under
 {options.p95_ms:g} ms). {whole.requests:,} requests, {whole.per_s:.1f} a second, {whole.failures} failures, p50 {whole.p50_ms:.0f} ms,
 p95 {whole.p95_ms:.0f} ms. {"Every bar was held." if not missed else "Missed: " + "; ".join(missed) + "."}
