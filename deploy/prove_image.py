@@ -68,6 +68,8 @@ class Proof:
         self.missed: list[str] = []
 
     def run(self) -> int:
+        if NETWORK not in self.podman("network", "ls", "--format", "{{.Name}}").split():
+            self.podman("network", "create", NETWORK)  # which podman does at its first pod, later than its gateway is asked for here
         network = json.loads(self.podman("network", "inspect", NETWORK))[0]["subnets"][0]
         with running_servers(self.folder, network["subnet"]) as servers:
             self.names = NameServer("0.0.0.0")  # noqa: S104 - which a cluster has; pods reach it at their gateway, once there is one
