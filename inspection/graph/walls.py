@@ -1,7 +1,6 @@
 """What cannot be flown over, and so has to be gone round: towers and wires too tall for the highest flight, or tall under a zone."""
 
 from dataclasses import dataclass
-from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -22,6 +21,7 @@ FloatArray = NDArray[np.float64]
 Geometries = NDArray[np.object_]
 
 _too_tall: WeakKeyDictionary[Network, tuple[FlownHeights, ZoneIndex]] = WeakKeyDictionary()
+_with_walls: WeakKeyDictionary[ZoneIndex, WeakKeyDictionary[ZoneIndex, ZoneIndex]] = WeakKeyDictionary()
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,18 +44,21 @@ def index_of_walls(polygons: Geometries) -> ZoneIndex:
     return ZoneIndex(polygons, np.full(len(polygons), NO_ZONE), [WALL] * len(polygons))
 
 
-@lru_cache(maxsize=32)
 def with_walls(zones: ZoneIndex, walls: ZoneIndex) -> ZoneIndex:
-    """Both, the zones first; made once for the two, with what the index works out as it is asked."""
+    """Both, the zones first; made once for the two, with what the index works out as it is asked, and kept for as long as both are."""
     if not len(walls):
         return zones
-    return ZoneIndex(
-        np.concatenate([zones.polygons, walls.polygons]),
-        np.concatenate([zones.ids, walls.ids]),
-        [*zones.names, *walls.names],
-        floor_agl_m=np.concatenate([zones.floor_agl_m, walls.floor_agl_m]),
-        ceiling_agl_m=np.concatenate([zones.ceiling_agl_m, walls.ceiling_agl_m]),
-    )
+    of_zones = _with_walls.setdefault(zones, WeakKeyDictionary())
+    both = of_zones.get(walls)
+    if both is None:
+        both = of_zones[walls] = ZoneIndex(
+            np.concatenate([zones.polygons, walls.polygons]),
+            np.concatenate([zones.ids, walls.ids]),
+            [*zones.names, *walls.names],
+            floor_agl_m=np.concatenate([zones.floor_agl_m, walls.floor_agl_m]),
+            ceiling_agl_m=np.concatenate([zones.ceiling_agl_m, walls.ceiling_agl_m]),
+        )
+    return both
 
 
 def at_all_heights(zones: ZoneIndex) -> ZoneIndex:
