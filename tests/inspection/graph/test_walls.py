@@ -47,7 +47,7 @@ def test_without_walls_it_is_the_zones() -> None:
 @pytest.mark.parametrize("gone", ["zones", "walls"])
 @pytest.mark.parametrize("is_tall", [True, False])
 def test_zones_that_went_are_not_kept(gone: str, *, is_tall: bool) -> None:
-    """Each change of the zones makes another set; a country's is some hundred megabytes."""
+    """Each change of the zones makes another set, and each is as large as all zones are."""
     pair = {"zones": zone(3.0, "Airport"), "walls": walls(4.0) if is_tall else no_walls()}
     kept = [ref(pair[gone]), *([ref(with_walls(**pair))] if is_tall else [])]
     del pair[gone]
