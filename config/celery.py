@@ -3,11 +3,11 @@
 import os
 
 from celery import Celery
-from celery.signals import beat_init, worker_before_create_process, worker_process_init
+from celery.signals import beat_init, task_postrun, worker_before_create_process, worker_process_init
 
 from config.watched_tasks import LoopPulse, watch_tasks
 from config.worker_end import SoftEnd
-from operation.garbage import keep_what_is_there
+from operation.garbage import give_back, keep_what_is_there
 from operation.program import program_begins
 from operation.tracing import begin_tracing
 
@@ -37,6 +37,11 @@ def warm_up_process(**_: object) -> None:
         begin_tracing("worker")
         warm_up()
     keep_what_is_there()
+    task_postrun.connect(give_back_after_task)  # in these processes alone: elsewhere nothing is frozen, and a look takes long
+
+
+def give_back_after_task(**_: object) -> None:
+    give_back()
 
 
 @beat_init.connect

@@ -1,7 +1,7 @@
-"""What every program does once it has begun: it tells how it does, is traced where that is asked for, and keeps what its start has made."""
+"""What every program does once it has begun: it tells how it does, is traced where that is asked for, and minds its memory."""
 
 from operation.exposition import tell_how_it_does
-from operation.garbage import keep_what_is_there
+from operation.garbage import give_back_now_and_then, keep_what_is_there
 from operation.readiness import Check
 from operation.tracing import begin_tracing
 
@@ -11,3 +11,4 @@ def program_begins(program: str, *checks: Check) -> None:
     begin_tracing(program)
     tell_how_it_does(program, *checks)
     keep_what_is_there()
+    give_back_now_and_then()

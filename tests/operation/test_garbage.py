@@ -1,7 +1,12 @@
 """What is made once stays and is shared; what a request leaves in circles goes again."""
 
+import ctypes
 import subprocess
 import sys
+
+import pytest
+
+only_gnu = pytest.mark.skipif(not hasattr(ctypes.CDLL(None), "malloc_trim"), reason="only the GNU C library gives back what is not at the end")
 
 ANSWERS = """
 import gc, weakref
@@ -41,5 +46,91 @@ print(gc.get_freeze_count() > 0.9 * before)
 
 def test_a_worker_keeps_its_start_before_it_makes_processes_which_then_share_it():
     told = subprocess.run([sys.executable, "-c", BEFORE_A_FORK], capture_output=True, text=True, check=True, timeout=60)
+
+    assert told.stdout.split() == ["True"]
+
+
+AFTER_A_TASK = """
+import gc, weakref
+from operation.garbage import give_back
+
+class Answer:
+    def __init__(self):
+        self.itself = self
+
+def own_mib():
+    with open("/proc/self/smaps_rollup") as lines:
+        return int(next(line.split()[1] for line in lines if line.startswith("Anonymous:"))) / 1024
+
+gc.disable()
+left = weakref.ref(Answer())
+held = [bytes(1_000) for _ in range(60_000)]
+last = bytes(1_000)
+most_mib = own_mib()
+del held
+before_mib = own_mib()
+give_back()
+print(left() is None, most_mib - before_mib < 10, most_mib - own_mib() > 40)
+"""
+
+
+@only_gnu
+def test_after_a_task_circles_go_and_memory_before_something_that_stays_is_given_back():
+    told = subprocess.run([sys.executable, "-c", AFTER_A_TASK], capture_output=True, text=True, check=True, timeout=60)
+
+    assert told.stdout.split() == ["True", "True", "True"]
+
+
+WORKER_PROCESS = """
+import gc, weakref
+from config.celery import app
+from celery.signals import task_postrun, worker_process_init
+
+class Answer:
+    def __init__(self):
+        self.itself = self
+
+app.amqp.queues.select(["simulation"])
+gc.disable()
+first = weakref.ref(Answer())
+task_postrun.send(sender=None)
+is_there_elsewhere = first() is not None
+worker_process_init.send(sender=None)
+second = weakref.ref(Answer())
+task_postrun.send(sender=None)
+print(is_there_elsewhere, second() is None)
+"""
+
+
+def test_a_worker_process_gives_back_after_each_task_and_nothing_else_does():
+    told = subprocess.run([sys.executable, "-c", WORKER_PROCESS], capture_output=True, text=True, check=True, timeout=60)
+
+    assert told.stdout.split() == ["True", "True"]
+
+
+NOW_AND_THEN = """
+import time
+from operation import garbage
+
+def own_mib():
+    with open("/proc/self/smaps_rollup") as lines:
+        return int(next(line.split()[1] for line in lines if line.startswith("Anonymous:"))) / 1024
+
+garbage.EVERY_S = 0.2
+held = [bytes(1_000) for _ in range(60_000)]
+last = bytes(1_000)
+most_mib = own_mib()
+del held
+garbage.give_back_now_and_then()
+until_s = time.monotonic() + 20.0
+while most_mib - own_mib() < 40 and time.monotonic() < until_s:
+    time.sleep(0.05)
+print(most_mib - own_mib() > 40)
+"""
+
+
+@only_gnu
+def test_a_program_that_never_ends_gives_back_what_is_free():
+    told = subprocess.run([sys.executable, "-c", NOW_AND_THEN], capture_output=True, text=True, check=True, timeout=60)
 
     assert told.stdout.split() == ["True"]
