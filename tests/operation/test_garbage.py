@@ -6,7 +6,9 @@ import sys
 
 import pytest
 
-only_gnu = pytest.mark.skipif(not hasattr(ctypes.CDLL(None), "malloc_trim"), reason="only the GNU C library gives back what is not at the end")
+only_gnu = pytest.mark.skipif(
+    not hasattr(ctypes.CDLL(None), "malloc_trim"), reason="only the GNU C library gives back what is not at the end"
+)
 
 ANSWERS = """
 import gc, weakref
