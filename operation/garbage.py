@@ -1,4 +1,4 @@
-"""How often Python looks for garbage: rarely while a program starts, and from then on only among what has been made since."""
+"""How often Python looks for garbage, rarely while a program starts and then only among what is new; when free memory is given back."""
 
 import ctypes
 import gc

@@ -308,7 +308,7 @@ class Installation:
                 database_cluster.create_database(self.sockets)
         if self._is_own_redis:
             database_cluster.wait_for_queue(self.sockets)
-        # As ./run's set-up does: else each program compiles the planners' core for itself, and keeps 600 MiB of the compiler's.
+        # As ./run's set-up does: else each program compiles the planners' core for itself, and keeps 570 MiB of the compiler's.
         subprocess.run([sys.executable, "-m", "scripts.compile_core"], env=self.environment(), cwd=PROJECT_DIR, check=True)
         self.manage("migrate", "--verbosity", "0")
         if (PROJECT_DIR / "node_modules").exists():  # else the checkout has not been set up; static files then keep their plain names
