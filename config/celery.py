@@ -37,7 +37,7 @@ def warm_up_process(**_: object) -> None:
         begin_tracing("worker")
         warm_up()
     keep_what_is_there()
-    task_postrun.connect(give_back_after_task)  # here alone: a test or a command that runs a task in itself has all of its own memory to look through
+    task_postrun.connect(give_back_after_task)  # here alone: a test that runs a task in itself has much to look through
 
 
 def give_back_after_task(**_: object) -> None:
