@@ -143,16 +143,16 @@ TEMPLATES = [
 
 FORM_RENDERER = "django.forms.renderers.TemplatesSetting"  # widgets' templates are found like any other
 
-DATABASES = {
-    "default": dj_database_url.parse(
-        secret("DATABASE_URL") or private_database_url(STATE_DIR),
-        engine="django.contrib.gis.db.backends.postgis",
-        conn_max_age=60,
-        conn_health_checks=True,
-    ),
-}
-# For workspace/prepared.py alone: Django's own statements go as text.
-DATABASES["default"].setdefault("OPTIONS", {})["prepare_threshold"] = 0
+_database = dj_database_url.parse(
+    secret("DATABASE_URL") or private_database_url(STATE_DIR),
+    engine="django.contrib.gis.db.backends.postgis",
+    conn_max_age=60,
+    conn_health_checks=True,
+)
+# Prepared by workspace/prepared.py alone: Django's own statements go as text. The name tells whose connection it is in pg_stat_activity.
+_named = {"application_name": os.environ.get("SPANWISE_PROGRAM", "spanwise")}
+_database["OPTIONS"] = _named | _database.get("OPTIONS", {}) | {"prepare_threshold": 0}
+DATABASES = {"default": _database}
 DEFAULT_AUTO_FIELD = "django.db.models.BigAutoField"
 
 REDIS_URL = secret("REDIS_URL") or private_redis_url(STATE_DIR)

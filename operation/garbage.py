@@ -37,20 +37,16 @@ def give_back() -> None:
     nothing was in use.
     """
     gc.collect()
-    _return_to_system()
+    if _RETURN_TO_SYSTEM is not None:
+        _RETURN_TO_SYSTEM(0)
 
 
 def give_back_now_and_then() -> None:
-    """In programs whose work never ends: what is free goes back to the system each minute, while Python goes on."""
+    """In programs whose work never ends: the same each minute, before what is left has made the program reach for more."""
     threading.Thread(target=_keep_giving_back, name="memory", daemon=True).start()
 
 
 def _keep_giving_back() -> None:
     while True:
         time.sleep(EVERY_S)
-        _return_to_system()
-
-
-def _return_to_system() -> None:
-    if _RETURN_TO_SYSTEM is not None:
-        _RETURN_TO_SYSTEM(0)
+        give_back()
