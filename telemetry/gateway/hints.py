@@ -29,4 +29,6 @@ async def listen(on_hint: Callable[[], None]) -> None:
         await asyncio.sleep(TRY_AGAIN_S)
 
 
-PLAIN = frozenset({"dbname", "user", "password", "host", "port", "sslmode", "sslrootcert", "sslcert", "sslkey", "connect_timeout"})
+PLAIN = frozenset(
+    {"application_name", "connect_timeout", "dbname", "host", "password", "port", "sslcert", "sslkey", "sslmode", "sslrootcert", "user"}
+)
