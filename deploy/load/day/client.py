@@ -161,10 +161,10 @@ class Browser(Client):
         """For a websocket."""
         return "; ".join(f"{cookie.name}={cookie.value}" for cookie in self.client.cookiejar)
 
-    def look(self, path: str, name: str) -> Any:
+    def look(self, path: str, name: str, ok: tuple[int, ...] = (200, 304)) -> Any:
         """As a browser asks again for what it has kept: 304 is an answer like another. None for 304."""
         tag = self.tags.get(path, "")
-        answer = self.ask("GET", path, name, ok=(200, 304), **({"If-None-Match": tag} if tag else {}))
+        answer = self.ask("GET", path, name, ok=ok, **({"If-None-Match": tag} if tag else {}))
         if answer.status_code == 304:
             return None
         if answer.headers.get("ETag"):

@@ -58,7 +58,7 @@ class Person(Browser):
         if found:
             mission = self.draw.choice(found)["id"]
             self.ask("GET", f"/missions/{mission}", "page: mission", ok=(200, 404))
-            self.look(f"/api/v1/missions/{mission}", "mission: open")
+            self.look(f"/api/v1/missions/{mission}", "mission: open", ok=(200, 304, 404))  # somebody else may just have deleted it
             self.tiles()
 
     def wishes(self, targets: int, uavs: int = 1) -> dict[str, Any]:
