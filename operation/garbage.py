@@ -42,7 +42,7 @@ def give_back() -> None:
 
 
 def give_back_now_and_then() -> None:
-    """In programs whose work never ends: the same each minute, before what is left has made the program reach for more."""
+    """In programs whose work never ends: the same each minute."""
     threading.Thread(target=_keep_giving_back, name="memory", daemon=True).start()
 
 
