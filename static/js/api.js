@@ -71,16 +71,28 @@ async function problemOf(response) {
     502: t("The server cannot be reached."),
     504: t("The server did not answer in time."),
   };
-  if (isSignedOut(status, error.code, error.message)) return new ApiError(SIGNED_OUT, { status: 401, code: "not_authenticated" });
+  if (isSignedOut(status, error.code, error.message))
+    return new ApiError(SIGNED_OUT, { status: 401, code: "not_authenticated" });
   const message = detail || error.message || words[status] || t("The server answered with {status}.", { status });
   const wait = response.headers.get("Retry-After");
-  return new ApiError(message, { status, code: error.code ?? "", details: error.details ?? null, retryAfter_s: /^\d+$/.test(wait ?? "") ? Number(wait) : null });
+  return new ApiError(message, {
+    status,
+    code: error.code ?? "",
+    details: error.details ?? null,
+    retryAfter_s: /^\d+$/.test(wait ?? "") ? Number(wait) : null,
+  });
 }
 
 /** request("POST", "/plans", { body }) → { data, status, etag }; 304 comes without data. Throws ApiError; an abort passes as AbortError. */
 export async function request(method, path, { body, bytes, headers = {}, signal, keepalive = false } = {}) {
   const address = path.startsWith("http") || path.startsWith("/api/") ? path : ROOT + path;
-  const send = { method, signal, keepalive, credentials: "same-origin", headers: { Accept: "application/json", ...headers } };
+  const send = {
+    method,
+    signal,
+    keepalive,
+    credentials: "same-origin",
+    headers: { Accept: "application/json", ...headers },
+  };
   if (method !== "GET") send.headers["X-CSRFToken"] = cookie("__Host-csrftoken") || cookie("csrftoken"); // the first over https
   if (body !== undefined) {
     send.headers["Content-Type"] = "application/json";
@@ -114,14 +126,17 @@ export const remove = (path, options) => request("DELETE", path, options);
 const pause = (ms, signal) =>
   new Promise((resolve, reject) => {
     const timer = setTimeout(resolve, ms);
-    signal?.addEventListener("abort", () => (clearTimeout(timer), reject(new DOMException("stopped", "AbortError"))), { once: true });
+    signal?.addEventListener("abort", () => (clearTimeout(timer), reject(new DOMException("stopped", "AbortError"))), {
+      once: true,
+    });
   });
 
 /** Follows a job until it ends; `onProgress(job)` is told on the way. Returns the job; throws where it failed. */
 export async function follow(jobId, { onProgress, signal, every_ms = 700 } = {}) {
   for (;;) {
     const { data: job } = await get(`/jobs/${jobId}`, { signal });
-    if (job.state === "failed") throw new ApiError(job.error?.message ?? t("The job failed."), { status: 500, code: job.error?.code ?? "" });
+    if (job.state === "failed")
+      throw new ApiError(job.error?.message ?? t("The job failed."), { status: 500, code: job.error?.code ?? "" });
     if (job.state === "done" || job.state === "cancelled") return job;
     onProgress?.(job);
     await pause(every_ms, signal);

@@ -18,7 +18,10 @@ export function t(text, values = {}) {
 /** tn(3, "{count} target", "{count} targets"): the catalogue holds [one, other] under the English singular. */
 export function tn(count, one, other, values = {}) {
   const forms = catalogue[one] ?? [one, other];
-  return filled(plural.select(count) === "one" ? forms[0] : forms[1], { count: count.toLocaleString(localeOf(language)), ...values });
+  return filled(plural.select(count) === "one" ? forms[0] : forms[1], {
+    count: count.toLocaleString(localeOf(language)),
+    ...values,
+  });
 }
 
 /** How dates and figures are written. */

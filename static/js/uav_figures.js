@@ -16,7 +16,18 @@ export const BOUNDS = Object.freeze({
 export const OWN_FIGURES = ["battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps"];
 
 /** What counts for a UAV of this type, or of none, where it has no figure of its own. A battery of its own needs a mass that is stated. */
-export const usualOf = (type) => Object.fromEntries(OWN_FIGURES.map((name) => [name, type?.[name] ?? { mass_kg: type?.battery_wh ? IRIS.mass_kg : null, reserve_percent: USUAL_RESERVE_PERCENT }[name] ?? null]));
+export const usualOf = (type) =>
+  Object.fromEntries(
+    OWN_FIGURES.map((name) => [
+      name,
+      type?.[name] ??
+        { mass_kg: type?.battery_wh ? IRIS.mass_kg : null, reserve_percent: USUAL_RESERVE_PERCENT }[name] ??
+        null,
+    ]),
+  );
 
 /** The bounds in another unit, of so many of the stored ones, to a tenth inwards. */
-export const boundsIn = (name, unit) => (unit === 1 ? BOUNDS[name] : { min: Math.ceil((BOUNDS[name].min / unit) * 10) / 10, max: Math.floor((BOUNDS[name].max / unit) * 10) / 10 });
+export const boundsIn = (name, unit) =>
+  unit === 1
+    ? BOUNDS[name]
+    : { min: Math.ceil((BOUNDS[name].min / unit) * 10) / 10, max: Math.floor((BOUNDS[name].max / unit) * 10) / 10 };

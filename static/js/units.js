@@ -17,7 +17,9 @@ export const isImperial = preferences.units === "imperial";
 const zone = preferences.timeZone ? { timeZone: preferences.timeZone } : {};
 
 function grouped(value, digits = 0) {
-  return value.toLocaleString(LOCALE, { minimumFractionDigits: digits, maximumFractionDigits: digits }).replace("-", "−");
+  return value
+    .toLocaleString(LOCALE, { minimumFractionDigits: digits, maximumFractionDigits: digits })
+    .replace("-", "−");
 }
 
 /** A bare figure, grouped as the reader is used to. */
@@ -52,7 +54,9 @@ export const SPEED_UNIT = isImperial ? { unit: "mph", mps: MPH_MPS } : { unit: "
 export function areaText(area_m2) {
   if (isImperial) {
     const area_mi2 = area_m2 / MILE_M ** 2;
-    return area_mi2 < 0.1 ? withUnit(grouped(area_m2 / ACRE_M2, 1), "ac") : withUnit(grouped(area_mi2, area_mi2 < 10 ? 2 : 1), "mi²");
+    return area_mi2 < 0.1
+      ? withUnit(grouped(area_m2 / ACRE_M2, 1), "ac")
+      : withUnit(grouped(area_mi2, area_mi2 < 10 ? 2 : 1), "mi²");
   }
   if (area_m2 < 100_000) return withUnit(grouped(Math.round(area_m2)), "m²");
   const area_km2 = area_m2 / 1e6;
@@ -69,7 +73,9 @@ export function durationText(duration_s) {
 }
 
 export function heightText(height_m) {
-  return isImperial ? withUnit(grouped(Math.round(height_m / FOOT_M)), "ft") : withUnit(grouped(Math.round(height_m)), "m");
+  return isImperial
+    ? withUnit(grouped(Math.round(height_m / FOOT_M)), "ft")
+    : withUnit(grouped(Math.round(height_m)), "m");
 }
 
 /** To a tenth where there is one: for what was measured or typed. */
@@ -120,7 +126,8 @@ export function countText(count, singular, plural = `${singular}s`) {
   return tn(count, `{count} ${singular}`, `{count} ${plural}`);
 }
 
-const partsOf = (date) => new Intl.DateTimeFormat("en-CA", { ...zone, year: "numeric", month: "2-digit", day: "2-digit" }).format(date);
+const partsOf = (date) =>
+  new Intl.DateTimeFormat("en-CA", { ...zone, year: "numeric", month: "2-digit", day: "2-digit" }).format(date);
 
 export function clockText(iso) {
   return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit" });
@@ -176,7 +183,9 @@ export function sinceText(seconds) {
 
 /** Minutes by which the reader's clock is ahead of UTC at a moment [ms]. */
 export function minutesAheadOfUtc(moment) {
-  const part = new Intl.DateTimeFormat("en-US", { ...zone, timeZoneName: "longOffset" }).formatToParts(new Date(moment)).find(({ type }) => type === "timeZoneName").value;
+  const part = new Intl.DateTimeFormat("en-US", { ...zone, timeZoneName: "longOffset" })
+    .formatToParts(new Date(moment))
+    .find(({ type }) => type === "timeZoneName").value;
   const [, sign, hours, minutes] = /GMT(?:([+-])(\d\d):(\d\d))?/.exec(part);
   return sign ? (sign === "-" ? -1 : 1) * (Number(hours) * 60 + Number(minutes)) : 0;
 }

@@ -8,14 +8,26 @@ import { basisOf, EMPTY, targetOf, withTargets, withUav, withUavAs } from "../..
 
 const tower = targetOf({ id: 7, kind: "tower", properties: { label: "18" }, centre: [10, 50] });
 const bridge = targetOf({ id: 8, kind: "bridge", properties: { label: "I 270" }, centre: [10, 50] });
-const heron = { id: 3, name: "Heron", base_name: "West", position: [9, 49], max_range_m: 80_000, cruise_speed_mps: 12, end_action: "hover" };
+const heron = {
+  id: 3,
+  name: "Heron",
+  base_name: "West",
+  position: [9, 49],
+  max_range_m: 80_000,
+  cruise_speed_mps: 12,
+  end_action: "hover",
+};
 const stored = withTargets(EMPTY, [tower]);
 const mine = withTargets(stored, [bridge]);
 const mission = { name: "North", revision: 4 };
 
 function browser() {
   const kept = new Map();
-  const storage = { getItem: (key) => kept.get(key) ?? null, setItem: (key, value) => kept.set(key, value), removeItem: (key) => kept.delete(key) };
+  const storage = {
+    getItem: (key) => kept.get(key) ?? null,
+    setItem: (key, value) => kept.set(key, value),
+    removeItem: (key) => kept.delete(key),
+  };
   return (user, editor = "page") => createDrafts({ user, editor, storage: () => storage });
 }
 
@@ -37,7 +49,13 @@ test("saving in one window leaves the draft of another", () => {
 });
 
 test("a closed or damaged storage is told, not thrown", () => {
-  const closed = createDrafts({ user: 1, editor: "page", storage: () => { throw new Error("closed"); } });
+  const closed = createDrafts({
+    user: 1,
+    editor: "page",
+    storage: () => {
+      throw new Error("closed");
+    },
+  });
   assert.equal(closed.keep("m", { name: "", selection: mine, revision: 1 }), false);
   assert.equal(closed.read("m"), null);
   closed.drop("m");
@@ -81,13 +99,19 @@ test("signed out is told apart from not allowed", () => {
 });
 
 test("the door leads back to where the page was", () => {
-  assert.equal(signInAddress({ pathname: "/missions/new", search: "", hash: "#map=12/39.9/-83" }), "/sign-in?next=%2Fmissions%2Fnew%23map%3D12%2F39.9%2F-83");
+  assert.equal(
+    signInAddress({ pathname: "/missions/new", search: "", hash: "#map=12/39.9/-83" }),
+    "/sign-in?next=%2Fmissions%2Fnew%23map%3D12%2F39.9%2F-83",
+  );
 });
 
 test("a UAV says its range or that there is none, its speed and its end", () => {
   const plain = (text) => text.replaceAll("\u00a0", " ");
   assert.equal(plain(factsOfUav(heron, false)), "range 80.0 km · 12 m/s · hovers at the end");
-  assert.equal(plain(factsOfUav({ ...heron, max_range_m: null }, true)), "range not stated · 12 m/s · returns to start");
+  assert.equal(
+    plain(factsOfUav({ ...heron, max_range_m: null }, true)),
+    "range not stated · 12 m/s · returns to start",
+  );
 });
 
 test("a changed end or a range taken away asks for another plan", () => {

@@ -8,14 +8,25 @@ import { distance_m, measure, ringArea_m2, towards } from "../../static/js/draw/
 import * as shapes from "../../static/js/draw/shape.js";
 import { faultsOf } from "../../static/js/draw/validity.js";
 
-const square = (west, south, side) => [[west, south], [west + side, south], [west + side, south + side], [west, south + side]];
+const square = (west, south, side) => [
+  [west, south],
+  [west + side, south],
+  [west + side, south + side],
+  [west, south + side],
+];
 const closed = (ring) => [...ring, ring[0]];
 const area = (...rings) => ({ kind: "area", parts: [rings], radius_m: null });
 
 test("GeoJSON of every kind comes back as it was", () => {
   const geometries = [
     { type: "Point", coordinates: [9, 47] },
-    { type: "LineString", coordinates: [[9, 47], [9.1, 47.1]] },
+    {
+      type: "LineString",
+      coordinates: [
+        [9, 47],
+        [9.1, 47.1],
+      ],
+    },
     { type: "Polygon", coordinates: [closed(square(9, 47, 1)), closed(square(9.4, 47.4, 0.1))] },
     { type: "MultiPolygon", coordinates: [[closed(square(9, 47, 1))], [closed(square(11, 47, 1))]] },
   ];
@@ -42,18 +53,44 @@ test("steps leave the shape that they start from alone", () => {
 });
 
 test("an area keeps three vertices, a hole that loses its third is gone", () => {
-  const holed = area(square(0, 0, 4), [[1, 1], [2, 1], [2, 2]]);
+  const holed = area(square(0, 0, 4), [
+    [1, 1],
+    [2, 1],
+    [2, 2],
+  ]);
   assert.equal(shapes.removeVertex(holed, [0, 1, 0]).parts[0].length, 1);
-  const triangle = area([[0, 0], [1, 0], [1, 1]]);
+  const triangle = area([
+    [0, 0],
+    [1, 0],
+    [1, 1],
+  ]);
   assert.equal(shapes.removeVertex(triangle, [0, 0, 0]), triangle);
-  const line = shapes.shapeOf({ type: "LineString", coordinates: [[0, 0], [1, 1]] });
+  const line = shapes.shapeOf({
+    type: "LineString",
+    coordinates: [
+      [0, 0],
+      [1, 1],
+    ],
+  });
   assert.equal(shapes.removeVertex(line, [0, 0, 0]), line);
 });
 
 test("middles stand on every side, also on the one that closes", () => {
   assert.equal(shapes.middlesOf(area(square(0, 0, 2))).length, 4);
   assert.deepEqual(shapes.middlesOf(area(square(0, 0, 2)))[3].position, [0, 1]);
-  assert.equal(shapes.middlesOf(shapes.shapeOf({ type: "LineString", coordinates: [[0, 0], [1, 1], [2, 0]] })).length, 2);
+  assert.equal(
+    shapes.middlesOf(
+      shapes.shapeOf({
+        type: "LineString",
+        coordinates: [
+          [0, 0],
+          [1, 1],
+          [2, 0],
+        ],
+      }),
+    ).length,
+    2,
+  );
 });
 
 test("a hole that was begun and left is no part of the shape", () => {
@@ -63,7 +100,15 @@ test("a hole that was begun and left is no part of the shape", () => {
 
 test("the ring that is not whole is the one to go on with", () => {
   assert.equal(shapes.stubOf(area(square(0, 0, 4))), null);
-  assert.deepEqual(shapes.stubOf(area(square(0, 0, 4), [[1, 1], [2, 2]])), [0, 1]);
+  assert.deepEqual(
+    shapes.stubOf(
+      area(square(0, 0, 4), [
+        [1, 1],
+        [2, 2],
+      ]),
+    ),
+    [0, 1],
+  );
   assert.deepEqual(shapes.stubOf(shapes.empty("line")), [0, 0]);
 });
 
@@ -75,7 +120,14 @@ test("lengths and areas are those of the sphere", () => {
 });
 
 test("a border that crosses itself is told with the place and both sides", () => {
-  const [fault, ...others] = faultsOf(area([[0, 0], [2, 2], [2, 0], [0, 2]]));
+  const [fault, ...others] = faultsOf(
+    area([
+      [0, 0],
+      [2, 2],
+      [2, 0],
+      [0, 2],
+    ]),
+  );
   assert.equal(others.length, 0);
   assert.deepEqual(fault.position, [1, 1]);
   assert.equal(fault.sides.length, 2);
@@ -88,18 +140,52 @@ test("rings that touch or cross each other are told", () => {
 });
 
 test("a spike that goes back on itself is told", () => {
-  assert.ok(faultsOf(area([[0, 0], [2, 0], [4, 0], [2, 0], [2, 2]])).length > 0);
+  assert.ok(
+    faultsOf(
+      area([
+        [0, 0],
+        [2, 0],
+        [4, 0],
+        [2, 0],
+        [2, 2],
+      ]),
+    ).length > 0,
+  );
 });
 
 test("too few points, repeated points and the 180th meridian are told", () => {
   assert.match(faultsOf(shapes.empty("line"))[0].message, /two points/);
   assert.match(faultsOf(shapes.empty("circle"))[0].message, /centre/);
-  assert.match(faultsOf(area([[0, 0], [0, 0], [1, 1], [0, 1]]))[0].message, /one place/);
-  assert.match(faultsOf(shapes.shapeOf({ type: "LineString", coordinates: [[179, 0], [-179, 0]] }))[0].message, /180th/);
+  assert.match(
+    faultsOf(
+      area([
+        [0, 0],
+        [0, 0],
+        [1, 1],
+        [0, 1],
+      ]),
+    )[0].message,
+    /one place/,
+  );
+  assert.match(
+    faultsOf(
+      shapes.shapeOf({
+        type: "LineString",
+        coordinates: [
+          [179, 0],
+          [-179, 0],
+        ],
+      }),
+    )[0].message,
+    /180th/,
+  );
 });
 
 test("a large fair ring is checked, and nothing is wrong with it", () => {
-  const ring = Array.from({ length: 1_500 }, (_, index) => [Math.cos((index * Math.PI) / 750), Math.sin((index * Math.PI) / 750)]);
+  const ring = Array.from({ length: 1_500 }, (_, index) => [
+    Math.cos((index * Math.PI) / 750),
+    Math.sin((index * Math.PI) / 750),
+  ]);
   assert.deepEqual(faultsOf(area(ring)), []);
   assert.ok(shapes.isInside([0, 0], ring));
 });

@@ -9,7 +9,12 @@ import { continuous, distance_m, measure } from "../../static/js/draw/measure.js
 import * as shapes from "../../static/js/draw/shape.js";
 import { faultsOf } from "../../static/js/draw/validity.js";
 
-const square = (west, south, side) => [[west, south], [west + side, south], [west + side, south + side], [west, south + side]];
+const square = (west, south, side) => [
+  [west, south],
+  [west + side, south],
+  [west + side, south + side],
+  [west, south + side],
+];
 const area = (...rings) => ({ kind: "area", parts: [rings], radius_m: null });
 const clicks = (state, ...positions) => positions.reduce((now, position) => drawings.placed(now, position), state);
 const drawn = (kind, ...positions) => clicks(drawings.begin(shapes.empty(kind)), ...positions);
@@ -75,7 +80,10 @@ test("a hole belongs to the part that it lies in", () => {
   const parts = { kind: "area", parts: [[square(0, 0, 4)], [square(10, 0, 4)]], radius_m: null };
   const hole = clicks(drawings.withHole(drawings.begin(parts)), [11, 1], [12, 1], [12, 2]);
   const { shape } = drawings.ended(hole);
-  assert.deepEqual(shape.parts.map((part) => part.length), [1, 2]);
+  assert.deepEqual(
+    shape.parts.map((part) => part.length),
+    [1, 2],
+  );
   assert.deepEqual(faultsOf(shape), []);
 });
 
@@ -98,32 +106,107 @@ test("the side that would close a growing ring is not there yet", () => {
 });
 
 test("rings may touch in a point, not along a side", () => {
-  assert.deepEqual(faultsOf(area(square(0, 0, 4), [[0, 0], [2, 1], [1, 2]])), []);
+  assert.deepEqual(
+    faultsOf(
+      area(square(0, 0, 4), [
+        [0, 0],
+        [2, 1],
+        [1, 2],
+      ]),
+    ),
+    [],
+  );
   const alongside = { kind: "area", parts: [[square(0, 0, 2)], [square(2, 0, 2)]], radius_m: null };
   assert.match(faultsOf(alongside)[0].message, /parts/);
   const corner = { kind: "area", parts: [[square(0, 0, 2)], [square(2, 2, 2)]], radius_m: null };
   assert.deepEqual(faultsOf(corner), []);
-  assert.ok(faultsOf(area([[0, 0], [4, 0], [4, 4], [2, 0], [0, 4]])).length > 0);
+  assert.ok(
+    faultsOf(
+      area([
+        [0, 0],
+        [4, 0],
+        [4, 4],
+        [2, 0],
+        [0, 4],
+      ]),
+    ).length > 0,
+  );
 });
 
 test("a hole that crosses the border and a part within another are told by their names", () => {
-  assert.match(faultsOf(area(square(0, 0, 4), [[1, 1], [5, 1], [1, 2]]))[0].message, /hole crosses/);
-  assert.match(faultsOf({ kind: "area", parts: [[square(0, 0, 9)], [square(1, 1, 1)]], radius_m: null })[0].message, /within another/);
+  assert.match(
+    faultsOf(
+      area(square(0, 0, 4), [
+        [1, 1],
+        [5, 1],
+        [1, 2],
+      ]),
+    )[0].message,
+    /hole crosses/,
+  );
+  assert.match(
+    faultsOf({ kind: "area", parts: [[square(0, 0, 9)], [square(1, 1, 1)]], radius_m: null })[0].message,
+    /within another/,
+  );
 });
 
 test("an area over the 180th meridian is whole, as large as elsewhere, and keeps its holes", () => {
-  const over = area([[179, 0], [-179, 0], [-179, 2], [179, 2]], [[179.5, 0.5], [-179.5, 0.5], [-179.5, 1.5]]);
+  const over = area(
+    [
+      [179, 0],
+      [-179, 0],
+      [-179, 2],
+      [179, 2],
+    ],
+    [
+      [179.5, 0.5],
+      [-179.5, 0.5],
+      [-179.5, 1.5],
+    ],
+  );
   assert.deepEqual(faultsOf(over), []);
-  const same = area([[9, 0], [11, 0], [11, 2], [9, 2]], [[9.5, 0.5], [10.5, 0.5], [10.5, 1.5]]);
+  const same = area(
+    [
+      [9, 0],
+      [11, 0],
+      [11, 2],
+      [9, 2],
+    ],
+    [
+      [9.5, 0.5],
+      [10.5, 0.5],
+      [10.5, 1.5],
+    ],
+  );
   assert.ok(Math.abs(measure(over).area_m2 / measure(same).area_m2 - 1) < 1e-9);
-  assert.deepEqual(continuous(over.parts[0][0]), [[179, 0], [181, 0], [181, 2], [179, 2]]);
+  assert.deepEqual(continuous(over.parts[0][0]), [
+    [179, 0],
+    [181, 0],
+    [181, 2],
+    [179, 2],
+  ]);
   assert.deepEqual(shapes.middlesOf(over)[0].position, [180, 0]);
-  assert.match(faultsOf(area([[179, 0], [-179, 2], [-179, 0], [179, 2]]))[0].message, /crosses itself/);
+  assert.match(
+    faultsOf(
+      area([
+        [179, 0],
+        [-179, 2],
+        [-179, 0],
+        [179, 2],
+      ]),
+    )[0].message,
+    /crosses itself/,
+  );
 });
 
 test("a shape that is moved over the 180th meridian stays within ±180", () => {
   const { parts } = shapes.moveAll(area(square(178, 0, 1)), [2.5, 0]);
-  assert.deepEqual(parts[0][0], [[-179.5, 0], [-178.5, 0], [-178.5, 1], [-179.5, 1]]);
+  assert.deepEqual(parts[0][0], [
+    [-179.5, 0],
+    [-178.5, 0],
+    [-178.5, 1],
+    [-179.5, 1],
+  ]);
 });
 
 test("a part is removed with its holes, the last one stays", () => {

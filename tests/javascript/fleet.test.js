@@ -1,18 +1,34 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-
-import { BOUNDS, boundsIn, usualOf } from "../../static/js/uav_figures.js";
-import { bodies, BLANK } from "../../static/js/fleet/forms.js";
+import { BLANK, bodies } from "../../static/js/fleet/forms.js";
 import { KINDS } from "../../static/js/fleet/kinds.js";
 import { ageText, flat, fromType, rangeText } from "../../static/js/fleet/words.js";
+import { BOUNDS, boundsIn, usualOf } from "../../static/js/uav_figures.js";
 
 const feature = {
   type: "Feature",
   id: 7,
   geometry: { type: "Point", coordinates: [26.5, 25.7, 12] },
   properties: {
-    name: "Kestrel 1", type: 2, type_name: "Kestrel", base: 3, base_name: "Depot", state: "active", serial_number: "", mavlink_system_id: null, max_range_m: 60000,
-    cruise_speed_mps: 9, battery_percent: 80, sensor: "", sensors: ["Lidar"], end_action: "hover", from_type: ["max_range_m"], located_at: null, mission_count: 0, credentials: [], revision: 4,
+    name: "Kestrel 1",
+    type: 2,
+    type_name: "Kestrel",
+    base: 3,
+    base_name: "Depot",
+    state: "active",
+    serial_number: "",
+    mavlink_system_id: null,
+    max_range_m: 60000,
+    cruise_speed_mps: 9,
+    battery_percent: 80,
+    sensor: "",
+    sensors: ["Lidar"],
+    end_action: "hover",
+    from_type: ["max_range_m"],
+    located_at: null,
+    mission_count: 0,
+    credentials: [],
+    revision: 4,
   },
 };
 
@@ -31,7 +47,8 @@ test("what a UAV has from its type is not sent back as its own", () => {
 
 test("only what can be written is in a body", () => {
   const body = bodies.uavs(flat(feature));
-  for (const name of ["id", "revision", "sensors", "type_name", "mission_count", "credentials", "located_at", "state"]) assert.ok(!(name in body), name);
+  for (const name of ["id", "revision", "sensors", "type_name", "mission_count", "credentials", "located_at", "state"])
+    assert.ok(!(name in body), name);
 });
 
 test("a blank row of each kind has every field of its body", () => {
@@ -47,11 +64,23 @@ test("figures say where they come from and what is not known", () => {
 });
 
 test("each kind counts itself in words", () => {
-  assert.deepEqual(Object.values(KINDS).map((kind) => [kind.count(1), kind.count(2)]), [["1 UAV", "2 UAVs"], ["1 type", "2 types"], ["1 base", "2 bases"]]);
+  assert.deepEqual(
+    Object.values(KINDS).map((kind) => [kind.count(1), kind.count(2)]),
+    [
+      ["1 UAV", "2 UAVs"],
+      ["1 type", "2 types"],
+      ["1 base", "2 bases"],
+    ],
+  );
 });
 
 test("what a UAV has no figure of its own for is its type's, an Iris's mass with a battery of its type, else not known", () => {
-  assert.deepEqual(usualOf({ battery_wh: 400, mass_kg: null, reserve_percent: 25, max_airspeed_mps: 14 }), { battery_wh: 400, mass_kg: 1.545, reserve_percent: 25, max_airspeed_mps: 14 });
+  assert.deepEqual(usualOf({ battery_wh: 400, mass_kg: null, reserve_percent: 25, max_airspeed_mps: 14 }), {
+    battery_wh: 400,
+    mass_kg: 1.545,
+    reserve_percent: 25,
+    max_airspeed_mps: 14,
+  });
   assert.deepEqual(usualOf(null), { battery_wh: null, mass_kg: null, reserve_percent: 20, max_airspeed_mps: null });
 });
 

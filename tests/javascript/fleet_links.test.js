@@ -2,10 +2,11 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { heardWords, loadedText } from "../../static/js/fleet/connection.js";
-import { agoText } from "../../static/js/units.js";
 import { aboutVehicle } from "../../static/js/fleet/unknown_vehicles.js";
+import { agoText } from "../../static/js/units.js";
 
-const heard = (heard_at, heard_by = "mavlink") => heardWords({ heard_at, heard_by, server_time: "2026-11-22T12:00:12Z" });
+const heard = (heard_at, heard_by = "mavlink") =>
+  heardWords({ heard_at, heard_by, server_time: "2026-11-22T12:00:12Z" });
 
 test("when a UAV was heard is told by the server's clock, with the door", () => {
   assert.deepEqual(heard("2026-11-22T12:00:00Z"), { words: "Last heard 12 s ago by MAVLink.", isHeard: false });
@@ -24,12 +25,29 @@ test("an age is told in seconds, then in minutes", () => {
 });
 
 test("of a vehicle that nobody knows only what is known is told", () => {
-  const vehicle = { autopilot: "px4", vehicle_type: "", address: "udp 10.0.0.7:14550", is_signed: false, heard_at: "2026-11-22T12:00:00Z" };
-  assert.equal(aboutVehicle(vehicle, Date.parse("2026-11-22T12:00:03Z")), "px4 · udp 10.0.0.7:14550 · not signed · heard 3 s ago");
+  const vehicle = {
+    autopilot: "px4",
+    vehicle_type: "",
+    address: "udp 10.0.0.7:14550",
+    is_signed: false,
+    heard_at: "2026-11-22T12:00:00Z",
+  };
+  assert.equal(
+    aboutVehicle(vehicle, Date.parse("2026-11-22T12:00:03Z")),
+    "px4 · udp 10.0.0.7:14550 · not signed · heard 3 s ago",
+  );
 });
 
 test("what is on a UAV is as old as its last reading, and doubted once something else may be there", () => {
-  const link = { loaded_flight: 2, loaded_read_at: "2027-05-04T09:00:00Z", loaded_doubt: "", server_time: "2027-05-04T09:03:10Z" };
+  const link = {
+    loaded_flight: 2,
+    loaded_read_at: "2027-05-04T09:00:00Z",
+    loaded_doubt: "",
+    server_time: "2027-05-04T09:03:10Z",
+  };
   assert.equal(loadedText(link), "flight 2 of an approved mission, read back 3 min ago");
-  assert.equal(loadedText({ ...link, loaded_doubt: "rebooted" }), "flight 2 of an approved mission, read back 3 min ago; not known since it has booted");
+  assert.equal(
+    loadedText({ ...link, loaded_doubt: "rebooted" }),
+    "flight 2 of an approved mission, read back 3 min ago; not known since it has booted",
+  );
 });

@@ -1,7 +1,14 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { compassText, conditionsOf, conditionsText, flightOptionsAsked, nextMinute, timeAt } from "../../static/js/mission/flight_options.js";
+import {
+  compassText,
+  conditionsOf,
+  conditionsText,
+  flightOptionsAsked,
+  nextMinute,
+  timeAt,
+} from "../../static/js/mission/flight_options.js";
 import { isAlike, merged } from "../../static/js/mission/merge.js";
 import { changedParts } from "../../static/js/mission/saving.js";
 import { basisOf, EMPTY, requestOf, selectionOf } from "../../static/js/mission/selection.js";
@@ -17,8 +24,14 @@ test("calm and mild air is the same as nothing said", () => {
 });
 
 test("layers of wind are lowest first, so that equal air asks for equal plans", () => {
-  const [low, high] = [{ altitude_agl_m: 10, speed_mps: 3, from_deg: 0 }, { altitude_agl_m: 100, speed_mps: 8, from_deg: 10 }];
-  assert.equal(basisOf({ ...EMPTY, conditions: { wind: [high, low], temperature_c: 15 } }), basisOf({ ...EMPTY, conditions: { wind: [low, high] } }));
+  const [low, high] = [
+    { altitude_agl_m: 10, speed_mps: 3, from_deg: 0 },
+    { altitude_agl_m: 100, speed_mps: 8, from_deg: 10 },
+  ];
+  assert.equal(
+    basisOf({ ...EMPTY, conditions: { wind: [high, low], temperature_c: 15 } }),
+    basisOf({ ...EMPTY, conditions: { wind: [low, high] } }),
+  );
 });
 
 test("air in words says from where the wind comes", () => {

@@ -5,18 +5,45 @@ import * as flying from "../../static/js/mission/flying.js";
 
 const route = (uav, more = {}) => ({ uav: `UAV ${uav}`, uav_id: uav, geometry: {}, length_m: 1000, ...more });
 const mission = (state, more = {}) => ({
-  state, is_stale: false, stale_causes: [], plan: { routes: [route(7), route(8)] },
-  approval: { id: "a", approved_by: "opal", approved_at: "2027-05-04T09:00:00Z", revoke_requested_at: null, revoke_reason: "", flights: [{ uav: 0, flights: 1, flown: 0 }, { uav: 1, flights: 2, flown: 0 }] },
+  state,
+  is_stale: false,
+  stale_causes: [],
+  plan: { routes: [route(7), route(8)] },
+  approval: {
+    id: "a",
+    approved_by: "opal",
+    approved_at: "2027-05-04T09:00:00Z",
+    revoke_requested_at: null,
+    revoke_reason: "",
+    flights: [
+      { uav: 0, flights: 1, flown: 0 },
+      { uav: 1, flights: 2, flown: 0 },
+    ],
+  },
   ...more,
 });
 const command = (kind, state, more = {}) => ({
-  id: `${kind}-${state}`, kind, state, uav: { id: 7, name: "Kite" }, approval: "a", parameters: kind === "upload-mission" || kind === "start" ? { flight: 1 } : {}, progress: null, outcome: "", outcome_code: "",
-  created_at: "2027-05-04T09:00:00Z", sent_at: null, acknowledged_at: null, finished_at: null, ...more,
+  id: `${kind}-${state}`,
+  kind,
+  state,
+  uav: { id: 7, name: "Kite" },
+  approval: "a",
+  parameters: kind === "upload-mission" || kind === "start" ? { flight: 1 } : {},
+  progress: null,
+  outcome: "",
+  outcome_code: "",
+  created_at: "2027-05-04T09:00:00Z",
+  sent_at: null,
+  acknowledged_at: null,
+  finished_at: null,
+  ...more,
 });
 const words = (...commands) => flying.boardWords(flying.boardOf(commands, 7)).words;
 
 test("what is approved and after that is frozen", () => {
-  const frozen = ["draft", "planned", "approved", "dispatched", "active", "completed", "aborted", "failed"].filter((state) => flying.isFrozen({ state }));
+  const frozen = ["draft", "planned", "approved", "dispatched", "active", "completed", "aborted", "failed"].filter(
+    (state) => flying.isFrozen({ state }),
+  );
   assert.deepEqual(frozen, ["approved", "dispatched", "active", "completed", "aborted", "failed"]);
 });
 
@@ -26,20 +53,35 @@ test("what would be refused is not offered: nothing moves without a mission on i
   const { approval } = mission("active");
   for (const kind of ["arm", "take-off", "start", "resume"]) {
     assert.equal(why(kind, mission("approved")), "UAV 7 has no mission.");
-    assert.equal(why(kind, mission("active", { approval: { ...approval, revoke_requested_at: "2027-05-04T10:00:00Z" } })), "The approval is being taken back.");
+    assert.equal(
+      why(kind, mission("active", { approval: { ...approval, revoke_requested_at: "2027-05-04T10:00:00Z" } })),
+      "The approval is being taken back.",
+    );
     assert.match(why(kind, mission("active", { approval: { ...approval, flights } })), /has failed/);
   }
   assert.equal(why("arm", mission("dispatched")), "");
   assert.equal(why("take-off", mission("active")), "");
   assert.match(why("resume", mission("active")), /not started/);
-  assert.match(why("resume", mission("dispatched"), [command("start", "sent", { sent_at: "2027-05-04T09:00:00Z" })]), /not started/);
-  assert.equal(why("resume", mission("active"), [command("start", "applied", { sent_at: "2027-05-04T09:00:00Z" })]), "");
-  for (const kind of ["hold", "return", "land", "abort", "pause", "change-speed"]) assert.equal(why(kind, mission("approved")), "");
+  assert.match(
+    why("resume", mission("dispatched"), [command("start", "sent", { sent_at: "2027-05-04T09:00:00Z" })]),
+    /not started/,
+  );
+  assert.equal(
+    why("resume", mission("active"), [command("start", "applied", { sent_at: "2027-05-04T09:00:00Z" })]),
+    "",
+  );
+  for (const kind of ["hold", "return", "land", "abort", "pause", "change-speed"])
+    assert.equal(why(kind, mission("approved")), "");
 });
 
 test("what is on board is as old as its reading, and may not be there any more", () => {
   const upload = command("upload-mission", "applied", { finished_at: "2027-05-04T09:00:00Z" });
-  const link = { loaded_approval: "a", loaded_read_at: "2027-05-04T09:00:00Z", loaded_doubt: "", server_time: "2027-05-04T09:03:10Z" };
+  const link = {
+    loaded_approval: "a",
+    loaded_read_at: "2027-05-04T09:00:00Z",
+    loaded_doubt: "",
+    server_time: "2027-05-04T09:03:10Z",
+  };
   const { words: seen, level } = flying.boardWords(upload, link);
   assert.deepEqual([seen, level], ["On the UAV: what was approved, read back 3 min ago", "good"]);
   const doubted = flying.boardWords(upload, { ...link, loaded_doubt: "other-station" });
@@ -58,7 +100,9 @@ test("a start that waits for the reading says how far that is", () => {
 });
 
 test("UAVs that fly no route are not told anything", () => {
-  const [first, second] = flying.flyersOf(mission("approved", { plan: { routes: [route(7, { geometry: null }), route(8)] } }));
+  const [first, second] = flying.flyersOf(
+    mission("approved", { plan: { routes: [route(7, { geometry: null }), route(8)] } }),
+  );
   assert.deepEqual([first.place, first.letter, first.uav, first.flights], [1, "B", 8, 2]);
   assert.equal(second, undefined);
 });
@@ -66,18 +110,36 @@ test("UAVs that fly no route are not told anything", () => {
 test("what is on board is what was said last of it", () => {
   assert.equal(words(), "Not sent yet");
   assert.equal(words(command("hold", "applied"), command("upload-mission", "queued")), "Waiting for the UAV");
-  assert.equal(words(command("upload-mission", "sent", { progress: { done: 12, total: 40 } })), "Sending, 12 of 40 items");
-  assert.equal(words(command("upload-mission", "applied"), command("upload-mission", "failed")), "On the UAV: what was approved");
-  assert.equal(words(command("upload-mission", "applied", { parameters: { flight: 2 } })), "On the UAV: flight 2, what was approved");
-  assert.equal(words(command("upload-mission", "expired", { outcome: "It could not be delivered in time." })), "Not on the UAV: It could not be delivered in time.");
+  assert.equal(
+    words(command("upload-mission", "sent", { progress: { done: 12, total: 40 } })),
+    "Sending, 12 of 40 items",
+  );
+  assert.equal(
+    words(command("upload-mission", "applied"), command("upload-mission", "failed")),
+    "On the UAV: what was approved",
+  );
+  assert.equal(
+    words(command("upload-mission", "applied", { parameters: { flight: 2 } })),
+    "On the UAV: flight 2, what was approved",
+  );
+  assert.equal(
+    words(command("upload-mission", "expired", { outcome: "It could not be delivered in time." })),
+    "Not on the UAV: It could not be delivered in time.",
+  );
   assert.equal(words(command("clear-mission", "applied"), command("upload-mission", "applied")), "Taken off the UAV");
   assert.equal(words(command("clear-mission", "failed", { outcome: "It flies." })), "Still on the UAV: It flies.");
   const beware = flying.boardWords(command("upload-mission", "applied", { outcome: "The mission has 501 items." }));
-  assert.deepEqual([beware.words, beware.level], ["On the UAV: what was approved – The mission has 501 items.", "warning"]);
+  assert.deepEqual(
+    [beware.words, beware.level],
+    ["On the UAV: what was approved – The mission has 501 items.", "warning"],
+  );
 });
 
 test("a mixed mission is said loudest", () => {
-  const mixed = command("upload-mission", "failed", { outcome_code: "mixed", outcome: "items 0 to 3 of the new one, the rest of the old" });
+  const mixed = command("upload-mission", "failed", {
+    outcome_code: "mixed",
+    outcome: "items 0 to 3 of the new one, the rest of the old",
+  });
   assert.equal(words(mixed), "Mixed mission on the UAV – items 0 to 3 of the new one, the rest of the old");
   assert.equal(flying.boardWords(mixed).level, "critical");
   assert.equal(flying.isMixed(command("upload-mission", "failed", { outcome_code: "denied" })), false);
@@ -92,7 +154,10 @@ test("what became of a command is said with its time and its reason", () => {
   const failed = command("hold", "failed", { finished_at: "2027-05-04T09:00:03Z", outcome: "The UAV refused it." });
   assert.match(flying.commandWords(failed).words, /^Hold: failed \d\d:\d\d – The UAV refused it\.$/);
   assert.equal(flying.commandWords(failed).level, "critical");
-  const times = flying.timesOf(command("hold", "applied", { sent_at: "b", finished_at: "c", created_at: "a" }), (at) => at);
+  const times = flying.timesOf(
+    command("hold", "applied", { sent_at: "b", finished_at: "c", created_at: "a" }),
+    (at) => at,
+  );
   assert.equal(times, "given a, sent b, done c");
 });
 
@@ -131,11 +196,17 @@ test("a mission has the buttons of its stage", () => {
 test("a zone in the way keeps an approved mission from being sent, a change elsewhere does not", () => {
   const touched = mission("approved", { is_stale: true, stale_causes: [{ what: "zone" }] });
   assert.match(flying.stageActs(touched, []).send, /changed since it was approved/);
-  assert.equal(flying.stageActs(mission("approved", { is_stale: true, stale_causes: [{ what: "elsewhere" }] }), []).send, true);
+  assert.equal(
+    flying.stageActs(mission("approved", { is_stale: true, stale_causes: [{ what: "elsewhere" }] }), []).send,
+    true,
+  );
 });
 
 test("the stage is said in a sentence", () => {
-  assert.match(flying.stageWords(mission("approved")), /^Approved by opal \d\d:\d\d\. Nothing of it can be changed until that is revoked\.$/);
+  assert.match(
+    flying.stageWords(mission("approved")),
+    /^Approved by opal \d\d:\d\d\. Nothing of it can be changed until that is revoked\.$/,
+  );
   assert.match(flying.stageWords(mission("active")), /It is being flown/);
   const waiting = mission("dispatched");
   waiting.approval = { ...waiting.approval, revoke_requested_at: "2027-05-04T09:00:00Z", revoke_reason: "Wrong day" };

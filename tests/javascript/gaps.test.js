@@ -12,7 +12,9 @@ test("a gap says what it cuts off, and nothing where that is nothing", () => {
 });
 
 test("facts repeat the figure in the words of its kind", () => {
-  assert.deepEqual(factsOf({ kind: "tower_on_no_line", details: {}, cut_off_m: 1_200 }), [["Concerns", `1.2${SPACE}km`]]);
+  assert.deepEqual(factsOf({ kind: "tower_on_no_line", details: {}, cut_off_m: 1_200 }), [
+    ["Concerns", `1.2${SPACE}km`],
+  ]);
   assert.deepEqual(factsOf({ kind: "long_span", details: { beyond_m: 0 }, cut_off_m: 2_400 }), [
     ["Cuts off", `2.4${SPACE}km`],
     ["Beyond it", "also reached another way"],

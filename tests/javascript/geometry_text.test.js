@@ -3,7 +3,12 @@ import test from "node:test";
 
 import { outlineOf, parseGeometry, pointText, positionsOf } from "../../static/js/admin/geometry_text.js";
 
-const RING = [[10, 56], [11, 56], [11, 57], [10, 56]];
+const RING = [
+  [10, 56],
+  [11, 56],
+  [11, 57],
+  [10, 56],
+];
 
 test("a geometry in the text is found, with its positions", () => {
   const { geometry, fault } = parseGeometry(JSON.stringify({ type: "MultiPolygon", coordinates: [[RING]] }));
@@ -12,7 +17,15 @@ test("a geometry in the text is found, with its positions", () => {
 });
 
 test("what is no geometry is told in a sentence", () => {
-  for (const text of ["{", "null", "3", '{"type": "Point"}', '{"type": "LineString", "coordinates": []}', '{"type": "Point", "coordinates": [500, 95]}', '{"type": "Point", "coordinates": ["a", 1]}']) {
+  for (const text of [
+    "{",
+    "null",
+    "3",
+    '{"type": "Point"}',
+    '{"type": "LineString", "coordinates": []}',
+    '{"type": "Point", "coordinates": [500, 95]}',
+    '{"type": "Point", "coordinates": ["a", 1]}',
+  ]) {
     assert.match(parseGeometry(text).fault, /\.$/, text);
   }
 });

@@ -2,12 +2,31 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { createHandEditing } from "../../static/js/mission/hand_editing.js";
-import { bodyOf, changedLegs, changesOf, dropped, faultsOf, inserted, isLegClear, moved, paced, pointsOf, raised } from "../../static/js/mission/hand_route.js";
 import { figuresOfLook, speedWords } from "../../static/js/mission/hand_figures.js";
+import {
+  bodyOf,
+  changedLegs,
+  changesOf,
+  dropped,
+  faultsOf,
+  inserted,
+  isLegClear,
+  moved,
+  paced,
+  pointsOf,
+  raised,
+} from "../../static/js/mission/hand_route.js";
 import { createStore } from "../../static/js/store.js";
 
 const at = (lon, kind, target = null) => ({ position: [lon, 40], altitude_agl_m: 60, kind, target });
-const route = { geometry: {}, length_m: 3400, duration_s: 300, battery_percent: 60, waypoints: [at(10, "start"), at(10.01, "pass"), at(10.02, "target", 0), at(10.03, "pass"), at(10.04, "end")], by_hand: [3] };
+const route = {
+  geometry: {},
+  length_m: 3400,
+  duration_s: 300,
+  battery_percent: 60,
+  waypoints: [at(10, "start"), at(10.01, "pass"), at(10.02, "target", 0), at(10.03, "pass"), at(10.04, "end")],
+  by_hand: [3],
+};
 const original = pointsOf(route);
 
 test("start, end and targets stay where they are and on the route", () => {
@@ -38,11 +57,18 @@ test("back where it was, nothing is changed", () => {
 test("a new waypoint is in the middle and as high as the higher neighbour; it has no place in the stored route", () => {
   const points = inserted(raised(original, 2, 90), 1);
   assert.deepEqual([points[2].position, points[2].altitude_agl_m], [[10.015, 40], 90]);
-  assert.deepEqual(bodyOf(points).waypoints.map(({ was }) => was), [0, 1, null, 2, 3, 4]);
+  assert.deepEqual(
+    bodyOf(points).waypoints.map(({ was }) => was),
+    [0, 1, null, 2, 3, 4],
+  );
 });
 
 test("what the server says of single places finds them", () => {
-  const faults = faultsOf({ "waypoints.3.altitude_agl_m": ["Between 60 and 120 m."], "legs.2": ["This leg meets Airport."], waypoints: ["The battery lacks 5 Wh."] });
+  const faults = faultsOf({
+    "waypoints.3.altitude_agl_m": ["Between 60 and 120 m."],
+    "legs.2": ["This leg meets Airport."],
+    waypoints: ["The battery lacks 5 Wh."],
+  });
   assert.deepEqual([...faults.points], [[3, "Between 60 and 120 m."]]);
   assert.deepEqual([...faults.legs], [[2, "This leg meets Airport."]]);
   assert.deepEqual(faults.other, ["The battery lacks 5 Wh."]);
@@ -53,8 +79,19 @@ globalThis.document = { cookie: "" };
 globalThis.fetch = async (address, { method, body }) => {
   const { waypoints } = JSON.parse(body);
   asked.push([method, address, waypoints]);
-  const faults = Object.fromEntries(waypoints.slice(1).flatMap(({ position }, index) => (position[1] < 40.01 ? [] : [[`legs.${index}`, "This leg meets Airport."]])));
-  const answer = { faults, length_m: 3500, duration_s: 310, energy_wh: 20, battery_percent: 58, waypoints: waypoints.map(() => ({ arrival_s: 1, battery_left_percent: 60, speed_mps: 9 })) };
+  const faults = Object.fromEntries(
+    waypoints
+      .slice(1)
+      .flatMap(({ position }, index) => (position[1] < 40.01 ? [] : [[`legs.${index}`, "This leg meets Airport."]])),
+  );
+  const answer = {
+    faults,
+    length_m: 3500,
+    duration_s: 310,
+    energy_wh: 20,
+    battery_percent: 58,
+    waypoints: waypoints.map(() => ({ arrival_s: 1, battery_left_percent: 60, speed_mps: 9 })),
+  };
   return { ok: true, status: 200, headers: { get: () => null }, text: async () => JSON.stringify(answer) };
 };
 const settled = () => new Promise((resolve) => setTimeout(resolve, 5));
@@ -62,8 +99,19 @@ const settled = () => new Promise((resolve) => setTimeout(resolve, 5));
 async function editing() {
   const { basisOf, EMPTY } = await import("../../static/js/mission/selection.js");
   const plan = { basis: basisOf(EMPTY), result: { routes: [route], departs_at: null } };
-  const store = createStore({ hand: null, why: null, plan, planIsStored: true, mission: { id: "m", revision: 3 }, selection: EMPTY, tool: "point" });
-  const actions = createHandEditing({ store, selection: () => EMPTY, problem: () => {}, wordsOf: String }, { save: async () => {}, keepOpen: () => {} });
+  const store = createStore({
+    hand: null,
+    why: null,
+    plan,
+    planIsStored: true,
+    mission: { id: "m", revision: 3 },
+    selection: EMPTY,
+    tool: "point",
+  });
+  const actions = createHandEditing(
+    { store, selection: () => EMPTY, problem: () => {}, wordsOf: String },
+    { save: async () => {}, keepOpen: () => {} },
+  );
   asked.length = 0;
   await actions.beginByHand(0);
   await settled();
@@ -72,12 +120,27 @@ async function editing() {
 
 test("each change is a step that can be undone, and each route is asked about once, as it is stored too", async () => {
   const { store, actions, hand } = await editing();
-  assert.deepEqual(asked.map(([method, address]) => [method, address]), [["POST", "/api/v1/missions/m/routes/0/waypoints/look"]]);
+  assert.deepEqual(
+    asked.map(([method, address]) => [method, address]),
+    [["POST", "/api/v1/missions/m/routes/0/waypoints/look"]],
+  );
   actions.moveByHand(1, [10.01, 40.02]);
-  assert.deepEqual([...hand().legs], [[0, null], [1, null]]);
+  assert.deepEqual(
+    [...hand().legs],
+    [
+      [0, null],
+      [1, null],
+    ],
+  );
   assert.equal(hand().isLookOld, true);
   await settled();
-  assert.deepEqual([...hand().legs].map(([index, known]) => [index, known.is_clear]), [[0, false], [1, true]]);
+  assert.deepEqual(
+    [...hand().legs].map(([index, known]) => [index, known.is_clear]),
+    [
+      [0, false],
+      [1, true],
+    ],
+  );
   assert.deepEqual([hand().look.length_m, hand().isLookOld, [...hand().faults.legs.keys()]], [3500, false, [0]]);
   actions.undoByHand();
   assert.deepEqual([hand().legs.size, hand().isLookOld], [0, false]);
@@ -99,7 +162,10 @@ test("while a waypoint is dragged the last answer stands until the next one, and
   await settled();
   assert.equal(asked.length, 3);
   assert.equal(asked[2][2][1].position[1], 40.001);
-  assert.deepEqual([...hand().legs.values()].map(({ is_clear }) => is_clear), [true, true]);
+  assert.deepEqual(
+    [...hand().legs.values()].map(({ is_clear }) => is_clear),
+    [true, true],
+  );
   actions.dropByHand(at(40.02), 1);
   assert.equal(hand().isLookOld, false); // that place was asked about on the way
   assert.equal(hand().legs.get(0).is_clear, false);
@@ -122,12 +188,18 @@ test("what could not be asked says so and is asked again with the next change", 
 
 test("a fault of a waypoint is one of the legs at it", () => {
   const faults = faultsOf({ "waypoints.2.altitude_agl_m": ["Too low."] });
-  assert.deepEqual([0, 1, 2, 3].map((index) => isLegClear(faults, index)), [true, false, false, true]);
+  assert.deepEqual(
+    [0, 1, 2, 3].map((index) => isLegClear(faults, index)),
+    [true, false, false, true],
+  );
 });
 
 test("length, time and battery are told beside what they were", () => {
   const look = { length_m: 3812, duration_s: 372, battery_percent: 57.8 };
-  assert.equal(figuresOfLook(look, route), "3.8\u00a0km (+412\u00a0m) · 6\u00a0min (+1\u00a0min) · 58\u00a0% (−2\u00a0%) at landing");
+  assert.equal(
+    figuresOfLook(look, route),
+    "3.8\u00a0km (+412\u00a0m) · 6\u00a0min (+1\u00a0min) · 58\u00a0% (−2\u00a0%) at landing",
+  );
   assert.equal(figuresOfLook({ ...look, length_m: null }, route), "");
   assert.doesNotMatch(figuresOfLook({ length_m: 3400, duration_s: 300, battery_percent: null }, route), /[(%]/);
 });
@@ -146,11 +218,17 @@ test("a speed belongs to the leg that leads to a waypoint, and is taken back lik
   assert.equal(changesOf(slow, original), 1);
   assert.equal(changesOf(paced(slow, 3, null), original), 0);
   assert.equal(paced(original, 0, 6), original); // no leg leads to the start
-  assert.deepEqual(bodyOf(slow).waypoints.map(({ speed_mps }) => speed_mps), [null, null, null, 6, null]);
+  assert.deepEqual(
+    bodyOf(slow).waypoints.map(({ speed_mps }) => speed_mps),
+    [null, null, null, 6, null],
+  );
   assert.equal(inserted(slow, 2)[3].speed_mps, 6); // both parts of the leg
 });
 
 test("a stored speed is known by its waypoint", () => {
   const stored = pointsOf({ ...route, speeds_by_hand: [{ waypoint: 2, speed_mps: 4.5 }] });
-  assert.deepEqual(stored.map(({ speed_mps }) => speed_mps), [null, null, 4.5, null, null]);
+  assert.deepEqual(
+    stored.map(({ speed_mps }) => speed_mps),
+    [null, null, 4.5, null, null],
+  );
 });

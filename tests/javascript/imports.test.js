@@ -6,13 +6,24 @@ import { mappingOf, meaningsOf, withMeaning } from "../../static/js/imports/colu
 import { guessKind, setNameOf } from "../../static/js/imports/kinds.js";
 import { areaKm2 } from "../../static/js/imports/overpass_box.js";
 import { createRememberedUploads, markOf } from "../../static/js/imports/remembered_uploads.js";
-import { differenceSentence, factLines, factName, sizeText, summaryLines, terrainSentence, touched } from "../../static/js/imports/words.js";
+import {
+  differenceSentence,
+  factLines,
+  factName,
+  sizeText,
+  summaryLines,
+  terrainSentence,
+  touched,
+} from "../../static/js/imports/words.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const bytes = (text) => new TextEncoder().encode(text);
 
 test("a difference is one sentence, and what does not occur is not in it", () => {
-  assert.equal(plain(differenceSentence({ new: 412, changed: 3, vanished: 1, kept: 2, unchanged: 18_000 })), "412 new, 3 changed, 1 vanished, 2 kept as edited by hand.");
+  assert.equal(
+    plain(differenceSentence({ new: 412, changed: 3, vanished: 1, kept: 2, unchanged: 18_000 })),
+    "412 new, 3 changed, 1 vanished, 2 kept as edited by hand.",
+  );
   assert.equal(plain(differenceSentence({ new: 1_200, changed: 0, vanished: 0, kept: 0 })), "1,200 new.");
   assert.equal(differenceSentence({ new: 0, unchanged: 9 }), "Nothing would change.");
 });
@@ -29,7 +40,18 @@ test("what was edited by hand counts only where it is overwritten", () => {
 });
 
 test("the kind of a file is known by its name", () => {
-  const kinds = { "columbus.osm.pbf": "osm", "a.osm.gz": "osm", "N46E008.hgt": "terrain", "n46e008.hgt.zip": "terrain", "dem.TIF": "terrain", "towers.csv": "assets", "lines.kmz": "assets", "grid.gpkg": "assets", "shapes.zip": "assets", "czechia.txt": "zones" };
+  const kinds = {
+    "columbus.osm.pbf": "osm",
+    "a.osm.gz": "osm",
+    "N46E008.hgt": "terrain",
+    "n46e008.hgt.zip": "terrain",
+    "dem.TIF": "terrain",
+    "towers.csv": "assets",
+    "lines.kmz": "assets",
+    "grid.gpkg": "assets",
+    "shapes.zip": "assets",
+    "czechia.txt": "zones",
+  };
   for (const [name, kind] of Object.entries(kinds)) assert.equal(guessKind(name), kind, name);
 });
 
@@ -38,8 +60,14 @@ test("the kind of a file without a telling name is known by its first bytes", ()
   assert.equal(guessKind("data.xml", bytes('<?xml version="1.0"?><osm version="0.6">')), "osm");
   assert.equal(guessKind("data", bytes("II*\0")), "terrain");
   assert.equal(guessKind("data", bytes("SQLite format 3\0")), "assets");
-  assert.equal(guessKind("a.json", bytes('{"UASZoneList": [{"identifier": "X", "restriction": "PROHIBITED"}]}')), "zones");
-  assert.equal(guessKind("a.geojson", bytes('{"type": "FeatureCollection", "features": [{"geometry": {"type": "LineString"')), "assets");
+  assert.equal(
+    guessKind("a.json", bytes('{"UASZoneList": [{"identifier": "X", "restriction": "PROHIBITED"}]}')),
+    "zones",
+  );
+  assert.equal(
+    guessKind("a.geojson", bytes('{"type": "FeatureCollection", "features": [{"geometry": {"type": "LineString"')),
+    "assets",
+  );
   assert.equal(guessKind("a.json", bytes('{"version": 0.6, "elements": [')), "osm");
 });
 
@@ -50,17 +78,28 @@ test("a set is called like its file", () => {
 });
 
 test("facts say what was and what would be, with their unit", () => {
-  const lines = factLines({ before: { height_m: 30, operator: "", is_flyable: true }, after: { height_m: 32.5, operator: "AEP", is_flyable: false } });
+  const lines = factLines({
+    before: { height_m: 30, operator: "", is_flyable: true },
+    after: { height_m: 32.5, operator: "AEP", is_flyable: false },
+  });
   assert.deepEqual(
     lines.map(({ words, before, after }) => [words, plain(before), plain(after)]),
-    [["height", "30 m", "32.5 m"], ["operator", "nothing", "AEP"], ["flyable", "yes", "no"]],
+    [
+      ["height", "30 m", "32.5 m"],
+      ["operator", "nothing", "AEP"],
+      ["flyable", "yes", "no"],
+    ],
   );
 });
 
 test("facts that are empty on both sides are not said, and shapes are on the map", () => {
   const point = { type: "Point", coordinates: [9, 47] };
-  assert.deepEqual(factLines({ before: null, after: { tags: {}, schedule: null, geometry: point } }), [{ words: "shape", before: null, after: "on the map" }]);
-  assert.deepEqual(factLines({ before: { geometry: point }, after: { geometry: point } }), [{ words: "shape", before: "dashed on the map", after: "drawn on the map" }]);
+  assert.deepEqual(factLines({ before: null, after: { tags: {}, schedule: null, geometry: point } }), [
+    { words: "shape", before: null, after: "on the map" },
+  ]);
+  assert.deepEqual(factLines({ before: { geometry: point }, after: { geometry: point } }), [
+    { words: "shape", before: "dashed on the map", after: "drawn on the map" },
+  ]);
 });
 
 test("names of facts are words, and their unit is apart", () => {
@@ -70,7 +109,10 @@ test("names of facts are words, and their unit is apart", () => {
 
 test("a summary says figures and short texts alone", () => {
   const lines = summaryLines({ zones: 1_288, set: "Works", columns: [1], notes: ["x"], kept: {} });
-  assert.deepEqual(lines.map(({ words, value }) => `${words} ${value}`), ["zones 1,288", "set Works"]);
+  assert.deepEqual(
+    lines.map(({ words, value }) => `${words} ${value}`),
+    ["zones 1,288", "set Works"],
+  );
 });
 
 test("sizes are kB below 1 MiB", () => {
@@ -84,8 +126,31 @@ test("one degree square at the equator is some 12,364 km²", () => {
 });
 
 test("the sign stands on a line's middle vertex and on an area's northernmost", () => {
-  assert.deepEqual(placeOfSign({ type: "LineString", coordinates: [[0, 0], [1, 1], [2, 0]] }), [1, 1]);
-  assert.deepEqual(placeOfSign({ type: "Polygon", coordinates: [[[0, 0], [4, 0], [3, 5], [0, 0]]] }), [3, 5]);
+  assert.deepEqual(
+    placeOfSign({
+      type: "LineString",
+      coordinates: [
+        [0, 0],
+        [1, 1],
+        [2, 0],
+      ],
+    }),
+    [1, 1],
+  );
+  assert.deepEqual(
+    placeOfSign({
+      type: "Polygon",
+      coordinates: [
+        [
+          [0, 0],
+          [4, 0],
+          [3, 5],
+          [0, 0],
+        ],
+      ],
+    }),
+    [3, 5],
+  );
   assert.deepEqual(placeOfSign({ type: "Point", coordinates: [7, 8] }), [7, 8]);
 });
 
@@ -100,7 +165,10 @@ test("a file on its way is known again by name, size and time, for a day", () =>
   const uploads = createRememberedUploads(1, storage, () => now);
   uploads.keep(markOf(file), { name: "a.pbf", uploadId: "u1" });
   uploads.keep(markOf(file), { received: 3 });
-  assert.deepEqual({ ...uploads.find(markOf(file)) }, { name: "a.pbf", uploadId: "u1", received: 3, mark: markOf(file), at: 0 });
+  assert.deepEqual(
+    { ...uploads.find(markOf(file)) },
+    { name: "a.pbf", uploadId: "u1", received: 3, mark: markOf(file), at: 0 },
+  );
   assert.equal(uploads.find(markOf({ ...file, lastModified: 8 })), null);
   assert.equal(createRememberedUploads(2, storage, () => now).all().length, 0);
   now = 25 * 3_600_000;
@@ -108,14 +176,24 @@ test("a file on its way is known again by name, size and time, for a day", () =>
 });
 
 test("a browser that keeps nothing, or garbles it, is no fault", () => {
-  const broken = { getItem: () => "{", setItem: () => { throw new Error("full"); } };
+  const broken = {
+    getItem: () => "{",
+    setItem: () => {
+      throw new Error("full");
+    },
+  };
   const uploads = createRememberedUploads(1, broken);
   uploads.keep("m", {});
   assert.deepEqual(uploads.all(), []);
 });
 
 test("a mapping of columns is the same after being shown as meanings", () => {
-  const mapping = { kind: { column: "art", values: { Mast: "tower", Zaun: "" } }, columns: { ref: "Nr", voltage: "U" }, units: { voltage: "kV" }, geometry: { lon: "x", lat: "y" } };
+  const mapping = {
+    kind: { column: "art", values: { Mast: "tower", Zaun: "" } },
+    columns: { ref: "Nr", voltage: "U" },
+    units: { voltage: "kV" },
+    geometry: { lon: "x", lat: "y" },
+  };
   const meanings = meaningsOf(mapping);
   assert.deepEqual(meanings, { Nr: "ref", U: "voltage:kV", x: "lon", y: "lat", art: "kind" });
   assert.deepEqual(mappingOf(meanings, "column", mapping.kind.values), mapping);

@@ -50,7 +50,13 @@ class Socket {
 }
 
 const snapshot = (sequence, live) => ({ type: "snapshot", sequence, live: { ...EMPTY, ...live } });
-const changes = (sequence, some, gone = {}) => ({ type: "changes", sequence, ...EMPTY, ...some, gone: { ...EMPTY, ...gone } });
+const changes = (sequence, some, gone = {}) => ({
+  type: "changes",
+  sequence,
+  ...EMPTY,
+  ...some,
+  gone: { ...EMPTY, ...gone },
+});
 const settle = () => new Promise((resolve) => setImmediate(resolve));
 
 /** A page with timers of the test's own; `answers` are what the server says when it is asked, the last one again and again. */
@@ -66,22 +72,43 @@ function page(context, { answers = [new Error("away")], ...options } = {}) {
     if (answer instanceof Error) throw answer;
     return answer;
   };
-  const feed = openFeed({ Socket, get, random: () => 1, onState: ({ state }) => states.push(state), onChange: (touched) => told.push(touched), ...options });
+  const feed = openFeed({
+    Socket,
+    get,
+    random: () => 1,
+    onState: ({ state }) => states.push(state),
+    onChange: (touched) => told.push(touched),
+    ...options,
+  });
   const pass = async (ms) => (context.mock.timers.tick(ms), await settle());
   return { feed, asked, states, told, pass };
 }
 
-const answer = (live, etag = '"1"') => ({ status: 200, etag, data: { server_time: TIME, live: { ...EMPTY, ...live } } });
+const answer = (live, etag = '"1"') => ({
+  status: 200,
+  etag,
+  data: { server_time: TIME, live: { ...EMPTY, ...live } },
+});
 
 test("a page shows everything, then what changes, and confirms each word", (context) => {
   const { feed, states, told } = page(context);
   assert.equal(Socket.last.address, "wss://spanwise.example/ws/live");
-  Socket.last.says(snapshot(1, { uavs: [{ id: 1, name: "Tern" }, { id: 2, name: "Gull" }] }));
+  Socket.last.says(
+    snapshot(1, {
+      uavs: [
+        { id: 1, name: "Tern" },
+        { id: 2, name: "Gull" },
+      ],
+    }),
+  );
   assert.equal(told.at(-1), null);
   Socket.last.says(changes(2, { uavs: [{ id: 1, name: "Arctic tern" }] }, { uavs: [2] }));
   assert.deepEqual([...feed.shown.uavs.values()], [{ id: 1, name: "Arctic tern" }]);
   assert.deepEqual([...told.at(-1).uavs], [1, 2]);
-  assert.deepEqual(Socket.last.said, [{ type: "have", sequence: 1 }, { type: "have", sequence: 2 }]);
+  assert.deepEqual(Socket.last.said, [
+    { type: "have", sequence: 1 },
+    { type: "have", sequence: 2 },
+  ]);
   assert.deepEqual(states, ["connecting", "live"]);
   feed.close();
 });
@@ -97,7 +124,10 @@ test("after a gap the page asks once for everything and takes nothing before tha
   Socket.last.says(changes(3, { uavs: [{ id: 1, at: "c" }] }));
   Socket.last.says(changes(4, { uavs: [{ id: 1, at: "d" }] }));
   assert.equal(feed.shown.uavs.get(1).at, "a");
-  assert.deepEqual(Socket.last.said.map(({ type }) => type), ["have", "again", "have", "have"]);
+  assert.deepEqual(
+    Socket.last.said.map(({ type }) => type),
+    ["have", "again", "have", "have"],
+  );
   Socket.last.says(snapshot(5, { uavs: [{ id: 1, at: "e" }] }));
   Socket.last.says(changes(6, { uavs: [{ id: 1, at: "f" }] }));
   assert.equal(feed.shown.uavs.get(1).at, "f");
@@ -123,7 +153,9 @@ test("a page that fails to draw confirms all the same, so that it is told the ne
 });
 
 test("without a socket the page asks every two seconds and says so; the socket comes back by itself", async (context) => {
-  const { feed, asked, states, pass } = page(context, { answers: [answer({ uavs: [{ id: 1 }] }), { status: 304, etag: '"1"' }] });
+  const { feed, asked, states, pass } = page(context, {
+    answers: [answer({ uavs: [{ id: 1 }] }), { status: 304, etag: '"1"' }],
+  });
   Socket.last.says(snapshot(1));
   Socket.last.isLost();
   await pass(0);
@@ -194,7 +226,10 @@ test("a live socket that falls silent is replaced after 45 s", async (context) =
   feed.close();
 });
 
-for (const [status, state] of [[401, "signed-out"], [404, "gone"]]) {
+for (const [status, state] of [
+  [401, "signed-out"],
+  [404, "gone"],
+]) {
   test(`after ${status} the page is ${state} for good`, async (context) => {
     const { feed, states, asked, pass } = page(context, { answers: [Object.assign(new Error("no"), { status })] });
     Socket.last.says(snapshot(1));
@@ -232,8 +267,14 @@ test("a closed page neither hears nor asks", async (context) => {
 });
 
 test("pages do not all come back at once, and wait 5 s at most", () => {
-  assert.deepEqual([0, 1, 2, 3, 4, 50].map((failures) => pauseBefore_ms(failures, () => 1)), [500, 1_000, 2_000, 4_000, 5_000, 5_000]);
-  assert.deepEqual([0, 50].map((failures) => pauseBefore_ms(failures, () => 0)), [250, 2_500]);
+  assert.deepEqual(
+    [0, 1, 2, 3, 4, 50].map((failures) => pauseBefore_ms(failures, () => 1)),
+    [500, 1_000, 2_000, 4_000, 5_000, 5_000],
+  );
+  assert.deepEqual(
+    [0, 50].map((failures) => pauseBefore_ms(failures, () => 0)),
+    [250, 2_500],
+  );
 });
 
 test("the server's time is known although the page's clock is wrong and words come late", () => {

@@ -46,7 +46,11 @@ test("a failed job is told in its own words", async () => {
 });
 
 test("where the socket closes the job is asked for", async (context) => {
-  context.mock.method(globalThis, "fetch", async () => new Response(JSON.stringify({ state: "cancelled", result: null })));
+  context.mock.method(
+    globalThis,
+    "fetch",
+    async () => new Response(JSON.stringify({ state: "cancelled", result: null })),
+  );
   const ended = followLive("j1", { Socket });
   Socket.last.dispatchEvent(new Event("close"));
   assert.equal((await ended).state, "cancelled");

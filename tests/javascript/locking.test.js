@@ -4,9 +4,25 @@ import test from "node:test";
 import { EMPTY, targetOf } from "../../static/js/mission/selection.js";
 import { createHistory, createStore } from "../../static/js/store.js";
 
-const element = () => ({ said: "", append(...children) { this.said = children.map((child) => child.said ?? child).join(" "); }, replaceChildren(...children) { this.append(...children); }, setAttribute() {}, addEventListener() {} });
+const element = () => ({
+  said: "",
+  append(...children) {
+    this.said = children.map((child) => child.said ?? child).join(" ");
+  },
+  replaceChildren(...children) {
+    this.append(...children);
+  },
+  setAttribute() {},
+  addEventListener() {},
+});
 const toasts = element();
-globalThis.document = { cookie: "", querySelector: () => null, documentElement: { lang: "en", dataset: {} }, createElement: element, getElementById: (id) => (id === "toasts" ? toasts : element()) };
+globalThis.document = {
+  cookie: "",
+  querySelector: () => null,
+  documentElement: { lang: "en", dataset: {} },
+  createElement: element,
+  getElementById: (id) => (id === "toasts" ? toasts : element()),
+};
 const { createFleetActions } = await import("../../static/js/mission/fleet_actions.js");
 const { createLocking } = await import("../../static/js/mission/locking.js");
 
@@ -18,7 +34,15 @@ const targets = [1, 2, 3].map(tower);
 function pageWith(context, uavs, fleet = []) {
   context.mock.timers.enable({ apis: ["setTimeout"] });
   toasts.said = "";
-  const plan = { targets, result: { routes: [{ uav: "Heron", targets: [0, 1] }, { uav: "Kite", targets: [2] }] } };
+  const plan = {
+    targets,
+    result: {
+      routes: [
+        { uav: "Heron", targets: [0, 1] },
+        { uav: "Kite", targets: [2] },
+      ],
+    },
+  };
   const store = createStore({ selection: { ...EMPTY, targets, uavs }, plan, fleet });
   const history = createHistory(store, "selection");
   const how = { store, history, selection: () => store.state.selection, change: (next) => history.changeTo(next) };
@@ -33,7 +57,11 @@ test("a target that is dropped on a UAV is told to be locked there", (context) =
 
 test("where two UAVs have the name nothing is locked, and that is said", (context) => {
   const page = pageWith(context, [uav(1, "Heron"), uav(2, "Kite"), uav(null, "Heron")]);
-  for (const act of [() => page.placeTargets([targets[2].key], { uav: "Heron", index: 1 }), () => page.lockTarget(targets[0].key), () => page.shiftTarget(targets[0].key, 1)]) {
+  for (const act of [
+    () => page.placeTargets([targets[2].key], { uav: "Heron", index: 1 }),
+    () => page.lockTarget(targets[0].key),
+    () => page.shiftTarget(targets[0].key, 1),
+  ]) {
     toasts.said = "";
     assert.equal(act(), false);
     assert.match(toasts.said, /Nothing is locked: 2 UAVs of this mission are called Heron\./);
@@ -46,6 +74,9 @@ test("a UAV that is called otherwise in the mission is told so", (context) => {
   page.addUavOfFleet(2);
   assert.equal(toasts.said, "");
   page.addUavsOfFleet([1, 2]);
-  assert.deepEqual(page.store.state.selection.uavs.map(({ name }) => name), ["Heron", "Kite", "Heron 2"]);
+  assert.deepEqual(
+    page.store.state.selection.uavs.map(({ name }) => name),
+    ["Heron", "Kite", "Heron 2"],
+  );
   assert.match(toasts.said, /Heron is called Heron 2 in this mission: another UAV has its name\./);
 });

@@ -1,15 +1,44 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { areContrary, flownBy, lockedHere, lockOf, ordersOf, placed, settled, shifted, stopsWished, tied, unlocked, wishedOrders, wishedPlace } from "../../static/js/mission/locks.js";
-import { EMPTY, requestOf, selectionOf, targetOf, withoutLocks, withoutTargets, withoutUavAt } from "../../static/js/mission/selection.js";
+import {
+  areContrary,
+  flownBy,
+  lockedHere,
+  lockOf,
+  ordersOf,
+  placed,
+  settled,
+  shifted,
+  stopsWished,
+  tied,
+  unlocked,
+  wishedOrders,
+  wishedPlace,
+} from "../../static/js/mission/locks.js";
+import {
+  EMPTY,
+  requestOf,
+  selectionOf,
+  targetOf,
+  withoutLocks,
+  withoutTargets,
+  withoutUavAt,
+} from "../../static/js/mission/selection.js";
 
-const tower = (id) => ({ ...targetOf({ id, kind: "tower", properties: { label: `${id}` }, centre: [10, 50] }), key: `${id}` });
+const tower = (id) => ({
+  ...targetOf({ id, kind: "tower", properties: { label: `${id}` }, centre: [10, 50] }),
+  key: `${id}`,
+});
 const uav = (name) => ({ id: null, name, position: [9, 49] });
 const picked = { ...EMPTY, targets: [1, 2, 3, 4, 5, 6].map(tower), uavs: [uav("Heron"), uav("Kite")] };
-const ORDERS = [{ uav: "Heron", targets: ["1", "2", "3"] }, { uav: "Kite", targets: ["4", "5", "6"] }];
+const ORDERS = [
+  { uav: "Heron", targets: ["1", "2", "3"] },
+  { uav: "Kite", targets: ["4", "5", "6"] },
+];
 const run = (name, targets, more = {}) => ({ uav: name, targets, at_start: false, at_end: false, ...more });
-const orders = (selection) => Object.fromEntries(wishedOrders(ORDERS, selection.locks).map(({ uav: name, targets }) => [name, targets.join("")]));
+const orders = (selection) =>
+  Object.fromEntries(wishedOrders(ORDERS, selection.locks).map(({ uav: name, targets }) => [name, targets.join("")]));
 
 test("a target that is dropped between two others is locked between them", () => {
   const next = placed(picked, ORDERS, ["2"], { uav: "Kite", index: 1 });
@@ -18,8 +47,12 @@ test("a target that is dropped between two others is locked between them", () =>
 });
 
 test("what is dropped first or last is locked at that end, and binds no neighbour", () => {
-  assert.deepEqual(placed(picked, ORDERS, ["2"], { uav: "Kite", index: 0 }).locks, [run("Kite", ["2"], { at_start: true })]);
-  assert.deepEqual(placed(picked, ORDERS, ["2"], { uav: "Kite", index: 3 }).locks, [run("Kite", ["2"], { at_end: true })]);
+  assert.deepEqual(placed(picked, ORDERS, ["2"], { uav: "Kite", index: 0 }).locks, [
+    run("Kite", ["2"], { at_start: true }),
+  ]);
+  assert.deepEqual(placed(picked, ORDERS, ["2"], { uav: "Kite", index: 3 }).locks, [
+    run("Kite", ["2"], { at_end: true }),
+  ]);
 });
 
 test("what comes before a locked beginning joins it", () => {
@@ -36,13 +69,21 @@ test("a target dropped into a run becomes a part of it", () => {
 });
 
 test("a UAV that flies nothing else takes a target at no place", () => {
-  assert.deepEqual(placed(picked, [ORDERS[0], { uav: "Kite", targets: [] }], ["2"], { uav: "Kite", index: 0 }).locks, [run("Kite", ["2"])]);
+  assert.deepEqual(placed(picked, [ORDERS[0], { uav: "Kite", targets: [] }], ["2"], { uav: "Kite", index: 0 }).locks, [
+    run("Kite", ["2"]),
+  ]);
 });
 
 test("a target that leaves a run leaves the others together, and one alone free", () => {
   const three = { ...picked, locks: [run("Heron", ["1", "2", "3"])] };
-  assert.deepEqual(placed(three, ORDERS, ["2"], { uav: "Kite", index: 0 }).locks, [run("Heron", ["1", "3"]), run("Kite", ["2"], { at_start: true })]);
-  assert.deepEqual(placed({ ...picked, locks: [run("Heron", ["1", "2"])] }, ORDERS, ["2"], { uav: "Kite", index: 0 }).locks, [run("Kite", ["2"], { at_start: true })]);
+  assert.deepEqual(placed(three, ORDERS, ["2"], { uav: "Kite", index: 0 }).locks, [
+    run("Heron", ["1", "3"]),
+    run("Kite", ["2"], { at_start: true }),
+  ]);
+  assert.deepEqual(
+    placed({ ...picked, locks: [run("Heron", ["1", "2"])] }, ORDERS, ["2"], { uav: "Kite", index: 0 }).locks,
+    [run("Kite", ["2"], { at_start: true })],
+  );
 });
 
 test("earlier and later go one place, and no further than the ends", () => {
@@ -53,7 +94,10 @@ test("earlier and later go one place, and no further than the ends", () => {
 });
 
 test("several pills move together in their order", () => {
-  assert.deepEqual(orders(placed(picked, ORDERS, ["2", "3"], { uav: "Kite", index: 1 })), { Heron: "1", Kite: "42356" });
+  assert.deepEqual(orders(placed(picked, ORDERS, ["2", "3"], { uav: "Kite", index: 1 })), {
+    Heron: "1",
+    Kite: "42356",
+  });
 });
 
 test("locked here stays where it is", () => {
@@ -67,12 +111,18 @@ test("a target that the plan does not visit can be given to a UAV, and has no pl
   assert.equal(lockedHere(picked, short, "5"), picked);
   assert.equal(shifted(picked, short, "5", 1), picked);
   assert.deepEqual(flownBy(picked, "5", "Kite").locks, [run("Kite", ["5"])]);
-  assert.deepEqual(wishedOrders(short, flownBy(picked, "5", "Kite").locks), [{ uav: "Heron", targets: ["1"] }, { uav: "Kite", targets: ["5"] }]);
+  assert.deepEqual(wishedOrders(short, flownBy(picked, "5", "Kite").locks), [
+    { uav: "Heron", targets: ["1"] },
+    { uav: "Kite", targets: ["5"] },
+  ]);
 });
 
 test("unlocking takes a run apart, and nothing is left of a lone neighbour", () => {
   const long = { ...picked, locks: [run("Heron", ["1", "2", "3", "4", "5"], { at_start: true, at_end: true })] };
-  assert.deepEqual(unlocked(long, "3").locks, [run("Heron", ["1", "2"], { at_start: true }), run("Heron", ["4", "5"], { at_end: true })]);
+  assert.deepEqual(unlocked(long, "3").locks, [
+    run("Heron", ["1", "2"], { at_start: true }),
+    run("Heron", ["4", "5"], { at_end: true }),
+  ]);
   assert.deepEqual(unlocked({ ...picked, locks: [run("Heron", ["1", "2", "3"])] }, "2").locks, []);
   assert.deepEqual(withoutLocks(long).locks, []);
 });
@@ -103,28 +153,66 @@ test("locks go to the server as indices and come back as keys", () => {
   const locked = placed(picked, ORDERS, ["2"], { uav: "Kite", index: 1 });
   assert.deepEqual(requestOf(locked).locks, [run("Kite", [3, 1, 4])]);
   assert.equal("locks" in requestOf(withoutLocks(locked)), false);
-  const stored = selectionOf({ targets: picked.targets.map((target) => ({ ...target, position: [10, 50], is_point: false })), uavs: picked.uavs, objective: "total", return_to_start: true, locks: requestOf(locked).locks });
+  const stored = selectionOf({
+    targets: picked.targets.map((target) => ({ ...target, position: [10, 50], is_point: false })),
+    uavs: picked.uavs,
+    objective: "total",
+    return_to_start: true,
+    locks: requestOf(locked).locks,
+  });
   assert.deepEqual(requestOf(stored).locks, [run("Kite", [3, 1, 4])]);
 });
 
 test("a plan's orders have each target once", () => {
-  const plan = { targets: picked.targets, result: { routes: [{ uav: "Heron", targets: [0, 0, 2] }, { uav: "Kite", targets: [] }] } };
-  assert.deepEqual(ordersOf(plan), [{ uav: "Heron", targets: ["1", "3"] }, { uav: "Kite", targets: [] }]);
+  const plan = {
+    targets: picked.targets,
+    result: {
+      routes: [
+        { uav: "Heron", targets: [0, 0, 2] },
+        { uav: "Kite", targets: [] },
+      ],
+    },
+  };
+  assert.deepEqual(ordersOf(plan), [
+    { uav: "Heron", targets: ["1", "3"] },
+    { uav: "Kite", targets: [] },
+  ]);
   assert.deepEqual(ordersOf(null), []);
 });
 
 test("on the strip what moves stands between its neighbours, and the rest stays", () => {
-  const stops = [{ target: "1", at: 100 }, { target: "2", at: 200 }, { target: "3", at: 300 }];
-  assert.deepEqual(stopsWished(stops, ["1", "3", "2"], 400).map(({ target, at, isMoved }) => [target, at, isMoved]).filter(([, , isMoved]) => isMoved).length, 1);
-  assert.deepEqual(stopsWished(stops, ["1", "9", "8", "2", "3"], 400).map(({ at }) => Math.round(at)), [100, 133, 167, 200, 300]);
-  assert.deepEqual(stopsWished(stops, ["1", "2"], 400).map(({ isMoved }) => isMoved), [false, false]);
+  const stops = [
+    { target: "1", at: 100 },
+    { target: "2", at: 200 },
+    { target: "3", at: 300 },
+  ];
+  assert.deepEqual(
+    stopsWished(stops, ["1", "3", "2"], 400)
+      .map(({ target, at, isMoved }) => [target, at, isMoved])
+      .filter(([, , isMoved]) => isMoved).length,
+    1,
+  );
+  assert.deepEqual(
+    stopsWished(stops, ["1", "9", "8", "2", "3"], 400).map(({ at }) => Math.round(at)),
+    [100, 133, 167, 200, 300],
+  );
+  assert.deepEqual(
+    stopsWished(stops, ["1", "2"], 400).map(({ isMoved }) => isMoved),
+    [false, false],
+  );
   assert.deepEqual(stopsWished([], ["7"], 0), [{ target: "7", at: 0, isMoved: true }]);
 });
 
 test("a run that was all that a UAV flies makes room for a target that is given to it", () => {
   const whole = { ...picked, locks: [run("Heron", ["1", "2", "3"], { at_start: true, at_end: true })] };
-  assert.deepEqual(flownBy(whole, "1", "Heron").locks, [run("Heron", ["2", "3"], { at_start: true }), run("Heron", ["1"])]);
-  assert.deepEqual(flownBy(whole, "5", "Heron").locks, [run("Heron", ["1", "2", "3"], { at_start: true }), run("Heron", ["5"])]);
+  assert.deepEqual(flownBy(whole, "1", "Heron").locks, [
+    run("Heron", ["2", "3"], { at_start: true }),
+    run("Heron", ["1"]),
+  ]);
+  assert.deepEqual(flownBy(whole, "5", "Heron").locks, [
+    run("Heron", ["1", "2", "3"], { at_start: true }),
+    run("Heron", ["5"]),
+  ]);
   assert.deepEqual(flownBy(whole, "5", "Kite").locks, [...whole.locks, run("Kite", ["5"])]);
 });
 
@@ -132,7 +220,10 @@ test("a neighbour that is tied to another UAV, or picked no more, is not locked 
   const free = placed(tied(picked, ["2"], "Kite"), ORDERS, ["5"], { uav: "Heron", index: 2 });
   assert.deepEqual(free.locks, [run("Heron", ["1", "5", "3"])]);
   assert.equal(free.targets[1].uav, "Kite");
-  assert.deepEqual(settled(placed(withoutTargets(picked, ["1", "2"]), ORDERS, ["5"], { uav: "Heron", index: 2 })).locks, [run("Heron", ["5"], { at_start: true })]);
+  assert.deepEqual(
+    settled(placed(withoutTargets(picked, ["1", "2"]), ORDERS, ["5"], { uav: "Heron", index: 2 })).locks,
+    [run("Heron", ["5"], { at_start: true })],
+  );
 });
 
 test("where two UAVs have the name nothing is locked to it, and what was stays until one of them goes", () => {
@@ -145,9 +236,16 @@ test("where two UAVs have the name nothing is locked to it, and what was stays u
 });
 
 test("of two UAVs with one name each keeps its own order", () => {
-  const two = [{ uav: "Heron", targets: ["1", "2"] }, { uav: "Heron", targets: ["3"] }];
+  const two = [
+    { uav: "Heron", targets: ["1", "2"] },
+    { uav: "Heron", targets: ["3"] },
+  ];
   assert.deepEqual(wishedOrders(two, []), two);
-  assert.deepEqual(wishedOrders(two, [run("Kite", ["2"])]), [{ uav: "Heron", targets: ["1"] }, two[1], { uav: "Kite", targets: ["2"] }]);
+  assert.deepEqual(wishedOrders(two, [run("Kite", ["2"])]), [
+    { uav: "Heron", targets: ["1"] },
+    two[1],
+    { uav: "Kite", targets: ["2"] },
+  ]);
 });
 
 /** What the server would refuse of a selection's locks: missions/services/wishes.py. */
@@ -155,9 +253,11 @@ function contradictionIn({ targets, uavs, locks }) {
   const known = new Map(targets.map((target) => [target.key, target]));
   for (const [index, lock] of locks.entries()) {
     if (!uavs.some(({ name }) => name === lock.uav)) return "an unknown UAV";
-    if (!lock.targets.length || new Set(lock.targets).size < lock.targets.length) return "a target twice in a run, or none";
+    if (!lock.targets.length || new Set(lock.targets).size < lock.targets.length)
+      return "a target twice in a run, or none";
     if (lock.targets.some((key) => !known.has(key))) return "an unknown target";
-    if (lock.targets.some((key) => ![undefined, null, lock.uav].includes(known.get(key).uav))) return "a tie against a lock";
+    if (lock.targets.some((key) => ![undefined, null, lock.uav].includes(known.get(key).uav)))
+      return "a tie against a lock";
     for (const other of locks.slice(0, index)) {
       if (other.targets.some((key) => lock.targets.includes(key))) return "a target in two runs";
       if (other.uav !== lock.uav) continue;
@@ -171,14 +271,25 @@ function contradictionIn({ targets, uavs, locks }) {
 
 test("whatever is wished one after the other, no lock contradicts another or a tie", () => {
   let seed = 5;
-  const below = (most) => ((seed = (seed * 1_103_515_245 + 12_345) % 2_147_483_648), Math.floor((seed / 2_147_483_648) * most));
+  const below = (most) => (
+    (seed = (seed * 1_103_515_245 + 12_345) % 2_147_483_648), Math.floor((seed / 2_147_483_648) * most)
+  );
   const name = () => ["Heron", "Kite"][below(2)];
   const key = () => `${1 + below(6)}`;
   const isPicked = (selection, one) => selection.targets.some((target) => target.key === one);
-  const whole = [["Heron", "123"], ["Kite", "456"]].map(([uavName, keys]) => run(uavName, [...keys], { at_start: true, at_end: true }));
+  const whole = [
+    ["Heron", "123"],
+    ["Kite", "456"],
+  ].map(([uavName, keys]) => run(uavName, [...keys], { at_start: true, at_end: true }));
   const steps = {
     placed: (now, one) => placed(now, ORDERS, [one], { uav: name(), index: below(8) }),
-    several: (now, one) => placed(now, ORDERS, [one, key()].filter((each, at, all) => isPicked(now, each) && all.indexOf(each) === at), { uav: name(), index: below(8) }),
+    several: (now, one) =>
+      placed(
+        now,
+        ORDERS,
+        [one, key()].filter((each, at, all) => isPicked(now, each) && all.indexOf(each) === at),
+        { uav: name(), index: below(8) },
+      ),
     flownBy: (now, one) => flownBy(now, one, name()),
     shifted: (now, one) => shifted(now, ORDERS, one, below(2) ? 1 : -1),
     lockedHere: (now, one) => lockedHere(now, ORDERS, one),

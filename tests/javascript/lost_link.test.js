@@ -11,21 +11,45 @@ const YARD = [-82.95, 39.95];
 const back = { behaviour: "return", rally_points: [], hold_s: 0 };
 const spaces = (text) => text.replaceAll("\u00a0", " ");
 
-const waypoints = [[-83, 40], [-82.99, 40], [-82.98, 40], [-82.97, 40]].map((position) => ({ position }));
-const failed = (waypoint, trouble, more = {}) => ({ route: 0, waypoint, haven: 0, trouble, missing_wh: null, zone: null, zone_id: null, over_m: null, ...more });
-const planWith = (check, route = {}) => ({ result: { routes: [{ uav: "Heron", geometry: {}, energy_wh: 12, waypoints, ...route }], lost_link: check } });
+const waypoints = [
+  [-83, 40],
+  [-82.99, 40],
+  [-82.98, 40],
+  [-82.97, 40],
+].map((position) => ({ position }));
+const failed = (waypoint, trouble, more = {}) => ({
+  route: 0,
+  waypoint,
+  haven: 0,
+  trouble,
+  missing_wh: null,
+  zone: null,
+  zone_id: null,
+  over_m: null,
+  ...more,
+});
+const planWith = (check, route = {}) => ({
+  result: { routes: [{ uav: "Heron", geometry: {}, energy_wh: 12, waypoints, ...route }], lost_link: check },
+});
 
 test("going on without rally points is what nobody has to say", () => {
   assert.equal(link.lostLinkOf(null), null);
   assert.equal(link.lostLinkOf({ behaviour: "go_on", rally_points: [], hold_s: 30 }), null);
-  assert.deepEqual(requestOf({ ...EMPTY, lost_link: { behaviour: "go_on", rally_points: [], hold_s: 0 } }).lost_link, undefined);
+  assert.deepEqual(
+    requestOf({ ...EMPTY, lost_link: { behaviour: "go_on", rally_points: [], hold_s: 0 } }).lost_link,
+    undefined,
+  );
   assert.deepEqual(requestOf({ ...EMPTY, lost_link: back }).lost_link, back);
 });
 
 test("rally points stay while UAVs go on, and seconds of holding go with holding alone", () => {
   const holding = link.withRallyPoint(link.withBehaviour(null, "hold"), [-82.9500004, 39.95]);
   assert.deepEqual(holding, { behaviour: "hold", rally_points: [YARD], hold_s: 60 });
-  assert.deepEqual(link.withBehaviour(link.withHold(holding, 90), "go_on"), { behaviour: "go_on", rally_points: [YARD], hold_s: 0 });
+  assert.deepEqual(link.withBehaviour(link.withHold(holding, 90), "go_on"), {
+    behaviour: "go_on",
+    rally_points: [YARD],
+    hold_s: 0,
+  });
   assert.equal(link.lostLinkOf(link.withoutRallyPoint(link.withBehaviour(holding, "go_on"), 0)), null);
   assert.deepEqual(link.withRallyPointAt(holding, 0, [1, 2]).rally_points, [[1, 2]]);
 });
@@ -66,7 +90,14 @@ test("a check of another wish is none", () => {
 });
 
 test("waypoints with one trouble are told together, with the worst figure and the zone", () => {
-  const plan = planWith({ ...back, failed: [failed(1, "battery", { missing_wh: 2.31 }), failed(2, "battery", { missing_wh: 4.52 }), failed(3, "zone", { zone: "Greenlawn", zone_id: 7 })] });
+  const plan = planWith({
+    ...back,
+    failed: [
+      failed(1, "battery", { missing_wh: 2.31 }),
+      failed(2, "battery", { missing_wh: 4.52 }),
+      failed(3, "zone", { zone: "Greenlawn", zone_id: 7 }),
+    ],
+  });
   const [short, barred] = link.failuresOf(plan);
   assert.deepEqual(short.waypoints, [1, 2]);
   assert.equal(link.failureText(short).where, "waypoints 2–3, back to its start");
@@ -79,17 +110,31 @@ test("waypoints with one trouble are told together, with the worst figure and th
 
 test("the map shows each way back to where it would have led", () => {
   const rally = link.withRallyPoint(back, YARD);
-  const lines = link.returnLinesOf(planWith({ ...rally, failed: [failed(1, "wind"), failed(3, "wind", { haven: 1 })] }));
-  assert.deepEqual(lines.map(({ from, to }) => [from, to]), [[waypoints[1].position, waypoints[0].position], [waypoints[3].position, YARD]]);
+  const lines = link.returnLinesOf(
+    planWith({ ...rally, failed: [failed(1, "wind"), failed(3, "wind", { haven: 1 })] }),
+  );
+  assert.deepEqual(
+    lines.map(({ from, to }) => [from, to]),
+    [
+      [waypoints[1].position, waypoints[0].position],
+      [waypoints[3].position, YARD],
+    ],
+  );
 });
 
 test("ways back that do not fail lead quietly to the nearest of start and rally points; from the ground none does", () => {
   const rally = link.withRallyPoint(back, YARD);
   const kinds = ["start", "pass", "base", "target"];
-  const plan = planWith({ ...rally, failed: [failed(1, "wind")] }, { waypoints: waypoints.map((waypoint, index) => ({ ...waypoint, kind: kinds[index] })) });
+  const plan = planWith(
+    { ...rally, failed: [failed(1, "wind")] },
+    { waypoints: waypoints.map((waypoint, index) => ({ ...waypoint, kind: kinds[index] })) },
+  );
   assert.deepEqual(link.quietReturnsOf(plan), [{ from: waypoints[3].position, to: waypoints[0].position }]);
   const near = link.withRallyPoint(back, [-82.975, 40]);
-  assert.deepEqual(link.quietReturnsOf(planWith({ ...near, failed: [] })).map(({ to }) => to), [waypoints[0].position, [-82.975, 40], [-82.975, 40]]);
+  assert.deepEqual(
+    link.quietReturnsOf(planWith({ ...near, failed: [] })).map(({ to }) => to),
+    [waypoints[0].position, [-82.975, 40], [-82.975, 40]],
+  );
 });
 
 test("energy that nobody counts is not taken for enough", () => {
@@ -100,11 +145,17 @@ test("energy that nobody counts is not taken for enough", () => {
 });
 
 test("how high UAVs have to climb for the way back is told, and a mast in the way", () => {
-  assert.equal(spaces(link.heightsText(planWith({ ...back, failed: [], highest_m: [105] }))), "Highest way back, above the start: Heron 105 m.");
+  assert.equal(
+    spaces(link.heightsText(planWith({ ...back, failed: [], highest_m: [105] }))),
+    "Highest way back, above the start: Heron 105 m.",
+  );
   assert.equal(link.heightsText(planWith({ ...back, failed: [], highest_m: [null] })), "");
   assert.equal(link.heightsText(planWith({ ...back, failed: [] })), "");
   const [barred] = link.failuresOf(planWith({ ...back, failed: [failed(1, "obstacle", { over_m: 5 })] }));
-  assert.equal(spaces(link.failureText(barred).why), "a mast or wires are in the way: over them it would be 5 m above the greatest allowed height");
+  assert.equal(
+    spaces(link.failureText(barred).why),
+    "a mast or wires are in the way: over them it would be 5 m above the greatest allowed height",
+  );
 });
 
 test("places of waypoints are counted from 1 and run together", () => {

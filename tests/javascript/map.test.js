@@ -3,43 +3,78 @@ import test from "node:test";
 
 import { hashOf, showsAnything, viewOf } from "../../static/js/map/address.js";
 import { firstInOrder, nearestOnLine } from "../../static/js/map/click_router.js";
+import { distinct } from "../../static/js/map/furniture.js";
 import { graticuleLines, graticuleStep } from "../../static/js/map/layers/graticule.js";
 import { routeLetter, routeNumber } from "../../static/js/map/palette.js";
-import { distinct } from "../../static/js/map/furniture.js";
+import { mergeDarts, mergedLabel, mergePills, pillWidth } from "../../static/js/map/pills.js";
 import { plainWords } from "../../static/js/map/tips.js";
-import { mergedLabel, mergeDarts, mergePills, pillWidth } from "../../static/js/map/pills.js";
 import { fitTo } from "../../static/js/missions/sketch.js";
 
-const feature = (id, sourceLayer, properties = { id: 1 }) => ({ layer: { id }, sourceLayer, properties, geometry: { type: "Point", coordinates: [0, 0] } });
+const feature = (id, sourceLayer, properties = { id: 1 }) => ({
+  layer: { id },
+  sourceLayer,
+  properties,
+  geometry: { type: "Point", coordinates: [0, 0] },
+});
 
 test("a click takes the tower before the line that it carries, and the zone last", () => {
-  const under = [feature("zones-fill", "zones"), feature("lines", "lines"), feature("towers-ring", "towers", { id: 42 }), feature("routes", undefined)];
+  const under = [
+    feature("zones-fill", "zones"),
+    feature("lines", "lines"),
+    feature("towers-ring", "towers", { id: 42 }),
+    feature("routes", undefined),
+  ];
   assert.deepEqual([firstInOrder(under).kind, firstInOrder(under).id], ["tower", 42]);
   assert.equal(firstInOrder(under.slice(0, 2)).kind, "line");
   assert.equal(firstInOrder([feature("routes", undefined)]), null);
 });
 
 test("what can be flown to comes before what cannot", () => {
-  const under = [feature("railways", "railways", { id: 1, flyable: false }), feature("lines", "lines", { id: 2, flyable: true })];
+  const under = [
+    feature("railways", "railways", { id: 1, flyable: false }),
+    feature("lines", "lines", { id: 2, flyable: true }),
+  ];
   assert.equal(firstInOrder(under).id, 2);
   assert.equal(firstInOrder(under.slice(0, 1)).id, 1);
 });
 
 test("the line tool sees lines and tracks alone", () => {
-  const under = [feature("towers-ring", "towers"), feature("lines", "lines", { id: 9 }), feature("zones-fill", "zones")];
+  const under = [
+    feature("towers-ring", "towers"),
+    feature("lines", "lines", { id: 9 }),
+    feature("zones-fill", "zones"),
+  ];
   assert.equal(firstInOrder(under, ["line", "railway"]).id, 9);
   assert.equal(firstInOrder(under.slice(0, 1), ["line", "railway"]), null);
 });
 
 test("a point on a track is the nearest one of what is drawn", () => {
-  const track = { type: "LineString", coordinates: [[10, 60], [12, 60]] };
+  const track = {
+    type: "LineString",
+    coordinates: [
+      [10, 60],
+      [12, 60],
+    ],
+  };
   assert.deepEqual(nearestOnLine(track, [11, 60.4]), [11, 60]);
   assert.deepEqual(nearestOnLine(track, [13, 60.4]), [12, 60]);
 });
 
 test("the nearest point is measured on the ground, not in degrees", () => {
   // at 60° north a degree of longitude is half as long as one of latitude
-  const corner = { type: "MultiLineString", coordinates: [[[10, 60], [10, 61]], [[9, 60.7], [12, 60.7]]] };
+  const corner = {
+    type: "MultiLineString",
+    coordinates: [
+      [
+        [10, 60],
+        [10, 61],
+      ],
+      [
+        [9, 60.7],
+        [12, 60.7],
+      ],
+    ],
+  };
   assert.deepEqual(nearestOnLine(corner, [10.3, 60.5]), [10, 60.5]);
 });
 
@@ -58,7 +93,11 @@ test("letters and colours go by the place in the mission", () => {
 });
 
 test("a sketch fits its frame and keeps the shape", () => {
-  const route = [[10, 0], [11, 0], [11, 1]];
+  const route = [
+    [10, 0],
+    [11, 0],
+    [11, 1],
+  ];
   const [start, corner, end] = route.map(fitTo(route));
   for (const [x, y] of [start, corner, end]) assert.ok(x >= 8 && x <= 104 && y >= 8 && y <= 48);
   assert.ok(Math.abs(corner[0] - start[0] - (corner[1] - end[1])) < 0.05); // a degree is as long east as north at the equator
@@ -69,18 +108,33 @@ test("a sketch of nothing has no places and one of a single target stands in the
   assert.deepEqual(fitTo([[10, 50]])([10, 50]).map(Math.round), [56, 28]);
 });
 
-const pill = (sequence, number, x, y, isMissed = false) => ({ key: `${sequence} ${number}`, sequence, letter: "AB"[sequence] ?? "", number, x, y, isMissed });
+const pill = (sequence, number, x, y, isMissed = false) => ({
+  key: `${sequence} ${number}`,
+  sequence,
+  letter: "AB"[sequence] ?? "",
+  number,
+  x,
+  y,
+  isMissed,
+});
 const labels = (pills) => mergePills(pills).map(({ label }) => label);
 
 test("pills of one UAV that would overlap are merged, those of two are not", () => {
-  assert.deepEqual(labels([pill(0, 1, 0, 0), pill(0, 2, 10, 0), pill(1, 1, 5, 0), pill(0, 3, 100, 0)]), ["A1–2", "B1", "A3"]);
+  assert.deepEqual(labels([pill(0, 1, 0, 0), pill(0, 2, 10, 0), pill(1, 1, 5, 0), pill(0, 3, 100, 0)]), [
+    "A1–2",
+    "B1",
+    "A3",
+  ]);
 });
 
 test("a pill that has grown by merging takes the next one too", () => {
   assert.deepEqual(labels([pill(0, 1, 0, 0), pill(0, 3, 20, 0), pill(0, 2, 40, 0)]), ["A1–3"]);
   const groups = mergePills(Array.from({ length: 40 }, (_, index) => pill(0, index + 1, index * 9, 0)));
   for (let index = 1; index < groups.length; index += 1) {
-    assert.ok(groups[index].x - groups[index - 1].x >= (pillWidth(groups[index].label) + pillWidth(groups[index - 1].label)) / 2);
+    assert.ok(
+      groups[index].x - groups[index - 1].x >=
+        (pillWidth(groups[index].label) + pillWidth(groups[index - 1].label)) / 2,
+    );
   }
 });
 
@@ -108,7 +162,8 @@ test("a view goes into the address and comes back", () => {
   const view = { zoom: 12.35, centre: [-82.99879, 39.96118] };
   assert.equal(hashOf(view), "#map=12.35/39.96118/-82.99879");
   assert.deepEqual(viewOf(hashOf(view)), view);
-  for (const hash of ["", "#map=", "#map=1/2", "#map=4/95/10", "#map=4/10/190", "#map=99/1/1"]) assert.equal(viewOf(hash), null, hash);
+  for (const hash of ["", "#map=", "#map=1/2", "#map=4/95/10", "#map=4/10/190", "#map=99/1/1"])
+    assert.equal(viewOf(hash), null, hash);
 });
 
 test("a view without anything of the ground is not worth going to", () => {
@@ -138,6 +193,12 @@ test("UAVs that would cover each other's names are one mark with their number", 
   const dart = (name, x, y) => ({ name, x, y });
   const said = (darts) => mergeDarts(darts).map(({ label, members }) => [label, members.length]);
   assert.deepEqual(said([dart("Heron", 0, 0)]), [["Heron", 1]]);
-  assert.deepEqual(said([dart("Heron", 0, 0), dart("Kite", 20, 4), dart("Osprey", 300, 0)]), [["2 UAVs", 2], ["Osprey", 1]]);
-  assert.deepEqual(said([dart("Heron", 0, 0), dart("Kite", 0, 40)]), [["Heron", 1], ["Kite", 1]]);
+  assert.deepEqual(said([dart("Heron", 0, 0), dart("Kite", 20, 4), dart("Osprey", 300, 0)]), [
+    ["2 UAVs", 2],
+    ["Osprey", 1],
+  ]);
+  assert.deepEqual(said([dart("Heron", 0, 0), dart("Kite", 0, 40)]), [
+    ["Heron", 1],
+    ["Kite", 1],
+  ]);
 });

@@ -5,8 +5,16 @@ import { tied } from "../../static/js/mission/locks.js";
 import { isAlike, merged, wordsOfChange } from "../../static/js/mission/merge.js";
 import { EMPTY, targetOf } from "../../static/js/mission/selection.js";
 
-const tower = (id, task = null) => targetOf({ id, kind: "tower", properties: { label: String(id) }, centre: [10, 50], task });
-const heron = { id: 3, name: "Heron", position: [9, 49], max_range_m: 80_000, cruise_speed_mps: 12, end_action: "hover" };
+const tower = (id, task = null) =>
+  targetOf({ id, kind: "tower", properties: { label: String(id) }, centre: [10, 50], task });
+const heron = {
+  id: 3,
+  name: "Heron",
+  position: [9, 49],
+  max_range_m: 80_000,
+  cruise_speed_mps: 12,
+  end_action: "hover",
+};
 const at = (name, targets, more = {}) => ({ name, selection: { ...EMPTY, targets, uavs: [heron], ...more } });
 const keys = ({ selection }) => selection.targets.map(({ asset }) => asset);
 const base = at("North", [tower(1), tower(2)]);
@@ -53,13 +61,25 @@ test("an emptied name is not a name", () => {
 });
 
 test("what somebody did is said in words", () => {
-  assert.deepEqual(wordsOfChange(base, at("South", [tower(1), tower(5), tower(6)])), ["renamed to “South”", "2 targets added", "1 target removed"]);
-  assert.deepEqual(wordsOfChange(base, at("North", base.selection.targets, { objective: "total" })), ["options changed"]);
+  assert.deepEqual(wordsOfChange(base, at("South", [tower(1), tower(5), tower(6)])), [
+    "renamed to “South”",
+    "2 targets added",
+    "1 target removed",
+  ]);
+  assert.deepEqual(wordsOfChange(base, at("North", base.selection.targets, { objective: "total" })), [
+    "options changed",
+  ]);
 });
 
 const [first, second, third] = [1, 2, 3].map((id) => tower(id));
 const kite = { ...heron, id: 4, name: "Kite" };
-const run = (uav, targets, more = {}) => ({ uav, targets: targets.map(({ key }) => key), at_start: false, at_end: false, ...more });
+const run = (uav, targets, more = {}) => ({
+  uav,
+  targets: targets.map(({ key }) => key),
+  at_start: false,
+  at_end: false,
+  ...more,
+});
 const locked = (locks, more = {}) => at("North", [first, second, third], { uavs: [heron, kite], locks, ...more });
 const mergedLocks = (before, mine, theirs) => {
   const { selection, clashes } = merged(before, mine, theirs);
@@ -75,20 +95,27 @@ test("locks that no plan can keep together are a clash, and mine stand", () => {
     [run("Heron", [first, third], { ...start, ...end }), run("Heron", [second])],
     [run("Heron", [first]), run("Heron", [second, third], { ...start, ...end })],
     [run("Heron", [first, second]), run("Kite", [second, third])],
-  ]) assert.deepEqual(mergedLocks(none, locked([mine]), locked([theirs])), [[mine], ["locks"]]);
+  ])
+    assert.deepEqual(mergedLocks(none, locked([mine]), locked([theirs])), [[mine], ["locks"]]);
 });
 
 test("locks that go together come together", () => {
   const [mine, theirs] = [run("Heron", [first], { at_start: true }), run("Heron", [second], { at_end: true })];
   assert.deepEqual(mergedLocks(locked([]), locked([mine]), locked([theirs])), [[theirs, mine], []]);
   const kept = run("Kite", [third], { at_start: true, at_end: true });
-  assert.deepEqual(mergedLocks(locked([kept]), locked([kept, mine]), locked([kept, theirs])), [[kept, theirs, mine], []]);
+  assert.deepEqual(mergedLocks(locked([kept]), locked([kept, mine]), locked([kept, theirs])), [
+    [kept, theirs, mine],
+    [],
+  ]);
 });
 
 test("a lock of before that they alone changed is changed, and no clash", () => {
   const [before, longer] = [run("Heron", [first, second]), run("Heron", [first, second, third])];
   assert.deepEqual(mergedLocks(locked([before]), locked([before]), locked([longer])), [[longer], []]);
-  assert.deepEqual(mergedLocks(locked([before]), locked([run("Heron", [second, first])]), locked([longer])), [[run("Heron", [second, first])], ["locks"]]);
+  assert.deepEqual(mergedLocks(locked([before]), locked([run("Heron", [second, first])]), locked([longer])), [
+    [run("Heron", [second, first])],
+    ["locks"],
+  ]);
 });
 
 test("a tie of one against a lock of the other is a clash, and mine stands", () => {
@@ -96,9 +123,15 @@ test("a tie of one against a lock of the other is a clash, and mine stands", () 
   const isTied = { ...none, selection: tied(none.selection, [first.key], "Kite") };
   const isLocked = locked([run("Heron", [first, second])]);
   const tieIsMine = merged(none, isTied, isLocked);
-  assert.deepEqual([tieIsMine.selection.targets[0].uav, tieIsMine.selection.locks, tieIsMine.clashes], ["Kite", [], ["locks"]]);
+  assert.deepEqual(
+    [tieIsMine.selection.targets[0].uav, tieIsMine.selection.locks, tieIsMine.clashes],
+    ["Kite", [], ["locks"]],
+  );
   const lockIsMine = merged(none, isLocked, isTied);
-  assert.deepEqual([lockIsMine.selection.targets[0].uav, lockIsMine.selection.locks, lockIsMine.clashes], [null, isLocked.selection.locks, ["locks"]]);
+  assert.deepEqual(
+    [lockIsMine.selection.targets[0].uav, lockIsMine.selection.locks, lockIsMine.clashes],
+    [null, isLocked.selection.locks, ["locks"]],
+  );
   const toHeron = { ...none, selection: tied(none.selection, [first.key], "Heron") };
   assert.deepEqual(merged(none, toHeron, isLocked).clashes, []);
 });

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-
+import { distance_m } from "../../static/js/mission/span_strip.js";
 import { newAlerts } from "../../static/js/monitor/alarm.js";
 import { boardRows } from "../../static/js/monitor/board.js";
 import { certaintyOf, ESTIMATED, LOST, MEASURED, standsAt } from "../../static/js/monitor/certainty.js";
@@ -13,9 +13,8 @@ import { addReport, flownParts } from "../../static/js/monitor/mission_details.j
 import { causeWords, overWords, sentenceOf, targetLines } from "../../static/js/monitor/offer_words.js";
 import { alertsInOrder, inOrder } from "../../static/js/monitor/order.js";
 import { placed } from "../../static/js/monitor/placed.js";
-import { unheardLines } from "../../static/js/monitor/unheard.js";
 import { ageWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
-import { distance_m } from "../../static/js/mission/span_strip.js";
+import { unheardLines } from "../../static/js/monitor/unheard.js";
 
 const NOW_MS = Date.parse("2026-09-21T14:15:00Z");
 const ago = (seconds) => new Date(NOW_MS - seconds * 1000).toISOString();
@@ -26,15 +25,46 @@ const EACH_TEN_SECONDS = { interval_s: 10, late_after_s: 25, silent_after_s: 30 
 
 function uav({ id = 1, age_s = 0.7, estimated = null, place = 0, rhythm = EACH_SECOND, ...measured } = {}) {
   return {
-    id, name: `UAV ${id}`, mission: "m", place, link: { mode: "Mission", is_in_air: true, waypoint_sequence: null }, estimated, rhythm,
-    measured: { measured_at: ago(age_s), received_at: ago(age_s), position: [10, 50], altitude_relative_m: 45, speed_mps: 9.8, heading_deg: 90, battery_percent: 71, mode: "Mission", is_in_air: true, ...measured },
+    id,
+    name: `UAV ${id}`,
+    mission: "m",
+    place,
+    link: { mode: "Mission", is_in_air: true, waypoint_sequence: null },
+    estimated,
+    rhythm,
+    measured: {
+      measured_at: ago(age_s),
+      received_at: ago(age_s),
+      position: [10, 50],
+      altitude_relative_m: 45,
+      speed_mps: 9.8,
+      heading_deg: 90,
+      battery_percent: 71,
+      mode: "Mission",
+      is_in_air: true,
+      ...measured,
+    },
   };
 }
 
 const estimate = (change = {}) => ({
-  at: ago(0.5), report_at: ago(74), position: [10.01, 50], altitude_relative_m: 46, altitude_amsl_m: null, speed_mps: 10, heading_deg: 80,
-  bound: { along_m: 410, across_m: 60, bearing_deg: 90, height_m: 5, speed_mps: 1 }, is_measured: false, is_lost: false, waypoint_sequence: 3,
-  along_route_m: 2000, to_go_m: 12_500, arrivals: [{ waypoint_sequence: 4, target: 2, at: ago(-235), earliest: ago(-200), latest: ago(-270) }], ends_at: ago(-1260), contact_expected_at: ago(-70), ...change,
+  at: ago(0.5),
+  report_at: ago(74),
+  position: [10.01, 50],
+  altitude_relative_m: 46,
+  altitude_amsl_m: null,
+  speed_mps: 10,
+  heading_deg: 80,
+  bound: { along_m: 410, across_m: 60, bearing_deg: 90, height_m: 5, speed_mps: 1 },
+  is_measured: false,
+  is_lost: false,
+  waypoint_sequence: 3,
+  along_route_m: 2000,
+  to_go_m: 12_500,
+  arrivals: [{ waypoint_sequence: 4, target: 2, at: ago(-235), earliest: ago(-200), latest: ago(-270) }],
+  ends_at: ago(-1260),
+  contact_expected_at: ago(-70),
+  ...change,
 });
 
 test("a UAV with a fresh report is measured, a silent one is estimated, and lost once nobody vouches for it", () => {
@@ -59,7 +89,11 @@ test("a UAV that reports each ten seconds is late when alerts call it late, and 
   assert.deepEqual(late(9.6), { words: "9.6 s ago", isLate: false });
   assert.deepEqual([late(24.9).isLate, late(25).isLate], [false, true]);
   assert.deepEqual([plain(late(29).words), plain(late(31).words)], ["29 s ago", "no report for 31 s"]);
-  assert.equal(certaintyOf(uav({ age_s: 20, rhythm: EACH_TEN_SECONDS }), NOW_MS), MEASURED, "nobody estimates it, and it is in time");
+  assert.equal(
+    certaintyOf(uav({ age_s: 20, rhythm: EACH_TEN_SECONDS }), NOW_MS),
+    MEASURED,
+    "nobody estimates it, and it is in time",
+  );
   const between = uav({ age_s: 8, rhythm: EACH_TEN_SECONDS, estimated: estimate({ report_at: ago(8) }) });
   assert.equal(certaintyOf(between, NOW_MS), ESTIMATED);
   assert.equal(estimateWords(between, ESTIMATED, NOW_MS), null, "nothing is said of a gap that is usual");
@@ -78,7 +112,10 @@ test("a flight that was told to be over is over, whatever the last report said",
 test("a UAV keeps its letter after its mission, until it flies another that is on the page", () => {
   const mission = (id, ended_at, place) => ({ id, ended_at, uavs: [{ place, uav: 1, name: "Kite" }] });
   const over = { ...uav({ estimated: estimate() }), mission: null, place: null };
-  assert.deepEqual(placed([over], [mission("a", ago(900), 1), mission("b", ago(60), 2)]).map((one) => [one.mission, one.place]), [["b", 2]]);
+  assert.deepEqual(
+    placed([over], [mission("a", ago(900), 1), mission("b", ago(60), 2)]).map((one) => [one.mission, one.place]),
+    [["b", 2]],
+  );
   const [elsewhere] = placed([{ ...over, mission: "other", place: 5 }], [mission("a", ago(900), 1)]);
   assert.deepEqual([elsewhere.mission, elsewhere.place, elsewhere.estimated.along_route_m], ["a", 1, null]);
   const flying = { ...over, mission: "a", place: 1 };
@@ -94,7 +131,10 @@ test("the age of a report is said, late ones in amber", () => {
 
 test("estimated figures have a tilde and name what a height is above", () => {
   const figures = figuresOf(uav({ age_s: 74, estimated: estimate() }), ESTIMATED);
-  assert.deepEqual(figures.slice(0, 3).map(({ figure, unit, words }) => plain(`${figure} ${unit} ${words}`)), ["~ 71 % battery", "~ 46 m over take-off", "~ 10 m/s speed"]);
+  assert.deepEqual(
+    figures.slice(0, 3).map(({ figure, unit, words }) => plain(`${figure} ${unit} ${words}`)),
+    ["~ 71 % battery", "~ 46 m over take-off", "~ 10 m/s speed"],
+  );
   assert.equal(plain(figuresOf(uav(), MEASURED)[1].figure), "45");
   assert.equal(figuresOf(uav({ altitude_relative_m: null, altitude_amsl_m: 300 }), MEASURED)[1].words, "over the sea");
   assert.equal(figuresOf(uav({ battery_percent: null }), MEASURED)[0].figure, "—");
@@ -114,37 +154,114 @@ test("modes of autopilots are said in one word each", () => {
   assert.equal(stateOf(uav({ mode: "ZIGZAG" })).words, "ZIGZAG");
 });
 
-const alert = (id, level, change = {}) => ({ id, uav: id, mission: "m", level, code: "x", message: `alert ${id}`, opened_at: ago(id), closed_at: null, acknowledged_at: null, acknowledged_by: null, ...change });
+const alert = (id, level, change = {}) => ({
+  id,
+  uav: id,
+  mission: "m",
+  level,
+  code: "x",
+  message: `alert ${id}`,
+  opened_at: ago(id),
+  closed_at: null,
+  acknowledged_at: null,
+  acknowledged_by: null,
+  ...change,
+});
 
 test("UAVs stand with the chosen one first, then by alert, then by landing time", () => {
   const uavs = [1, 2, 3, 4].map((id) => uav({ id, estimated: estimate({ ends_at: ago(-1000 + id) }) }));
-  const order = inOrder(uavs, [alert(2, "critical"), alert(1, "warning"), alert(3, "critical", { closed_at: ago(1) })], 4);
-  assert.deepEqual(order.map(({ id }) => id), [4, 2, 1, 3]);
+  const order = inOrder(
+    uavs,
+    [alert(2, "critical"), alert(1, "warning"), alert(3, "critical", { closed_at: ago(1) })],
+    4,
+  );
+  assert.deepEqual(
+    order.map(({ id }) => id),
+    [4, 2, 1, 3],
+  );
 });
 
 test("alerts stand by level, the newest first; what somebody knows of comes after", () => {
-  const alerts = [alert(1, "advisory"), alert(2, "critical", { acknowledged_at: ago(1) }), alert(3, "warning"), alert(4, "critical"), alert(5, "critical")];
-  assert.deepEqual(alertsInOrder(alerts).map(({ id }) => id), [4, 5, 3, 1, 2]);
+  const alerts = [
+    alert(1, "advisory"),
+    alert(2, "critical", { acknowledged_at: ago(1) }),
+    alert(3, "warning"),
+    alert(4, "critical"),
+    alert(5, "critical"),
+  ];
+  assert.deepEqual(
+    alertsInOrder(alerts).map(({ id }) => id),
+    [4, 5, 3, 1, 2],
+  );
 });
 
 test("a cause is told once, and again where it has become worse", () => {
-  const told = new Map([[1, "warning"], [2, "warning"]]);
-  assert.deepEqual(newAlerts([alert(1, "warning"), alert(2, "critical"), alert(3, "warning"), alert(4, "critical", { acknowledged_at: ago(1) })], told).map(({ id }) => id), [2, 3]);
+  const told = new Map([
+    [1, "warning"],
+    [2, "warning"],
+  ]);
+  assert.deepEqual(
+    newAlerts(
+      [
+        alert(1, "warning"),
+        alert(2, "critical"),
+        alert(3, "warning"),
+        alert(4, "critical", { acknowledged_at: ago(1) }),
+      ],
+      told,
+    ).map(({ id }) => id),
+    [2, 3],
+  );
 });
 
 test("the board shows what goes on before what is to come and what is done", () => {
-  const target = (place, state, state_at = null) => ({ place, label: `Tower ${place}`, state, state_at, state_reason: "", uav: 0 });
-  const missions = [{ id: "m", targets: [target(0, "complete", ago(100)), target(1, "complete", ago(50)), target(2, "pending"), target(3, "pending"), target(4, "failed", ago(60))] }];
+  const target = (place, state, state_at = null) => ({
+    place,
+    label: `Tower ${place}`,
+    state,
+    state_at,
+    state_reason: "",
+    uav: 0,
+  });
+  const missions = [
+    {
+      id: "m",
+      targets: [
+        target(0, "complete", ago(100)),
+        target(1, "complete", ago(50)),
+        target(2, "pending"),
+        target(3, "pending"),
+        target(4, "failed", ago(60)),
+      ],
+    },
+  ];
   const details = new Map([["m", { plan: { routes: [{ targets: [0, 1, 2, 3, 4] }] } }]]);
   const rows = boardRows(missions, [uav({ estimated: estimate() })], details);
-  assert.deepEqual(rows.map(({ pill, state }) => `${pill} ${state}`), ["A3 in-progress", "A4 pending", "A5 failed", "A2 complete", "A1 complete"]);
+  assert.deepEqual(
+    rows.map(({ pill, state }) => `${pill} ${state}`),
+    ["A3 in-progress", "A4 pending", "A5 failed", "A2 complete", "A1 complete"],
+  );
   assert.equal(boardRows(missions, [uav({ mode: "Hold", estimated: estimate() })], details)[0].state, "held");
 });
 
 test("the log has every step of a command and of an alert, the newest first", () => {
-  const command = { id: "c", uav: { id: 1, name: "Kite" }, kind: "hold", created_by: "opal", state: "failed", outcome: "no answer", created_at: ago(20), sent_at: ago(19), acknowledged_at: null, finished_at: ago(5) };
+  const command = {
+    id: "c",
+    uav: { id: 1, name: "Kite" },
+    kind: "hold",
+    created_by: "opal",
+    state: "failed",
+    outcome: "no answer",
+    created_at: ago(20),
+    sent_at: ago(19),
+    acknowledged_at: null,
+    finished_at: ago(5),
+  };
   const events = eventsOf({ commands: [command], alerts: [alert(9, "warning", { closed_at: ago(1) })], missions: [] });
-  assert.deepEqual(events.map(({ words }) => words), ["Over: alert 9", "Kite: Hold, failed – no answer", "alert 9", "Kite: Hold, sent", "Kite: Hold, given by opal"]);
+  assert.deepEqual(
+    events.map(({ words }) => words),
+    ["Over: alert 9", "Kite: Hold, failed – no answer", "alert 9", "Kite: Hold, sent", "Kite: Hold, given by opal"],
+  );
 });
 
 test("a ring is as large as its bound and lies along its bearing", () => {
@@ -153,7 +270,10 @@ test("a ring is as large as its bound and lies along its bearing", () => {
   assert.ok(ring[0][0] > 10 && Math.abs(ring[0][1] - 50) < 1e-9); // east
   assert.ok(Math.abs(distance_m([10, 50], ring[12]) - 100) < 1);
   assert.deepEqual(ring[0], ring.at(-1));
-  assert.ok(Math.abs(distance_m([10, 50], ellipseRing([10, 50], { along_m: 1, across_m: 1, bearing_deg: 0 }, 30)[5]) - 30) < 0.2);
+  assert.ok(
+    Math.abs(distance_m([10, 50], ellipseRing([10, 50], { along_m: 1, across_m: 1, bearing_deg: 0 }, 30)[5]) - 30) <
+      0.2,
+  );
   assert.ok(Math.abs(metresPerPixel(0, 0) - 78_271.5) < 1);
 });
 
@@ -164,9 +284,24 @@ test("a marker glides and never overshoots", () => {
 });
 
 test("a flown line is broken where nothing was heard, and takes no report twice", () => {
-  const report = (seconds, longitude) => ({ geometry: { coordinates: [longitude, 50] }, properties: { uav: 7, measured_at: ago(seconds) } });
-  const flown = flownParts([report(100, 1), report(99, 2), report(20, 3), report(20, 3), { geometry: null, properties: { uav: 7, measured_at: ago(10) } }]);
-  assert.deepEqual(flown.get(7).parts, [[[1, 50], [2, 50]], [[3, 50]]]);
+  const report = (seconds, longitude) => ({
+    geometry: { coordinates: [longitude, 50] },
+    properties: { uav: 7, measured_at: ago(seconds) },
+  });
+  const flown = flownParts([
+    report(100, 1),
+    report(99, 2),
+    report(20, 3),
+    report(20, 3),
+    { geometry: null, properties: { uav: 7, measured_at: ago(10) } },
+  ]);
+  assert.deepEqual(flown.get(7).parts, [
+    [
+      [1, 50],
+      [2, 50],
+    ],
+    [[3, 50]],
+  ]);
   assert.equal(addReport(flown, 7, [4, 50], NOW_MS - 19_000), true);
   assert.equal(addReport(flown, 7, [4, 50], NOW_MS - 30_000), false);
 });
@@ -180,12 +315,24 @@ test("progress along the route is the estimate's, else that of the last waypoint
 test("an offer for a zone names it, the UAV and the leg", () => {
   const cause = { zone_name: "Air show", uav_name: "Kite", leg: ["B1", "B2"] };
   assert.equal(causeWords({ code: "zone-active", cause }), "Air show lies across the route of Kite, B1 to B2");
-  assert.equal(causeWords({ code: "zone-active", cause: { ...cause, leg: ["", "B1"] } }), "Air show lies across the route of Kite, start to B1");
+  assert.equal(
+    causeWords({ code: "zone-active", cause: { ...cause, leg: ["", "B1"] } }),
+    "Air show lies across the route of Kite, start to B1",
+  );
   assert.equal(causeWords({ code: "uav-out", cause: {} }), "A UAV has dropped out");
 });
 
 test("an offer is said in a sentence, and target by target", () => {
-  const offer = { difference: { uavs: [{ change: "changed" }, { change: "out" }], targets: [{ label: "Tower 31", from: 1, to: 2, message: "" }, { label: "Tower 51", from: 1, to: null, message: "Its battery does not last for it." }], unreached: 1 } };
+  const offer = {
+    difference: {
+      uavs: [{ change: "changed" }, { change: "out" }],
+      targets: [
+        { label: "Tower 31", from: 1, to: 2, message: "" },
+        { label: "Tower 51", from: 1, to: null, message: "Its battery does not last for it." },
+      ],
+      unreached: 1,
+    },
+  };
   assert.equal(sentenceOf(offer), "1 UAV gets another route, 1 target changes hands, 1 target stays undone");
   assert.deepEqual(targetLines(offer), ["Tower 31: B → C", "Tower 51: B → Its battery does not last for it."]);
 });
@@ -193,12 +340,20 @@ test("an offer is said in a sentence, and target by target", () => {
 test("of an offer that is over it is said what became of it, and by whom or why", () => {
   const { strong, rest } = overWords({ state: "accepted", outcome: "", decided_by: "opal", decided_at: ago(0) });
   assert.match(`${strong} ${rest}`, /^The other plan is flown\. Decided by opal, /);
-  assert.equal(overWords({ state: "impossible", outcome: "Kite has no range left.", decided_by: null, decided_at: null }).rest, "Kite has no range left.");
+  assert.equal(
+    overWords({ state: "impossible", outcome: "Kite has no range left.", decided_by: null, decided_at: null }).rest,
+    "Kite has no range left.",
+  );
 });
 
 test("of UAVs that are not heard it is said who is told all the same", () => {
   const named = (name, kind, heard_s) => ({ name, link: { kind, heard_at: heard_s === null ? null : ago(heard_s) } });
-  const uavs = [named("Tern", "mavlink", 60), named("Kite", "http", 60), named("Gull", "mavlink", 7_200), named("Wren", "mavlink", null)];
+  const uavs = [
+    named("Tern", "mavlink", 60),
+    named("Kite", "http", 60),
+    named("Gull", "mavlink", 7_200),
+    named("Wren", "mavlink", null),
+  ];
   const [sent, waiting] = unheardLines(uavs, "return", NOW_MS);
   assert.match(sent, /^Nothing is heard from Tern now: this is sent all the same/);
   assert.match(waiting, /^There is no link to Kite, Gull, Wren now: the command waits/);
@@ -207,8 +362,27 @@ test("of UAVs that are not heard it is said who is told all the same", () => {
 });
 
 test("who is in the air can be told something, also after its mission", () => {
-  const uav = (id, mission, isInAir, heard_s = 5) => ({ id, mission, measured: null, link: { is_in_air: isInAir, heard_at: ago(heard_s) } });
-  const missions = [{ id: "m", state: "active" }, { id: "over", state: "aborted" }];
-  const uavs = [uav(1, "m", true), uav(2, "m", null), uav(3, "m", false), uav(4, "over", true), uav(5, null, true), uav(6, null, null), uav(7, null, true, 7_200)];
-  assert.deepEqual(flyingUavs({ uavs, missions, now_ms: NOW_MS }).map(({ id }) => id), [1, 2, 4, 5]);
+  const uav = (id, mission, isInAir, heard_s = 5) => ({
+    id,
+    mission,
+    measured: null,
+    link: { is_in_air: isInAir, heard_at: ago(heard_s) },
+  });
+  const missions = [
+    { id: "m", state: "active" },
+    { id: "over", state: "aborted" },
+  ];
+  const uavs = [
+    uav(1, "m", true),
+    uav(2, "m", null),
+    uav(3, "m", false),
+    uav(4, "over", true),
+    uav(5, null, true),
+    uav(6, null, null),
+    uav(7, null, true, 7_200),
+  ];
+  assert.deepEqual(
+    flyingUavs({ uavs, missions, now_ms: NOW_MS }).map(({ id }) => id),
+    [1, 2, 4, 5],
+  );
 });

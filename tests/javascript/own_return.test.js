@@ -6,15 +6,25 @@ import { returnLines, returnOf, returnSaid } from "../../static/js/mission/own_r
 const check = (state, warnings = []) => ({ place: 1, state, warnings, height_m: 30, read_at: "2027-05-04T09:00:00Z" });
 
 test("a question before Return or Abort says something of the way home in any case", () => {
-  assert.deepEqual(returnLines(undefined), ["Its way home has not been checked: it flies straight, at a height of its own."]);
+  assert.deepEqual(returnLines(undefined), [
+    "Its way home has not been checked: it flies straight, at a height of its own.",
+  ]);
   assert.deepEqual(returnLines(check("unknown", ["Not read."])), ["Not read."]);
   assert.match(returnLines(check("clear"))[0], /nothing in the way home, 30\Wm/);
 });
 
 test("what is in the way is a warning, what is not known is said", () => {
-  const said = returnSaid(check("in_the_way", ["From waypoint 3 on it crosses Heliport.", "Use Hold and Land instead."]));
-  assert.deepEqual([said.level, said.words], ["warning", "From waypoint 3 on it crosses Heliport. Use Hold and Land instead."]);
-  assert.deepEqual([returnSaid(check("unknown", ["Not read."])).level, returnSaid(check("clear")).level, returnSaid(undefined)], [null, null, null]);
+  const said = returnSaid(
+    check("in_the_way", ["From waypoint 3 on it crosses Heliport.", "Use Hold and Land instead."]),
+  );
+  assert.deepEqual(
+    [said.level, said.words],
+    ["warning", "From waypoint 3 on it crosses Heliport. Use Hold and Land instead."],
+  );
+  assert.deepEqual(
+    [returnSaid(check("unknown", ["Not read."])).level, returnSaid(check("clear")).level, returnSaid(undefined)],
+    [null, null, null],
+  );
 });
 
 test("each UAV has its own", () => {

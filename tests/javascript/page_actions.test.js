@@ -1,11 +1,23 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { basisOf, EMPTY, targetOf, withoutTargets, withTargets, withWishes } from "../../static/js/mission/selection.js";
+import {
+  basisOf,
+  EMPTY,
+  targetOf,
+  withoutTargets,
+  withTargets,
+  withWishes,
+} from "../../static/js/mission/selection.js";
 import { createHistory, createStore } from "../../static/js/store.js";
 
 const spot = { replaceChildren() {}, textContent: "" };
-globalThis.document ??= { cookie: "", querySelector: () => null, getElementById: () => spot, documentElement: { lang: "en", dataset: {} } };
+globalThis.document ??= {
+  cookie: "",
+  querySelector: () => null,
+  getElementById: () => spot,
+  documentElement: { lang: "en", dataset: {} },
+};
 globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
 globalThis.WebSocket = undefined; // jobs are asked for
 const { createActions } = await import("../../static/js/mission/actions.js");
@@ -16,12 +28,41 @@ const { refusalOf } = await import("../../static/js/mission/refusals.js");
 const { savedWords } = await import("../../static/js/mission/panels/saved_state.js");
 
 const tower = (id) => targetOf({ id, kind: "tower", properties: { label: `${id}` }, centre: [10, 50] });
-const heron = { id: null, name: "Heron", position: [9, 49], max_range_m: null, cruise_speed_mps: 12, end_action: "hover" };
+const heron = {
+  id: null,
+  name: "Heron",
+  position: [9, 49],
+  max_range_m: null,
+  cruise_speed_mps: 12,
+  end_action: "hover",
+};
 const picked = { ...withTargets(EMPTY, [1, 2, 3].map(tower)), uavs: [heron] };
-const planMade = (selection, more) => ({ objective: selection.objective, return_to_start: true, total_length_m: 4000, longest_route_m: 4000, unassigned: [], warnings: [], routes: [{ uav: "Heron", targets: [0], length_m: 4000, duration_s: 400, geometry: {}, waypoints: [] }], ...more });
+const planMade = (selection, more) => ({
+  objective: selection.objective,
+  return_to_start: true,
+  total_length_m: 4000,
+  longest_route_m: 4000,
+  unassigned: [],
+  warnings: [],
+  routes: [{ uav: "Heron", targets: [0], length_m: 4000, duration_s: 400, geometry: {}, waypoints: [] }],
+  ...more,
+});
 const json = (body, status = 200, headers = {}) => new Response(JSON.stringify(body), { status, headers });
-const storedMission = (selection, more) => ({ id: "m", name: "North", revision: 5, uavs: selection.uavs, targets: selection.targets.map(({ asset, kind, label }) => ({ asset, kind, label, position: [10, 50] })), objective: selection.objective, return_to_start: true, locks: [], plan: null, ...more });
-const settle = async () => { for (let turn = 0; turn < 40; turn += 1) await Promise.resolve(), await new Promise(setImmediate); };
+const storedMission = (selection, more) => ({
+  id: "m",
+  name: "North",
+  revision: 5,
+  uavs: selection.uavs,
+  targets: selection.targets.map(({ asset, kind, label }) => ({ asset, kind, label, position: [10, 50] })),
+  objective: selection.objective,
+  return_to_start: true,
+  locks: [],
+  plan: null,
+  ...more,
+});
+const settle = async () => {
+  for (let turn = 0; turn < 40; turn += 1) await Promise.resolve(), await new Promise(setImmediate);
+};
 
 /** A page with the stored mission "m" open; serve({ method, path, body }): the answer to each request, all of which are kept in `asked`. */
 function opened(context, serve, state = {}) {
@@ -33,19 +74,44 @@ function opened(context, serve, state = {}) {
     return serve(request, asked);
   });
   const store = createStore({
-    selection: picked, name: "North", mission: { id: "m", name: "North", revision: 4 }, stored: { name: "North", selection: picked }, savedBasis: basisOf(picked),
-    plan: null, planIsStored: false, figures: {}, planning: null, planningBeside: null, saving: false, conflict: null, isAway: false, problem: null,
-    fleet: [], lastPlan: null, why: null, chosenRoute: null, canUndo: false, canRedo: false, ...state,
+    selection: picked,
+    name: "North",
+    mission: { id: "m", name: "North", revision: 4 },
+    stored: { name: "North", selection: picked },
+    savedBasis: basisOf(picked),
+    plan: null,
+    planIsStored: false,
+    figures: {},
+    planning: null,
+    planningBeside: null,
+    saving: false,
+    conflict: null,
+    isAway: false,
+    problem: null,
+    fleet: [],
+    lastPlan: null,
+    why: null,
+    chosenRoute: null,
+    canUndo: false,
+    canRedo: false,
+    ...state,
   });
   const history = createHistory(store, "selection");
-  const actions = createActions(store, history, { canPlan: true, userId: 1, userName: "opal" }, { dropOwn() {}, keep: () => true, read: () => null });
+  const actions = createActions(
+    store,
+    history,
+    { canPlan: true, userId: 1, userName: "opal" },
+    { dropOwn() {}, keep: () => true, read: () => null },
+  );
   return { store, history, actions, asked, tick: (ms) => (context.mock.timers.tick(ms), settle()) };
 }
 
 const refusal = (message, more) => json({ error: { code: "invalid", message, ...more } }, 400);
 
 test("why something is not planned is said until something else is picked, whatever is saved meanwhile", async (context) => {
-  const { store, history, actions, asked, tick } = opened(context, ({ path, body }) => (path === "/plans" ? refusal("There is no base.") : json(storedMission({ ...picked, ...body }))));
+  const { store, history, actions, asked, tick } = opened(context, ({ path, body }) =>
+    path === "/plans" ? refusal("There is no base.") : json(storedMission({ ...picked, ...body })),
+  );
   history.changeTo({ ...picked, objective: "total" });
   await actions.plan();
   assert.deepEqual([store.state.problem.title, store.state.problem.text], ["Not planned.", "There is no base."]);
@@ -68,12 +134,17 @@ test("what can neither be planned nor saved for the same reason is said once", a
 
 test("a plan that is done after something else was picked says so", async (context) => {
   let answer;
-  const { store, history, actions, asked } = opened(context, ({ path, body }) => (path === "/plans" ? new Promise((resolve) => (answer = resolve)) : json(storedMission({ ...picked, ...body }))));
+  const { store, history, actions, asked } = opened(context, ({ path, body }) =>
+    path === "/plans" ? new Promise((resolve) => (answer = resolve)) : json(storedMission({ ...picked, ...body })),
+  );
   const underWay = actions.plan();
   history.changeTo(withoutTargets(picked, [picked.targets[0].key]));
   answer(json(planMade(picked)));
   await underWay;
-  assert.deepEqual([store.state.problem.title, store.state.problem.level], ["The selection has changed since.", "warning"]);
+  assert.deepEqual(
+    [store.state.problem.title, store.state.problem.level],
+    ["The selection has changed since.", "warning"],
+  );
   assert.deepEqual(store.state.plan.targets, picked.targets);
   assert.equal(asked.filter(({ path }) => path === "/plans").length, 1); // the other way of planning it is of no use
   store.state.problem.actions[0].act();
@@ -81,7 +152,13 @@ test("a plan that is done after something else was picked says so", async (conte
   assert.equal(store.state.problem, null);
 });
 
-const large = { ...withTargets(EMPTY, Array.from({ length: 14 }, (_, number) => tower(number + 1))), uavs: [heron] };
+const large = {
+  ...withTargets(
+    EMPTY,
+    Array.from({ length: 14 }, (_, number) => tower(number + 1)),
+  ),
+  uavs: [heron],
+};
 const stateOfLarge = { selection: large, stored: { name: "North", selection: large }, savedBasis: basisOf(large) };
 const jobDone = (id, selection) => json({ id, state: "done", result: planMade(selection) });
 
@@ -92,7 +169,10 @@ function planner({ others = 0, ends = ["j1"], save }) {
     if (path === "/plans") return json({ job: `j${(jobs += 1)}` }, 202);
     if (path.startsWith("/jobs?")) return json({ results: Array.from({ length: others }, () => ({})), next: null });
     if (path.endsWith("/cancel")) return json({});
-    if (path.startsWith("/jobs/")) return ends.includes(path.slice(6)) ? jobDone(path.slice(6), large) : json({ id: path.slice(6), state: "running", progress: 0.1 });
+    if (path.startsWith("/jobs/"))
+      return ends.includes(path.slice(6))
+        ? jobDone(path.slice(6), large)
+        : json({ id: path.slice(6), state: "running", progress: 0.1 });
     return method === "PATCH" ? save(body) : json(storedMission(large));
   };
 }
@@ -104,7 +184,12 @@ test("the other way of a large plan is made once the plan is saved and nothing e
   await actions.plan();
   assert.equal(asked.filter(({ path }) => path === "/plans").length, 1);
   await tick(2000);
-  assert.deepEqual(asked.filter(({ method, path }) => method === "PATCH" || path === "/plans").map(({ body }) => body.plan_of ?? body.objective), ["makespan", "j1", "total"]);
+  assert.deepEqual(
+    asked
+      .filter(({ method, path }) => method === "PATCH" || path === "/plans")
+      .map(({ body }) => body.plan_of ?? body.objective),
+    ["makespan", "j1", "total"],
+  );
   assert.ok(store.state.planningBeside);
 });
 
@@ -121,15 +206,25 @@ test("it is stopped for a new plan that is asked for", async (context) => {
   await actions.plan();
   await tick(2000);
   await actions.plan();
-  assert.deepEqual(asked.filter(({ path }) => path === "/plans" || path.endsWith("/cancel")).map(({ path }) => path), ["/plans", "/plans", "/jobs/j2/cancel", "/plans"]);
+  assert.deepEqual(
+    asked.filter(({ path }) => path === "/plans" || path.endsWith("/cancel")).map(({ path }) => path),
+    ["/plans", "/plans", "/jobs/j2/cancel", "/plans"],
+  );
 });
 
 test("a save for which the server has no room is tried again when the server says", async (context) => {
-  const answers = [() => json({ error: { code: "too_many_jobs", message: "4 of your jobs are waiting." } }, 429, { "Retry-After": "10" }), storedWithPlan];
+  const answers = [
+    () =>
+      json({ error: { code: "too_many_jobs", message: "4 of your jobs are waiting." } }, 429, { "Retry-After": "10" }),
+    storedWithPlan,
+  ];
   const { store, actions, asked, tick } = opened(context, planner({ save: () => answers.shift()() }), stateOfLarge);
   await actions.plan();
   await tick(2000);
-  assert.deepEqual([store.state.problem.title, store.state.problem.text], ["Not saved yet.", "4 of your jobs are waiting. Next try in 10 s."]);
+  assert.deepEqual(
+    [store.state.problem.title, store.state.problem.text],
+    ["Not saved yet.", "4 of your jobs are waiting. Next try in 10 s."],
+  );
   await tick(9000);
   assert.equal(asked.filter(({ method }) => method === "PATCH").length, 1);
   await tick(1000);
@@ -138,10 +233,16 @@ test("a save for which the server has no room is tried again when the server say
 });
 
 test("a refusal is said without the places of fields, with what would help instead of another try", async (context) => {
-  const locks = [{ uav: "Heron", targets: picked.targets.slice(0, 2).map(({ key }) => key), at_start: false, at_end: false }];
+  const locks = [
+    { uav: "Heron", targets: picked.targets.slice(0, 2).map(({ key }) => key), at_start: false, at_end: false },
+  ];
   const selection = { ...picked, uavs: [{ ...heron, most_targets: 1 }], locks };
   const words = "Heron may do 1 target at most, but 2 are locked to it.";
-  const { store, actions } = opened(context, () => refusal(`uavs.0.most_targets: ${words}`, { details: { "uavs.0.most_targets": [words] } }), { selection });
+  const { store, actions } = opened(
+    context,
+    () => refusal(`uavs.0.most_targets: ${words}`, { details: { "uavs.0.most_targets": [words] } }),
+    { selection },
+  );
   await actions.plan();
   assert.equal(store.state.problem.text, words);
   const [raise, unlock] = store.state.problem.actions;
@@ -154,9 +255,15 @@ test("a refusal is said without the places of fields, with what would help inste
 
 test("a fault of a field names the UAV or the target that it is of", () => {
   const said = (details) => refusalOf({ details }, picked)?.words;
-  assert.equal(said({ uavs: { 0: { max_range_m: ["Ensure this value is above 0."] } } }), "Heron: Ensure this value is above 0.");
+  assert.equal(
+    said({ uavs: { 0: { max_range_m: ["Ensure this value is above 0."] } } }),
+    "Heron: Ensure this value is above 0.",
+  );
   assert.equal(said({ "targets.1.asset": ["There is no such asset."] }), "2: There is no such asset.");
-  assert.equal(said({ "uavs.0.end_action": ["Heron is to land at a base, but there is none."] }), "Heron is to land at a base, but there is none.");
+  assert.equal(
+    said({ "uavs.0.end_action": ["Heron is to land at a base, but there is none."] }),
+    "Heron is to land at a base, but there is none.",
+  );
   assert.equal(said({ name: ["Too long."] }), "Too long.");
   assert.equal(said(null), undefined);
 });
@@ -164,7 +271,11 @@ test("a fault of a field names the UAV or the target that it is of", () => {
 test("a plan made anew that is worse than the one on the page does not take its place", async (context) => {
   const before = planMade(picked);
   const longer = planMade(picked, { routes: [{ ...before.routes[0], duration_s: 460 }] });
-  const { store, actions } = opened(context, () => json(longer), { plan: { ...planOf(before, picked) }, planIsStored: true, figures: { [basisOf(picked)]: before } });
+  const { store, actions } = opened(context, () => json(longer), {
+    plan: { ...planOf(before, picked) },
+    planIsStored: true,
+    figures: { [basisOf(picked)]: before },
+  });
   await actions.plan();
   assert.deepEqual([store.state.plan.result, store.state.planIsStored, store.state.planning], [before, true, null]);
 });
@@ -182,8 +293,18 @@ test("a plan is worse where it reaches less, then where it is longer by what is 
 });
 
 test("a plan that no planner has taken yet is waiting, not at 0 %", async (context) => {
-  const states = [{ state: "queued", progress: 0 }, { state: "running", progress: 0.4 }];
-  const { store, actions, tick } = opened(context, (request) => (request.path === "/jobs/j1" && states.length ? json({ id: "j1", message: "Planning 14 targets", ...states.shift() }) : planner({ save: storedWithPlan })(request)), stateOfLarge);
+  const states = [
+    { state: "queued", progress: 0 },
+    { state: "running", progress: 0.4 },
+  ];
+  const { store, actions, tick } = opened(
+    context,
+    (request) =>
+      request.path === "/jobs/j1" && states.length
+        ? json({ id: "j1", message: "Planning 14 targets", ...states.shift() })
+        : planner({ save: storedWithPlan })(request),
+    stateOfLarge,
+  );
   void actions.plan();
   await tick(0);
   assert.deepEqual([howFarWords(store.state.planning), store.state.planning.share], ["waiting", null]);

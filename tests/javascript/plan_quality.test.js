@@ -3,7 +3,15 @@ import test from "node:test";
 
 import { factsOfUav } from "../../static/js/mission/fleet.js";
 import { isAlike, merged, wordsOfChange } from "../../static/js/mission/merge.js";
-import { bestWordsOf, endingOf, isPlanInSight, placesOf, qualityOf, shownPlaces, wishWordsOf } from "../../static/js/mission/plan_view.js";
+import {
+  bestWordsOf,
+  endingOf,
+  isPlanInSight,
+  placesOf,
+  qualityOf,
+  shownPlaces,
+  wishWordsOf,
+} from "../../static/js/mission/plan_view.js";
 import { planOf } from "../../static/js/mission/planning.js";
 import { createRunningJob } from "../../static/js/mission/running_job.js";
 import { changedParts } from "../../static/js/mission/saving.js";
@@ -12,7 +20,16 @@ import { placePills } from "../../static/js/mission/span_strip.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const flown = { geometry: {}, uav: "Heron", targets: [0, 1] };
-const result = (more) => ({ objective: "total", lower_bound_m: 50_000, lower_bound_s: null, gap: 0.03, is_proven: false, wish: null, routes: [flown], ...more });
+const result = (more) => ({
+  objective: "total",
+  lower_bound_m: 50_000,
+  lower_bound_s: null,
+  gap: 0.03,
+  is_proven: false,
+  wish: null,
+  routes: [flown],
+  ...more,
+});
 const tower = (id) => targetOf({ id, kind: "tower", properties: { label: `${id}` }, centre: [10, 50] });
 const heron = { id: 3, name: "Heron", position: [9, 49], max_range_m: null, cruise_speed_mps: 12, end_action: "hover" };
 const picked = { ...EMPTY, targets: [tower(1), tower(2), tower(3)], uavs: [heron, { ...heron, id: 4, name: "Kite" }] };
@@ -24,28 +41,49 @@ test("a proof is said in one word, also with something locked", () => {
   assert.equal(qualityOf(result({ is_proven: true, gap: 0, objective: "makespan" })).words, "Proven soonest.");
   assert.equal(qualityOf(result({ is_proven: true, gap: 0, wish: {} })).words, "Proven shortest with what is locked.");
   assert.equal(qualityOf(result({ is_proven: true, gap: 0, objective: "time" })).words, "Proven least flying time.");
-  assert.equal(qualityOf(result({ is_proven: true, gap: 0, objective: "energy", wish: {} })).words, "Proven least energy with what is locked.");
+  assert.equal(
+    qualityOf(result({ is_proven: true, gap: 0, objective: "energy", wish: {} })).words,
+    "Proven least energy with what is locked.",
+  );
 });
 
 test("the gap is what the plan is above the bound, in the unit of the objective", () => {
   const quality = qualityOf(result({ gap: 0.2 }));
   assert.equal(plain(quality.words), "At most 25.0 % above what is possible.");
   assert.equal(plain(quality.detail), "No plan can fly less than 50.0 km.");
-  assert.equal(plain(qualityOf(result({ objective: "makespan", lower_bound_m: null, lower_bound_s: 3000 })).detail), "No plan can be done in less than 50 min.");
+  assert.equal(
+    plain(qualityOf(result({ objective: "makespan", lower_bound_m: null, lower_bound_s: 3000 })).detail),
+    "No plan can be done in less than 50 min.",
+  );
 });
 
 test("where zones come or go meanwhile, the gap is against the best plan without them", () => {
   const quality = qualityOf(result({ gap: 0.2, gap_of: "without_timed_zones" }));
   assert.equal(plain(quality.words), "At most 25.0 % above the best plan without the zones that come or go meanwhile.");
   assert.equal(quality.detail, "");
-  assert.equal(qualityOf(result({ gap: 0, gap_of: "without_timed_zones" })).words, "No worse than the best plan without the zones that come or go meanwhile.");
-  assert.match(qualityOf(result({ gap: 0.2, gap_of: "without_timed_zones", wish: {} })).words, /with what is locked, without the zones/);
-  assert.equal(plain(qualityOf(result({ gap: 0.2, gap_of: "all_plans" })).words), "At most 25.0 % above what is possible.");
+  assert.equal(
+    qualityOf(result({ gap: 0, gap_of: "without_timed_zones" })).words,
+    "No worse than the best plan without the zones that come or go meanwhile.",
+  );
+  assert.match(
+    qualityOf(result({ gap: 0.2, gap_of: "without_timed_zones", wish: {} })).words,
+    /with what is locked, without the zones/,
+  );
+  assert.equal(
+    plain(qualityOf(result({ gap: 0.2, gap_of: "all_plans" })).words),
+    "At most 25.0 % above what is possible.",
+  );
 });
 
 test("a bound has the unit of what the plan is best at", () => {
-  assert.equal(plain(qualityOf(result({ objective: "time", lower_bound_m: null, lower_bound_s: 3000 })).detail), "No plan can be in the air for less than 50 min.");
-  assert.equal(plain(qualityOf(result({ objective: "energy", lower_bound_m: null, lower_bound_wh: 812.4 })).detail), "No plan can use less than 812 Wh.");
+  assert.equal(
+    plain(qualityOf(result({ objective: "time", lower_bound_m: null, lower_bound_s: 3000 })).detail),
+    "No plan can be in the air for less than 50 min.",
+  );
+  assert.equal(
+    plain(qualityOf(result({ objective: "energy", lower_bound_m: null, lower_bound_wh: 812.4 })).detail),
+    "No plan can use less than 812 Wh.",
+  );
 });
 
 test("nothing is said of a plan whose bound is not known, or that nobody flies", () => {
@@ -56,10 +94,19 @@ test("nothing is said of a plan whose bound is not known, or that nobody flies",
 
 test("where targets are left out, a proof is of plans that reach as many, and a bound that a search leaves is not told", () => {
   const missed = (reason) => ({ unassigned: [{ target: 1, reason, message: "" }] });
-  assert.equal(qualityOf(result({ is_proven: true, gap: 0, objective: "makespan", ...missed("beyond_range") })).words, "Proven soonest of plans that reach as many targets.");
-  assert.equal(qualityOf(result({ is_proven: true, gap: 0, wish: {}, ...missed("most_targets") })).words, "Proven shortest with what is locked, of plans that reach as many targets.");
+  assert.equal(
+    qualityOf(result({ is_proven: true, gap: 0, objective: "makespan", ...missed("beyond_range") })).words,
+    "Proven soonest of plans that reach as many targets.",
+  );
+  assert.equal(
+    qualityOf(result({ is_proven: true, gap: 0, wish: {}, ...missed("most_targets") })).words,
+    "Proven shortest with what is locked, of plans that reach as many targets.",
+  );
   assert.equal(qualityOf(result({ gap: 0.8, ...missed("beyond_range") })), null);
-  assert.equal(plain(qualityOf(result({ gap: 0.2, ...missed("inside_zone") })).words), "At most 25.0 % above what is possible.");
+  assert.equal(
+    plain(qualityOf(result({ gap: 0.2, ...missed("inside_zone") })).words),
+    "At most 25.0 % above what is possible.",
+  );
 });
 
 test("what a wish costs is said with its share of the free plan", () => {
@@ -67,35 +114,65 @@ test("what a wish costs is said with its share of the free plan", () => {
   assert.equal(plain(wishWordsOf({ objective: "total", wish })), "Your wish costs 2.3 km more (+4.0 %).");
   assert.equal(plain(wishWordsOf({ objective: "makespan", wish })), "Your wish costs 2 min more (+4.0 %).");
   assert.equal(wishWordsOf({ objective: "total", wish: { ...wish, cost_m: 0 } }), "Your wish costs nothing.");
-  assert.equal(plain(wishWordsOf({ objective: "total", wish: { ...wish, cost_m: -2300 } })), "Your wish saves 2.3 km (−4.0 %): the search had not found it.");
-  assert.equal(wishWordsOf({ objective: "total", wish: { ...wish, cost_m: null, left_out: 2 } }), "Your wish leaves out 2 targets more.");
+  assert.equal(
+    plain(wishWordsOf({ objective: "total", wish: { ...wish, cost_m: -2300 } })),
+    "Your wish saves 2.3 km (−4.0 %): the search had not found it.",
+  );
+  assert.equal(
+    wishWordsOf({ objective: "total", wish: { ...wish, cost_m: null, left_out: 2 } }),
+    "Your wish leaves out 2 targets more.",
+  );
   assert.equal(wishWordsOf({ objective: "total", wish: null }), "");
 });
 
 test("the best so far comes with its bound and gap", () => {
-  assert.equal(plain(bestWordsOf({ unit: "m", value: 51_500, bound: 50_000, left_out: 0 })), "51.5 km so far, at most 3.0 % above what is possible (50.0 km)");
-  assert.equal(plain(bestWordsOf({ unit: "m", value: 51_500, bound: 50_000, left_out: 1 })), "51.5 km so far, 1 target is not reached");
+  assert.equal(
+    plain(bestWordsOf({ unit: "m", value: 51_500, bound: 50_000, left_out: 0 })),
+    "51.5 km so far, at most 3.0 % above what is possible (50.0 km)",
+  );
+  assert.equal(
+    plain(bestWordsOf({ unit: "m", value: 51_500, bound: 50_000, left_out: 1 })),
+    "51.5 km so far, 1 target is not reached",
+  );
   assert.equal(plain(bestWordsOf({ unit: "s", value: 3000, bound: null, left_out: 0 })), "50 min so far");
   assert.equal(bestWordsOf(null), "");
 });
 
 test("wishes go to the server only where there are some", () => {
-  const [first, second] = requestOf(withWishes(picked, [keys[0]], { priority: "high", uav: "Kite", sensor: "LiDAR" })).targets;
+  const [first, second] = requestOf(
+    withWishes(picked, [keys[0]], { priority: "high", uav: "Kite", sensor: "LiDAR" }),
+  ).targets;
   assert.deepEqual([first.priority, first.uav, first.sensor], ["high", "Kite", "LiDAR"]);
-  assert.deepEqual(["priority", "uav", "sensor"].filter((name) => name in second), []);
-  assert.deepEqual(wishesOf({ priority: null, uav: null, sensor: null }), { priority: "normal", uav: null, sensor: "" });
+  assert.deepEqual(
+    ["priority", "uav", "sensor"].filter((name) => name in second),
+    [],
+  );
+  assert.deepEqual(wishesOf({ priority: null, uav: null, sensor: null }), {
+    priority: "normal",
+    uav: null,
+    sensor: "",
+  });
 });
 
 test("sensors are said as the mission has them, of UAVs of the fleet too", () => {
-  const uavs = [{ ...heron, sensors: ["LiDAR"], most_targets: 3 }, { ...heron, id: null, sensors: ["Corona"] }];
+  const uavs = [
+    { ...heron, sensors: ["LiDAR"], most_targets: 3 },
+    { ...heron, id: null, sensors: ["Corona"] },
+  ];
   const body = requestOf({ ...picked, uavs }).uavs;
   assert.deepEqual([body[0].sensors, body[0].most_targets, body[1].sensors], [["LiDAR"], 3, ["Corona"]]);
   assert.deepEqual(sensorsKnown({ ...picked, uavs }, [{ sensors: ["lidar"] }]), ["Corona", "LiDAR"]);
 });
 
 test("a UAV's row says how many targets it takes and that it lands at a base", () => {
-  assert.match(factsOfUav({ max_range_m: null, end_action: "base", most_targets: 3 }, false), /^at most 3 targets · .* lands at the nearest base$/);
-  assert.equal(endingOf({ end_action: "base", base: "Depot West", letter: "A", targets: [] }), "lands at the base Depot West");
+  assert.match(
+    factsOfUav({ max_range_m: null, end_action: "base", most_targets: 3 }, false),
+    /^at most 3 targets · .* lands at the nearest base$/,
+  );
+  assert.equal(
+    endingOf({ end_action: "base", base: "Depot West", letter: "A", targets: [] }),
+    "lands at the base Depot West",
+  );
   assert.equal(endingOf({ end_action: "base", base: null, letter: "A", targets: [] }), "lands at the nearest base");
 });
 
@@ -124,11 +201,17 @@ test("one raises a priority and the other changes the task: a clash of that targ
   const at = (targets) => ({ name: "North", selection: { ...picked, targets } });
   const high = withWishes(picked, [keys[0]], { priority: "high" }).targets;
   assert.deepEqual(merged(at(picked.targets), at(high), at(picked.targets)).selection.targets[0].priority, "high");
-  assert.deepEqual(merged(at(picked.targets), at(high), at(withWishes(picked, [keys[0]], { priority: "low" }).targets)).clashes, ["targets"]);
+  assert.deepEqual(
+    merged(at(picked.targets), at(high), at(withWishes(picked, [keys[0]], { priority: "low" }).targets)).clashes,
+    ["targets"],
+  );
 });
 
 test("what is only locked stays in sight of the plan, at the places that are wished", () => {
-  const routes = [{ uav: "Heron", targets: [0, 1], geometry: {} }, { uav: "Kite", targets: [2], geometry: {} }];
+  const routes = [
+    { uav: "Heron", targets: [0, 1], geometry: {} },
+    { uav: "Kite", targets: [2], geometry: {} },
+  ];
   const plan = planOf({ routes, unassigned: [] }, picked);
   const state = { plan, selection: { ...picked, locks: [{ ...lock("Kite", [0]), at_start: true }] } };
   assert.ok(isPlanInSight(state));
@@ -139,13 +222,27 @@ test("what is only locked stays in sight of the plan, at the places that are wis
 });
 
 test("a pill of several says when one of them is locked", () => {
-  const pills = placePills([{ target: "a", x: 50 }, { target: "b", x: 50.5, isLocked: true }, { target: "c", x: 51 }, { target: "d", x: 51.5 }], 10, 60, 70);
+  const pills = placePills(
+    [
+      { target: "a", x: 50 },
+      { target: "b", x: 50.5, isLocked: true },
+      { target: "c", x: 51 },
+      { target: "d", x: 51.5 },
+    ],
+    10,
+    60,
+    70,
+  );
   assert.ok(pills.some(({ members }) => members.length > 1 && members.some(({ isLocked }) => isLocked)));
 });
 
 test("the job of a mission is remembered for its user until it ends", () => {
   const kept = new Map();
-  const storage = () => ({ getItem: (key) => kept.get(key) ?? null, setItem: (key, value) => kept.set(key, value), removeItem: (key) => kept.delete(key) });
+  const storage = () => ({
+    getItem: (key) => kept.get(key) ?? null,
+    setItem: (key, value) => kept.set(key, value),
+    removeItem: (key) => kept.delete(key),
+  });
   const jobs = createRunningJob({ user: 7, storage });
   jobs.keep("m1", { job: "j1", selection: picked });
   assert.equal(jobs.read("m1").job, "j1");
@@ -153,7 +250,12 @@ test("the job of a mission is remembered for its user until it ends", () => {
   assert.equal(createRunningJob({ user: 8, storage }).read("m1"), null);
   jobs.drop("m1");
   assert.equal(jobs.read("m1"), null);
-  const closed = createRunningJob({ user: 7, storage: () => { throw new Error("closed"); } });
+  const closed = createRunningJob({
+    user: 7,
+    storage: () => {
+      throw new Error("closed");
+    },
+  });
   closed.keep("m1", { job: "j1", selection: picked });
   assert.equal(closed.read("m1"), null);
 });

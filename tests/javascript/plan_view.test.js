@@ -2,17 +2,35 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { firstDetail } from "../../static/js/api.js";
-import { endingOf, endingsOf, inPlanOrder, isPlanCurrent, isUnsaved, placesOf, pointAlong, sentenceOf, shownRoute, unreachedOf } from "../../static/js/mission/plan_view.js";
+import {
+  endingOf,
+  endingsOf,
+  inPlanOrder,
+  isPlanCurrent,
+  isUnsaved,
+  placesOf,
+  pointAlong,
+  sentenceOf,
+  shownRoute,
+  unreachedOf,
+} from "../../static/js/mission/plan_view.js";
 import { basisOf, EMPTY, targetOf, withTargets } from "../../static/js/mission/selection.js";
 
 const target = (id) => targetOf({ id, kind: "tower", properties: { label: `Tower ${id}` }, centre: [id, 50] });
 const selection = withTargets(EMPTY, [1, 2, 3].map(target));
-const geometry = { type: "LineString", coordinates: [[0, 0], [1, 1]] };
+const geometry = {
+  type: "LineString",
+  coordinates: [
+    [0, 0],
+    [1, 1],
+  ],
+};
 const plan = {
   basis: basisOf(selection),
   targets: selection.targets,
   result: {
-    return_to_start: true, total_length_m: 42_500,
+    return_to_start: true,
+    total_length_m: 42_500,
     routes: [
       { uav: "Heron", targets: [2], length_m: 19_100, duration_s: 1_620, geometry, end_action: "hover" },
       { uav: "Kite", targets: [0], length_m: 23_400, duration_s: 1_980, geometry, end_action: "hover" },
@@ -30,7 +48,10 @@ test("each target knows its UAV and its number there", () => {
 });
 
 test("the list follows the plan, those without a route last", () => {
-  assert.deepEqual(inPlanOrder(selection.targets, placesOf(plan)).map(({ asset }) => asset), [3, 1, 2]);
+  assert.deepEqual(
+    inPlanOrder(selection.targets, placesOf(plan)).map(({ asset }) => asset),
+    [3, 1, 2],
+  );
 });
 
 test("the sentence says what happens, then the figures", () => {
@@ -73,7 +94,14 @@ test("a plan is current only for the selection it was made for", () => {
 });
 
 test("a stored mission is unsaved once its name, selection or plan differs", () => {
-  const stored = { mission: { name: "North" }, name: "North", selection, plan, planIsStored: true, savedBasis: basisOf(selection) };
+  const stored = {
+    mission: { name: "North" },
+    name: "North",
+    selection,
+    plan,
+    planIsStored: true,
+    savedBasis: basisOf(selection),
+  };
   assert.equal(isUnsaved(stored), false);
   assert.equal(isUnsaved({ ...stored, name: "South" }), true);
   assert.equal(isUnsaved({ ...stored, planIsStored: false }), true);
@@ -82,7 +110,10 @@ test("a stored mission is unsaved once its name, selection or plan differs", () 
 });
 
 test("the first fault is found in nested details", () => {
-  assert.equal(firstDetail({ targets: { 1: { asset: ["There is no asset 99."] } } }), "targets 1 asset: There is no asset 99.");
+  assert.equal(
+    firstDetail({ targets: { 1: { asset: ["There is no asset 99."] } } }),
+    "targets 1 asset: There is no asset 99.",
+  );
   assert.equal(firstDetail({ non_field_errors: ["Too many."] }), "Too many.");
   assert.equal(firstDetail(null), "");
 });
@@ -94,7 +125,13 @@ test("the route that is changed by hand is shown as it would be flown, whichever
   const look = { length_m: 20_000, duration_s: 1_700, flown };
   const shown = (hand) => shownRoute({ plan, lookedAt: null, chosenRoute: 1, hand });
   assert.equal(shown(null).name, "Kite");
-  assert.deepEqual([shown({ sequence: 0, original, points: original, look }).name, shown({ sequence: 0, original, points: original, look }).length_m], ["Heron", 19_100]);
+  assert.deepEqual(
+    [
+      shown({ sequence: 0, original, points: original, look }).name,
+      shown({ sequence: 0, original, points: original, look }).length_m,
+    ],
+    ["Heron", 19_100],
+  );
   const wished = shown({ sequence: 0, original, points: moved, look });
   assert.deepEqual([wished.name, wished.length_m, wished.isWished], ["Heron", 20_000, true]);
   assert.equal(wished.waypoints, flown.waypoints); // the same while the server has said nothing new
@@ -102,13 +139,39 @@ test("the route that is changed by hand is shown as it would be flown, whichever
 });
 
 test("the pointer's place is on the stored route, and on the changed one where it is on that one's profile", () => {
-  const at = (lon, lat, kind = "pass") => ({ position: [lon, lat], altitude_agl_m: 60, kind, asset: null, target: null });
-  const stored = { uav: "Heron", targets: [], length_m: 2000, duration_s: 100, geometry, end_action: "hover", waypoints: [at(10, 50, "start"), at(10.02, 50, "end")] };
-  const now = { plan: { ...plan, result: { ...plan.result, routes: [stored] } }, lookedAt: null, chosenRoute: null, hand: null };
-  const near = (place, expected) => place.forEach((degrees, index) => assert.ok(Math.abs(degrees - expected[index]) < 1e-6, `${place} is not ${expected}`));
+  const at = (lon, lat, kind = "pass") => ({
+    position: [lon, lat],
+    altitude_agl_m: 60,
+    kind,
+    asset: null,
+    target: null,
+  });
+  const stored = {
+    uav: "Heron",
+    targets: [],
+    length_m: 2000,
+    duration_s: 100,
+    geometry,
+    end_action: "hover",
+    waypoints: [at(10, 50, "start"), at(10.02, 50, "end")],
+  };
+  const now = {
+    plan: { ...plan, result: { ...plan.result, routes: [stored] } },
+    lookedAt: null,
+    chosenRoute: null,
+    hand: null,
+  };
+  const near = (place, expected) =>
+    place.forEach((degrees, index) =>
+      assert.ok(Math.abs(degrees - expected[index]) < 1e-6, `${place} is not ${expected}`),
+    );
   near(pointAlong({ ...now, along: { sequence: 0, at_m: 1000, isWished: false } }), [10.01, 50]);
   const original = [{ position: [10, 50], altitude_agl_m: 60, speed_mps: null, was: 0, kind: "start" }];
-  const look = { length_m: 4000, duration_s: 200, flown: { waypoints: [at(10, 50, "start"), at(10, 50.02), at(10.02, 50, "end")], arrival_s: [0] } };
+  const look = {
+    length_m: 4000,
+    duration_s: 200,
+    flown: { waypoints: [at(10, 50, "start"), at(10, 50.02), at(10.02, 50, "end")], arrival_s: [0] },
+  };
   const hand = { sequence: 0, original, points: [{ ...original[0], altitude_agl_m: 80 }], look };
   const [lon, lat] = pointAlong({ ...now, hand, along: { sequence: 0, at_m: 500, isWished: true } });
   assert.equal(lon, 10);

@@ -8,7 +8,10 @@ const plain = (text) => text.replaceAll("\u00a0", " ");
 const heron = { id: 3, name: "Heron", position: [9, 49], max_range_m: null, cruise_speed_mps: 12, end_action: "hover" };
 const answer = {
   flights: [{ uav: 0, base: null }],
-  reasons: [{ code: "beyond_range", message: "The range is too short.", count: 1 }, { code: "partly_reachable", message: "Some spans can be inspected.", count: 1 }],
+  reasons: [
+    { code: "beyond_range", message: "The range is too short.", count: 1 },
+    { code: "partly_reachable", message: "Some spans can be inspected.", count: 1 },
+  ],
   assets: { ids: [2, 5, 9], code: [0, 1, 2], flight: [0, -1, -1], missing_m: [0, 3200, 0] },
 };
 
@@ -19,7 +22,10 @@ test("the question is of UAVs, ends, departure and air, whatever is picked", () 
 });
 
 test("each asset has its verdict, and one that the answer does not speak of has none", () => {
-  assert.deepEqual([2, 5, 9, 1, 7, 10].map((id) => verdictOf(answer, id)), ["yes", "no", "partly", "", "", ""]);
+  assert.deepEqual(
+    [2, 5, 9, 1, 7, 10].map((id) => verdictOf(answer, id)),
+    ["yes", "no", "partly", "", "", ""],
+  );
 });
 
 test("an asset says who flies least to it, what is missing, or the reason", () => {

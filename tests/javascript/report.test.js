@@ -5,13 +5,49 @@ import { labelsOf, waypointName } from "../../static/js/report/labels.js";
 import { createPlayer } from "../../static/js/report/player.js";
 import { factsOf, figuresOf, sentenceOf } from "../../static/js/report/sentence.js";
 import { spread } from "../../static/js/report/strip.js";
-import { eventFrom, eventsOf, plannedHeights, rulesOf, scaleOf, spanOf, ticksOf } from "../../static/js/report/timeline.js";
-import { estimatesOf, flightsOf, linesOf, momentOf, nearestTo, runsOf, silenceOf_ms, trackOf, tracksOf } from "../../static/js/report/track.js";
+import {
+  eventFrom,
+  eventsOf,
+  plannedHeights,
+  rulesOf,
+  scaleOf,
+  spanOf,
+  ticksOf,
+} from "../../static/js/report/timeline.js";
+import {
+  estimatesOf,
+  flightsOf,
+  linesOf,
+  momentOf,
+  nearestTo,
+  runsOf,
+  silenceOf_ms,
+  trackOf,
+  tracksOf,
+} from "../../static/js/report/track.js";
 
 const T0 = Date.parse("2026-09-10T09:10:00Z");
 const at = (seconds) => ({ at_ms: T0 + seconds * 1000 });
-const sample = (seconds, facts = {}) => ({ ...at(seconds), position: [10 + seconds / 1e4, 56], height_m: 40, speed_mps: 12, battery_percent: 90, heading_deg: 0, mode: "Mission", isInAir: true, ...facts });
-const estimate = (seconds) => ({ ...at(seconds), position: [10, 56], height_m: 40, speed_mps: 12, heading_deg: 0, bound_m: 30, isLost: false });
+const sample = (seconds, facts = {}) => ({
+  ...at(seconds),
+  position: [10 + seconds / 1e4, 56],
+  height_m: 40,
+  speed_mps: 12,
+  battery_percent: 90,
+  heading_deg: 0,
+  mode: "Mission",
+  isInAir: true,
+  ...facts,
+});
+const estimate = (seconds) => ({
+  ...at(seconds),
+  position: [10, 56],
+  height_m: 40,
+  speed_mps: 12,
+  heading_deg: 0,
+  bound_m: 30,
+  isLost: false,
+});
 const track = (samples, estimates = []) => trackOf(samples, estimates, silenceOf_ms(null));
 
 test("what counts as silence grows with the spacing of thinned records", () => {
@@ -21,39 +57,91 @@ test("what counts as silence grows with the spacing of thinned records", () => {
 });
 
 test("records become tracks by UAV and time, without those of the future", () => {
-  const feature = (uav, seconds, more = {}) => ({ geometry: { coordinates: [10, 56] }, properties: { uav, measured_at: new Date(T0 + seconds * 1000).toISOString(), velocity_north_mps: 3, velocity_east_mps: 4, is_from_future: false, ...more } });
+  const feature = (uav, seconds, more = {}) => ({
+    geometry: { coordinates: [10, 56] },
+    properties: {
+      uav,
+      measured_at: new Date(T0 + seconds * 1000).toISOString(),
+      velocity_north_mps: 3,
+      velocity_east_mps: 4,
+      is_from_future: false,
+      ...more,
+    },
+  });
   const tracks = tracksOf([feature(7, 2), feature(7, 1), feature(8, 0), feature(7, 99, { is_from_future: true })]);
-  assert.deepEqual(tracks.get(7).map(({ at_ms }) => at_ms - T0), [1_000, 2_000]);
+  assert.deepEqual(
+    tracks.get(7).map(({ at_ms }) => at_ms - T0),
+    [1_000, 2_000],
+  );
   assert.equal(tracks.get(7)[0].speed_mps, 5);
   assert.equal(tracks.get(7)[0].battery_percent, null);
   assert.equal(tracks.get(8).length, 1);
-  const guess = { geometry: { coordinates: [10, 56] }, properties: { uav: 7, estimated_for: "2026-09-10T09:10:01Z", bound_along_m: 8, bound_across_m: 12, is_lost: false } };
+  const guess = {
+    geometry: { coordinates: [10, 56] },
+    properties: { uav: 7, estimated_for: "2026-09-10T09:10:01Z", bound_along_m: 8, bound_across_m: 12, is_lost: false },
+  };
   assert.equal(estimatesOf([guess]).get(7)[0].bound_m, 12);
 });
 
 test("a line is broken where nothing was heard, and where a value was not told for as long", () => {
-  assert.deepEqual(runsOf([sample(0), sample(10), sample(23), sample(24)], 12_000).map((run) => run.length), [2, 2]);
-  const lines = linesOf([sample(0), sample(5, { height_m: null }), sample(10), sample(20, { height_m: null }), sample(30)], "height_m", 12_000);
-  assert.deepEqual(lines.map((line) => line.length), [2, 1]);
+  assert.deepEqual(
+    runsOf([sample(0), sample(10), sample(23), sample(24)], 12_000).map((run) => run.length),
+    [2, 2],
+  );
+  const lines = linesOf(
+    [sample(0), sample(5, { height_m: null }), sample(10), sample(20, { height_m: null }), sample(30)],
+    "height_m",
+    12_000,
+  );
+  assert.deepEqual(
+    lines.map((line) => line.length),
+    [2, 1],
+  );
   assert.deepEqual(runsOf([], 12_000), []);
 });
 
 test("the nearest sample is found at the ends, between two, and in nothing", () => {
   const samples = [at(0), at(10), at(20)];
-  assert.deepEqual([-5, 4, 5, 6, 19, 99].map((seconds) => nearestTo(samples, T0 + seconds * 1000)), [0, 0, 0, 1, 2, 2]);
+  assert.deepEqual(
+    [-5, 4, 5, 6, 19, 99].map((seconds) => nearestTo(samples, T0 + seconds * 1000)),
+    [0, 0, 0, 1, 2, 2],
+  );
   assert.equal(nearestTo([], T0), -1);
 });
 
 test("a flight ends with a report from the ground, not with silence", () => {
-  const flights = flightsOf([sample(0, { isInAir: false }), sample(1), sample(2), sample(90), sample(91, { isInAir: false }), sample(200), sample(210)]);
-  assert.deepEqual(flights.map(({ from_ms, to_ms }) => [(from_ms - T0) / 1000, (to_ms - T0) / 1000]), [[1, 90], [200, 210]]);
+  const flights = flightsOf([
+    sample(0, { isInAir: false }),
+    sample(1),
+    sample(2),
+    sample(90),
+    sample(91, { isInAir: false }),
+    sample(200),
+    sample(210),
+  ]);
+  assert.deepEqual(
+    flights.map(({ from_ms, to_ms }) => [(from_ms - T0) / 1000, (to_ms - T0) / 1000]),
+    [
+      [1, 90],
+      [200, 210],
+    ],
+  );
   assert.equal(flightsOf([sample(0, { isInAir: null }), sample(5, { isInAir: null })]).length, 1);
 });
 
 test("silence is estimated where somebody estimated it, and else empty", () => {
-  const own = track([sample(0), sample(5), sample(60), sample(65), sample(200)], [estimate(3), estimate(10), estimate(20), estimate(30), estimate(40), estimate(50)]);
-  assert.deepEqual(own.measured.map((run) => run.length), [2, 2, 1]);
-  assert.deepEqual(own.estimated.map((run) => [(run[0].at_ms - T0) / 1000, (run.at(-1).at_ms - T0) / 1000]), [[5, 60]]);
+  const own = track(
+    [sample(0), sample(5), sample(60), sample(65), sample(200)],
+    [estimate(3), estimate(10), estimate(20), estimate(30), estimate(40), estimate(50)],
+  );
+  assert.deepEqual(
+    own.measured.map((run) => run.length),
+    [2, 2, 1],
+  );
+  assert.deepEqual(
+    own.estimated.map((run) => [(run[0].at_ms - T0) / 1000, (run.at(-1).at_ms - T0) / 1000]),
+    [[5, 60]],
+  );
 });
 
 test("after the last report the estimates go on until there are none", () => {
@@ -63,9 +151,21 @@ test("after the last report the estimates go on until there are none", () => {
 });
 
 test("a moment is measured, estimated, silent or unknown", () => {
-  const own = track([sample(10), sample(15), sample(60), sample(65), sample(200)], [estimate(20), estimate(30), estimate(40), estimate(50)]);
+  const own = track(
+    [sample(10), sample(15), sample(60), sample(65), sample(200)],
+    [estimate(20), estimate(30), estimate(40), estimate(50)],
+  );
   const kindAt = (seconds) => momentOf(own, T0 + seconds * 1000)?.kind ?? null;
-  assert.deepEqual([0, 10, 13, 21, 62, 100, 200, 201].map(kindAt), [null, "measured", "measured", "estimated", "measured", "silent", "measured", null]);
+  assert.deepEqual([0, 10, 13, 21, 62, 100, 200, 201].map(kindAt), [
+    null,
+    "measured",
+    "measured",
+    "estimated",
+    "measured",
+    "silent",
+    "measured",
+    null,
+  ]);
   assert.equal(momentOf(own, T0 + 100_000).sample.at_ms, T0 + 65_000);
   assert.equal(momentOf(track([]), T0), null);
 });
@@ -101,19 +201,30 @@ test("a scale has at most three round rules", () => {
   assert.deepEqual(rulesOf(100), [50, 100]);
   assert.deepEqual(rulesOf(12), [5, 10]);
   assert.deepEqual(rulesOf(0), []);
-  for (const highest of [0.3, 1, 7, 19, 64, 120, 399, 400, 1234]) assert.ok(rulesOf(highest).length >= 1 && rulesOf(highest).length <= 3, `${highest}`);
+  for (const highest of [0.3, 1, 7, 19, 64, 120, 399, 400, 1234])
+    assert.ok(rulesOf(highest).length >= 1 && rulesOf(highest).length <= 3, `${highest}`);
 });
 
 const routes = [
   { place: 0, uav: 7, track: track([sample(0), sample(60), sample(61, { isInAir: false })]) },
   { place: 1, uav: 8, track: track([sample(20), sample(90)]) },
 ];
-const targets = [{ place: 4, uav: 0, reached_at: "2026-09-10T09:10:30Z" }, { place: 5, uav: 1, reached_at: null }];
+const targets = [
+  { place: 4, uav: 0, reached_at: "2026-09-10T09:10:30Z" },
+  { place: 5, uav: 1, reached_at: null },
+];
 const alerts = [{ id: 1, uav: 8, opened_at: "2026-09-10T09:10:40Z", message: "late" }];
-const named = (isOver) => eventsOf({ routes, targets, alerts, isOver }).map(({ at_ms, kind, place }) => [(at_ms - T0) / 1000, kind, place]);
+const named = (isOver) =>
+  eventsOf({ routes, targets, alerts, isOver }).map(({ at_ms, kind, place }) => [(at_ms - T0) / 1000, kind, place]);
 
 test("what happened stands in order; one that is still in the air has not landed", () => {
-  assert.deepEqual(named(false), [[0, "take-off", 0], [20, "take-off", 1], [30, "target", 0], [40, "alert", 1], [60, "landing", 0]]);
+  assert.deepEqual(named(false), [
+    [0, "take-off", 0],
+    [20, "take-off", 1],
+    [30, "target", 0],
+    [40, "alert", 1],
+    [60, "landing", 0],
+  ]);
   assert.deepEqual(named(true).at(-1), [90, "landing", 1]);
 });
 
@@ -128,9 +239,15 @@ test("stepping goes to the next event, and past the one that the cursor stands o
 });
 
 test("the plan's heights begin when the UAV took off; without times there are none", () => {
-  const waypoints = [{ arrival_s: 100, altitude_relative_m: 0 }, { arrival_s: 130, altitude_relative_m: 50 }];
+  const waypoints = [
+    { arrival_s: 100, altitude_relative_m: 0 },
+    { arrival_s: 130, altitude_relative_m: 50 },
+  ];
   const flown = { began_at: "2026-09-10T09:10:00Z" };
-  assert.deepEqual(plannedHeights({ waypoints, flown }), [{ at_ms: T0, value: 0 }, { at_ms: T0 + 30_000, value: 50 }]);
+  assert.deepEqual(plannedHeights({ waypoints, flown }), [
+    { at_ms: T0, value: 0 },
+    { at_ms: T0 + 30_000, value: 50 },
+  ]);
   assert.deepEqual(plannedHeights({ waypoints: [{ arrival_s: null, altitude_relative_m: 0 }], flown }), []);
   assert.deepEqual(plannedHeights({ waypoints, flown: { began_at: null } }), []);
 });
@@ -198,8 +315,17 @@ test("the sentence says what came of it, what is so far, or that nothing was flo
   assert.equal(factsOf(record("completed")), "No battery was below 24\u00a0%. No alerts.");
   const simulated = { ...record("completed"), routes: [{ name: "Tern", is_simulated: true, flown: { reports: 9 } }] };
   assert.match(factsOf(simulated), /^Flown in simulation, by no real aircraft\. /);
-  assert.match(factsOf({ ...simulated, routes: [...simulated.routes, { name: "Kite", is_simulated: false, flown: { reports: 9 } }] }), /^Simulated, no real aircraft: Tern\. /);
-  assert.equal(factsOf(record("completed", { alerts: { critical: 1, warning: 2 } })), "No battery was below 24\u00a0%. 3 alerts, 1 critical.");
+  assert.match(
+    factsOf({
+      ...simulated,
+      routes: [...simulated.routes, { name: "Kite", is_simulated: false, flown: { reports: 9 } }],
+    }),
+    /^Simulated, no real aircraft: Tern\. /,
+  );
+  assert.equal(
+    factsOf(record("completed", { alerts: { critical: 1, warning: 2 } })),
+    "No battery was below 24\u00a0%. 3 alerts, 1 critical.",
+  );
 });
 
 test("figures are compared where both are known, and only once it is over", () => {
@@ -215,10 +341,17 @@ test("figures are compared where both are known, and only once it is over", () =
 });
 
 test("targets are named by letter and place on the route, ends of legs by what they are", () => {
-  const waypoints = [{ sequence: 0, kind: "start", target: null, position: [10, 56] }, { sequence: 1, kind: "pass", target: null, position: [10, 56] }, { sequence: 2, kind: "target", target: 9, position: [10, 56] }];
+  const waypoints = [
+    { sequence: 0, kind: "start", target: null, position: [10, 56] },
+    { sequence: 1, kind: "pass", target: null, position: [10, 56] },
+    { sequence: 2, kind: "target", target: 9, position: [10, 56] },
+  ];
   const labels = labelsOf([{ place: 1, waypoints }]);
   assert.equal(labels.get(9).label, "B1");
   const words = { start: "take-off" };
   const otherwise = (sequence) => `point ${sequence}`;
-  assert.deepEqual([0, 1, 2, 7].map((sequence) => waypointName({ waypoints }, sequence, labels, words, otherwise)), ["take-off", "point 1", "B1", "point 7"]);
+  assert.deepEqual(
+    [0, 1, 2, 7].map((sequence) => waypointName({ waypoints }, sequence, labels, words, otherwise)),
+    ["take-off", "point 1", "B1", "point 7"],
+  );
 });

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { targetOf, EMPTY, withTargets } from "../../static/js/mission/selection.js";
+import { EMPTY, targetOf, withTargets } from "../../static/js/mission/selection.js";
 import { createHistory, createStore } from "../../static/js/store.js";
 
 globalThis.document ??= { cookie: "", querySelector: () => null, documentElement: { lang: "en", dataset: {} } };
@@ -19,10 +19,35 @@ function opened(context, answers, { meet = async () => {} } = {}) {
   });
   globalThis.location ??= { hash: "" };
   globalThis.history ??= { replaceState() {} };
-  const store = createStore({ selection: EMPTY, name: "North", mission: { id: "m", name: "North", revision: 4 }, stored: { name: "North", selection: EMPTY }, plan: null, planIsStored: false, savedBasis: "", fleet: [], figures: {}, saving: false, planning: null, conflict: null, isAway: false, problem: null });
+  const store = createStore({
+    selection: EMPTY,
+    name: "North",
+    mission: { id: "m", name: "North", revision: 4 },
+    stored: { name: "North", selection: EMPTY },
+    plan: null,
+    planIsStored: false,
+    savedBasis: "",
+    fleet: [],
+    figures: {},
+    saving: false,
+    planning: null,
+    conflict: null,
+    isAway: false,
+    problem: null,
+  });
   const history = createHistory(store, "selection");
   const saving = createSaving(
-    { store, history, selection: () => store.state.selection, change: (value) => history.changeTo(value), problem() {}, failed() {}, running: {}, page: { canPlan: true }, drafts: { dropOwn() {}, keep: () => true } },
+    {
+      store,
+      history,
+      selection: () => store.state.selection,
+      change: (value) => history.changeTo(value),
+      problem() {},
+      failed() {},
+      running: {},
+      page: { canPlan: true },
+      drafts: { dropOwn() {}, keep: () => true },
+    },
     { waitForJob() {}, makeRoom() {} },
     { meet },
   );
@@ -34,7 +59,9 @@ const away = () => Promise.reject(new TypeError("no network"));
 test("a save that the server took, but whose answer was lost, is known as one's own when the next one is refused", async (context) => {
   const refusal = new Response(JSON.stringify({ error: { code: "mission_changed", message: "" } }), { status: 412 });
   const met = [];
-  const { store, history, saving } = opened(context, [away, () => Promise.resolve(refusal)], { meet: async (lost) => void met.push(lost) });
+  const { store, history, saving } = opened(context, [away, () => Promise.resolve(refusal)], {
+    meet: async (lost) => void met.push(lost),
+  });
   const sent = withTargets(EMPTY, [tower]);
   history.changeTo(sent);
   await saving.save();
@@ -44,14 +71,29 @@ test("a save that the server took, but whose answer was lost, is known as one's 
 });
 
 test("a copy made after a change was not answered holds the whole mission, not the change alone", async (context) => {
-  const made = { id: "copy", name: "North (copy)", revision: 1, uavs: [], targets: [{ asset: 7, kind: "tower", label: "18", position: [10, 50] }], objective: "makespan", return_to_start: true, plan: null };
-  const stored = () => Promise.resolve(new Response(JSON.stringify(made), { status: 201, headers: { "Content-Type": "application/json" } }));
+  const made = {
+    id: "copy",
+    name: "North (copy)",
+    revision: 1,
+    uavs: [],
+    targets: [{ asset: 7, kind: "tower", label: "18", position: [10, 50] }],
+    objective: "makespan",
+    return_to_start: true,
+    plan: null,
+  };
+  const stored = () =>
+    Promise.resolve(
+      new Response(JSON.stringify(made), { status: 201, headers: { "Content-Type": "application/json" } }),
+    );
   const { store, history, saving, asked } = opened(context, [away, stored]);
   history.changeTo(withTargets(EMPTY, [tower]));
   await saving.save();
   store.update({ name: "North", conflict: null });
   await saving.keepMineAsCopy();
-  assert.deepEqual(asked.map(({ method }) => method), ["PATCH", "POST"]);
+  assert.deepEqual(
+    asked.map(({ method }) => method),
+    ["PATCH", "POST"],
+  );
   assert.equal(asked[1].body.name, "North (copy)");
   assert.deepEqual(asked[1].body.targets, [{ asset: 7 }]);
   assert.equal(asked[1].body.objective, "makespan");
@@ -61,13 +103,28 @@ test("a copy made after a change was not answered holds the whole mission, not t
 test("a save asked for while another is under way is made after it", async (context) => {
   let answer;
   const first = () => new Promise((resolve) => (answer = resolve));
-  const mission = { id: "m", name: "North", revision: 5, uavs: [], targets: [], objective: "makespan", return_to_start: true, plan: null };
-  const { history, saving, asked } = opened(context, [first, () => Promise.resolve(new Response(JSON.stringify({ ...mission, id: "copy" }), { status: 201 }))]);
+  const mission = {
+    id: "m",
+    name: "North",
+    revision: 5,
+    uavs: [],
+    targets: [],
+    objective: "makespan",
+    return_to_start: true,
+    plan: null,
+  };
+  const { history, saving, asked } = opened(context, [
+    first,
+    () => Promise.resolve(new Response(JSON.stringify({ ...mission, id: "copy" }), { status: 201 })),
+  ]);
   history.changeTo(withTargets(EMPTY, [tower]));
   const underWay = saving.save({ byItself: true });
   await saving.keepMineAsCopy();
   assert.equal(asked.length, 1);
   answer(new Response(JSON.stringify(mission), { status: 200 }));
   await underWay;
-  assert.deepEqual(asked.map(({ method }) => method), ["PATCH", "POST"]);
+  assert.deepEqual(
+    asked.map(({ method }) => method),
+    ["PATCH", "POST"],
+  );
 });

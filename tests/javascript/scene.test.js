@@ -17,7 +17,7 @@ import { area2, triangulate } from "../../static/js/scene/geometry/triangulate.j
 import { deckUnder } from "../../static/js/scene/geometry/under_decks.js";
 import { slotPoint, standing, wiresOf } from "../../static/js/scene/geometry/wires.js";
 import { withinFor, zoneVolume } from "../../static/js/scene/geometry/zones.js";
-import { drawer, hill_m, mountains, randomScene, RULES } from "./random_scene.js";
+import { drawer, hill_m, mountains, RULES, randomScene } from "./random_scene.js";
 
 const POINTS = 100; // random ones, of each kind
 const WITHIN_M = 0.5;
@@ -25,15 +25,21 @@ const scene = randomScene(7);
 const frame = makeFrame(scene.origin);
 const ground = makeGround(scene.ground, frame);
 const folds = foldsOf(ground);
-const close = (actual, expected, within, message) => assert.ok(Math.abs(actual - expected) <= within, `${message ?? ""} ${actual} is not ${expected}`);
+const close = (actual, expected, within, message) =>
+  assert.ok(Math.abs(actual - expected) <= within, `${message ?? ""} ${actual} is not ${expected}`);
 
 /** Heights at which an upright line through a place meets triangles. */
 function heightsThrough(vertices, index, x, z) {
   const heights = [];
   for (let at = 0; at < index.length; at += 3) {
-    const [a, b, c] = [index[at], index[at + 1], index[at + 2]].map((corner) => vertices.subarray(corner * 3, corner * 3 + 3));
+    const [a, b, c] = [index[at], index[at + 1], index[at + 2]].map((corner) =>
+      vertices.subarray(corner * 3, corner * 3 + 3),
+    );
     const whole = (b[0] - a[0]) * (c[2] - a[2]) - (c[0] - a[0]) * (b[2] - a[2]);
-    const [u, v] = [((x - a[0]) * (c[2] - a[2]) - (c[0] - a[0]) * (z - a[2])) / whole, ((b[0] - a[0]) * (z - a[2]) - (x - a[0]) * (b[2] - a[2])) / whole];
+    const [u, v] = [
+      ((x - a[0]) * (c[2] - a[2]) - (c[0] - a[0]) * (z - a[2])) / whole,
+      ((b[0] - a[0]) * (z - a[2]) - (x - a[0]) * (b[2] - a[2])) / whole,
+    ];
     if (u >= 0 && v >= 0 && u + v <= 1) heights.push(a[1] + u * (b[1] - a[1]) + v * (c[1] - a[1]));
   }
   return heights.sort((one, other) => one - other);
@@ -69,7 +75,11 @@ test("the ground is that of the data, between posts too, and its mesh is where h
     const [x, y, z] = frame.toLocal(lon, lat, hill_m(lon, lat));
     close(ground.heightAt(x, z), y, WITHIN_M);
   }
-  for (const [west, wide, within] of [[10, 0.04, 0.01], [9.9, 0.09, 10]]) { // the skirt around the data leads smoothly away from them
+  for (const [west, wide, within] of [
+    [10, 0.04, 0.01],
+    [9.9, 0.09, 10],
+  ]) {
+    // the skirt around the data leads smoothly away from them
     for (let point = 0; point < 10; point += 1) {
       const [x, , z] = frame.toLocal(west + wide * next(), 56.05 - 0.04 * next(), 0);
       const [height] = heightsThrough(mesh.vertices, mesh.index, x, z);
@@ -77,7 +87,10 @@ test("the ground is that of the data, between posts too, and its mesh is where h
     }
   }
   const inside = mesh.normals.filter((_, at) => at % 3 === 1);
-  assert.ok(inside.every((up) => up > 0), "every face looks up");
+  assert.ok(
+    inside.every((up) => up > 0),
+    "every face looks up",
+  );
 });
 
 test("tower tops are where ground and height say, and no member is above", () => {
@@ -91,20 +104,39 @@ test("tower tops are where ground and height say, and no member is above", () =>
     assert.ok(Math.max(-Infinity, ...heights(fine)) <= top + 0.02, support.form);
     const foot = frame.toLocal(...support.position, support.ground_amsl_m)[1];
     close(Math.min(...heights(outline)), foot, WITHIN_M);
-    for (let at = 0; at < outline.ends.length; at += 3) assert.ok(Math.hypot(outline.ends[at] - x, outline.ends[at + 2] - z) < support.height_m);
+    for (let at = 0; at < outline.ends.length; at += 3)
+      assert.ok(Math.hypot(outline.ends[at] - x, outline.ends[at + 2] - z) < support.height_m);
   }
 });
 
 test("what is drawn lower than planners count has a mark up to there, and wires from top to top", () => {
-  const low = { ...scene, supports: scene.supports.map((support, number) => (number % 2 ? { ...support, likely_m: support.height_m - 8, arms: [[support.height_m - 9, -2, 2]], slots: [], earth: [] } : support)) };
+  const low = {
+    ...scene,
+    supports: scene.supports.map((support, number) =>
+      number % 2
+        ? { ...support, likely_m: support.height_m - 8, arms: [[support.height_m - 9, -2, 2]], slots: [], earth: [] }
+        : support,
+    ),
+  };
   const { points, first, marks } = countedAir(low, frame);
   assert.equal(first.length - 1, scene.spans.length, "each span has an end that is counted higher");
   const next = drawer(12);
   for (let point = 0; point < POINTS; point += 1) {
     const number = Math.floor(next() * scene.spans.length);
     const share = next();
-    const tops = [scene.spans[number].from, scene.spans[number].to].map((place) => frame.toLocal(...scene.supports[place].position, scene.supports[place].ground_amsl_m + scene.supports[place].height_m));
-    [0, 1, 2].forEach((axis) => close(points[number * 6 + axis] * (1 - share) + points[number * 6 + 3 + axis] * share, tops[0][axis] * (1 - share) + tops[1][axis] * share, 1e-6));
+    const tops = [scene.spans[number].from, scene.spans[number].to].map((place) =>
+      frame.toLocal(
+        ...scene.supports[place].position,
+        scene.supports[place].ground_amsl_m + scene.supports[place].height_m,
+      ),
+    );
+    [0, 1, 2].forEach((axis) =>
+      close(
+        points[number * 6 + axis] * (1 - share) + points[number * 6 + 3 + axis] * share,
+        tops[0][axis] * (1 - share) + tops[1][axis] * share,
+        1e-6,
+      ),
+    );
   }
   for (let place = 1; place < 8; place += 2) {
     const { outline } = supportMembers(low.supports[place], frame);
@@ -125,16 +157,34 @@ test("a member's matrix brings a prism from one end to the other, as wide as it 
     [at(-0.5), at(0.5)].flat().forEach((value, place) => close(value, ends[member * 6 + place], 1e-5));
     const [s, u, t] = [0, 4, 8].map((from) => [...m.subarray(from, from + 3)]);
     for (const side of [s, t]) close(Math.hypot(...side), [0.5, 2, 1][member], 1e-6);
-    for (const [one, other] of [[s, u], [u, t], [s, t]]) close(one.reduce((sum, value, axis) => sum + value * other[axis], 0), 0, 1e-4);
+    for (const [one, other] of [
+      [s, u],
+      [u, t],
+      [s, t],
+    ])
+      close(
+        one.reduce((sum, value, axis) => sum + value * other[axis], 0),
+        0,
+        1e-4,
+      );
     const cross = [s[1] * u[2] - s[2] * u[1], s[2] * u[0] - s[0] * u[2], s[0] * u[1] - s[1] * u[0]];
-    assert.ok(cross.reduce((sum, value, axis) => sum + value * t[axis], 0) > 0, "right-handed, or faces would look inwards");
+    assert.ok(
+      cross.reduce((sum, value, axis) => sum + value * t[axis], 0) > 0,
+      "right-handed, or faces would look inwards",
+    );
   }
 });
 
 test("a catenary with a given sag hangs as one by another calculation", () => {
-  for (const [length, sag] of [[300, 7.5], [80, 0.3], [1_200, 120], [40, 18]]) {
+  for (const [length, sag] of [
+    [300, 7.5],
+    [80, 0.3],
+    [1_200, 120],
+    [40, 18],
+  ]) {
     const constant = catenaryConstant(length, sag);
-    for (const share of [0, 0.1, 0.37, 0.5, 0.9, 1]) close(sagAt(share, length, sag, constant), sagByHalving(share, length, sag), 0.001 * sag + 1e-6);
+    for (const share of [0, 0.1, 0.37, 0.5, 0.9, 1])
+      close(sagAt(share, length, sag, constant), sagByHalving(share, length, sag), 0.001 * sag + 1e-6);
   }
   assert.equal(sagAt(0.5, 300, 0), 0);
 });
@@ -142,7 +192,10 @@ test("a catenary with a given sag hangs as one by another calculation", () => {
 test("wires hang from slot to slot with the sag of the data, below the line that planners keep clear of", () => {
   const wires = wiresOf(scene, frame);
   const next = drawer(3);
-  assert.equal(wires.span.length, scene.spans.reduce((sum, { phases, earth }) => sum + phases + earth, 0));
+  assert.equal(
+    wires.span.length,
+    scene.spans.reduce((sum, { phases, earth }) => sum + phases + earth, 0),
+  );
   for (let point = 0; point < POINTS; point += 1) {
     const wire = Math.floor(next() * wires.span.length);
     const span = scene.spans[wires.span[wire]];
@@ -150,8 +203,15 @@ test("wires hang from slot to slot with the sag of the data, below the line that
     const [start, end] = [at(wires.first[wire]), at(wires.first[wire + 1] - 1)];
     const ends = [span.from, span.to].map((place) => scene.supports[place]);
     [start, end].forEach((tip, side) => {
-      const slots = (wires.isEarth[wire] ? ends[side].earth : ends[side].slots).map((slot) => slotPoint(standing(ends[side], frame), slot));
-      close(Math.min(...slots.map((slot) => Math.hypot(...slot.map((value, axis) => value - tip[axis])))), 0, 1e-6, "starts and ends at a slot");
+      const slots = (wires.isEarth[wire] ? ends[side].earth : ends[side].slots).map((slot) =>
+        slotPoint(standing(ends[side], frame), slot),
+      );
+      close(
+        Math.min(...slots.map((slot) => Math.hypot(...slot.map((value, axis) => value - tip[axis])))),
+        0,
+        1e-6,
+        "starts and ends at a slot",
+      );
     });
     const pieces = wires.first[wire + 1] - 1 - wires.first[wire];
     const along = next() * pieces;
@@ -162,7 +222,9 @@ test("wires hang from slot to slot with the sag of the data, below the line that
     const length = Math.hypot(end[0] - start[0], end[2] - start[2]);
     const sag = span.sag_m * (wires.isEarth[wire] ? RULES.earth_sag_share : 1);
     close(drawn, start[1] + share * (end[1] - start[1]) - sagByHalving(share, length, sag), WITHIN_M);
-    const [low, high] = ends.map((support) => frame.toLocal(...support.position, support.ground_amsl_m + support.height_m)[1]);
+    const [low, high] = ends.map(
+      (support) => frame.toLocal(...support.position, support.ground_amsl_m + support.height_m)[1],
+    );
     assert.ok(drawn <= low + share * (high - low) + 1e-6, "no wire is above what planners count");
   }
 });
@@ -173,15 +235,27 @@ test("wires of a circuit do not cross from tower to tower, whichever way round t
     const { from, to } = scene.spans[wires.span[wire]];
     const [a, b] = [from, to].map((place) => standing(scene.supports[place], frame).foot);
     const right = [-(b[2] - a[2]), b[0] - a[0]];
-    const side = (place, foot) => (wires.points[place * 3] - foot[0]) * right[0] + (wires.points[place * 3 + 2] - foot[2]) * right[1];
+    const side = (place, foot) =>
+      (wires.points[place * 3] - foot[0]) * right[0] + (wires.points[place * 3 + 2] - foot[2]) * right[1];
     const [start, end] = [side(wires.first[wire], a), side(wires.first[wire + 1] - 1, b)];
     if (scene.spans[wires.span[wire]].phases === 6 && !wires.isEarth[wire]) assert.ok(start * end > 0);
   }
 });
 
 test("a polygon with a notch and a hole becomes triangles of its area, all turned one way", () => {
-  const outline = [[0, 0], [10, 0], [10, 10], [5, 5], [0, 10], [0, 0]];
-  const hole = [[2, 1], [4, 1], [3, 3]];
+  const outline = [
+    [0, 0],
+    [10, 0],
+    [10, 10],
+    [5, 5],
+    [0, 10],
+    [0, 0],
+  ];
+  const hole = [
+    [2, 1],
+    [4, 1],
+    [3, 3],
+  ];
   const { points, triangles } = triangulate([outline, hole]);
   let area = 0;
   for (let at = 0; at < triangles.length; at += 3) {
@@ -190,7 +264,15 @@ test("a polygon with a notch and a hole becomes triangles of its area, all turne
     area += own;
   }
   close(area, 75 - 2, 1e-9);
-  assert.deepEqual(triangulate([[[0, 0], [1, 1]]]).triangles, []);
+  assert.deepEqual(
+    triangulate([
+      [
+        [0, 0],
+        [1, 1],
+      ],
+    ]).triangles,
+    [],
+  );
 });
 
 test("what is cut along the ground's folds covers the same area, in pieces over which the ground is a plane", () => {
@@ -199,11 +281,18 @@ test("what is cut along the ground's folds covers the same area, in pieces over 
   const cuts = foldsOf(rough);
   const next = drawer(6);
   for (let round = 0; round < 20; round += 1) {
-    const triangle = Array.from({ length: 3 }, () => [rough.west + next() * rough.stepX * (rough.columns - 1), rough.north + next() * rough.stepZ * (rough.rows - 1)]);
+    const triangle = Array.from({ length: 3 }, () => [
+      rough.west + next() * rough.stepX * (rough.columns - 1),
+      rough.north + next() * rough.stepZ * (rough.rows - 1),
+    ]);
     const turned = area2(triangle) > 0 ? triangle : [...triangle].reverse();
     for (const within of [0.15, 5]) {
       const pieces = cuts.pieces([turned], within);
-      close(pieces.reduce((sum, piece) => sum + area2(piece), 0), area2(turned), 1e-6 * area2(turned));
+      close(
+        pieces.reduce((sum, piece) => sum + area2(piece), 0),
+        area2(turned),
+        1e-6 * area2(turned),
+      );
       for (const piece of pieces.filter((_, number) => number % 50 === 0)) {
         const middle = [0, 1].map((axis) => piece.reduce((sum, point) => sum + point[axis], 0) / piece.length);
         const mean = piece.reduce((sum, [x, z]) => sum + rough.heightAt(x, z), 0) / piece.length;
@@ -211,8 +300,34 @@ test("what is cut along the ground's folds covers the same area, in pieces over 
       }
     }
   }
-  assert.deepEqual(cutBy([[0, 0], [2, 0], [2, 2], [0, 2]], (x) => 1 - x), [[0, 0], [1, 0], [1, 2], [0, 2]]);
-  assert.deepEqual(cutBy([[0, 0], [2, 0], [2, 2]], (x) => x - 3), []);
+  assert.deepEqual(
+    cutBy(
+      [
+        [0, 0],
+        [2, 0],
+        [2, 2],
+        [0, 2],
+      ],
+      (x) => 1 - x,
+    ),
+    [
+      [0, 0],
+      [1, 0],
+      [1, 2],
+      [0, 2],
+    ],
+  );
+  assert.deepEqual(
+    cutBy(
+      [
+        [0, 0],
+        [2, 0],
+        [2, 2],
+      ],
+      (x) => x - 3,
+    ),
+    [],
+  );
 });
 
 test("random star-shaped polygons are covered whole", () => {
@@ -225,7 +340,8 @@ test("random star-shaped polygons are covered whole", () => {
     });
     const { points, triangles } = triangulate([ring]);
     let area = 0;
-    for (let at = 0; at < triangles.length; at += 3) area += area2([0, 1, 2].map((corner) => points[triangles[at + corner]])) / 2;
+    for (let at = 0; at < triangles.length; at += 3)
+      area += area2([0, 1, 2].map((corner) => points[triangles[at + corner]])) / 2;
     close(area, area2(ring) / 2, 1e-9);
   }
 });
@@ -255,7 +371,9 @@ test("zones reach from limit to limit: over the ground they follow it, above the
     const { vertices } = volumes[0].walls;
     const panel = Math.floor((next() * vertices.length) / 12) * 12;
     const share = next();
-    const [x, z] = [0, 2].map((axis) => vertices[panel + axis] + share * (vertices[panel + 6 + axis] - vertices[panel + axis]));
+    const [x, z] = [0, 2].map(
+      (axis) => vertices[panel + axis] + share * (vertices[panel + 6 + axis] - vertices[panel + axis]),
+    );
     const [lon, lat] = frame.toGeographic([x, 0, z]);
     const top = vertices[panel + 4] + share * (vertices[panel + 10] - vertices[panel + 4]);
     close(top, hill_m(lon, lat) - 200 + 120, WITHIN_M);
@@ -275,19 +393,42 @@ test("in mountains zones follow the ground as closely, up to where a limit above
     [(y) => y + 40, (y) => Math.max(y + 40, sea(1_300))],
   ];
   steep.zones.forEach((zone, number) => {
-    const { walls, caps } = zoneVolume(zone, { frame: own, ground: rough, folds: cuts, clip: steep.clip, rules: RULES, within_m });
+    const { walls, caps } = zoneVolume(zone, {
+      frame: own,
+      ground: rough,
+      folds: cuts,
+      clip: steep.clip,
+      rules: RULES,
+      within_m,
+    });
     const [[west, south], , [east, north]] = zone.polygons[0][0];
     for (let point = 0; point < POINTS; point += 1) {
-      const [x, , z] = own.toLocal(west + (east - west) * (0.01 + 0.98 * next()), south + (north - south) * (0.01 + 0.98 * next()), 0);
+      const [x, , z] = own.toLocal(
+        west + (east - west) * (0.01 + 0.98 * next()),
+        south + (north - south) * (0.01 + 0.98 * next()),
+        0,
+      );
       const heights = heightsThrough(caps.vertices, caps.index, x, z);
-      limits[number].forEach((expected, side) => close(heights.at(-side), expected(rough.heightAt(x, z)), WITHIN_M, `zone ${number}, ${side ? "ceiling" : "floor"}`));
+      limits[number].forEach((expected, side) =>
+        close(
+          heights.at(-side),
+          expected(rough.heightAt(x, z)),
+          WITHIN_M,
+          `zone ${number}, ${side ? "ceiling" : "floor"}`,
+        ),
+      );
     }
     for (let point = 0; point < POINTS; point += 1) {
       const panel = Math.floor((next() * walls.vertices.length) / 12) * 12;
       const share = next();
-      const [x, low, z] = [0, 1, 2].map((axis) => walls.vertices[panel + axis] + share * (walls.vertices[panel + 6 + axis] - walls.vertices[panel + axis]));
+      const [x, low, z] = [0, 1, 2].map(
+        (axis) =>
+          walls.vertices[panel + axis] + share * (walls.vertices[panel + 6 + axis] - walls.vertices[panel + axis]),
+      );
       const high = walls.vertices[panel + 4] + share * (walls.vertices[panel + 10] - walls.vertices[panel + 4]);
-      [low, high].forEach((height, side) => close(height, limits[number][side](rough.heightAt(x, z)), WITHIN_M, `zone ${number}, wall`));
+      [low, high].forEach((height, side) =>
+        close(height, limits[number][side](rough.heightAt(x, z)), WITHIN_M, `zone ${number}, wall`),
+      );
     }
   });
 });
@@ -307,7 +448,10 @@ test("a zone without an upper limit has no ceiling, and none has a wall where th
 
 test("a ribbon passes through every point of the way, level across and as wide as told; poles stand from it to the ground", () => {
   const next = drawer(5);
-  const positions = Float32Array.from({ length: 120 * 3 }, (_, at) => [at * 7 + next() * 10, 40 + next() * 60, next() * 200][at % 3]);
+  const positions = Float32Array.from(
+    { length: 120 * 3 },
+    (_, at) => [at * 7 + next() * 10, 40 + next() * 60, next() * 200][at % 3],
+  );
   const { vertices, index, along_m } = ribbon(positions, { width_m: 3 });
   assert.equal(index.length, 119 * 6);
   for (let point = 0; point < POINTS; point += 1) {
@@ -324,7 +468,10 @@ test("a ribbon passes through every point of the way, level across and as wide a
   }
   assert.ok(along_m.every((way, at) => at < 2 || way >= along_m[at - 2]));
   const poles = heightPoles([0, 50, 0, 100, 80, 0, 100, 30, 0, 100, 30, 60], (x) => x / 10, { spacing_m: 40 });
-  assert.deepEqual([...poles.segments].filter((_, at) => at % 6 === 0), [0, 40, 80, 100, 100]);
+  assert.deepEqual(
+    [...poles.segments].filter((_, at) => at % 6 === 0),
+    [0, 40, 80, 100, 100],
+  );
   assert.deepEqual([...poles.heights_m], [50, 58, 66, 20, 20]);
 });
 
@@ -341,10 +488,14 @@ test("rails lie on the ground, rise to the bridge that carries them, and no stee
   const deckAt = deckUnder(scene.bridges, frame);
   const [from, middle, to] = scene.railways[0].line;
   const near = [middle[0] - 0.0025, middle[1] - 0.00025]; // a way of its own up to just before the bridge
-  const railways = [[from, near], [near, middle, to]].map((line) => ({ ...scene.railways[0], line }));
+  const railways = [
+    [from, near],
+    [near, middle, to],
+  ].map((line) => ({ ...scene.railways[0], line }));
   const ways = railwayTracks(railways, { frame, ground, deckAt }).map(({ bed, rails }) => {
     const heights = [];
-    for (let at = 0; at < bed.vertices.length; at += 12) heights.push([0, 1, 2].map((axis) => (bed.vertices[at + 3 + axis] + bed.vertices[at + 6 + axis]) / 2));
+    for (let at = 0; at < bed.vertices.length; at += 12)
+      heights.push([0, 1, 2].map((axis) => (bed.vertices[at + 3 + axis] + bed.vertices[at + 6 + axis]) / 2));
     assert.equal(rails.length / 6, (heights.length - 1) * 4);
     return heights;
   });
@@ -359,7 +510,11 @@ test("rails lie on the ground, rise to the bridge that carries them, and no stee
 
 test("wires over rails hang below what planners count, on masts that stand on the ground", () => {
   const plain = { ...ground, heightAt: () => 0 };
-  const [electric, other] = railwayTracks([scene.railways[0], { ...scene.railways[0], is_electrified: false }], { frame, ground: plain, wire_agl_m: RULES.rail_wire_agl_m });
+  const [electric, other] = railwayTracks([scene.railways[0], { ...scene.railways[0], is_electrified: false }], {
+    frame,
+    ground: plain,
+    wire_agl_m: RULES.rail_wire_agl_m,
+  });
   const heights = (points) => [...points].filter((_, at) => at % 3 === 1);
   assert.equal(Math.max(...heights(electric.masts.ends)), RULES.rail_wire_agl_m);
   assert.equal(Math.min(...heights(electric.masts.ends)), 0);
@@ -385,7 +540,10 @@ test("the sun stands as high at noon as latitude and season say, and due south",
 });
 
 test("names stand over what they name, the heaviest first", () => {
-  const volumes = scene.zones.map((zone) => ({ ...zoneVolume(zone, { frame, ground, folds, clip: scene.clip, rules: RULES }), isInForce: true }));
+  const volumes = scene.zones.map((zone) => ({
+    ...zoneVolume(zone, { frame, ground, folds, clip: scene.clip, rules: RULES }),
+    isInForce: true,
+  }));
   const labels = labelsOf(scene, frame, volumes);
   assert.equal(labels[0].kind, "zone");
   assert.ok(labels.every(({ weight }, at) => at === 0 || weight <= labels[at - 1].weight));

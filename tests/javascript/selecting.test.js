@@ -4,13 +4,33 @@ import test from "node:test";
 import { isWide } from "../../static/js/map/lasso.js";
 import { partOfLine } from "../../static/js/map/line_part.js";
 import { refsIn, rowsToAdd } from "../../static/js/mission/list_reading.js";
-import { EMPTY, isUsualTask, keyOf, requestOf, storedTarget, targetOf, targetOfRow, taskOf, withTargets, withTask } from "../../static/js/mission/selection.js";
+import {
+  EMPTY,
+  isUsualTask,
+  keyOf,
+  requestOf,
+  storedTarget,
+  targetOf,
+  targetOfRow,
+  taskOf,
+  withTargets,
+  withTask,
+} from "../../static/js/mission/selection.js";
 import { createHistory, createStore } from "../../static/js/store.js";
 
 const tower = targetOf({ id: 7, kind: "tower", properties: { label: "T 7" }, centre: [10, 50] });
 const line = targetOf({ id: 9, kind: "line", properties: { label: "North" }, centre: [10, 50] });
 const point = targetOf({ id: 9, kind: "line", properties: { label: "North" }, position: [10.5, 50.5] });
-const place = storedTarget({ asset: null, label: "Place", detail: "", kind: null, position: [11, 51], is_point: true, stretch: null, task: null });
+const place = storedTarget({
+  asset: null,
+  label: "Place",
+  detail: "",
+  kind: null,
+  position: [11, 51],
+  is_point: true,
+  stretch: null,
+  task: null,
+});
 
 test("a list is parted at line ends, tabs, commas and semicolons; each reference counts once", () => {
   assert.deepEqual(refsIn(' T 1\r\n"T 2"\tT 3,T 4; T 5\n\nT 1\n'), ["T 1", "T 2", "T 3", "T 4", "T 5"]);
@@ -26,34 +46,75 @@ test("what has one meaning is added, of several meanings what was chosen", () =>
     { ref: "d", match: "several", assets: [asset(6), asset(7)] },
     { ref: "e", match: "none", assets: [] },
   ];
-  assert.deepEqual(rowsToAdd(results, new Map([["b", "all"], ["c", "5"]])).map(({ id }) => id), [1, 2, 3, 5]);
+  assert.deepEqual(
+    rowsToAdd(
+      results,
+      new Map([
+        ["b", "all"],
+        ["c", "5"],
+      ]),
+    ).map(({ id }) => id),
+    [1, 2, 3, 5],
+  );
 });
 
 test("the usual task follows what is picked, as on the server", () => {
-  assert.deepEqual([tower, line, point, place].map(taskOf), [{ kind: "photo", hold_s: 10 }, { kind: "look", hold_s: 0 }, { kind: "look", hold_s: 5 }, { kind: "hold", hold_s: 10 }]);
+  assert.deepEqual([tower, line, point, place].map(taskOf), [
+    { kind: "photo", hold_s: 10 },
+    { kind: "look", hold_s: 0 },
+    { kind: "look", hold_s: 5 },
+    { kind: "hold", hold_s: 10 },
+  ]);
 });
 
 test("a task is set for some targets and asked for where it is not the usual one", () => {
   const selection = withTargets(EMPTY, [tower, point]);
   const held = withTask(selection, [tower.key], { kind: "hold" });
-  assert.deepEqual(held.targets.map(taskOf), [{ kind: "hold", hold_s: 30 }, { kind: "look", hold_s: 5 }]);
-  assert.deepEqual(requestOf(held).targets, [{ asset: 7, task: { kind: "hold", hold_s: 30 } }, { asset: 9, position: [10.5, 50.5] }]);
+  assert.deepEqual(held.targets.map(taskOf), [
+    { kind: "hold", hold_s: 30 },
+    { kind: "look", hold_s: 5 },
+  ]);
+  assert.deepEqual(requestOf(held).targets, [
+    { asset: 7, task: { kind: "hold", hold_s: 30 } },
+    { asset: 9, position: [10.5, 50.5] },
+  ]);
   const longer = withTask(held, [tower.key, point.key], { kind: "hold", hold_s: 90 });
-  assert.deepEqual(longer.targets.map(taskOf), [{ kind: "hold", hold_s: 90 }, { kind: "hold", hold_s: 90 }]);
+  assert.deepEqual(longer.targets.map(taskOf), [
+    { kind: "hold", hold_s: 90 },
+    { kind: "hold", hold_s: 90 },
+  ]);
   assert.deepEqual(withTask(longer, [tower.key], { kind: "hold" }).targets.map(taskOf), longer.targets.map(taskOf)); // keeps its seconds
   const back = withTask(withTask(longer, [tower.key], { kind: "photo" }), [point.key], { kind: "look" });
   assert.deepEqual(requestOf(back).targets, requestOf(selection).targets);
 });
 
 test("a stored task that is the usual one asks for the same plan as none", () => {
-  const stored = storedTarget({ asset: 7, label: "T 7", detail: "", kind: "tower", position: [10, 50], is_point: false, stretch: null, task: { kind: "photo", hold_s: 10 } });
+  const stored = storedTarget({
+    asset: 7,
+    label: "T 7",
+    detail: "",
+    kind: "tower",
+    position: [10, 50],
+    is_point: false,
+    stretch: null,
+    task: { kind: "photo", hold_s: 10 },
+  });
   assert.ok(isUsualTask(stored));
   assert.deepEqual(requestOf({ ...EMPTY, targets: [stored] }).targets, [{ asset: 7 }]);
 });
 
 test("a stretch is another target than its line and says how long it is", () => {
-  const stretch = [[10, 50], [10.1, 50]];
-  const target = targetOf({ id: 9, kind: "line", properties: { label: "North", length_m: 7_150 }, centre: [10.05, 50], stretch });
+  const stretch = [
+    [10, 50],
+    [10.1, 50],
+  ];
+  const target = targetOf({
+    id: 9,
+    kind: "line",
+    properties: { label: "North", length_m: 7_150 },
+    centre: [10.05, 50],
+    stretch,
+  });
   assert.notEqual(target.key, line.key);
   assert.equal(target.key, keyOf({ asset: 9, stretch }));
   assert.equal(target.detail, "stretch, 7.2\u00a0km");
@@ -61,21 +122,81 @@ test("a stretch is another target than its line and says how long it is", () => 
 });
 
 test("a short row of the API is a target like any other", () => {
-  assert.deepEqual(targetOfRow({ id: 7, kind: "tower", label: "T 7", detail: "", length_m: null, centre: [10, 50] }), tower);
+  assert.deepEqual(
+    targetOfRow({ id: 7, kind: "tower", label: "T 7", detail: "", length_m: null, centre: [10, 50] }),
+    tower,
+  );
 });
 
 test("the part of a line between two places goes over the vertices between them, in the line's direction", () => {
-  const geometry = { type: "LineString", coordinates: [[0, 0], [1, 0], [2, 0], [3, 0]] };
-  const part = { type: "LineString", coordinates: [[0.5, 0], [1, 0], [2, 0], [2.5, 0]] };
-  assert.deepEqual(partOfLine(geometry, [[0.5, 0], [2.5, 0]]), part);
-  assert.deepEqual(partOfLine(geometry, [[2.5, 0], [0.5, 0]]), part);
-  assert.deepEqual(partOfLine(geometry, [[1.2, 0], [1.8, 0]]).coordinates, [[1.2, 0], [1.8, 0]]);
+  const geometry = {
+    type: "LineString",
+    coordinates: [
+      [0, 0],
+      [1, 0],
+      [2, 0],
+      [3, 0],
+    ],
+  };
+  const part = {
+    type: "LineString",
+    coordinates: [
+      [0.5, 0],
+      [1, 0],
+      [2, 0],
+      [2.5, 0],
+    ],
+  };
+  assert.deepEqual(
+    partOfLine(geometry, [
+      [0.5, 0],
+      [2.5, 0],
+    ]),
+    part,
+  );
+  assert.deepEqual(
+    partOfLine(geometry, [
+      [2.5, 0],
+      [0.5, 0],
+    ]),
+    part,
+  );
+  assert.deepEqual(
+    partOfLine(geometry, [
+      [1.2, 0],
+      [1.8, 0],
+    ]).coordinates,
+    [
+      [1.2, 0],
+      [1.8, 0],
+    ],
+  );
 });
 
 test("a lasso that goes round nothing is a click", () => {
-  assert.equal(isWide([[0, 0], [100, 0]]), false);
-  assert.equal(isWide([[0, 0], [5, 0], [5, 5]]), false);
-  assert.equal(isWide([[0, 0], [50, 0], [50, 50]]), true);
+  assert.equal(
+    isWide([
+      [0, 0],
+      [100, 0],
+    ]),
+    false,
+  );
+  assert.equal(
+    isWide([
+      [0, 0],
+      [5, 0],
+      [5, 5],
+    ]),
+    false,
+  );
+  assert.equal(
+    isWide([
+      [0, 0],
+      [50, 0],
+      [50, 50],
+    ]),
+    true,
+  );
 });
 
 test("undo goes back to the beginning, however many steps there were", () => {

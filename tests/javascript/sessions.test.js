@@ -17,7 +17,15 @@ function watched(endsIn_s, answers) {
     return next;
   };
   const setTimer = (act, ms) => ((fire = act), waits_s.push(ms / 1_000), waits_s.length);
-  const watch = createSessionWatch({ endsIn_s, ask: answer, stay: answer, show: (state) => shown.push(state), setTimer, clearTimer: () => {}, now_ms: () => 1_000_000 });
+  const watch = createSessionWatch({
+    endsIn_s,
+    ask: answer,
+    stay: answer,
+    show: (state) => shown.push(state),
+    setTimer,
+    clearTimer: () => {},
+    now_ms: () => 1_000_000,
+  });
   return { shown, waits_s, keep: watch.keep, time: async () => (fire(), settled()) };
 }
 
@@ -56,11 +64,30 @@ test("a server that is away ends no session", async () => {
 
 function storageOf(keys) {
   const kept = new Map(keys.map((key) => [key, "{}"]));
-  return { get length() { return kept.size; }, key: (place) => [...kept.keys()][place], removeItem: (key) => kept.delete(key), keys: () => [...kept.keys()] };
+  return {
+    get length() {
+      return kept.size;
+    },
+    key: (place) => [...kept.keys()][place],
+    removeItem: (key) => kept.delete(key),
+    keys: () => [...kept.keys()],
+  };
 }
 
-const MINE = ["spanwise.draft.7.new", "spanwise.draft.7.0b1e", "spanwise.zones-draft.7", "spanwise.uploads.7", "spanwise.planning.7.new"];
-const OTHERS = ["spanwise.draft.77.new", "spanwise.zones-draft.8", "spanwise.theme", "spanwise.map.7up", "elsewhere.draft.7.new"];
+const MINE = [
+  "spanwise.draft.7.new",
+  "spanwise.draft.7.0b1e",
+  "spanwise.zones-draft.7",
+  "spanwise.uploads.7",
+  "spanwise.planning.7.new",
+];
+const OTHERS = [
+  "spanwise.draft.77.new",
+  "spanwise.zones-draft.8",
+  "spanwise.theme",
+  "spanwise.map.7up",
+  "elsewhere.draft.7.new",
+];
 
 test("signing out leaves nothing of whoever signs out, and everything of others", () => {
   const storage = storageOf([...MINE, ...OTHERS]);
@@ -76,7 +103,11 @@ test("drafts stay where somebody wants to keep them, and nothing else does", () 
 });
 
 test("a closed storage keeps nobody from signing out", () => {
-  const closed = { get length() { throw new Error("closed"); } };
+  const closed = {
+    get length() {
+      throw new Error("closed");
+    },
+  };
   assert.equal(draftsOf(7, [closed]), 0);
   forget(7, { storages: [closed] });
 });

@@ -2,15 +2,40 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { rateOf } from "../../static/js/monitor/clock_rate.js";
-import { FAULTS, isPresent, lastsWords, stateWords, vehicleWords, WELL, windOf } from "../../static/js/monitor/simulation_words.js";
+import {
+  FAULTS,
+  isPresent,
+  lastsWords,
+  stateWords,
+  vehicleWords,
+  WELL,
+  windOf,
+} from "../../static/js/monitor/simulation_words.js";
 
-const vehicle = (name, more = {}) => ({ id: name, name, state: "flying", battery_wh: 60, told: { is_crashed: false }, conditions: { wind: [], gusts_mps: 0 }, ...more });
-const simulation = (more = {}) => ({ state: "flying", speed: 5, message: "", pace: null, vehicles: [vehicle("Tern")], ...more });
+const vehicle = (name, more = {}) => ({
+  id: name,
+  name,
+  state: "flying",
+  battery_wh: 60,
+  told: { is_crashed: false },
+  conditions: { wind: [], gusts_mps: 0 },
+  ...more,
+});
+const simulation = (more = {}) => ({
+  state: "flying",
+  speed: 5,
+  message: "",
+  pace: null,
+  vehicles: [vehicle("Tern")],
+  ...more,
+});
 
 test("a simulation says how many fly, how fast, and who is lost or has crashed", () => {
   assert.equal(stateWords(simulation()).words, "1 simulated UAV at 5 times real time.");
   assert.equal(stateWords(simulation({ speed: 1 })).words, "1 simulated UAV in real time.");
-  const bad = stateWords(simulation({ vehicles: [vehicle("Tern", { told: { is_crashed: true } }), vehicle("Kite", { state: "failed" })] }));
+  const bad = stateWords(
+    simulation({ vehicles: [vehicle("Tern", { told: { is_crashed: true } }), vehicle("Kite", { state: "failed" })] }),
+  );
   assert.equal(bad.words, "1 simulated UAV at 5 times real time. Crashed: Tern. Lost with their simulator: Kite.");
   assert.equal(bad.isBad, true);
 });
@@ -29,7 +54,12 @@ test("one that waits, failed or ended says why; without one the panel says what 
 
 test("faults are sent with their seconds, and a weak battery by the vehicle's own", () => {
   const sent = Object.fromEntries(FAULTS.map(({ name, of }) => [name, of(vehicle("Tern"), 20)]));
-  assert.deepEqual(sent, { link: { link_lost_for_s: 20 }, gps: { gps_lost_for_s: 20 }, battery: { battery_wh_left: 12 }, motor: { motor_failed: 0 } });
+  assert.deepEqual(sent, {
+    link: { link_lost_for_s: 20 },
+    gps: { gps_lost_for_s: 20 },
+    battery: { battery_wh_left: 12 },
+    motor: { motor_failed: 0 },
+  });
 });
 
 test("wind goes round once", () => {
@@ -39,12 +69,30 @@ test("wind goes round once", () => {
 });
 
 test("each of its UAVs says how it does, and what is wrong with it", () => {
-  const told = { is_crashed: false, is_in_air: true, altitude_relative_m: 42.4, battery_percent: 71.6, is_link_lost: true };
-  assert.deepEqual(vehicleWords(vehicle("Tern", { told })), { words: "in the air at 42\u00a0m · battery 72\u00a0% · calm · its link is lost", isBad: false });
+  const told = {
+    is_crashed: false,
+    is_in_air: true,
+    altitude_relative_m: 42.4,
+    battery_percent: 71.6,
+    is_link_lost: true,
+  };
+  assert.deepEqual(vehicleWords(vehicle("Tern", { told })), {
+    words: "in the air at 42\u00a0m · battery 72\u00a0% · calm · its link is lost",
+    isBad: false,
+  });
   const air = { wind: [{ speed_mps: 9, from_deg: 180 }], gusts_mps: 2 };
-  assert.match(vehicleWords(vehicle("Tern", { told, conditions: air })).words, /· wind 9\u00a0m\/s from 180°, gusts 2\u00a0m\/s ·/);
-  assert.deepEqual(vehicleWords(vehicle("Tern", { told: { ...told, is_crashed: true } })), { words: "crashed", isBad: true });
-  assert.deepEqual(vehicleWords(vehicle("Tern", { state: "failed", message: "Lost." })), { words: "Lost.", isBad: true });
+  assert.match(
+    vehicleWords(vehicle("Tern", { told, conditions: air })).words,
+    /· wind 9\u00a0m\/s from 180°, gusts 2\u00a0m\/s ·/,
+  );
+  assert.deepEqual(vehicleWords(vehicle("Tern", { told: { ...told, is_crashed: true } })), {
+    words: "crashed",
+    isBad: true,
+  });
+  assert.deepEqual(vehicleWords(vehicle("Tern", { state: "failed", message: "Lost." })), {
+    words: "Lost.",
+    isBad: true,
+  });
   assert.equal(vehicleWords(vehicle("Tern", { told: null })).words, "is being started");
 });
 

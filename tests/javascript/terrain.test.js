@@ -2,19 +2,37 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { factsOf, voidsText } from "../../static/js/terrain/model_list.js";
-import { EDGES, nearestSample, profileSentence, rowsOf, rulesOf, scalesOf, stretchesOf, towersAlong } from "../../static/js/terrain/profile_chart.js";
+import {
+  EDGES,
+  nearestSample,
+  profileSentence,
+  rowsOf,
+  rulesOf,
+  scalesOf,
+  stretchesOf,
+  towersAlong,
+} from "../../static/js/terrain/profile_chart.js";
 
 const SPACE = "\u00a0";
 const profile = {
   length_m: 400,
   distance_m: [0, 100, 200, 300, 400],
-  positions: [[9, 47], [9.001, 47], [9.002, 47], [9.003, 47], [9.004, 47]],
+  positions: [
+    [9, 47],
+    [9.001, 47],
+    [9.002, 47],
+    [9.003, 47],
+    [9.004, 47],
+  ],
   ground_amsl_m: [500, 520, null, 510, 505],
   lowest_m: 500,
   highest_m: 520,
 };
 const nowhere = { ...profile, ground_amsl_m: [null, null, null, null, null], lowest_m: null, highest_m: null };
-const tower = (position, height_m) => ({ geometry: { type: "Point", coordinates: position }, properties: { label: "T1", height_m } });
+const tower = (position, height_m) => ({
+  geometry: { type: "Point", coordinates: position },
+  properties: { label: "T1", height_m },
+});
 
 test("a stretch without terrain stands between those with it", () => {
   assert.deepEqual(stretchesOf(profile.ground_amsl_m), [
@@ -43,7 +61,13 @@ test("a plain does not look like mountains, and nothing known is not drawn", () 
 });
 
 test("at most three rules, at round heights within the drawing", () => {
-  for (const [low, high] of [[500, 520], [0, 8848], [-3, 17], [1203.4, 1260.9], [-430, -380]]) {
+  for (const [low, high] of [
+    [500, 520],
+    [0, 8848],
+    [-3, 17],
+    [1203.4, 1260.9],
+    [-430, -380],
+  ]) {
     const rules = rulesOf(low, high);
     assert.ok(rules.length >= 1 && rules.length <= 3, `${low} to ${high}: ${rules}`);
     assert.ok(rules.every((rule) => rule >= low && rule <= high));
@@ -59,17 +83,36 @@ test("the cursor stands at the nearest sample", () => {
 });
 
 test("towers stand where the line has a vertex, and an unknown height or ground gives no top", () => {
-  const found = towersAlong(profile, [tower([9.001, 47], 40), tower([9.002, 47], 40), tower([9.003, 47], null), tower([9.5, 47], 40)]);
-  assert.deepEqual(found.map(({ index, top_amsl_m }) => [index, top_amsl_m]), [[1, 560], [2, null], [3, null]]);
+  const found = towersAlong(profile, [
+    tower([9.001, 47], 40),
+    tower([9.002, 47], 40),
+    tower([9.003, 47], null),
+    tower([9.5, 47], 40),
+  ]);
+  assert.deepEqual(
+    found.map(({ index, top_amsl_m }) => [index, top_amsl_m]),
+    [
+      [1, 560],
+      [2, null],
+      [3, null],
+    ],
+  );
 });
 
 test("the sentence says what is not known", () => {
-  assert.equal(profileSentence(profile), `400${SPACE}m, ground from 500${SPACE}m to 520${SPACE}m above sea level, unknown at 1 place of 5.`);
+  assert.equal(
+    profileSentence(profile),
+    `400${SPACE}m, ground from 500${SPACE}m to 520${SPACE}m above sea level, unknown at 1 place of 5.`,
+  );
   assert.equal(profileSentence(nowhere), `400${SPACE}m; no terrain model knows the ground here.`);
 });
 
 test("the table has both ends and every tower, however long the line is", () => {
-  const many = { ...profile, distance_m: Array.from({ length: 1_000 }, (_, index) => index), ground_amsl_m: Array(1_000).fill(1) };
+  const many = {
+    ...profile,
+    distance_m: Array.from({ length: 1_000 }, (_, index) => index),
+    ground_amsl_m: Array(1_000).fill(1),
+  };
   const rows = rowsOf(many, [{ index: 501 }]);
   assert.ok(rows.length < 60);
   assert.deepEqual([rows[0].index, rows.at(-1).index], [0, 999]);
@@ -85,7 +128,21 @@ test("a few voids are not rounded to none, and what was not counted is said", ()
 
 test("a model without a stated source or licence says so", () => {
   const facts = Object.fromEntries(
-    factsOf({ posts: 4, voids: 0, lowest_m: -2.4, highest_m: 804, vertical_datum: "EGM96", resolution_m: 31, attribution: "", licence: "", is_synthetic: false, imported_at: "2025-01-02T00:00:00Z" }),
+    factsOf({
+      posts: 4,
+      voids: 0,
+      lowest_m: -2.4,
+      highest_m: 804,
+      vertical_datum: "EGM96",
+      resolution_m: 31,
+      attribution: "",
+      licence: "",
+      is_synthetic: false,
+      imported_at: "2025-01-02T00:00:00Z",
+    }),
   );
-  assert.deepEqual([facts.Source, facts.Licence, facts.Heights, facts["Vertical datum"]], ["not stated", "not stated", `−2${SPACE}m to 804${SPACE}m`, "EGM96"]);
+  assert.deepEqual(
+    [facts.Source, facts.Licence, facts.Heights, facts["Vertical datum"]],
+    ["not stated", "not stated", `−2${SPACE}m to 804${SPACE}m`, "EGM96"],
+  );
 });

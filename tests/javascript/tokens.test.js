@@ -5,13 +5,18 @@ import test from "node:test";
 import { contrast, readPalette } from "../../static/js/map/palette.js";
 import { mapStyle, PICKABLE, voltageColour } from "../../static/js/map/style.js";
 
-const css = readFileSync(new URL("../../static/css/tokens.css", import.meta.url), "utf8").replace(/\/\*[\s\S]*?\*\//g, "");
+const css = readFileSync(new URL("../../static/css/tokens.css", import.meta.url), "utf8").replace(
+  /\/\*[\s\S]*?\*\//g,
+  "",
+);
 
 function tokensOf(selector) {
   const start = css.indexOf(`${selector} {`);
   assert.ok(start >= 0, selector);
   const block = css.slice(css.indexOf("{", start) + 1, css.indexOf("}", start));
-  return Object.fromEntries([...block.matchAll(/(--[\w-]+):\s*([^;]+);/g)].map(([, name, value]) => [name, value.trim()]));
+  return Object.fromEntries(
+    [...block.matchAll(/(--[\w-]+):\s*([^;]+);/g)].map(([, name, value]) => [name, value.trim()]),
+  );
 }
 
 const light = tokensOf(":root");
@@ -20,33 +25,81 @@ const systemDark = { ...light, ...tokensOf(":root:not([data-theme])") };
 const themes = { light, dark };
 
 const TEXT = [
-  ["--ink", "--panel"], ["--ink", "--ground"], ["--ink", "--raised"], ["--ink-2", "--panel"], ["--ink-2", "--ground"], ["--ink-2", "--sunken"],
-  ["--ink-2", "--raised"], ["--ink-3", "--panel"], ["--ink-3", "--sunken"], ["--on-ink", "--ink"], ["--accent", "--panel"], ["--accent", "--accent-soft"],
-  ["--on-accent", "--accent"], ["--critical", "--panel"], ["--critical", "--critical-soft"], ["--ink", "--critical-soft"], ["--warning", "--warning-soft"],
-  ["--ink", "--warning-soft"], ["--advisory", "--advisory-soft"], ["--on-alert", "--critical"], ["--zone", "--raised"], ["--map-label", "--ground"],
+  ["--ink", "--panel"],
+  ["--ink", "--ground"],
+  ["--ink", "--raised"],
+  ["--ink-2", "--panel"],
+  ["--ink-2", "--ground"],
+  ["--ink-2", "--sunken"],
+  ["--ink-2", "--raised"],
+  ["--ink-3", "--panel"],
+  ["--ink-3", "--sunken"],
+  ["--on-ink", "--ink"],
+  ["--accent", "--panel"],
+  ["--accent", "--accent-soft"],
+  ["--on-accent", "--accent"],
+  ["--critical", "--panel"],
+  ["--critical", "--critical-soft"],
+  ["--ink", "--critical-soft"],
+  ["--warning", "--warning-soft"],
+  ["--ink", "--warning-soft"],
+  ["--advisory", "--advisory-soft"],
+  ["--on-alert", "--critical"],
+  ["--zone", "--raised"],
+  ["--map-label", "--ground"],
 ];
 const SHAPES = [
-  ["--outline", "--panel"], ["--outline", "--ground"], ["--focus", "--panel"], ["--focus", "--ground"], ["--warning-mark", "--panel"],
-  ...["--volt-400", "--volt-220", "--volt-132", "--volt-66", "--volt-20", "--volt-unknown", "--tower", "--railway", "--bridge", "--zone", "--select"].map((token) => [token, "--ground"]),
+  ["--outline", "--panel"],
+  ["--outline", "--ground"],
+  ["--focus", "--panel"],
+  ["--focus", "--ground"],
+  ["--warning-mark", "--panel"],
+  ...[
+    "--volt-400",
+    "--volt-220",
+    "--volt-132",
+    "--volt-66",
+    "--volt-20",
+    "--volt-unknown",
+    "--tower",
+    "--railway",
+    "--bridge",
+    "--zone",
+    "--select",
+  ].map((token) => [token, "--ground"]),
   ...Array.from({ length: 8 }, (_, index) => [`--route-${index + 1}`, "--ground"]),
 ];
 
 for (const [theme, tokens] of Object.entries(themes)) {
   test(`text has 4.5:1 in ${theme}`, () => {
-    for (const [ink, paper] of TEXT) assert.ok(contrast(tokens[ink], tokens[paper]) >= 4.5, `${ink} on ${paper}: ${contrast(tokens[ink], tokens[paper]).toFixed(2)}`);
+    for (const [ink, paper] of TEXT)
+      assert.ok(
+        contrast(tokens[ink], tokens[paper]) >= 4.5,
+        `${ink} on ${paper}: ${contrast(tokens[ink], tokens[paper]).toFixed(2)}`,
+      );
   });
 
   test(`controls and what is drawn on the map have 3:1 in ${theme}`, () => {
-    for (const [shape, paper] of SHAPES) assert.ok(contrast(tokens[shape], tokens[paper]) >= 3, `${shape} on ${paper}: ${contrast(tokens[shape], tokens[paper]).toFixed(2)}`);
+    for (const [shape, paper] of SHAPES)
+      assert.ok(
+        contrast(tokens[shape], tokens[paper]) >= 3,
+        `${shape} on ${paper}: ${contrast(tokens[shape], tokens[paper]).toFixed(2)}`,
+      );
   });
 
   test(`a UAV's letter has 4.5:1 on its colour in ${theme}`, () => {
-    for (let route = 1; route <= 8; route += 1) assert.ok(contrast(tokens["--on-route"], tokens[`--route-${route}`]) >= 4.5, `route ${route}`);
+    for (let route = 1; route <= 8; route += 1)
+      assert.ok(contrast(tokens["--on-route"], tokens[`--route-${route}`]) >= 4.5, `route ${route}`);
   });
 
   test(`the map's style in ${theme} knows every colour and asks for nothing outside`, () => {
     const palette = readPalette((token) => tokens[token]);
-    const style = mapStyle(palette, { tilesAddress: "/api/v1/tiles/{z}/{x}/{y}", baseMap: { tiles: "" }, satellite: { tiles: "" }, under: "" });
+    const style = mapStyle(palette, {
+      tilesAddress: "/api/v1/tiles/{z}/{x}/{y}",
+      baseMap: { tiles: "" },
+      satellite: { tiles: "" },
+      under: "",
+    });
     const text = JSON.stringify(style);
     assert.ok(!text.includes("undefined") && !text.includes("null"), "a token is missing");
     assert.ok(!/https?:/.test(text));
@@ -86,9 +139,32 @@ test("towers of 200 kV and over are drawn from zoom 10, the others from 10.6", (
 
 test("routes lie over lines and zone hatching under them", () => {
   const palette = readPalette((token) => light[token]);
-  const ids = mapStyle(palette, { tilesAddress: "", baseMap: null, satellite: null, under: "" }).layers.map((layer) => layer.id);
-  const order = ["ground", "graticule", "zones-fill", "zones-hatch", "railways", "bridges", "lines-casing", "lines", "towers", "zones-outline", "routes-casing", "routes", "routes-arrows", "line-labels"];
+  const ids = mapStyle(palette, { tilesAddress: "", baseMap: null, satellite: null, under: "" }).layers.map(
+    (layer) => layer.id,
+  );
+  const order = [
+    "ground",
+    "graticule",
+    "zones-fill",
+    "zones-hatch",
+    "railways",
+    "bridges",
+    "lines-casing",
+    "lines",
+    "towers",
+    "zones-outline",
+    "routes-casing",
+    "routes",
+    "routes-arrows",
+    "line-labels",
+  ];
   const places = order.map((id) => ids.indexOf(id));
-  assert.ok(places.every((place) => place >= 0), `missing: ${order.filter((id) => !ids.includes(id))}`);
-  assert.deepEqual(places, [...places].sort((a, b) => a - b));
+  assert.ok(
+    places.every((place) => place >= 0),
+    `missing: ${order.filter((id) => !ids.includes(id))}`,
+  );
+  assert.deepEqual(
+    places,
+    [...places].sort((a, b) => a - b),
+  );
 });

@@ -1,7 +1,17 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { coordinateText, countText, durationText, lengthText, momentTyped, sinceText, typedMoment, voltageText, whenText } from "../../static/js/units.js";
+import {
+  coordinateText,
+  countText,
+  durationText,
+  lengthText,
+  momentTyped,
+  sinceText,
+  typedMoment,
+  voltageText,
+  whenText,
+} from "../../static/js/units.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 
@@ -57,6 +67,7 @@ test("time since a departure is minutes and seconds, with hours where there are 
 });
 
 test("a typed moment and the moment are the same there and back", () => {
-  for (const iso of ["2026-11-21T19:30:00.000Z", "2026-03-29T00:59:00.000Z", "2026-12-31T23:59:00.000Z"]) assert.equal(momentTyped(typedMoment(iso)), iso);
+  for (const iso of ["2026-11-21T19:30:00.000Z", "2026-03-29T00:59:00.000Z", "2026-12-31T23:59:00.000Z"])
+    assert.equal(momentTyped(typedMoment(iso)), iso);
   assert.equal(momentTyped(""), null);
 });

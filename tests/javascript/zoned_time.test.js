@@ -23,7 +23,14 @@ test("an hour that the clocks skip is the one after it", () => {
 });
 
 const period = (rest) => ({ startDateTime: null, endDateTime: null, schedule: [], ...rest });
-const entry = (rest) => ({ day: ["MON", "TUE", "WED"], startTime: null, startEvent: null, endTime: null, endEvent: null, ...rest });
+const entry = (rest) => ({
+  day: ["MON", "TUE", "WED"],
+  startTime: null,
+  startEvent: null,
+  endTime: null,
+  endEvent: null,
+  ...rest,
+});
 const winter = Date.parse("2026-11-21T12:00:00Z");
 const year = new Date().getUTCFullYear();
 const words = (...periods) => scheduleText(periods, { now: winter });
@@ -38,10 +45,22 @@ test("some hours of one day are told as that", () => {
 });
 
 test("hours of the week are those of the reader's clock, and of UTC as stored", () => {
-  assert.equal(words(period({ schedule: [entry({ startTime: "08:00:00Z", endTime: "18:00:00Z" })] })), "Mon to Wed 09:00 to 19:00 (08:00 to 18:00 UTC)");
-  assert.equal(words(period({ schedule: [entry({ startTime: "23:30:00Z", endTime: "04:00:00Z" })] })), "Tue to Thu 00:30 to 05:00 (23:30 to 04:00 UTC)");
-  assert.equal(words(period({ schedule: [entry({ startEvent: "SR", endTime: "23:00:00Z" })] })), "Mon to Wed sunrise to 24:00 (sunrise to 23:00 UTC)");
-  assert.equal(words(period({ schedule: [entry({ startEvent: "SR", endEvent: "SS" })] })), "Mon to Wed sunrise to sunset");
+  assert.equal(
+    words(period({ schedule: [entry({ startTime: "08:00:00Z", endTime: "18:00:00Z" })] })),
+    "Mon to Wed 09:00 to 19:00 (08:00 to 18:00 UTC)",
+  );
+  assert.equal(
+    words(period({ schedule: [entry({ startTime: "23:30:00Z", endTime: "04:00:00Z" })] })),
+    "Tue to Thu 00:30 to 05:00 (23:30 to 04:00 UTC)",
+  );
+  assert.equal(
+    words(period({ schedule: [entry({ startEvent: "SR", endTime: "23:00:00Z" })] })),
+    "Mon to Wed sunrise to 24:00 (sunrise to 23:00 UTC)",
+  );
+  assert.equal(
+    words(period({ schedule: [entry({ startEvent: "SR", endEvent: "SS" })] })),
+    "Mon to Wed sunrise to sunset",
+  );
   assert.equal(words(period({ schedule: [entry({})] })), "Mon to Wed 01:00 to 01:00 (00:00 to 24:00 UTC)");
 });
 
@@ -52,9 +71,23 @@ test("no period is always, and what cannot be read is told as the source does", 
 
 test("the week is drawn by the reader's clock, past midnight on the next day", () => {
   const night = period({ schedule: [entry({ day: ["SUN"], startTime: "22:00:00Z", endTime: "00:00:00Z" })] });
-  assert.deepEqual(weekOf(night, 1).map(({ day, from_h, to_h }) => [day, from_h, to_h]), [[6, 23, 24], [0, 0, 1]]);
-  assert.deepEqual(weekOf(night, -5).map(({ day, from_h, to_h }) => [day, from_h, to_h]), [[6, 17, 19]]);
-  assert.deepEqual(weekOf(period({ schedule: [entry({ day: ["MON"], startTime: "02:00:00Z", endTime: "03:00:00Z" })] }), -5).map(({ day, from_h }) => [day, from_h]), [[6, 21]]);
+  assert.deepEqual(
+    weekOf(night, 1).map(({ day, from_h, to_h }) => [day, from_h, to_h]),
+    [
+      [6, 23, 24],
+      [0, 0, 1],
+    ],
+  );
+  assert.deepEqual(
+    weekOf(night, -5).map(({ day, from_h, to_h }) => [day, from_h, to_h]),
+    [[6, 17, 19]],
+  );
+  assert.deepEqual(
+    weekOf(period({ schedule: [entry({ day: ["MON"], startTime: "02:00:00Z", endTime: "03:00:00Z" })] }), -5).map(
+      ({ day, from_h }) => [day, from_h],
+    ),
+    [[6, 21]],
+  );
 });
 
 test("from and until are typed by the reader's clock and stored in UTC", () => {

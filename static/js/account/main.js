@@ -19,7 +19,14 @@ startChrome();
 function tell(title, error) {
   if (!(error instanceof ApiError)) throw error;
   const way = error.isSignedOut ? h("a", { class: "text-button", href: signInAddress() }, t("Sign in")) : null;
-  byId("problem").replaceChildren(h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, h("strong", {}, title), ` ${error.message} `, way)));
+  byId("problem").replaceChildren(
+    h(
+      "div",
+      { class: "notice critical", role: "alert" },
+      icon("circle-alert"),
+      h("p", {}, h("strong", {}, title), ` ${error.message} `, way),
+    ),
+  );
   byId("problem").scrollIntoView({ block: "nearest" });
 }
 
@@ -55,13 +62,22 @@ const themes = [...document.querySelectorAll("input[name=theme]")];
 for (const radio of themes) radio.addEventListener("change", () => chooseTheme(radio.value));
 onTheme(() => themes.forEach((radio) => (radio.checked = radio.value === chosenTheme())));
 
-byId("units-sample").textContent = t("Such as {length}, {height} above ground, {speed}.", { length: lengthText(SAMPLE.length_m), height: heightText(SAMPLE.height_m), speed: speedText(SAMPLE.speed_mps) });
+byId("units-sample").textContent = t("Such as {length}, {height} above ground, {speed}.", {
+  length: lengthText(SAMPLE.length_m),
+  height: heightText(SAMPLE.height_m),
+  speed: speedText(SAMPLE.speed_mps),
+});
 const browserZone = new Intl.DateTimeFormat().resolvedOptions().timeZone;
 byId("browser-zone").textContent = t("As the browser ({zone})", { zone: browserZone });
 
 function showZone() {
   const timeZone = byId("time_zone").value || browserZone;
-  const clock = new Date().toLocaleTimeString(localeOf(language), { timeZone, hour: "2-digit", minute: "2-digit", timeZoneName: "short" });
+  const clock = new Date().toLocaleTimeString(localeOf(language), {
+    timeZone,
+    hour: "2-digit",
+    minute: "2-digit",
+    timeZoneName: "short",
+  });
   byId("zone-sample").textContent = t("It is {time} there.", { time: clock });
 }
 showZone();

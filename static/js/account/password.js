@@ -12,7 +12,9 @@ function fault(name, words) {
   const place = `${name}-fault`;
   input.setAttribute("aria-invalid", "true");
   input.setAttribute("aria-describedby", place);
-  input.after(h("p", { class: "field-error", id: place, role: "alert" }, icon("circle-alert", "small"), h("span", {}, words)));
+  input.after(
+    h("p", { class: "field-error", id: place, role: "alert" }, icon("circle-alert", "small"), h("span", {}, words)),
+  );
   input.focus();
 }
 

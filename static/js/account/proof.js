@@ -17,7 +17,14 @@ export async function proved(send) {
 
 function askForPassword() {
   return new Promise((resolve) => {
-    const input = h("input", { class: "input", id: "proof-password", type: "password", autocomplete: "current-password", required: true, autofocus: true });
+    const input = h("input", {
+      class: "input",
+      id: "proof-password",
+      type: "password",
+      autocomplete: "current-password",
+      required: true,
+      autofocus: true,
+    });
     const fault = h("div", {});
     const form = h(
       "form",
@@ -26,7 +33,12 @@ function askForPassword() {
       h("p", {}, t("You signed in a while ago, and this could outlive the session.")),
       h("div", { class: "field" }, h("label", { for: "proof-password" }, t("Password")), input),
       fault,
-      h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")), h("button", { class: "button primary" }, t("Go on"))),
+      h(
+        "div",
+        { class: "acts" },
+        h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
+        h("button", { class: "button primary" }, t("Go on")),
+      ),
     );
     const dialog = h("dialog", { "aria-labelledby": "proof-title" }, form);
     let isProved = false;
@@ -37,7 +49,14 @@ function askForPassword() {
         await post("/account/proof", { password: input.value });
       } catch (error) {
         if (!(error instanceof ApiError)) throw error;
-        fault.replaceChildren(h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", {}, error.details?.password?.join(" ") ?? error.message)));
+        fault.replaceChildren(
+          h(
+            "p",
+            { class: "field-error", role: "alert" },
+            icon("circle-alert", "small"),
+            h("span", {}, error.details?.password?.join(" ") ?? error.message),
+          ),
+        );
         return input.focus();
       }
       isProved = true;

@@ -11,11 +11,36 @@ import { browserName } from "./sign_in_row.js";
 export function mountSessions({ tell, settle }) {
   function row(session) {
     const name = browserName(session.user_agent);
-    const times = session.is_this_one ? t("Signed in {began}", { began: whenText(session.began_at) }) : t("Signed in {began}, last there {seen}", { began: whenText(session.began_at), seen: whenText(session.present_at) });
+    const times = session.is_this_one
+      ? t("Signed in {began}", { began: whenText(session.began_at) })
+      : t("Signed in {began}, last there {seen}", {
+          began: whenText(session.began_at),
+          seen: whenText(session.present_at),
+        });
     const act = session.is_this_one
       ? h("span", { class: "chip active" }, icon("check"), t("This one"))
-      : h("button", { type: "button", class: "button quiet", "aria-label": t("Sign out {name}", { name }), onclick: () => end(session, name) }, t("Sign out"));
-    return h("li", { dataset: { session: session.id } }, icon("monitor"), h("div", { class: "what" }, h("strong", { title: session.user_agent }, name), h("span", { class: "caption", title: exactText(session.began_at) }, times)), act);
+      : h(
+          "button",
+          {
+            type: "button",
+            class: "button quiet",
+            "aria-label": t("Sign out {name}", { name }),
+            onclick: () => end(session, name),
+          },
+          t("Sign out"),
+        );
+    return h(
+      "li",
+      { dataset: { session: session.id } },
+      icon("monitor"),
+      h(
+        "div",
+        { class: "what" },
+        h("strong", { title: session.user_agent }, name),
+        h("span", { class: "caption", title: exactText(session.began_at) }, times),
+      ),
+      act,
+    );
   }
 
   async function load() {
@@ -39,8 +64,11 @@ export function mountSessions({ tell, settle }) {
     byId("sessions").querySelector("button")?.focus({ preventScroll: true });
   }
 
-  const end = (session, name) => act(() => remove(`/account/sessions/${session.id}`), t("{name} is signed out.", { name }));
-  byId("sign-out-everywhere").addEventListener("click", () => act(() => post("/account/sign-out-everywhere"), t("Signed out in all other browsers.")));
+  const end = (session, name) =>
+    act(() => remove(`/account/sessions/${session.id}`), t("{name} is signed out.", { name }));
+  byId("sign-out-everywhere").addEventListener("click", () =>
+    act(() => post("/account/sign-out-everywhere"), t("Signed out in all other browsers.")),
+  );
 
   return { load };
 }

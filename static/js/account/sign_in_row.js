@@ -41,7 +41,20 @@ export function signInRow(entry) {
     "li",
     {},
     icon(outcome.icon),
-    h("div", { class: "what" }, h("strong", {}, outcome.words), h("span", { class: "caption", title: entry.user_agent }, [browserName(entry.user_agent), entry.address].filter(Boolean).join(" · "))),
-    h("time", { class: "caption when", datetime: entry.recorded_at, title: exactText(entry.recorded_at) }, whenText(entry.recorded_at)),
+    h(
+      "div",
+      { class: "what" },
+      h("strong", {}, outcome.words),
+      h(
+        "span",
+        { class: "caption", title: entry.user_agent },
+        [browserName(entry.user_agent), entry.address].filter(Boolean).join(" · "),
+      ),
+    ),
+    h(
+      "time",
+      { class: "caption when", datetime: entry.recorded_at, title: exactText(entry.recorded_at) },
+      whenText(entry.recorded_at),
+    ),
   );
 }

@@ -25,10 +25,30 @@ export function mountTokens({ tell, settle }) {
 
   function row(token) {
     const used = token.last_used_at ? t("last used {when}", { when: whenText(token.last_used_at) }) : t("never used");
-    const facts = h("span", { class: "caption", title: exactText(token.created_at) }, `${t("made {when}", { when: whenText(token.created_at) })} · ${used} · `, ending(token));
+    const facts = h(
+      "span",
+      { class: "caption", title: exactText(token.created_at) },
+      `${t("made {when}", { when: whenText(token.created_at) })} · ${used} · `,
+      ending(token),
+    );
     const what = h("div", { class: token.is_valid ? "what" : "what ended" }, h("strong", {}, token.name), facts);
-    if (!token.is_valid) return h("li", {}, what, h("span", { class: "chip" }, token.revoked_at ? t("Revoked") : t("Ended")));
-    return h("li", {}, what, h("button", { type: "button", class: "button danger", "aria-label": t("Revoke {name}", { name: token.name }), onclick: () => revoke(token) }, t("Revoke")));
+    if (!token.is_valid)
+      return h("li", {}, what, h("span", { class: "chip" }, token.revoked_at ? t("Revoked") : t("Ended")));
+    return h(
+      "li",
+      {},
+      what,
+      h(
+        "button",
+        {
+          type: "button",
+          class: "button danger",
+          "aria-label": t("Revoke {name}", { name: token.name }),
+          onclick: () => revoke(token),
+        },
+        t("Revoke"),
+      ),
+    );
   }
 
   function ending(token) {
@@ -56,7 +76,14 @@ export function mountTokens({ tell, settle }) {
     byId("token_name").removeAttribute("aria-invalid");
     if (!name) {
       byId("token_name").setAttribute("aria-invalid", "true");
-      byId("token_name").after(h("p", { class: "field-error", id: "name-fault", role: "alert" }, icon("circle-alert", "small"), h("span", {}, t("Say what the token is for."))));
+      byId("token_name").after(
+        h(
+          "p",
+          { class: "field-error", id: "name-fault", role: "alert" },
+          icon("circle-alert", "small"),
+          h("span", {}, t("Say what the token is for.")),
+        ),
+      );
       byId("token_name").focus();
       return;
     }
@@ -66,7 +93,13 @@ export function mountTokens({ tell, settle }) {
       const { data } = answer;
       settle();
       byId("token-form").reset();
-      byId("new-token").replaceChildren(shownOnce({ title: t("“{name}” is made. Copy it now: it is not shown again.", { name }), secret: data.token, label: t("Token") }));
+      byId("new-token").replaceChildren(
+        shownOnce({
+          title: t("“{name}” is made. Copy it now: it is not shown again.", { name }),
+          secret: data.token,
+          label: t("Token"),
+        }),
+      );
       byId("new-token").querySelector("button").focus();
       await load();
     } catch (error) {

@@ -49,7 +49,12 @@ for (const field of document.querySelectorAll("[data-geometry]")) {
 
   view.ready.then(() => {
     view.map.addSource("drawn", { type: "geojson", data: NOTHING });
-    view.map.addLayer({ id: "drawn", type: "line", source: "drawn", paint: { "line-color": view.palette().select, "line-width": 2.5 } });
+    view.map.addLayer({
+      id: "drawn",
+      type: "line",
+      source: "drawn",
+      paint: { "line-color": view.palette().select, "line-width": 2.5 },
+    });
     show({ move: true });
     if (!text.value.trim()) showSurroundings();
     text.addEventListener("input", () => show({ move: false }));

@@ -13,10 +13,13 @@ export function parseGeometry(text) {
   } catch {
     return { fault: t("This is not JSON.") };
   }
-  if (!geometry?.type || !Array.isArray(geometry.coordinates)) return { fault: t("A GeoJSON geometry has a type and coordinates.") };
+  if (!geometry?.type || !Array.isArray(geometry.coordinates))
+    return { fault: t("A GeoJSON geometry has a type and coordinates.") };
   const positions = positionsOf(geometry);
-  const isSound = ([longitude, latitude]) => Number.isFinite(longitude) && Number.isFinite(latitude) && Math.abs(longitude) <= 180 && Math.abs(latitude) <= 90;
-  if (!positions.length || !positions.every(isSound)) return { fault: t("A position is longitude, then latitude, in degrees.") };
+  const isSound = ([longitude, latitude]) =>
+    Number.isFinite(longitude) && Number.isFinite(latitude) && Math.abs(longitude) <= 180 && Math.abs(latitude) <= 90;
+  if (!positions.length || !positions.every(isSound))
+    return { fault: t("A position is longitude, then latitude, in degrees.") };
   return { geometry };
 }
 
@@ -36,5 +39,8 @@ export function outlineOf(geometry) {
 }
 
 export function pointText(longitude, latitude) {
-  return JSON.stringify({ type: "Point", coordinates: [Number(longitude.toFixed(DIGITS)), Number(latitude.toFixed(DIGITS))] });
+  return JSON.stringify({
+    type: "Point",
+    coordinates: [Number(longitude.toFixed(DIGITS)), Number(latitude.toFixed(DIGITS))],
+  });
 }

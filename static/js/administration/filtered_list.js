@@ -54,11 +54,17 @@ export function filteredList({ list, path, filters, row, countWords, none, tell,
     more.hidden = next === null;
     const count = rows.children.length;
     rows.closest("table").hidden = count === 0;
-    byId(`${list}-count`).textContent = count === 0 ? "" : next === null ? countWords(count) : t("The first {what}", { what: countWords(count) });
+    byId(`${list}-count`).textContent =
+      count === 0 ? "" : next === null ? countWords(count) : t("The first {what}", { what: countWords(count) });
     const empty = byId(`${list}-none`);
     empty.hidden = count > 0;
     if (count) return;
-    if (isFiltered()) empty.replaceChildren(icon("search", "large"), h("strong", {}, t("Nothing matches")), h("button", { type: "button", class: "button", onclick: clear }, t("Clear the filters")));
+    if (isFiltered())
+      empty.replaceChildren(
+        icon("search", "large"),
+        h("strong", {}, t("Nothing matches")),
+        h("button", { type: "button", class: "button", onclick: clear }, t("Clear the filters")),
+      );
     else empty.replaceChildren(icon(none.icon, "large"), h("strong", {}, none.title), h("span", {}, none.words));
   }
 

@@ -11,7 +11,12 @@ import { clockText, dayText, exactText, whenText } from "../units.js";
 import { filteredList } from "./filtered_list.js";
 import { MAY, ROLES } from "./roles.js";
 
-const STATES = { open: [t("Open"), "active"], accepted: [t("Accepted"), ""], expired: [t("Too old"), "draft"], revoked: [t("Taken back"), "draft"] };
+const STATES = {
+  open: [t("Open"), "active"],
+  accepted: [t("Accepted"), ""],
+  expired: [t("Too old"), "draft"],
+  revoked: [t("Taken back"), "draft"],
+};
 const DAYS = [1, 7, 14, 30];
 
 export function mountInvitations({ tell, settle, show }) {
@@ -29,16 +34,36 @@ export function mountInvitations({ tell, settle, show }) {
   function row(invitation) {
     const [words, style] = STATES[invitation.state];
     const whom = invitation.email || t("whoever has the link");
-    const takeBack = h("button", { type: "button", class: "button danger", "aria-label": t("Take back the invitation for {whom}", { whom }), onclick: () => revoke(invitation) }, t("Take back"));
+    const takeBack = h(
+      "button",
+      {
+        type: "button",
+        class: "button danger",
+        "aria-label": t("Take back the invitation for {whom}", { whom }),
+        onclick: () => revoke(invitation),
+      },
+      t("Take back"),
+    );
     return h(
       "tr",
       {},
-      h("td", { class: "name" }, h("strong", {}, whom), invitation.accepted_by && h("span", { class: "caption" }, t("accepted by {name}", { name: invitation.accepted_by }))),
+      h(
+        "td",
+        { class: "name" },
+        h("strong", {}, whom),
+        invitation.accepted_by &&
+          h("span", { class: "caption" }, t("accepted by {name}", { name: invitation.accepted_by })),
+      ),
       h("td", { class: "role" }, ROLES[invitation.role]),
       h("td", { class: "state" }, h("span", { class: `chip ${style}`.trim() }, words)),
       h("td", { class: "by" }, invitation.invited_by ?? "—"),
       h("td", { class: "when made", title: exactText(invitation.created_at) }, whenText(invitation.created_at)),
-      h("td", { class: "when", title: exactText(invitation.expires_at) }, h("span", { class: "phone-label" }, `${t("Works until")}: `), t("{day}, {time}", { day: dayText(invitation.expires_at), time: clockText(invitation.expires_at) })),
+      h(
+        "td",
+        { class: "when", title: exactText(invitation.expires_at) },
+        h("span", { class: "phone-label" }, `${t("Works until")}: `),
+        t("{day}, {time}", { day: dayText(invitation.expires_at), time: clockText(invitation.expires_at) }),
+      ),
       h("td", {}, invitation.state === "open" && takeBack),
     );
   }
@@ -59,23 +84,63 @@ export function mountInvitations({ tell, settle, show }) {
   function invite() {
     const fault = h("div", {});
     const roles = Object.entries(ROLES).map(([value, words]) =>
-      h("label", { class: "role-choice" }, h("input", { type: "radio", name: "role", value, checked: value === "operator" }), h("span", {}, h("strong", {}, words), h("span", { class: "caption" }, ` ${MAY[value]}`))),
+      h(
+        "label",
+        { class: "role-choice" },
+        h("input", { type: "radio", name: "role", value, checked: value === "operator" }),
+        h("span", {}, h("strong", {}, words), h("span", { class: "caption" }, ` ${MAY[value]}`)),
+      ),
     );
-    const mail = readPage().mailLeavesHere ? t("The link is sent there, and shown to you.") : t("No mail leaves this server: you hand the link over yourself.");
+    const mail = readPage().mailLeavesHere
+      ? t("The link is sent there, and shown to you.")
+      : t("No mail leaves this server: you hand the link over yourself.");
     const form = h(
       "form",
       { class: "stack", novalidate: true },
       h("h2", { id: "invite-title" }, t("Invite somebody")),
       h("fieldset", { class: "role-choices" }, h("legend", { class: "field-label" }, t("Role")), roles),
-      h("div", { class: "field" }, h("label", { for: "invite-email" }, t("E-mail address, if you like")), h("input", { class: "input", id: "invite-email", type: "email", maxlength: 254, autocomplete: "off", "aria-describedby": "invite-mail" }), h("p", { class: "caption", id: "invite-mail" }, mail)),
-      h("div", { class: "field" }, h("label", { for: "invite-days" }, t("Works for")), h("select", { class: "input", id: "invite-days" }, DAYS.map((days) => h("option", { value: days, selected: days === 7 }, days === 1 ? t("1 day") : t("{days} days", { days }))))),
+      h(
+        "div",
+        { class: "field" },
+        h("label", { for: "invite-email" }, t("E-mail address, if you like")),
+        h("input", {
+          class: "input",
+          id: "invite-email",
+          type: "email",
+          maxlength: 254,
+          autocomplete: "off",
+          "aria-describedby": "invite-mail",
+        }),
+        h("p", { class: "caption", id: "invite-mail" }, mail),
+      ),
+      h(
+        "div",
+        { class: "field" },
+        h("label", { for: "invite-days" }, t("Works for")),
+        h(
+          "select",
+          { class: "input", id: "invite-days" },
+          DAYS.map((days) =>
+            h("option", { value: days, selected: days === 7 }, days === 1 ? t("1 day") : t("{days} days", { days })),
+          ),
+        ),
+      ),
       fault,
-      h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")), h("button", { class: "button primary" }, t("Make the link"))),
+      h(
+        "div",
+        { class: "acts" },
+        h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
+        h("button", { class: "button primary" }, t("Make the link")),
+      ),
     );
     const dialog = h("dialog", { "aria-labelledby": "invite-title" }, form);
     form.addEventListener("submit", async (event) => {
       event.preventDefault();
-      const body = { role: form.elements.role.value, email: form.querySelector("#invite-email").value.trim(), days: Number(form.querySelector("#invite-days").value) };
+      const body = {
+        role: form.elements.role.value,
+        email: form.querySelector("#invite-email").value.trim(),
+        days: Number(form.querySelector("#invite-days").value),
+      };
       try {
         const { data } = await post("/invitations", body);
         dialog.close();
@@ -83,7 +148,9 @@ export function mountInvitations({ tell, settle, show }) {
         present(data);
       } catch (error) {
         if (!(error instanceof ApiError)) throw error;
-        fault.replaceChildren(h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", {}, error.message)));
+        fault.replaceChildren(
+          h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", {}, error.message)),
+        );
       }
     });
     open(dialog);
@@ -92,8 +159,19 @@ export function mountInvitations({ tell, settle, show }) {
   function present(invitation) {
     const role = ROLES[invitation.role];
     const title = t("A link for one account with the role {role}. Copy it now: it is not shown again.", { role });
-    const words = invitation.was_mailed ? t("It was sent to {email}.", { email: invitation.email }) : invitation.email ? t("It was not sent: hand it over yourself.") : "";
-    byId("new-link").replaceChildren(shownOnce({ title, secret: invitation.link, label: t("Link of the invitation"), more: words && h("p", { class: "caption" }, words) }));
+    const words = invitation.was_mailed
+      ? t("It was sent to {email}.", { email: invitation.email })
+      : invitation.email
+        ? t("It was not sent: hand it over yourself.")
+        : "";
+    byId("new-link").replaceChildren(
+      shownOnce({
+        title,
+        secret: invitation.link,
+        label: t("Link of the invitation"),
+        more: words && h("p", { class: "caption" }, words),
+      }),
+    );
     byId("new-link").querySelector("button").focus();
   }
 

@@ -14,7 +14,14 @@ const TABS = ["people", "invitations", "sign-ins", "rules"];
 function tell(title, error) {
   if (!(error instanceof ApiError)) throw error;
   const way = error.isSignedOut ? h("a", { class: "text-button", href: signInAddress() }, t("Sign in")) : null;
-  byId("problem").replaceChildren(h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, h("strong", {}, title), ` ${error.message} `, way)));
+  byId("problem").replaceChildren(
+    h(
+      "div",
+      { class: "notice critical", role: "alert" },
+      icon("circle-alert"),
+      h("p", {}, h("strong", {}, title), ` ${error.message} `, way),
+    ),
+  );
 }
 
 function settle() {
@@ -32,7 +39,8 @@ const lists = {
 function showTab(name, { isNew = true } = {}) {
   for (const tab of TABS) byId(`tab-${tab}`).hidden = tab !== name;
   document.querySelector(`input[name=tab][value=${name}]`).checked = true;
-  if (isNew && tabInAddress() !== name) history.pushState(null, "", name === "people" ? location.pathname : `?tab=${name}`);
+  if (isNew && tabInAddress() !== name)
+    history.pushState(null, "", name === "people" ? location.pathname : `?tab=${name}`);
   settle();
   return lists[name].load();
 }
@@ -42,8 +50,11 @@ function tabInAddress() {
   return TABS.includes(name) ? name : "people";
 }
 
-startChrome({ bindings: [{ keys: ["/"], words: t("Find"), act: () => document.getElementById(`${tabInAddress()}-text`)?.focus() }] });
-for (const radio of document.querySelectorAll("input[name=tab]")) radio.addEventListener("change", () => showTab(radio.value));
+startChrome({
+  bindings: [{ keys: ["/"], words: t("Find"), act: () => document.getElementById(`${tabInAddress()}-text`)?.focus() }],
+});
+for (const radio of document.querySelectorAll("input[name=tab]"))
+  radio.addEventListener("change", () => showTab(radio.value));
 addEventListener("popstate", () => showTab(tabInAddress(), { isNew: false }));
 byId("invite").addEventListener("click", lists.invitations.invite);
 showTab(tabInAddress(), { isNew: false }).then(() => (document.documentElement.dataset.loaded = "true"));

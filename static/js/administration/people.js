@@ -17,7 +17,8 @@ const fullName = (person) => [person.first_name, person.last_name].filter(Boolea
 
 function accessChip(person) {
   if (!person.is_active) return h("span", { class: "chip aborted" }, t("Kept out"));
-  if (person.last_seen_at && Date.now() - new Date(person.last_seen_at) < HERE_WITHIN_MS) return h("span", { class: "chip active" }, icon("check"), t("Here now"));
+  if (person.last_seen_at && Date.now() - new Date(person.last_seen_at) < HERE_WITHIN_MS)
+    return h("span", { class: "chip active" }, icon("check"), t("Here now"));
   return h("span", { class: "chip" }, t("May sign in"));
 }
 
@@ -37,9 +38,23 @@ export function mountPeople({ tell, settle }) {
     const name = person.username;
     const isMe = person.id === me;
     const reason = isMe && t("Another administrator changes your role.");
-    const role = h("select", { class: "input", "aria-label": t("Role of {name}", { name }), disabled: isMe, title: reason }, roleOptions(person.role));
+    const role = h(
+      "select",
+      { class: "input", "aria-label": t("Role of {name}", { name }), disabled: isMe, title: reason },
+      roleOptions(person.role),
+    );
     role.addEventListener("change", () => changeRole(person, role));
-    const more = h("button", { type: "button", class: "icon-button", "aria-label": t("More for {name}", { name }), "aria-haspopup": "true", "aria-expanded": "false" }, icon("ellipsis"));
+    const more = h(
+      "button",
+      {
+        type: "button",
+        class: "icon-button",
+        "aria-label": t("More for {name}", { name }),
+        "aria-haspopup": "true",
+        "aria-expanded": "false",
+      },
+      icon("ellipsis"),
+    );
     more.addEventListener("click", (event) => {
       event.stopPropagation();
       toggleMenu(more, () => menuOf(name, acts(person)));
@@ -48,10 +63,20 @@ export function mountPeople({ tell, settle }) {
     return h(
       "tr",
       { dataset: { person: person.id }, class: person.is_active ? null : "kept-out" },
-      h("td", { class: "name" }, h("strong", {}, name, isMe && ` (${t("you")})`), second && h("span", { class: "caption" }, second)),
+      h(
+        "td",
+        { class: "name" },
+        h("strong", {}, name, isMe && ` (${t("you")})`),
+        second && h("span", { class: "caption" }, second),
+      ),
       h("td", { class: "role" }, role),
       h("td", { class: "access" }, accessChip(person)),
-      h("td", { class: "seen", title: person.last_seen_at && exactText(person.last_seen_at) }, h("span", { class: "phone-label" }, `${t("Last here")}: `), person.last_seen_at ? whenText(person.last_seen_at) : t("never")),
+      h(
+        "td",
+        { class: "seen", title: person.last_seen_at && exactText(person.last_seen_at) },
+        h("span", { class: "phone-label" }, `${t("Last here")}: `),
+        person.last_seen_at ? whenText(person.last_seen_at) : t("never"),
+      ),
       h("td", { class: "number tokens" }, person.valid_tokens ? `${person.valid_tokens}` : "—"),
       h("td", {}, more),
     );
@@ -62,12 +87,27 @@ export function mountPeople({ tell, settle }) {
       { icon: "pencil", label: t("Name and address"), act: () => editPerson(person) },
       { icon: "log-out", label: t("Sign out everywhere"), act: () => signOut(person) },
       person.valid_tokens && { icon: "key-round", label: t("Revoke all tokens"), act: () => askToRevoke(person) },
-      person.has_second_factor && person.id !== me && { icon: "lock-open", label: t("Reset the second factor"), act: () => askToReset(person) },
+      person.has_second_factor &&
+        person.id !== me && { icon: "lock-open", label: t("Reset the second factor"), act: () => askToReset(person) },
       person.id === me
         ? null
         : person.is_active
-        ? { icon: "circle-x", label: t("Keep out"), act: () => change(person, { is_active: false }, t("{name} can no longer sign in.", { name: person.username }), { is_active: true }) }
-        : { icon: "check", label: t("Let in again"), act: () => change(person, { is_active: true }, t("{name} may sign in.", { name: person.username }), { is_active: false }) },
+          ? {
+              icon: "circle-x",
+              label: t("Keep out"),
+              act: () =>
+                change(person, { is_active: false }, t("{name} can no longer sign in.", { name: person.username }), {
+                  is_active: true,
+                }),
+            }
+          : {
+              icon: "check",
+              label: t("Let in again"),
+              act: () =>
+                change(person, { is_active: true }, t("{name} may sign in.", { name: person.username }), {
+                  is_active: false,
+                }),
+            },
     ].filter(Boolean);
   }
 
@@ -79,7 +119,8 @@ export function mountPeople({ tell, settle }) {
     fresh.querySelector(focus)?.focus({ preventScroll: true });
   }
 
-  const send = (person, values) => patch(`/people/${person.id}`, values, { headers: { "If-Match": `"${person.revision}"` } });
+  const send = (person, values) =>
+    patch(`/people/${person.id}`, values, { headers: { "If-Match": `"${person.revision}"` } });
 
   async function change(person, values, words, back, focus = ".icon-button") {
     try {
@@ -116,7 +157,12 @@ export function mountPeople({ tell, settle }) {
       { "aria-labelledby": "ask-title" },
       h("h2", { id: "ask-title" }, title),
       h("p", {}, words),
-      h("form", { method: "dialog", class: "acts" }, h("button", { class: "button", autofocus: true }, keep), h("button", { type: "button", class: "button danger filled", onclick: doIt }, go)),
+      h(
+        "form",
+        { method: "dialog", class: "acts" },
+        h("button", { class: "button", autofocus: true }, keep),
+        h("button", { type: "button", class: "button danger filled", onclick: doIt }, go),
+      ),
     );
     open(dialog);
   }
@@ -139,7 +185,13 @@ export function mountPeople({ tell, settle }) {
       words: t("Programs that use them stop working at once. This cannot be taken back; new tokens can be made."),
       keep: t("Keep them"),
       go: t("Revoke"),
-      act: () => take(`/people/${person.id}/tokens`, person, { valid_tokens: 0 }, { done: t("All tokens of {name} work no more.", { name }), title: t("Nothing was revoked.") }),
+      act: () =>
+        take(
+          `/people/${person.id}/tokens`,
+          person,
+          { valid_tokens: 0 },
+          { done: t("All tokens of {name} work no more.", { name }), title: t("Nothing was revoked.") },
+        ),
     });
   }
 
@@ -147,29 +199,55 @@ export function mountPeople({ tell, settle }) {
     const name = person.username;
     ask({
       title: t("Reset the second factor of {name}?", { name }),
-      words: t("For somebody who has lost the telephone and the recovery codes. Be sure that it is really they who ask. They are signed out everywhere, and the password alone lets them in until they set up another one."),
+      words: t(
+        "For somebody who has lost the telephone and the recovery codes. Be sure that it is really they who ask. They are signed out everywhere, and the password alone lets them in until they set up another one.",
+      ),
       keep: t("Keep it"),
       go: t("Reset"),
-      act: () => take(`/people/${person.id}/second-factor`, person, { has_second_factor: false }, { done: t("{name} has no second factor any more.", { name }), title: t("Nothing was changed.") }),
+      act: () =>
+        take(
+          `/people/${person.id}/second-factor`,
+          person,
+          { has_second_factor: false },
+          { done: t("{name} has no second factor any more.", { name }), title: t("Nothing was changed.") },
+        ),
     });
   }
 
   function editPerson(person) {
-    const field = (name, label, properties) => h("div", { class: "field" }, h("label", { for: `person-${name}` }, label), h("input", { class: "input", id: `person-${name}`, value: person[name], autocomplete: "off", ...properties }));
+    const field = (name, label, properties) =>
+      h(
+        "div",
+        { class: "field" },
+        h("label", { for: `person-${name}` }, label),
+        h("input", { class: "input", id: `person-${name}`, value: person[name], autocomplete: "off", ...properties }),
+      );
     const fault = h("div", {});
     const form = h(
       "form",
       { class: "stack", novalidate: true },
       h("h2", { id: "person-title" }, person.username),
-      h("div", { class: "pair" }, field("first_name", t("First name"), { maxlength: 150 }), field("last_name", t("Last name"), { maxlength: 150 })),
+      h(
+        "div",
+        { class: "pair" },
+        field("first_name", t("First name"), { maxlength: 150 }),
+        field("last_name", t("Last name"), { maxlength: 150 }),
+      ),
       field("email", t("E-mail address"), { type: "email", maxlength: 254 }),
       fault,
-      h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")), h("button", { class: "button primary" }, t("Save"))),
+      h(
+        "div",
+        { class: "acts" },
+        h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
+        h("button", { class: "button primary" }, t("Save")),
+      ),
     );
     const dialog = h("dialog", { "aria-labelledby": "person-title" }, form);
     form.addEventListener("submit", async (event) => {
       event.preventDefault();
-      const values = Object.fromEntries(["first_name", "last_name", "email"].map((name) => [name, form.querySelector(`#person-${name}`).value.trim()]));
+      const values = Object.fromEntries(
+        ["first_name", "last_name", "email"].map((name) => [name, form.querySelector(`#person-${name}`).value.trim()]),
+      );
       try {
         const { data } = await send(person, values);
         dialog.close();
@@ -179,7 +257,9 @@ export function mountPeople({ tell, settle }) {
       } catch (error) {
         if (!(error instanceof ApiError)) throw error;
         if (error.details?.current) redraw((person = error.details.current), "");
-        fault.replaceChildren(h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", {}, error.message)));
+        fault.replaceChildren(
+          h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", {}, error.message)),
+        );
       }
     });
     open(dialog);

@@ -3,7 +3,12 @@
 import { h } from "../dom.js";
 import { t } from "../text.js";
 
-export const ROLES = { viewer: t("Viewer"), operator: t("Operator|role"), curator: t("Curator"), administrator: t("Administrator") };
+export const ROLES = {
+  viewer: t("Viewer"),
+  operator: t("Operator|role"),
+  curator: t("Curator"),
+  administrator: t("Administrator"),
+};
 
 /** What each may do, in a few words. */
 export const MAY = {

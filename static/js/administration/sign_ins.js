@@ -26,7 +26,11 @@ export function mountSignIns({ tell }) {
     filters: ["text", "address", "outcome", "days"],
     row,
     countWords: (count) => tn(count, "{count} entry", "{count} entries"),
-    none: { icon: "history", title: t("Nobody has signed in yet"), words: t("Each sign-in and each try will stand here.") },
+    none: {
+      icon: "history",
+      title: t("Nobody has signed in yet"),
+      words: t("Each sign-in and each try will stand here."),
+    },
     tell,
     titleOfFault: t("Sign-ins could not be loaded."),
   });

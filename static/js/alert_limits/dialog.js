@@ -12,18 +12,56 @@ import { boundsIn, GROUPS, wrongWayRound } from "./words.js";
 /** address: of the limits in the API; title and hint in words. onSaved(stated) after each change that was kept. Rejects with ApiError. */
 export async function openAlertLimits({ address, title, hint, onSaved = () => {} }) {
   const { data } = await get(address);
-  const fieldOf = ({ name, label, unit, factor }) => [name, numberField(name, label, data.stated[name], { factor, unit, digits: 1, usual: data.usual[name], ...boundsIn(data.bounds[name], factor) })];
+  const fieldOf = ({ name, label, unit, factor }) => [
+    name,
+    numberField(name, label, data.stated[name], {
+      factor,
+      unit,
+      digits: 1,
+      usual: data.usual[name],
+      ...boundsIn(data.bounds[name], factor),
+    }),
+  ];
   const groups = GROUPS.map(({ title: words, limits }) => ({ words, fields: limits.map(fieldOf) }));
   const fields = new Map(groups.flatMap((group) => group.fields));
   const labelOf = (name) => fields.get(name).label;
   const wrong = h("p", { class: "field-error", role: "alert", hidden: true });
   const save = h("button", { class: "button primary" }, t("Save"));
-  const form = h("form", {},
+  const form = h(
+    "form",
+    {},
     h("p", { class: "caption" }, hint),
-    groups.map(({ words, fields: own }) => h("fieldset", { class: "limit-group" }, h("legend", {}, words), own.map(([, field]) => field.element))),
+    groups.map(({ words, fields: own }) =>
+      h(
+        "fieldset",
+        { class: "limit-group" },
+        h("legend", {}, words),
+        own.map(([, field]) => field.element),
+      ),
+    ),
     wrong,
-    h("div", { class: "acts" }, h("button", { type: "button", class: "button quiet", onclick: () => fields.forEach(({ input, tell }) => ((input.value = ""), tell(""))) }, t("All as usual")), h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")), save));
-  const dialog = h("dialog", { class: "alert-limits", "aria-labelledby": "limits-title" }, h("h2", { id: "limits-title" }, title), form);
+    h(
+      "div",
+      { class: "acts" },
+      h(
+        "button",
+        {
+          type: "button",
+          class: "button quiet",
+          onclick: () => fields.forEach(({ input, tell }) => ((input.value = ""), tell(""))),
+        },
+        t("All as usual"),
+      ),
+      h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
+      save,
+    ),
+  );
+  const dialog = h(
+    "dialog",
+    { class: "alert-limits", "aria-labelledby": "limits-title" },
+    h("h2", { id: "limits-title" }, title),
+    form,
+  );
 
   function say(words) {
     wrong.hidden = !words;
@@ -32,7 +70,15 @@ export async function openAlertLimits({ address, title, hint, onSaved = () => {}
 
   function tellWrongWay(stated) {
     const faults = wrongWayRound(stated, data.usual);
-    for (const [upper, lower] of faults) fields.get(upper).tell(t("Not below “{other}” ({figure}). Raise this one, or lower the other.", { other: labelOf(lower), figure: numberText((stated[lower] ?? data.usual[lower]) / factorOf(lower), 0) }));
+    for (const [upper, lower] of faults)
+      fields
+        .get(upper)
+        .tell(
+          t("Not below “{other}” ({figure}). Raise this one, or lower the other.", {
+            other: labelOf(lower),
+            figure: numberText((stated[lower] ?? data.usual[lower]) / factorOf(lower), 0),
+          }),
+        );
     if (faults.length) fields.get(faults[0][0]).input.focus();
     return faults.length > 0;
   }
@@ -41,7 +87,9 @@ export async function openAlertLimits({ address, title, hint, onSaved = () => {}
     event.preventDefault();
     say("");
     fields.forEach(({ tell }) => tell(""));
-    const stated = Object.fromEntries([...fields].map(([name, field]) => [name, field.read()]).filter(([, value]) => value !== null));
+    const stated = Object.fromEntries(
+      [...fields].map(([name, field]) => [name, field.read()]).filter(([, value]) => value !== null),
+    );
     if (tellWrongWay(stated)) return;
     save.setAttribute("aria-busy", "true");
     try {

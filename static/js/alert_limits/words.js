@@ -11,41 +11,66 @@ const BARE = { unit: "", factor: 1 };
 
 /** [{ title, limits: [{ name, label, unit, factor }] }]; names as the API has them. */
 export const GROUPS = [
-  { title: t("Link"), limits: [
-    { name: "link_late_s", label: t("Late after"), ...SECONDS },
-    { name: "link_lost_s", label: t("Lost after"), ...SECONDS },
-  ] },
-  { title: t("Beside its route"), limits: [
-    { name: "off_route_m", label: t("Warning from"), ...METRES },
-    { name: "off_route_critical_m", label: t("Critical from"), ...METRES },
-  ] },
-  { title: t("Above or below its route"), limits: [
-    { name: "height_off_m", label: t("Warning from"), ...METRES },
-    { name: "height_off_critical_m", label: t("Critical from"), ...METRES },
-  ] },
-  { title: t("Battery at the end of the flight"), limits: [
-    { name: "battery_margin_percent", label: t("Warning below the reserve by"), ...PERCENT },
-    { name: "battery_critical_percent", label: t("Critical below"), ...PERCENT },
-  ] },
-  { title: t("Zones and other UAVs"), limits: [
-    { name: "zone_ahead_s", label: t("Zones ahead within"), ...SECONDS },
-    { name: "converging_s", label: t("Meetings ahead within"), ...SECONDS },
-    { name: "separation_m", label: t("Apart, aside"), ...METRES },
-    { name: "separation_height_m", label: t("Apart, in height"), ...METRES },
-  ] },
-  { title: t("Wind"), limits: [
-    { name: "wind_share_percent", label: t("Of its highest airspeed"), ...PERCENT },
-    { name: "wind_mps", label: t("In any case from (0: never)"), ...SPEED },
-  ] },
-  { title: t("Position and progress"), limits: [
-    { name: "least_satellites", label: t("Satellites, at least"), ...BARE },
-    { name: "most_hdop", label: t("HDOP, at most"), ...BARE },
-    { name: "jump_mps", label: t("A jump is faster than"), ...SPEED },
-    { name: "no_progress_s", label: t("Stands still for"), ...SECONDS },
-  ] },
+  {
+    title: t("Link"),
+    limits: [
+      { name: "link_late_s", label: t("Late after"), ...SECONDS },
+      { name: "link_lost_s", label: t("Lost after"), ...SECONDS },
+    ],
+  },
+  {
+    title: t("Beside its route"),
+    limits: [
+      { name: "off_route_m", label: t("Warning from"), ...METRES },
+      { name: "off_route_critical_m", label: t("Critical from"), ...METRES },
+    ],
+  },
+  {
+    title: t("Above or below its route"),
+    limits: [
+      { name: "height_off_m", label: t("Warning from"), ...METRES },
+      { name: "height_off_critical_m", label: t("Critical from"), ...METRES },
+    ],
+  },
+  {
+    title: t("Battery at the end of the flight"),
+    limits: [
+      { name: "battery_margin_percent", label: t("Warning below the reserve by"), ...PERCENT },
+      { name: "battery_critical_percent", label: t("Critical below"), ...PERCENT },
+    ],
+  },
+  {
+    title: t("Zones and other UAVs"),
+    limits: [
+      { name: "zone_ahead_s", label: t("Zones ahead within"), ...SECONDS },
+      { name: "converging_s", label: t("Meetings ahead within"), ...SECONDS },
+      { name: "separation_m", label: t("Apart, aside"), ...METRES },
+      { name: "separation_height_m", label: t("Apart, in height"), ...METRES },
+    ],
+  },
+  {
+    title: t("Wind"),
+    limits: [
+      { name: "wind_share_percent", label: t("Of its highest airspeed"), ...PERCENT },
+      { name: "wind_mps", label: t("In any case from (0: never)"), ...SPEED },
+    ],
+  },
+  {
+    title: t("Position and progress"),
+    limits: [
+      { name: "least_satellites", label: t("Satellites, at least"), ...BARE },
+      { name: "most_hdop", label: t("HDOP, at most"), ...BARE },
+      { name: "jump_mps", label: t("A jump is faster than"), ...SPEED },
+      { name: "no_progress_s", label: t("Stands still for"), ...SECONDS },
+    ],
+  },
 ];
 
-const ORDERED = [["link_late_s", "link_lost_s"], ["off_route_m", "off_route_critical_m"], ["height_off_m", "height_off_critical_m"]];
+const ORDERED = [
+  ["link_late_s", "link_lost_s"],
+  ["off_route_m", "off_route_critical_m"],
+  ["height_off_m", "height_off_critical_m"],
+];
 
 /** The upper ones of pairs that stand the wrong way round: [[its name, the lower one's name]]. What is not stated is as usual. */
 export function wrongWayRound(stated, usual) {
@@ -54,7 +79,18 @@ export function wrongWayRound(stated, usual) {
 }
 
 /** Bounds in a shown unit, to a tenth inwards: { min, max }. */
-export const boundsIn = ([least, most], factor) => (factor === 1 ? { min: least, max: most } : { min: Math.ceil((least / factor) * 10) / 10, max: Math.floor((most / factor) * 10) / 10 });
+export const boundsIn = ([least, most], factor) =>
+  factor === 1
+    ? { min: least, max: most }
+    : { min: Math.ceil((least / factor) * 10) / 10, max: Math.floor((most / factor) * 10) / 10 };
 
 /** What is stated, in a few words each: [[label, figure]]. */
-export const statedLines = (stated) => GROUPS.flatMap(({ title, limits }) => limits.filter(({ name }) => name in stated).map(({ name, label, unit, factor }) => [`${title}: ${label}`, `${Number((stated[name] / factor).toFixed(1))}${unit && `\u00a0${unit}`}`]));
+export const statedLines = (stated) =>
+  GROUPS.flatMap(({ title, limits }) =>
+    limits
+      .filter(({ name }) => name in stated)
+      .map(({ name, label, unit, factor }) => [
+        `${title}: ${label}`,
+        `${Number((stated[name] / factor).toFixed(1))}${unit && `\u00a0${unit}`}`,
+      ]),
+  );

@@ -6,23 +6,44 @@ import { t, tn } from "../text.js";
 import { coordinateText, exactHeightText, lengthText, voltageText, whenText } from "../units.js";
 import { assetForm } from "./form.js";
 
-const KINDS = [["tower", t("Towers")], ["line", t("Lines")], ["railway", t("Railways")], ["bridge", t("Bridges")]];
-const NEW_NAMES = { tower: t("New power tower"), line: t("New power line"), railway: t("New railway"), bridge: t("New bridge") };
+const KINDS = [
+  ["tower", t("Towers")],
+  ["line", t("Lines")],
+  ["railway", t("Railways")],
+  ["bridge", t("Bridges")],
+];
+const NEW_NAMES = {
+  tower: t("New power tower"),
+  line: t("New power line"),
+  railway: t("New railway"),
+  bridge: t("New bridge"),
+};
 const NAMES = { tower: t("Power tower"), line: t("Power line"), railway: t("Railway"), bridge: t("Bridge") };
 const SHAPES = { tower: "point", line: "line", railway: "line", bridge: "area" };
 const PAGE = 60;
 const TYPING_MS = 250;
 
 const filter = { text: "", kind: "", inView: false };
-const term = (name, value) => (value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)]);
+const term = (name, value) =>
+  value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)];
 const FACTS = ["subtype", "name", "ref", "operator", "voltages_v", "circuits", "height_m", "is_flyable"];
-const factsOf = ({ properties, geometry }) => ({ ...Object.fromEntries(FACTS.map((name) => [name, properties[name]])), geometry });
+const factsOf = ({ properties, geometry }) => ({
+  ...Object.fromEntries(FACTS.map((name) => [name, properties[name]])),
+  geometry,
+});
 
 function sourceWords({ properties }) {
   const { source, osm, asset_set: set } = properties;
   if (osm) {
     const kind = { n: "node", w: "way", r: "relation" }[osm[0]];
-    return [h("a", { href: `https://www.openstreetmap.org/${kind}/${osm.slice(1)}`, rel: "noreferrer", target: "_blank" }, `OpenStreetMap ${kind} ${osm.slice(1)}`), source ? `, ${source.file_name}` : ""];
+    return [
+      h(
+        "a",
+        { href: `https://www.openstreetmap.org/${kind}/${osm.slice(1)}`, rel: "noreferrer", target: "_blank" },
+        `OpenStreetMap ${kind} ${osm.slice(1)}`,
+      ),
+      source ? `, ${source.file_name}` : "",
+    ];
   }
   return set ? [`${set}${source ? `, ${source.file_name}` : ""}`] : [t("Drawn here")];
 }
@@ -32,18 +53,50 @@ function details(feature) {
   const tags = Object.entries(properties.tags ?? {});
   return [
     h("p", { class: "caption" }, [NAMES[properties.kind], properties.detail].filter(Boolean).join(" · ")),
-    properties.vanished_at && h("div", { class: "notice warning" }, h("p", {}, h("strong", {}, `${t("Off the ground.")} `), t("Since {when}; missions still know it.", { when: whenText(properties.vanished_at) }))),
+    properties.vanished_at &&
+      h(
+        "div",
+        { class: "notice warning" },
+        h(
+          "p",
+          {},
+          h("strong", {}, `${t("Off the ground.")} `),
+          t("Since {when}; missions still know it.", { when: whenText(properties.vanished_at) }),
+        ),
+      ),
     properties.is_edited && h("p", { class: "caption" }, t("Edited by hand: imports leave it alone.")),
     h(
       "dl",
       { class: "facts" },
-      term(t("Ref"), properties.ref), term(t("Name"), properties.name), term(t("Operator"), properties.operator),
-      term(t("Voltages"), properties.voltages_v.map((volts) => voltageText(volts / 1000)).join(", ")), term(t("Circuits"), properties.circuits && String(properties.circuits)),
-      term(t("Height"), properties.height_m && t("{height} above ground", { height: exactHeightText(properties.height_m) })), term(t("Length"), properties.length_m && lengthText(properties.length_m)),
-      term(t("Network"), properties.is_flyable ? "" : t("Not part of the flying network")), term(t("Place"), coordinateText(properties.centre)),
-      term(t("Source"), sourceWords(feature)), term(t("Licence"), properties.source?.licence), term(t("Attribution"), properties.source?.attribution), term(t("Fetched"), properties.source?.fetched_at && whenText(properties.source.fetched_at)), term(t("Changed"), whenText(properties.updated_at)),
+      term(t("Ref"), properties.ref),
+      term(t("Name"), properties.name),
+      term(t("Operator"), properties.operator),
+      term(t("Voltages"), properties.voltages_v.map((volts) => voltageText(volts / 1000)).join(", ")),
+      term(t("Circuits"), properties.circuits && String(properties.circuits)),
+      term(
+        t("Height"),
+        properties.height_m && t("{height} above ground", { height: exactHeightText(properties.height_m) }),
+      ),
+      term(t("Length"), properties.length_m && lengthText(properties.length_m)),
+      term(t("Network"), properties.is_flyable ? "" : t("Not part of the flying network")),
+      term(t("Place"), coordinateText(properties.centre)),
+      term(t("Source"), sourceWords(feature)),
+      term(t("Licence"), properties.source?.licence),
+      term(t("Attribution"), properties.source?.attribution),
+      term(t("Fetched"), properties.source?.fetched_at && whenText(properties.source.fetched_at)),
+      term(t("Changed"), whenText(properties.updated_at)),
     ),
-    tags.length > 0 && h("details", { class: "draw-vertices" }, h("summary", {}, tn(tags.length, "{count} tag of the source", "{count} tags of the source")), h("dl", { class: "facts" }, tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", { translate: "no" }, value)]))),
+    tags.length > 0 &&
+      h(
+        "details",
+        { class: "draw-vertices" },
+        h("summary", {}, tn(tags.length, "{count} tag of the source", "{count} tags of the source")),
+        h(
+          "dl",
+          { class: "facts" },
+          tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", { translate: "no" }, value)]),
+        ),
+      ),
   ].filter(Boolean);
 }
 
@@ -54,7 +107,10 @@ const records = mountRecordPage({
   backWords: t("All assets"),
   pickKinds: ["tower", "line", "railway", "bridge"],
   newChoices: [
-    { value: "tower", icon: "tower", words: t("Tower") }, { value: "line", icon: "line", words: t("Power line") }, { value: "railway", icon: "railway", words: t("Railway") }, { value: "bridge", icon: "bridge", words: t("Bridge") },
+    { value: "tower", icon: "tower", words: t("Tower") },
+    { value: "line", icon: "line", words: t("Power line") },
+    { value: "railway", icon: "railway", words: t("Railway") },
+    { value: "bridge", icon: "bridge", words: t("Bridge") },
   ],
   newTitle: (kind) => NEW_NAMES[kind],
   choiceOf: (feature) => feature.properties.kind,
@@ -67,18 +123,37 @@ const records = mountRecordPage({
   details,
   form: assetForm,
   followsView: () => filter.inView,
-  row: ({ properties }) => ({ icon: properties.kind, name: properties.label, detail: properties.detail || NAMES[properties.kind], chip: properties.is_flyable ? "" : t("not flown") }),
+  row: ({ properties }) => ({
+    icon: properties.kind,
+    name: properties.label,
+    detail: properties.detail || NAMES[properties.kind],
+    chip: properties.is_flyable ? "" : t("not flown"),
+  }),
   listQuery(map) {
     const query = new URLSearchParams({ limit: PAGE });
     if (filter.text) query.set("text", filter.text);
     if (filter.kind) query.set("kind", filter.kind);
-    if (filter.inView) query.set("bbox", map.box().map((degrees) => degrees.toFixed(6)).join(","));
+    if (filter.inView)
+      query.set(
+        "bbox",
+        map
+          .box()
+          .map((degrees) => degrees.toFixed(6))
+          .join(","),
+      );
     return `/assets?${query}`;
   },
   nothing: () =>
     filter.text || filter.kind || filter.inView
-      ? [h("strong", {}, t("Nothing found.")), h("span", {}, t("Other words, another kind, or a larger part of the map may have it."))]
-      : [h("strong", {}, t("No assets yet.")), h("span", {}, t("Bring in an OpenStreetMap file, or take the visible area from Overpass.")), h("a", { class: "button", href: "/imports" }, t("Import a file"))],
+      ? [
+          h("strong", {}, t("Nothing found.")),
+          h("span", {}, t("Other words, another kind, or a larger part of the map may have it.")),
+        ]
+      : [
+          h("strong", {}, t("No assets yet.")),
+          h("span", {}, t("Bring in an OpenStreetMap file, or take the visible area from Overpass.")),
+          h("a", { class: "button", href: "/imports" }, t("Import a file")),
+        ],
 });
 
 let timer = 0;
@@ -93,7 +168,18 @@ byId("record-in-view").addEventListener("change", (event) => {
 });
 byId("asset-kinds").append(
   ...[["", t("All")], ...KINDS].map(([value, words]) =>
-    h("label", {}, h("input", { type: "radio", name: "kind", value, checked: value === "", onchange: () => ((filter.kind = value), records.load()) }), h("span", { class: "segment" }, words)),
+    h(
+      "label",
+      {},
+      h("input", {
+        type: "radio",
+        name: "kind",
+        value,
+        checked: value === "",
+        onchange: () => ((filter.kind = value), records.load()),
+      }),
+      h("span", { class: "segment" }, words),
+    ),
   ),
 );
 records.start();

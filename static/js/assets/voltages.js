@@ -4,7 +4,12 @@ export const HIGHEST_KV = 2_000;
 
 /** "110, 20" or "110 kV; 20 kV" → volts, highest first; null where a part is no voltage. */
 export function voltsOf(words) {
-  const parts = words.split(/[;,/]/).map((part) => part.replace(/kv/i, "").trim()).filter(Boolean);
+  const parts = words
+    .split(/[;,/]/)
+    .map((part) => part.replace(/kv/i, "").trim())
+    .filter(Boolean);
   const volts = parts.map((part) => (/^\d+(\.\d+)?$/.test(part) ? Math.round(Number(part) * 1000) : 0));
-  return volts.every((each) => each >= 1 && each <= HIGHEST_KV * 1000) ? [...new Set(volts)].sort((a, b) => b - a) : null;
+  return volts.every((each) => each >= 1 && each <= HIGHEST_KV * 1000)
+    ? [...new Set(volts)].sort((a, b) => b - a)
+    : null;
 }

@@ -3,7 +3,18 @@
  * shape is whole. Undo goes through these values, so that a step back is also a step back in what a click means.
  */
 
-import { addHole, addPart, append, dropLast, leastOf, radiusTo, ringAt, seated, stubOf, withoutStubs } from "./shape.js";
+import {
+  addHole,
+  addPart,
+  append,
+  dropLast,
+  leastOf,
+  radiusTo,
+  ringAt,
+  seated,
+  stubOf,
+  withoutStubs,
+} from "./shape.js";
 
 /** A shape that lacks vertices is drawn on, also one that was left in the middle. */
 export const begin = (shape) => ({ shape, growing: stubOf(shape) });
@@ -20,7 +31,8 @@ export function placed(state, position, near = null) {
     if (!ring.length) return { shape: append(shape, growing, position), growing };
     return near ? state : { shape: radiusTo(shape, position), growing: null };
   }
-  if (near === "last" || (near === "first" && shape.kind === "area")) return ring.length >= leastOf(shape.kind) ? ended(state) : state;
+  if (near === "last" || (near === "first" && shape.kind === "area"))
+    return ring.length >= leastOf(shape.kind) ? ended(state) : state;
   return { shape: append(shape, growing, position), growing };
 }
 
@@ -40,11 +52,16 @@ export function stepBack(state) {
   return growing.join() === "0,0" ? state : { shape: withoutStubs(shape), growing: null };
 }
 
-export const withHole = ({ shape }, part = 0) => ({ shape: addHole(shape, part), growing: [part, shape.parts[part].length] });
+export const withHole = ({ shape }, part = 0) => ({
+  shape: addHole(shape, part),
+  growing: [part, shape.parts[part].length],
+});
 export const withPart = ({ shape }) => ({ shape: addPart(shape), growing: [shape.parts.length, 0] });
 
 /** What it would be if the pointer were clicked: for measures and for a circle that is being drawn out. */
 export function preview(state, position) {
   const { shape } = state;
-  return position && state.growing && shape.kind !== "point" && growingRing(state).length ? placed(state, position).shape : shape;
+  return position && state.growing && shape.kind !== "point" && growingRing(state).length
+    ? placed(state, position).shape
+    : shape;
 }

@@ -33,8 +33,13 @@ export function createEditor(map, { onChange, onPreview = () => {} }) {
   const growing = () => steps?.value.growing ?? null;
   const faultsNow = () => (isActive() ? faultsOf(shape(), growing()) : []);
   const stateNow = () => ({
-    shape: shape(), faults: faultsNow(), chosen, isDrawing: growing() !== null, isMoving,
-    canUndo: steps?.canUndo ?? false, canRedo: steps?.canRedo ?? false,
+    shape: shape(),
+    faults: faultsNow(),
+    chosen,
+    isDrawing: growing() !== null,
+    isMoving,
+    canUndo: steps?.canUndo ?? false,
+    canRedo: steps?.canRedo ?? false,
   });
 
   function tell() {
@@ -58,7 +63,14 @@ export function createEditor(map, { onChange, onPreview = () => {} }) {
     }
     const next = drawings.preview(steps.value, pointer);
     const ring = drawings.growingRing(steps.value);
-    showNext(map, ring.length ? (shape().kind === "circle" ? next : { kind: "line", parts: [[[ring.at(-1), pointer]]], radius_m: null }) : null);
+    showNext(
+      map,
+      ring.length
+        ? shape().kind === "circle"
+          ? next
+          : { kind: "line", parts: [[[ring.at(-1), pointer]]], radius_m: null }
+        : null,
+    );
     onPreview(next);
   }
 
@@ -76,7 +88,12 @@ export function createEditor(map, { onChange, onPreview = () => {} }) {
   };
   const isFree = (event) => event.altKey || event.ctrlKey || event.metaKey;
   const snapAt = (event, point, { moved = null } = {}) =>
-    isFree(event) ? null : snap(map, point, { but, own: shapes.verticesOf(shape()).filter(({ at }) => !growing() && at.join() !== moved?.join()) });
+    isFree(event)
+      ? null
+      : snap(map, point, {
+          but,
+          own: shapes.verticesOf(shape()).filter(({ at }) => !growing() && at.join() !== moved?.join()),
+        });
   const near = (position, point) => {
     if (!position) return false;
     const place = map.project(position);
@@ -106,7 +123,10 @@ export function createEditor(map, { onChange, onPreview = () => {} }) {
   /** The handle under the pointer: of vertices, radius and middles the first that is within reach, then the nearest. */
   function handleAt(point) {
     if (isMoving) return { role: "whole", at: null };
-    const corners = [[-1, -1], [1, 1]].map(([right, down]) => map.unproject([point.x + right * REACH_PX, point.y + down * REACH_PX]));
+    const corners = [
+      [-1, -1],
+      [1, 1],
+    ].map(([right, down]) => map.unproject([point.x + right * REACH_PX, point.y + down * REACH_PX]));
     const [west, east] = corners.map(({ lng }) => lng);
     const [north, south] = corners.map(({ lat }) => lat);
     let best = null;
@@ -124,7 +144,7 @@ export function createEditor(map, { onChange, onPreview = () => {} }) {
     fingers.add(event.pointerId);
     if (!isActive() || event.button !== 0 || event.shiftKey) return;
     if (fingers.size > 1) {
-      if (drag) (endDrag(), tell()); // two fingers move the map
+      if (drag) endDrag(), tell(); // two fingers move the map
       return;
     }
     const point = pointOf(event);
@@ -146,7 +166,8 @@ export function createEditor(map, { onChange, onPreview = () => {} }) {
     drag = { role: handle.role, at, from: point, first, now: null, moved: false, snapped: null, timer: 0 };
     if (handle.role === "vertex") {
       chosen = at;
-      if (event.pointerType === "touch") drag.timer = setTimeout(() => drag && !drag.moved && (endDrag(), remove()), LONG_PRESS_MS);
+      if (event.pointerType === "touch")
+        drag.timer = setTimeout(() => drag && !drag.moved && (endDrag(), remove()), LONG_PRESS_MS);
     }
     show(map, shape(), { chosen, faults: faultsNow(), hasHandles: !isMoving });
   }
@@ -218,7 +239,7 @@ export function createEditor(map, { onChange, onPreview = () => {} }) {
 
   function cancelled(event) {
     fingers.delete(event.pointerId);
-    if (isActive() && drag) (endDrag(), tell());
+    if (isActive() && drag) endDrag(), tell();
   }
 
   function choose(at) {
@@ -241,7 +262,10 @@ export function createEditor(map, { onChange, onPreview = () => {} }) {
   canvas.addEventListener("contextmenu", (event) => isActive() && event.preventDefault()); // a long press removes a vertex
   map.on("dblclick", (event) => isActive() && event.preventDefault());
 
-  const whileActive = (act) => (...given) => (isActive() ? act(...given) : false);
+  const whileActive =
+    (act) =>
+    (...given) =>
+      isActive() ? act(...given) : false;
 
   return {
     addTo: () => addTo(map),
@@ -307,7 +331,9 @@ export function createEditor(map, { onChange, onPreview = () => {} }) {
       const from = chosen ? shapes.positionAt(shape(), chosen) : map.getCenter().toArray();
       const place = map.project(from);
       const to = positionOf({ x: place.x + right_px, y: place.y + down_px });
-      takeShape(chosen ? shapes.move(shape(), chosen, to) : shapes.moveAll(shape(), [to[0] - from[0], to[1] - from[1]]));
+      takeShape(
+        chosen ? shapes.move(shape(), chosen, to) : shapes.moveAll(shape(), [to[0] - from[0], to[1] - from[1]]),
+      );
       return true;
     }),
     put: whileActive((at, position) => takeShape(shapes.move(shape(), at, shapes.rounded(position)))),

@@ -1,7 +1,7 @@
 /** Undo and redo of a value, without limit. */
 
 export function createSteps(first) {
-  let past = [];
+  const past = [];
   let future = [];
   let now = first;
   const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);

@@ -14,17 +14,56 @@ function layers() {
   const [accent, casing, raised, critical] = ["--accent", "--map-casing", "--raised", "--critical"].map(read);
   const round = { "line-cap": "round", "line-join": "round" };
   return [
-    { id: "draw-fill", type: "fill", source: "draw-shape", filter: isRole("fill"), paint: { "fill-color": accent, "fill-opacity": 0.12 } },
-    { id: "draw-casing", type: "line", source: "draw-shape", filter: isRole("side"), layout: round, paint: { "line-color": casing, "line-width": 6 } },
-    { id: "draw-side", type: "line", source: "draw-shape", filter: isRole("side"), layout: round, paint: { "line-color": accent, "line-width": 2.5 } },
-    { id: "draw-next", type: "line", source: "draw-next", filter: isRole("side"), paint: { "line-color": accent, "line-width": 1.5, "line-dasharray": [3, 2] } },
-    { id: "draw-fault", type: "line", source: "draw-faults", filter: ["==", ["geometry-type"], "LineString"], layout: round, paint: { "line-color": critical, "line-width": 4 } },
+    {
+      id: "draw-fill",
+      type: "fill",
+      source: "draw-shape",
+      filter: isRole("fill"),
+      paint: { "fill-color": accent, "fill-opacity": 0.12 },
+    },
+    {
+      id: "draw-casing",
+      type: "line",
+      source: "draw-shape",
+      filter: isRole("side"),
+      layout: round,
+      paint: { "line-color": casing, "line-width": 6 },
+    },
+    {
+      id: "draw-side",
+      type: "line",
+      source: "draw-shape",
+      filter: isRole("side"),
+      layout: round,
+      paint: { "line-color": accent, "line-width": 2.5 },
+    },
+    {
+      id: "draw-next",
+      type: "line",
+      source: "draw-next",
+      filter: isRole("side"),
+      paint: { "line-color": accent, "line-width": 1.5, "line-dasharray": [3, 2] },
+    },
+    {
+      id: "draw-fault",
+      type: "line",
+      source: "draw-faults",
+      filter: ["==", ["geometry-type"], "LineString"],
+      layout: round,
+      paint: { "line-color": critical, "line-width": 4 },
+    },
     {
       id: "draw-middles",
       type: "circle",
       source: "draw-points",
       filter: isRole("middle"),
-      paint: { "circle-radius": touch ? 6 : 3.5, "circle-color": raised, "circle-opacity": 0.85, "circle-stroke-color": accent, "circle-stroke-width": 1.25 },
+      paint: {
+        "circle-radius": touch ? 6 : 3.5,
+        "circle-color": raised,
+        "circle-opacity": 0.85,
+        "circle-stroke-color": accent,
+        "circle-stroke-width": 1.25,
+      },
     },
     {
       id: "draw-handles",
@@ -45,12 +84,18 @@ function layers() {
       filter: ["==", ["geometry-type"], "Point"],
       paint: { "circle-radius": 9, "circle-opacity": 0, "circle-stroke-color": critical, "circle-stroke-width": 2.5 },
     },
-    { id: "draw-snap", type: "circle", source: "draw-snap", paint: { "circle-radius": 10, "circle-opacity": 0, "circle-stroke-color": accent, "circle-stroke-width": 2 } },
+    {
+      id: "draw-snap",
+      type: "circle",
+      source: "draw-snap",
+      paint: { "circle-radius": 10, "circle-opacity": 0, "circle-stroke-color": accent, "circle-stroke-width": 2 },
+    },
   ];
 }
 
 export function addTo(map) {
-  for (const source of ["draw-shape", "draw-next", "draw-points", "draw-faults", "draw-snap"]) map.addSource(source, { type: "geojson", data: NOTHING });
+  for (const source of ["draw-shape", "draw-next", "draw-points", "draw-faults", "draw-snap"])
+    map.addSource(source, { type: "geojson", data: NOTHING });
   for (const layer of layers()) map.addLayer(layer);
 }
 
@@ -60,17 +105,25 @@ export function recolour(map) {
   }
 }
 
-const feature = (role, type, coordinates, rest = {}) => ({ type: "Feature", properties: { role, ...rest }, geometry: { type, coordinates } });
+const feature = (role, type, coordinates, rest = {}) => ({
+  type: "Feature",
+  properties: { role, ...rest },
+  geometry: { type, coordinates },
+});
 const put = (map, source, features) => map.getSource(source).setData({ type: "FeatureCollection", features });
 
 /** shape null draws nothing. `growing`: the ring that is still open. */
 export function show(map, shape, { chosen = null, faults = [], growing = null, hasHandles = true } = {}) {
   put(map, "draw-shape", shape ? shapeFeatures(shape, growing) : []);
   put(map, "draw-points", shape && hasHandles ? handleFeatures(shape, chosen, growing) : []);
-  put(map, "draw-faults", faults.flatMap((fault) => [
-    ...fault.sides.map((side) => feature("fault", "LineString", side)),
-    ...(fault.position ? [feature("fault", "Point", fault.position)] : []),
-  ]));
+  put(
+    map,
+    "draw-faults",
+    faults.flatMap((fault) => [
+      ...fault.sides.map((side) => feature("fault", "LineString", side)),
+      ...(fault.position ? [feature("fault", "Point", fault.position)] : []),
+    ]),
+  );
 }
 
 /** What the next click would add: the side to the pointer, or the circle round its centre. */
@@ -93,8 +146,15 @@ function shapeFeatures(shape, growing) {
   const parts = shape.parts.map((part) => part.map((ring) => continuous(ring, start)));
   const isGrowing = (p, r) => growing !== null && growing[0] === p && growing[1] === r;
   const closed = (ring) => [...ring, ring[0]];
-  const fills = shape.kind === "area" ? parts.map((part, p) => part.filter((ring, r) => ring.length > 2 && !isGrowing(p, r)).map(closed)).filter((rings, p) => rings.length && !isGrowing(p, 0)) : [];
-  const sides = parts.flatMap((part, p) => part.map((ring, r) => (shape.kind === "area" && ring.length > 2 && !isGrowing(p, r) ? closed(ring) : ring)));
+  const fills =
+    shape.kind === "area"
+      ? parts
+          .map((part, p) => part.filter((ring, r) => ring.length > 2 && !isGrowing(p, r)).map(closed))
+          .filter((rings, p) => rings.length && !isGrowing(p, 0))
+      : [];
+  const sides = parts.flatMap((part, p) =>
+    part.map((ring, r) => (shape.kind === "area" && ring.length > 2 && !isGrowing(p, r) ? closed(ring) : ring)),
+  );
   return [
     ...(fills.length ? [feature("fill", "MultiPolygon", fills)] : []),
     ...sides.filter((ring) => ring.length > 1).map((ring) => feature("side", "LineString", ring)),
@@ -105,7 +165,10 @@ function shapeFeatures(shape, growing) {
 export function handlesOf(shape) {
   const vertices = verticesOf(shape).map(({ at, position }) => ({ role: "vertex", at, position }));
   const radius = radiusHandle(shape);
-  const middles = vertices.length <= MOST_MIDDLES ? middlesOf(shape).map(({ after, position }) => ({ role: "middle", at: after, position })) : [];
+  const middles =
+    vertices.length <= MOST_MIDDLES
+      ? middlesOf(shape).map(({ after, position }) => ({ role: "middle", at: after, position }))
+      : [];
   return [...middles, ...vertices, ...(radius ? [{ role: "radius", at: null, position: radius }] : [])];
 }
 

@@ -14,12 +14,16 @@ export function distance_m([lon1, lat1], [lon2, lat2]) {
 export function towards([longitude, latitude], bearing_deg, far_m) {
   const [angle, bearing, lat] = [far_m / EARTH_RADIUS_M, bearing_deg * RADIANS, latitude * RADIANS];
   const north = Math.asin(Math.sin(lat) * Math.cos(angle) + Math.cos(lat) * Math.sin(angle) * Math.cos(bearing));
-  const east = Math.atan2(Math.sin(bearing) * Math.sin(angle) * Math.cos(lat), Math.cos(angle) - Math.sin(lat) * Math.sin(north));
+  const east = Math.atan2(
+    Math.sin(bearing) * Math.sin(angle) * Math.cos(lat),
+    Math.cos(angle) - Math.sin(lat) * Math.sin(north),
+  );
   return [longitude + east / RADIANS, north / RADIANS];
 }
 
 /** The longitude as it is named nearest to another one: -179 beside 180 is 181. */
-export const beside = (other, longitude) => (Math.abs(longitude - other) <= 180 ? longitude : longitude + 360 * Math.round((other - longitude) / 360));
+export const beside = (other, longitude) =>
+  Math.abs(longitude - other) <= 180 ? longitude : longitude + 360 * Math.round((other - longitude) / 360);
 
 /** A path over the 180th meridian without its jump: longitudes go on beyond ±180. It starts beside `start`. */
 export function continuous(path, start = path[0]?.[0]) {
@@ -30,14 +34,18 @@ export function continuous(path, start = path[0]?.[0]) {
   });
 }
 
-export const pathLength_m = (path) => path.slice(1).reduce((sum, position, index) => sum + distance_m(path[index], position), 0);
+export const pathLength_m = (path) =>
+  path.slice(1).reduce((sum, position, index) => sum + distance_m(path[index], position), 0);
 
 /** Of a ring that does not repeat its first position. */
 export function ringArea_m2(ring) {
   let sum = 0;
   ring.forEach(([longitude, latitude], index) => {
     const [nextLon, nextLat] = ring[(index + 1) % ring.length];
-    sum += (beside(longitude, nextLon) - longitude) * RADIANS * (2 + Math.sin(latitude * RADIANS) + Math.sin(nextLat * RADIANS));
+    sum +=
+      (beside(longitude, nextLon) - longitude) *
+      RADIANS *
+      (2 + Math.sin(latitude * RADIANS) + Math.sin(nextLat * RADIANS));
   });
   return Math.abs((sum * EARTH_RADIUS_M ** 2) / 2);
 }
@@ -52,4 +60,5 @@ export function measure(shape) {
 }
 
 /** A circle as a closed ring, to be drawn. */
-export const circleRing = (centre, radius_m) => Array.from({ length: CIRCLE_CORNERS + 1 }, (_, index) => towards(centre, (index * 360) / CIRCLE_CORNERS, radius_m));
+export const circleRing = (centre, radius_m) =>
+  Array.from({ length: CIRCLE_CORNERS + 1 }, (_, index) => towards(centre, (index * 360) / CIRCLE_CORNERS, radius_m));

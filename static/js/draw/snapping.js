@@ -11,7 +11,13 @@ const TILE_STEPS = 4096; // a tile rounds positions to its grid; the asset itsel
 const EQUATOR_M = 40_075_017;
 
 const ringsOf = ({ type, coordinates }) =>
-  ({ Point: [[coordinates]], LineString: [coordinates], MultiLineString: coordinates, Polygon: coordinates, MultiPolygon: coordinates.flat() })[type] ?? [];
+  ({
+    Point: [[coordinates]],
+    LineString: [coordinates],
+    MultiLineString: coordinates,
+    Polygon: coordinates,
+    MultiPolygon: coordinates.flat(),
+  })[type] ?? [];
 const isLine = ({ type }) => type === "LineString" || type === "MultiLineString";
 
 /**
@@ -19,8 +25,13 @@ const isLine = ({ type }) => type === "LineString" || type === "MultiLineString"
  * `own` are vertices of the shape itself, { position }; they have no asset.
  */
 export function snap(map, point, { but = null, own = [] } = {}) {
-  const box = [[point.x - REACH_PX, point.y - REACH_PX], [point.x + REACH_PX, point.y + REACH_PX]];
-  const met = map.queryRenderedFeatures(box, { layers: LAYERS.filter((id) => map.getLayer(id)) }).filter((feature) => feature.source === TILES && feature.properties.id !== but);
+  const box = [
+    [point.x - REACH_PX, point.y - REACH_PX],
+    [point.x + REACH_PX, point.y + REACH_PX],
+  ];
+  const met = map
+    .queryRenderedFeatures(box, { layers: LAYERS.filter((id) => map.getLayer(id)) })
+    .filter((feature) => feature.source === TILES && feature.properties.id !== but);
   let best = null;
   const offer = (position, asset, isVertex) => {
     const place = map.project(position);
@@ -29,7 +40,8 @@ export function snap(map, point, { but = null, own = [] } = {}) {
   };
   for (const { position } of own) offer(position, null, true);
   for (const feature of met) {
-    for (const path of ringsOf(feature.geometry)) for (const position of path) offer(position, feature.properties.id, true);
+    for (const path of ringsOf(feature.geometry))
+      for (const position of path) offer(position, feature.properties.id, true);
   }
   if (best) return best;
   const { lng, lat } = map.unproject(point);
@@ -44,7 +56,14 @@ const shapes = new Map(); // asset id → promise of its geometry
 export const forgetShapes = () => shapes.clear();
 
 function shapeOfAsset(asset) {
-  if (!shapes.has(asset)) shapes.set(asset, get(`/assets/${asset}`).then(({ data }) => data.geometry, () => (shapes.delete(asset), null)));
+  if (!shapes.has(asset))
+    shapes.set(
+      asset,
+      get(`/assets/${asset}`).then(
+        ({ data }) => data.geometry,
+        () => (shapes.delete(asset), null),
+      ),
+    );
   return shapes.get(asset);
 }
 
@@ -54,7 +73,10 @@ export async function exact(map, { position, asset, isVertex }) {
   if (!geometry) return position;
   const rounding_m = (2 * EQUATOR_M) / 2 ** Math.floor(map.getZoom()) / TILE_STEPS;
   if (isVertex) {
-    const [nearest] = ringsOf(geometry).flat().map((vertex) => ({ vertex, far: distance_m(vertex, position) })).sort((a, b) => a.far - b.far);
+    const [nearest] = ringsOf(geometry)
+      .flat()
+      .map((vertex) => ({ vertex, far: distance_m(vertex, position) }))
+      .sort((a, b) => a.far - b.far);
     if (nearest && nearest.far <= rounding_m) return nearest.vertex.slice(0, 2);
   }
   return isLine(geometry) ? nearestOnLine(geometry, position) : position; // where a tile cuts a line there is no vertex

@@ -22,8 +22,10 @@ export function faultsOf(shape, growing = null) {
 }
 
 function found(shape, growing) {
-  if (shape.kind === "circle") return shape.parts[0][0].length && shape.radius_m > 0 ? [] : [{ message: WORDS.circle, position: null, sides: [] }];
-  if (!growing && shape.parts.some(([outer]) => outer.length < leastOf(shape.kind))) return [{ message: WORDS[shape.kind], position: null, sides: [] }];
+  if (shape.kind === "circle")
+    return shape.parts[0][0].length && shape.radius_m > 0 ? [] : [{ message: WORDS.circle, position: null, sides: [] }];
+  if (!growing && shape.parts.some(([outer]) => outer.length < leastOf(shape.kind)))
+    return [{ message: WORDS[shape.kind], position: null, sides: [] }];
   const faults = [...repeated(shape), ...overTheDateLine(shape)];
   if (shape.kind !== "area" || faults.length) return faults;
   const sides = sidesOf(shape, growing);
@@ -35,16 +37,28 @@ function found(shape, growing) {
 
 function repeated(shape) {
   const isSame = (a, b) => a[0] === b[0] && a[1] === b[1];
-  return shape.parts.flat().flatMap((ring) =>
-    ring.filter((position, index) => index && isSame(position, ring[index - 1])).map((position) => ({ message: t("Two points lie in one place."), position, sides: [] })),
-  );
+  return shape.parts
+    .flat()
+    .flatMap((ring) =>
+      ring
+        .filter((position, index) => index && isSame(position, ring[index - 1]))
+        .map((position) => ({ message: t("Two points lie in one place."), position, sides: [] })),
+    );
 }
 
 function overTheDateLine(shape) {
   if (shape.kind !== "line") return [];
   const [path] = shape.parts[0];
   const index = path.findIndex((position, at) => at && Math.abs(position[0] - path[at - 1][0]) > 180);
-  return index > 0 ? [{ message: t("A line cannot cross the 180th meridian: draw it as two."), position: path[index], sides: [[path[index - 1], path[index]]] }] : [];
+  return index > 0
+    ? [
+        {
+          message: t("A line cannot cross the 180th meridian: draw it as two."),
+          position: path[index],
+          sides: [[path[index - 1], path[index]]],
+        },
+      ]
+    : [];
 }
 
 /** Sides of all rings, without jumps at the 180th meridian: { from, to, part, ring, index, size, low, high }. */
@@ -56,7 +70,16 @@ function sidesOf(shape, growing) {
       const isOpen = growing?.[0] === p && growing[1] === r;
       ring.slice(0, isOpen ? -1 : undefined).forEach((from, index) => {
         const to = ring[(index + 1) % ring.length];
-        sides.push({ from, to, part: p, ring: `${p},${r}`, index, size: isOpen ? Infinity : ring.length, low: Math.min(from[0], to[0]), high: Math.max(from[0], to[0]) });
+        sides.push({
+          from,
+          to,
+          part: p,
+          ring: `${p},${r}`,
+          index,
+          size: isOpen ? Infinity : ring.length,
+          low: Math.min(from[0], to[0]),
+          high: Math.max(from[0], to[0]),
+        });
       });
     }),
   );
@@ -73,7 +96,14 @@ function crossings(sides) {
     for (const other of alive) {
       const position = meetingPlace(side, other);
       if (!position) continue;
-      faults.push({ message: meetingWords(side, other), position, sides: [[side.from, side.to], [other.from, other.to]] });
+      faults.push({
+        message: meetingWords(side, other),
+        position,
+        sides: [
+          [side.from, side.to],
+          [other.from, other.to],
+        ],
+      });
       if (faults.length >= MOST_FAULTS) return faults;
     }
     alive.push(side);
@@ -98,7 +128,11 @@ function areNeighbours(a, b) {
 }
 
 const cross = (o, a, b) => (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
-const isBetween = (p, a, b) => Math.min(a[0], b[0]) <= p[0] && p[0] <= Math.max(a[0], b[0]) && Math.min(a[1], b[1]) <= p[1] && p[1] <= Math.max(a[1], b[1]);
+const isBetween = (p, a, b) =>
+  Math.min(a[0], b[0]) <= p[0] &&
+  p[0] <= Math.max(a[0], b[0]) &&
+  Math.min(a[1], b[1]) <= p[1] &&
+  p[1] <= Math.max(a[1], b[1]);
 
 /** Where two sides cross, each within the other; null where they only touch. */
 function crossingOf({ from: a, to: b }, { from: c, to: d }) {
@@ -124,7 +158,10 @@ export function meetingOf(one, other) {
 function overlapOf({ from: a, to: b }, { from: c, to: d }) {
   if (cross(a, b, c) !== 0 || cross(a, b, d) !== 0) return null;
   const axis = Math.abs(b[0] - a[0]) >= Math.abs(b[1] - a[1]) ? 0 : 1;
-  const [first, second] = [[a, b], [c, d]].map((side) => [...side].sort((p, q) => p[axis] - q[axis]));
+  const [first, second] = [
+    [a, b],
+    [c, d],
+  ].map((side) => [...side].sort((p, q) => p[axis] - q[axis]));
   const begins = first[0][axis] > second[0][axis] ? first[0] : second[0];
   const ends = first[1][axis] < second[1][axis] ? first[1] : second[1];
   return begins[axis] < ends[axis] ? begins : null;
@@ -132,10 +169,17 @@ function overlapOf({ from: a, to: b }, { from: c, to: d }) {
 
 function strayRings(shape) {
   const holes = shape.parts.flatMap(([outer, ...rest]) =>
-    rest.filter((hole) => hole.length >= 3 && !hole.some((position) => isInside(position, outer))).map((hole) => ({ message: t("A hole lies outside of the area."), position: hole[0], sides: [] })),
+    rest
+      .filter((hole) => hole.length >= 3 && !hole.some((position) => isInside(position, outer)))
+      .map((hole) => ({ message: t("A hole lies outside of the area."), position: hole[0], sides: [] })),
   );
   const parts = shape.parts.flatMap(([outer], index) =>
-    shape.parts.some(([other, ...gaps], number) => number !== index && outer.every((position) => isInside(position, other)) && !gaps.some((gap) => isInside(outer[0], gap)))
+    shape.parts.some(
+      ([other, ...gaps], number) =>
+        number !== index &&
+        outer.every((position) => isInside(position, other)) &&
+        !gaps.some((gap) => isInside(outer[0], gap)),
+    )
       ? [{ message: t("A part lies within another."), position: outer[0], sides: [] }]
       : [],
   );

@@ -14,11 +14,15 @@ export function heardWords({ heard_at, heard_by, server_time }) {
   if (!heard_at) return { words: t("It has never been heard."), isHeard: false };
   const seconds = (Date.parse(server_time) - Date.parse(heard_at)) / 1_000;
   const door = LINKS[heard_by].by;
-  return { words: t("Last heard {ago} {door}.", { ago: agoText(seconds, heard_at), door }), isHeard: seconds <= LOST_AFTER_S };
+  return {
+    words: t("Last heard {ago} {door}.", { ago: agoText(seconds, heard_at), door }),
+    isHeard: seconds <= LOST_AFTER_S,
+  };
 }
 
 const term = (name, value) => (value ? [h("dt", {}, name), h("dd", {}, value)] : []);
-const flightWords = ({ is_in_air, is_armed }) => (is_in_air ? t("in the air") : is_armed ? t("armed") : is_armed === false ? t("disarmed") : "");
+const flightWords = ({ is_in_air, is_armed }) =>
+  is_in_air ? t("in the air") : is_armed ? t("armed") : is_armed === false ? t("disarmed") : "";
 
 const DOUBTS = {
   rebooted: t("not known since it has booted"),

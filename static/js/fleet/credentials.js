@@ -9,12 +9,17 @@ import { CREDENTIALS } from "./words.js";
 
 const SECRET_WORDS = {
   "link-token": t("This is the token. It is shown only now: put it into the UAV's program."),
-  "mavlink-key": t("This is the key, 32 bytes in hexadecimal. It is shown only now: put it into the autopilot over a cable."),
+  "mavlink-key": t(
+    "This is the key, 32 bytes in hexadecimal. It is shown only now: put it into the autopilot over a cable.",
+  ),
 };
 
 function factsOf(credential) {
   if (!credential) return t("None: it cannot connect this way.");
-  const made = t("Made {when} by {who}", { when: whenText(credential.created_at), who: credential.created_by ?? t("somebody who has left") });
+  const made = t("Made {when} by {who}", {
+    when: whenText(credential.created_at),
+    who: credential.created_by ?? t("somebody who has left"),
+  });
   return `${made} · ${credential.last_used_at ? t("used {when}", { when: whenText(credential.last_used_at) }) : t("not used yet")}`;
 }
 
@@ -76,7 +81,16 @@ export async function mountCredentials(place, uav, { canPlan, onChange }) {
       { class: "secret" },
       h("p", {}, SECRET_WORDS[kind]),
       h("code", {}, secret),
-      h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: () => copy(secret) }, icon("copy", "small"), t("Copy")), h("button", { type: "button", class: "button quiet", onclick: () => ((shown = null), draw()) }, t("Put it away"))),
+      h(
+        "div",
+        { class: "acts" },
+        h("button", { type: "button", class: "button", onclick: () => copy(secret) }, icon("copy", "small"), t("Copy")),
+        h(
+          "button",
+          { type: "button", class: "button quiet", onclick: () => ((shown = null), draw()) },
+          t("Put it away"),
+        ),
+      ),
     );
   }
 
@@ -85,7 +99,16 @@ export async function mountCredentials(place, uav, { canPlan, onChange }) {
       "div",
       { class: "secret" },
       h("p", {}, t("Revoke it? {name} is cut off at once and needs a new one to connect again.", { name: uav.name })),
-      h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: () => ((asking = ""), draw()) }, t("Keep it")), h("button", { type: "button", class: "button danger filled", onclick: () => revoke(credential) }, t("Revoke it"))),
+      h(
+        "div",
+        { class: "acts" },
+        h("button", { type: "button", class: "button", onclick: () => ((asking = ""), draw()) }, t("Keep it")),
+        h(
+          "button",
+          { type: "button", class: "button danger filled", onclick: () => revoke(credential) },
+          t("Revoke it"),
+        ),
+      ),
     );
   }
 
@@ -93,13 +116,39 @@ export async function mountCredentials(place, uav, { canPlan, onChange }) {
     return h(
       "li",
       {},
-      h("div", { class: "what" }, h("strong", {}, CREDENTIALS[kind]), h("span", { class: "caption", title: credential && exactText(credential.created_at) }, factsOf(credential))),
+      h(
+        "div",
+        { class: "what" },
+        h("strong", {}, CREDENTIALS[kind]),
+        h("span", { class: "caption", title: credential && exactText(credential.created_at) }, factsOf(credential)),
+      ),
       canPlan &&
         h(
           "div",
           { class: "acts" },
-          uav.state !== "retired" && h("button", { type: "button", class: "button", onclick: () => make(kind), "aria-label": `${credential ? t("Replace") : t("Make")}: ${CREDENTIALS[kind]}` }, credential ? t("Replace") : t("Make")),
-          credential && h("button", { type: "button", class: "icon-button", onclick: ask(kind), "aria-label": `${t("Revoke")}: ${CREDENTIALS[kind]}`, title: t("Revoke") }, icon("x")),
+          uav.state !== "retired" &&
+            h(
+              "button",
+              {
+                type: "button",
+                class: "button",
+                onclick: () => make(kind),
+                "aria-label": `${credential ? t("Replace") : t("Make")}: ${CREDENTIALS[kind]}`,
+              },
+              credential ? t("Replace") : t("Make"),
+            ),
+          credential &&
+            h(
+              "button",
+              {
+                type: "button",
+                class: "icon-button",
+                onclick: ask(kind),
+                "aria-label": `${t("Revoke")}: ${CREDENTIALS[kind]}`,
+                title: t("Revoke"),
+              },
+              icon("x"),
+            ),
         ),
       asking === kind && credential && question(credential),
       shown?.kind === kind && secretBox(shown),

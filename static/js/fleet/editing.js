@@ -3,7 +3,7 @@
 import { ApiError, patch, post } from "../api.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
-import { bodies, BLANK, createForm } from "./forms.js";
+import { BLANK, bodies, createForm } from "./forms.js";
 import { KINDS } from "./kinds.js";
 import { conflictNotice } from "./panel.js";
 
@@ -27,7 +27,11 @@ export function createEditing(context) {
     const { bases, uavs } = store.state;
     const { extent } = context.page;
     if (context.map()) return context.map().centre();
-    return bases?.[0]?.position ?? uavs?.[0]?.position ?? (extent ? [(extent[0] + extent[2]) / 2, (extent[1] + extent[3]) / 2] : [0, 0]);
+    return (
+      bases?.[0]?.position ??
+      uavs?.[0]?.position ??
+      (extent ? [(extent[0] + extent[2]) / 2, (extent[1] + extent[3]) / 2] : [0, 0])
+    );
   }
 
   async function start(row, kept = null) {
@@ -37,7 +41,17 @@ export function createEditing(context) {
     const began = row ? bodies[tab](row) : bodies[tab](BLANK[tab]);
     if ("position" in began && !began.position) began.position = placeOfNew();
     const body = { ...began, ...kept?.body };
-    const form = createForm({ tab, body, types: types ?? [], bases: bases ?? [], isNew: !row, isAdministrator: context.page.role === "administrator", onMove: (position) => context.map()?.movePin(position), onSave: save, onCancel: cancel });
+    const form = createForm({
+      tab,
+      body,
+      types: types ?? [],
+      bases: bases ?? [],
+      isNew: !row,
+      isAdministrator: context.page.role === "administrator",
+      onMove: (position) => context.map()?.movePin(position),
+      onSave: save,
+      onCancel: cancel,
+    });
     edit = { tab, row, form, began, etag: kept?.etag ?? (row && ifUnchanged(row)), key: newKey(), isSaving: false };
     context.panel.edit(row ? t("Edit {name}", row) : KINDS[tab].one, form);
     const map = context.map();
@@ -51,7 +65,9 @@ export function createEditing(context) {
 
   function changes() {
     if (!edit) return {};
-    return Object.fromEntries(Object.entries(edit.form.body()).filter(([name, value]) => !isSame(value, edit.began[name])));
+    return Object.fromEntries(
+      Object.entries(edit.form.body()).filter(([name, value]) => !isSame(value, edit.began[name])),
+    );
   }
 
   const isChanged = () => Object.keys(changes()).length > 0;
@@ -104,7 +120,9 @@ export function createEditing(context) {
     form.busy(true);
     mine.isSaving = true;
     try {
-      const { data } = row ? await patch(`${kind.path}/${row.id}`, changes(), etag) : await post(kind.path, stated(body), { headers: { "Idempotency-Key": key } });
+      const { data } = row
+        ? await patch(`${kind.path}/${row.id}`, changes(), etag)
+        : await post(kind.path, stated(body), { headers: { "Idempotency-Key": key } });
       toast(t("{name} is saved.", data.properties ?? data));
       if (edit === mine) {
         end();
@@ -114,9 +132,14 @@ export function createEditing(context) {
       if (!(error instanceof ApiError)) throw error;
       mine.isSaving = false;
       if (!error.isAway) mine.key = newKey(); // an answer that was lost is asked for again under the same key
-      if (edit !== mine) toast(t("Not saved: {message}", error), { label: t("Look"), act: () => reopen(mine, { body, etag }) });
+      if (edit !== mine)
+        toast(t("Not saved: {message}", error), { label: t("Look"), act: () => reopen(mine, { body, etag }) });
       else if (error.status === 412 && error.details?.current) settle(error.details, kind);
-      else form.tell(error.isAway ? t("The server cannot be reached. What you typed stays here.") : error.message, error.details);
+      else
+        form.tell(
+          error.isAway ? t("The server cannot be reached. What you typed stays here.") : error.message,
+          error.details,
+        );
     } finally {
       form.busy(false);
     }
@@ -127,7 +150,10 @@ export function createEditing(context) {
     const { form, began } = edit;
     form.ask(
       conflictNotice({
-        who: changed_by, seen: began, theirs: bodies[kind.tab](now), form,
+        who: changed_by,
+        seen: began,
+        theirs: bodies[kind.tab](now),
+        form,
         onTheirs() {
           end();
           return showAsStored(kind.tab, now.id);
@@ -140,5 +166,12 @@ export function createEditing(context) {
     );
   }
 
-  return { start, leave, cancel, isOpen: () => edit !== null, isChanged, submit: () => edit.form.element.requestSubmit() };
+  return {
+    start,
+    leave,
+    cancel,
+    isOpen: () => edit !== null,
+    isChanged,
+    submit: () => edit.form.element.requestSubmit(),
+  };
 }

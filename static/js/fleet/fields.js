@@ -13,7 +13,14 @@ function fieldOf(name, label, input, read, { unit = "", hint = "" } = {}) {
   const help = hint && h("p", { class: "caption", id: `${input.id}-hint` }, hint);
   const described = [help && help.id, fault.id].filter(Boolean).join(" ");
   input.setAttribute("aria-describedby", described);
-  const element = h("div", { class: "field" }, h("label", { for: input.id }, label), unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input, help, fault);
+  const element = h(
+    "div",
+    { class: "field" },
+    h("label", { for: input.id }, label),
+    unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input,
+    help,
+    fault,
+  );
   const tell = (words) => {
     fault.hidden = !words;
     fault.replaceChildren(...(words ? [icon("circle-alert", "small"), words] : []));
@@ -41,15 +48,39 @@ function faultWords({ validity, min, max }) {
 const digitsOf = (figure) => (figure.split(".")[1] ?? "").length;
 
 export function textField(name, label, value, { required = false, maxlength = 100, ...how } = {}) {
-  const input = h("input", { class: "input", type: "text", required, maxlength, autocomplete: "off", spellcheck: "false", value: value ?? "" });
+  const input = h("input", {
+    class: "input",
+    type: "text",
+    required,
+    maxlength,
+    autocomplete: "off",
+    spellcheck: "false",
+    value: value ?? "",
+  });
   return fieldOf(name, label, input, () => input.value.trim(), how);
 }
 
 /** factor: how much of the stored unit one of the shown unit is. An empty field is null; what counts then stands in it in grey: `usual`. */
-export function numberField(name, label, value, { factor = 1, digits = 3, required = false, min, max, step = "any", usual = null, ...how } = {}) {
-  const shownOf = (stored) => (stored === null || stored === undefined ? "" : Number((stored / factor).toFixed(digits)));
+export function numberField(
+  name,
+  label,
+  value,
+  { factor = 1, digits = 3, required = false, min, max, step = "any", usual = null, ...how } = {},
+) {
+  const shownOf = (stored) =>
+    stored === null || stored === undefined ? "" : Number((stored / factor).toFixed(digits));
   const shown = shownOf(value);
-  const input = h("input", { class: "input", type: "number", inputmode: "decimal", step, min, max, required, value: shown, placeholder: shownOf(usual) });
+  const input = h("input", {
+    class: "input",
+    type: "number",
+    inputmode: "decimal",
+    step,
+    min,
+    max,
+    required,
+    value: shown,
+    placeholder: shownOf(usual),
+  });
   const read = () => {
     if (!Number.isFinite(input.valueAsNumber)) return null;
     return input.valueAsNumber === shown ? value : input.valueAsNumber * factor; // what was not touched stays to the last digit
@@ -59,17 +90,41 @@ export function numberField(name, label, value, { factor = 1, digits = 3, requir
 
 /** choices: [[value, words]]; values are texts, "" is null where `isNumber`. */
 export function choiceField(name, label, value, choices, { isNumber = false, ...how } = {}) {
-  const input = h("select", { class: "input" }, choices.map(([choice, words]) => h("option", { value: `${choice}`, selected: `${choice}` === `${value ?? ""}` }, words)));
-  return fieldOf(name, label, input, () => (isNumber ? (input.value === "" ? null : Number(input.value)) : input.value), how);
+  const input = h(
+    "select",
+    { class: "input" },
+    choices.map(([choice, words]) =>
+      h("option", { value: `${choice}`, selected: `${choice}` === `${value ?? ""}` }, words),
+    ),
+  );
+  return fieldOf(
+    name,
+    label,
+    input,
+    () => (isNumber ? (input.value === "" ? null : Number(input.value)) : input.value),
+    how,
+  );
 }
 
 /** On or off, with what it means beside it. */
 export function switchField(name, label, value, { hint = "", disabled = false } = {}) {
-  const input = h("input", { class: "switch", type: "checkbox", role: "switch", id: `fleet-field-${++made}`, checked: Boolean(value), disabled });
+  const input = h("input", {
+    class: "switch",
+    type: "checkbox",
+    role: "switch",
+    id: `fleet-field-${++made}`,
+    checked: Boolean(value),
+    disabled,
+  });
   const fault = h("p", { class: "field-error", id: `${input.id}-fault`, hidden: true });
   const help = h("small", { class: "caption", id: `${input.id}-hint` }, hint);
   input.setAttribute("aria-describedby", `${help.id} ${fault.id}`);
-  const element = h("div", { class: "field" }, h("div", { class: "switch-row" }, h("div", {}, h("label", { for: input.id }, label), help), input), fault);
+  const element = h(
+    "div",
+    { class: "field" },
+    h("div", { class: "switch-row" }, h("div", {}, h("label", { for: input.id }, label), help), input),
+    fault,
+  );
   const tell = (words) => {
     fault.hidden = !words;
     fault.replaceChildren(...(words ? [icon("circle-alert", "small"), words] : []));

@@ -15,7 +15,12 @@ export function mountFilters(store, { onTab, onChange }) {
 
   byId("fleet-tabs").append(
     ...Object.values(KINDS).map(({ tab, words }) =>
-      h("label", {}, h("input", { type: "radio", name: "fleet-tab", value: tab, onchange: () => onTab(tab) }), h("span", { class: "segment" }, words, h("span", { class: "count" }))),
+      h(
+        "label",
+        {},
+        h("input", { type: "radio", name: "fleet-tab", value: tab, onchange: () => onTab(tab) }),
+        h("span", { class: "segment" }, words, h("span", { class: "count" })),
+      ),
     ),
   );
 
@@ -26,24 +31,34 @@ export function mountFilters(store, { onTab, onChange }) {
   });
 
   store.listen(["numbers", "types", "bases"], ({ numbers, types, bases }) => {
-    const counts = { uavs: numbers && numbers.active + numbers.maintenance, types: types?.length, bases: bases?.length };
-    for (const input of byId("fleet-tabs").querySelectorAll("input")) input.parentElement.querySelector(".count").textContent = counts[input.value] ?? "";
+    const counts = {
+      uavs: numbers && numbers.active + numbers.maintenance,
+      types: types?.length,
+      bases: bases?.length,
+    };
+    for (const input of byId("fleet-tabs").querySelectorAll("input"))
+      input.parentElement.querySelector(".count").textContent = counts[input.value] ?? "";
   });
 
   function options(name, chosen, choices) {
-    byId(`fleet-${name}`).replaceChildren(...choices.map(([value, words]) => h("option", { value: `${value}`, selected: `${value}` === chosen }, words)));
+    byId(`fleet-${name}`).replaceChildren(
+      ...choices.map(([value, words]) => h("option", { value: `${value}`, selected: `${value}` === chosen }, words)),
+    );
   }
 
-  store.listen(["numbers", "types", "bases", "state", "type", "base"], ({ numbers, types, bases, state, type, base }) => {
-    const of = (...names) => (numbers ? ` (${names.reduce((sum, name) => sum + numbers[name], 0)})` : "");
-    options("state", state, [
-      [IN_USE, t("All but retired") + of("active", "maintenance")],
-      ...Object.entries(STATES).map(([value, { words }]) => [value, words + of(value)]),
-      ["all", t("All") + of("active", "maintenance", "retired")],
-    ]);
-    options("type", type, [["", t("Any type")], ...(types ?? []).map((row) => [row.id, row.name])]);
-    options("base", base, [["", t("Any base")], ...(bases ?? []).map((row) => [row.id, row.name])]);
-  });
+  store.listen(
+    ["numbers", "types", "bases", "state", "type", "base"],
+    ({ numbers, types, bases, state, type, base }) => {
+      const of = (...names) => (numbers ? ` (${names.reduce((sum, name) => sum + numbers[name], 0)})` : "");
+      options("state", state, [
+        [IN_USE, t("All but retired") + of("active", "maintenance")],
+        ...Object.entries(STATES).map(([value, { words }]) => [value, words + of(value)]),
+        ["all", t("All") + of("active", "maintenance", "retired")],
+      ]);
+      options("type", type, [["", t("Any type")], ...(types ?? []).map((row) => [row.id, row.name])]);
+      options("base", base, [["", t("Any base")], ...(bases ?? []).map((row) => [row.id, row.name])]);
+    },
+  );
 
   for (const name of ["state", "type", "base"]) {
     byId(`fleet-${name}`).addEventListener("change", (event) => {

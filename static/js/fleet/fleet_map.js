@@ -23,13 +23,22 @@ export function createFleetMap({ page, rows, ground, onChoose }) {
   const under = rememberedUnder(page);
   const places = [...rows.uavs, ...rows.bases].map((row) => row.position);
   const view = createMap(container, {
-    baseMap: page.baseMap, satellite: page.satellite, under, describe: t("Map of the fleet"), bounds: around(boxAround(places)) ?? page.extent, extent: page.extent,
+    baseMap: page.baseMap,
+    satellite: page.satellite,
+    under,
+    describe: t("Map of the fleet"),
+    bounds: around(boxAround(places)) ?? page.extent,
+    extent: page.extent,
   });
   const { map } = view;
   let markers = [];
   let pin = null;
 
-  setAttribution([...(ground?.attribution ?? []), under === "base-map" && page.baseMap.attribution, under === "satellite" && page.satellite.attribution]);
+  setAttribution([
+    ...(ground?.attribution ?? []),
+    under === "base-map" && page.baseMap.attribution,
+    under === "satellite" && page.satellite.attribution,
+  ]);
   onTheme(() => requestAnimationFrame(view.recolour));
   new ResizeObserver(() => map.resize()).observe(container);
   container.project = (position) => map.project(position); // screen place of a position, for tests
@@ -42,7 +51,10 @@ export function createFleetMap({ page, rows, ground, onChoose }) {
     return h(
       "button",
       {
-        type: "button", tabindex: "-1", title: row.name, "aria-label": isBase ? t("Base {name}", { name: row.name }) : t("UAV {name}", { name: row.name }),
+        type: "button",
+        tabindex: "-1",
+        title: row.name,
+        "aria-label": isBase ? t("Base {name}", { name: row.name }) : t("UAV {name}", { name: row.name }),
         class: `${isBase ? "fleet-square" : `fleet-dart ${row.state}`}${isChosen ? " chosen" : ""}`,
         onclick: (event) => (event.stopPropagation(), onChoose(tab, row.id)),
       },
@@ -57,7 +69,11 @@ export function createFleetMap({ page, rows, ground, onChoose }) {
   }
 
   return {
-    centre: () => map.getCenter().toArray().map((degrees) => Number(degrees.toFixed(6))),
+    centre: () =>
+      map
+        .getCenter()
+        .toArray()
+        .map((degrees) => Number(degrees.toFixed(6))),
 
     /** chosen: { tab, id } or null; the one that is edited is shown by the pin instead. */
     show({ uavs, bases }, chosen) {
@@ -68,13 +84,21 @@ export function createFleetMap({ page, rows, ground, onChoose }) {
       markers = [];
       for (const base of bases.filter((row) => !isAside("bases", row))) {
         standing.set(base.position.join(), { base: true, rows: 0 });
-        markers.push(new maplibre.Marker({ element: marker(base, "bases", isChosen("bases", base)) }).setLngLat(base.position).addTo(map));
+        markers.push(
+          new maplibre.Marker({ element: marker(base, "bases", isChosen("bases", base)) })
+            .setLngLat(base.position)
+            .addTo(map),
+        );
       }
       for (const uav of uavs.filter((row) => !isAside("uavs", row))) {
         const before = standing.get(uav.position.join()) ?? { base: false, rows: 0 };
         standing.set(uav.position.join(), { ...before, rows: before.rows + 1 });
         const offset = [before.base ? SQUARE_PX / 2 : -14, before.rows * ROW_PX];
-        markers.push(new maplibre.Marker({ element: marker(uav, "uavs", isChosen("uavs", uav)), anchor: "left", offset }).setLngLat(uav.position).addTo(map));
+        markers.push(
+          new maplibre.Marker({ element: marker(uav, "uavs", isChosen("uavs", uav)), anchor: "left", offset })
+            .setLngLat(uav.position)
+            .addTo(map),
+        );
       }
     },
 
@@ -97,8 +121,21 @@ export function createFleetMap({ page, rows, ground, onChoose }) {
       delete container.parentElement.dataset.placing;
       if (!position) return;
       container.parentElement.dataset.placing = "true";
-      const element = h("button", { type: "button", class: "fleet-pin", tabindex: "-1", "aria-label": t("Place, drag it"), title: t("Drag it, or click into the map") }, icon("map-pin"));
-      pin = { tell, marker: new maplibre.Marker({ element, anchor: "bottom", draggable: true }).setLngLat(position).addTo(map) };
+      const element = h(
+        "button",
+        {
+          type: "button",
+          class: "fleet-pin",
+          tabindex: "-1",
+          "aria-label": t("Place, drag it"),
+          title: t("Drag it, or click into the map"),
+        },
+        icon("map-pin"),
+      );
+      pin = {
+        tell,
+        marker: new maplibre.Marker({ element, anchor: "bottom", draggable: true }).setLngLat(position).addTo(map),
+      };
       pin.marker.on("dragend", () => pin.tell(rounded(pin.marker.getLngLat())));
     },
 

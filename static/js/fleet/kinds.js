@@ -4,10 +4,25 @@ import { h } from "../dom.js";
 import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
 import { coordinateText, percentText, powerText, speedText } from "../units.js";
-import { ageText, batteryMark, endWords, flat, fromType, kilograms, rangeText, squareMetres, stateChip, uavsText, wattHours } from "./words.js";
+import {
+  ageText,
+  batteryMark,
+  endWords,
+  flat,
+  fromType,
+  kilograms,
+  rangeText,
+  squareMetres,
+  stateChip,
+  uavsText,
+  wattHours,
+} from "./words.js";
 
 const caption = (words) => words && h("span", { class: "caption" }, words);
-const term = (name, value) => (value === null || value === undefined || value === "" || value === false ? [] : [h("dt", {}, name), h("dd", {}, value)]);
+const term = (name, value) =>
+  value === null || value === undefined || value === "" || value === false
+    ? []
+    : [h("dt", {}, name), h("dd", {}, value)];
 
 /** What it is charged to, and what a full one holds; the latter alone where nobody knows the former. */
 function batteryCell({ battery_percent, battery_wh }) {
@@ -26,9 +41,16 @@ export const KINDS = {
     path: "/uavs",
     read: flat,
     columns: [
-      { words: t("Name"), cell: (uav) => [uav.is_simulated && simulatedMark(), caption(uav.type_name || t("no type"))] },
+      {
+        words: t("Name"),
+        cell: (uav) => [uav.is_simulated && simulatedMark(), caption(uav.type_name || t("no type"))],
+      },
       { words: t("State"), cell: (uav) => stateChip(uav.state) },
-      { words: t("Base"), class: "wide", cell: (uav) => [uav.base_name || "—", caption(t("position {age}", { age: ageText(uav) }))] },
+      {
+        words: t("Base"),
+        class: "wide",
+        cell: (uav) => [uav.base_name || "—", caption(t("position {age}", { age: ageText(uav) }))],
+      },
       { words: t("Battery"), class: "number", cell: batteryCell },
       { words: t("Range"), class: "number wide", cell: (uav) => rangeText(uav.max_range_m) },
       { words: t("Missions"), class: "number missions", cell: (uav) => `${uav.mission_count || "—"}` },
@@ -40,10 +62,23 @@ export const KINDS = {
       term(t("Charged to"), batteryMark(uav.battery_percent)),
       term(t("Range"), fromType(uav, "max_range_m", rangeText(uav.max_range_m))),
       term(t("Speed"), fromType(uav, "cruise_speed_mps", speedText(uav.cruise_speed_mps))),
-      term(t("Battery"), fromType(uav, "battery_wh", uav.battery_wh === null ? t("not stated") : wattHours(uav.battery_wh))),
+      term(
+        t("Battery"),
+        fromType(uav, "battery_wh", uav.battery_wh === null ? t("not stated") : wattHours(uav.battery_wh)),
+      ),
       term(t("Mass"), fromType(uav, "mass_kg", uav.mass_kg === null ? t("not stated") : kilograms(uav.mass_kg))),
-      term(t("Kept in reserve"), uav.reserve_percent === null ? null : fromType(uav, "reserve_percent", percentText(uav.reserve_percent))),
-      term(t("Highest airspeed"), fromType(uav, "max_airspeed_mps", uav.max_airspeed_mps === null ? t("its speed") : speedText(uav.max_airspeed_mps))),
+      term(
+        t("Kept in reserve"),
+        uav.reserve_percent === null ? null : fromType(uav, "reserve_percent", percentText(uav.reserve_percent)),
+      ),
+      term(
+        t("Highest airspeed"),
+        fromType(
+          uav,
+          "max_airspeed_mps",
+          uav.max_airspeed_mps === null ? t("its speed") : speedText(uav.max_airspeed_mps),
+        ),
+      ),
       term(t("Sensors"), uav.sensors.join(", ") || t("not stated")),
       term(t("At the end"), endWords(uav.end_action)),
       term(t("Serial number"), uav.serial_number),
@@ -76,7 +111,10 @@ export const KINDS = {
       term(t("Speed"), speedText(type.cruise_speed_mps)),
       term(t("Battery"), wattHours(type.battery_wh)),
       term(t("Mass"), kilograms(type.mass_kg)),
-      term(t("Kept in reserve"), type.reserve_percent === null || type.reserve_percent === undefined ? "—" : percentText(type.reserve_percent)),
+      term(
+        t("Kept in reserve"),
+        type.reserve_percent === null || type.reserve_percent === undefined ? "—" : percentText(type.reserve_percent),
+      ),
       term(t("Highest airspeed"), type.max_airspeed_mps ? speedText(type.max_airspeed_mps) : t("its speed")),
       term(t("Rotor area"), squareMetres(type.rotor_disk_m2)),
       term(t("Power in a hover"), type.hover_power_w ? powerText(type.hover_power_w) : t("worked out")),
@@ -109,4 +147,3 @@ export const KINDS = {
     none: { title: t("No bases yet"), text: t("A base is where UAVs stand and take off.") },
   },
 };
-

@@ -19,19 +19,59 @@ const wide = matchMedia("(min-width: 1001px)");
 const page = readPage();
 const address = new URLSearchParams(location.search);
 const store = createStore({
-  tab: KINDS[address.get("tab")] ? address.get("tab") : "uavs", uavs: null, types: null, bases: null, numbers: null, next: null,
-  text: "", state: IN_USE, type: "", base: "", chosen: null, problem: null,
+  tab: KINDS[address.get("tab")] ? address.get("tab") : "uavs",
+  uavs: null,
+  types: null,
+  bases: null,
+  numbers: null,
+  next: null,
+  text: "",
+  state: IN_USE,
+  type: "",
+  base: "",
+  chosen: null,
+  problem: null,
 });
 let choosing = 0; // counts what was begun: an answer that comes after something else was begun is not shown
 let map = null;
 let ground = null;
 
-const chosenRow = () => store.state.chosen && (store.state[store.state.chosen.tab]?.find((row) => row.id === store.state.chosen.id) ?? null);
+const chosenRow = () =>
+  store.state.chosen && (store.state[store.state.chosen.tab]?.find((row) => row.id === store.state.chosen.id) ?? null);
 
 const filters = mountFilters(store, { onTab: turnTo, onChange: load });
-const table = mountTable({ canPlan: page.canPlan, onChoose: (id) => choose(store.state.tab, id), onNew: startNew, onClear: clearFilter });
-const panel = mountPanel({ canPlan: page.canPlan, acts: { back: close, edit: () => editing.start(chosenRow()), put, remove: takeOff, refresh: load, failed: tell, showUavs } });
-const editing = createEditing({ store, page, panel, isWide: () => wide.matches, open, map: () => map, showMap, turnTo, choose, close, load, moment: () => choosing });
+const table = mountTable({
+  canPlan: page.canPlan,
+  onChoose: (id) => choose(store.state.tab, id),
+  onNew: startNew,
+  onClear: clearFilter,
+});
+const panel = mountPanel({
+  canPlan: page.canPlan,
+  acts: {
+    back: close,
+    edit: () => editing.start(chosenRow()),
+    put,
+    remove: takeOff,
+    refresh: load,
+    failed: tell,
+    showUavs,
+  },
+});
+const editing = createEditing({
+  store,
+  page,
+  panel,
+  isWide: () => wide.matches,
+  open,
+  map: () => map,
+  showMap,
+  turnTo,
+  choose,
+  close,
+  load,
+  moment: () => choosing,
+});
 
 // what went wrong, and what then
 
@@ -43,18 +83,30 @@ function tell(error, again = load) {
 function problemNotice({ error, again }) {
   const way = error.isSignedOut
     ? h("a", { class: "text-button", href: signInAddress() }, t("Sign in"))
-    : h("button", { type: "button", class: "text-button", onclick: () => (store.update({ problem: null }), again()) }, t("Try again"));
-  return h("div", { class: "notice critical", role: "alert" }, icon(error.isAway ? "cloud-off" : "circle-alert"), h("p", {}, `${error.message} `, way));
+    : h(
+        "button",
+        { type: "button", class: "text-button", onclick: () => (store.update({ problem: null }), again()) },
+        t("Try again"),
+      );
+  return h(
+    "div",
+    { class: "notice critical", role: "alert" },
+    icon(error.isAway ? "cloud-off" : "circle-alert"),
+    h("p", {}, `${error.message} `, way),
+  );
 }
 
-store.listen(["problem"], ({ problem }) => byId("fleet-problem").replaceChildren(...(problem ? [problemNotice(problem)] : [])));
+store.listen(["problem"], ({ problem }) =>
+  byId("fleet-problem").replaceChildren(...(problem ? [problemNotice(problem)] : [])),
+);
 
 // what is there
 
 function uavsAddress() {
   const { text, state, type, base, tab } = store.state;
   const query = new URLSearchParams({ limit: PAGE });
-  for (const [name, value] of Object.entries({ text: tab === "uavs" ? text : "", state, type, base })) if (value) query.set(name, value);
+  for (const [name, value] of Object.entries({ text: tab === "uavs" ? text : "", state, type, base }))
+    if (value) query.set(name, value);
   return `/uavs?${query}`;
 }
 
@@ -62,10 +114,19 @@ let asked = 0;
 async function load() {
   const mine = ++asked;
   try {
-    const [uavs, types, bases] = await Promise.all([get(uavsAddress()), get("/uav-types?limit=1000"), get("/bases?limit=1000")]);
+    const [uavs, types, bases] = await Promise.all([
+      get(uavsAddress()),
+      get("/uav-types?limit=1000"),
+      get("/bases?limit=1000"),
+    ]);
     if (mine !== asked) return;
     store.update({
-      uavs: uavs.data.features.map(KINDS.uavs.read), next: uavs.data.next, numbers: uavs.data.numbers, types: types.data.results, bases: bases.data.results, problem: null,
+      uavs: uavs.data.features.map(KINDS.uavs.read),
+      next: uavs.data.next,
+      numbers: uavs.data.numbers,
+      types: types.data.results,
+      bases: bases.data.results,
+      problem: null,
     });
   } catch (error) {
     tell(error);
@@ -84,13 +145,22 @@ async function loadMore() {
 /** UAVs are filtered by the server; types and bases are few and all here. */
 function shownRows({ tab, text, ...state }) {
   const wanted = text.toLocaleLowerCase();
-  return tab === "uavs" || state[tab] === null ? state[tab] : state[tab].filter((row) => row.name.toLocaleLowerCase().includes(wanted));
+  return tab === "uavs" || state[tab] === null
+    ? state[tab]
+    : state[tab].filter((row) => row.name.toLocaleLowerCase().includes(wanted));
 }
 
 store.listen(["tab", "uavs", "types", "bases", "chosen", "text", "next"], (state) => {
   const { tab, text, chosen } = state;
   const isFiltered = Boolean(text || (tab === "uavs" && (state.state || state.type || state.base)));
-  table.draw({ kind: KINDS[tab], rows: shownRows(state), chosenId: chosen?.tab === tab ? chosen.id : null, next: tab === "uavs" ? state.next : null, isFiltered, text });
+  table.draw({
+    kind: KINDS[tab],
+    rows: shownRows(state),
+    chosenId: chosen?.tab === tab ? chosen.id : null,
+    next: tab === "uavs" ? state.next : null,
+    isFiltered,
+    text,
+  });
   const words = document.getElementById("new-words");
   if (words) words.textContent = KINDS[tab].one;
 });
@@ -155,7 +225,11 @@ async function choose(tab, id, { keepFocus = false } = {}) {
     const isListed = others.some((known) => known.id === row.id);
     open();
     const shown = choosing;
-    store.update({ [tab]: isListed ? others.map((known) => (known.id === row.id ? row : known)) : [...others, row], chosen: { tab, id: row.id }, problem: null });
+    store.update({
+      [tab]: isListed ? others.map((known) => (known.id === row.id ? row : known)) : [...others, row],
+      chosen: { tab, id: row.id },
+      problem: null,
+    });
     const title = panel.show(KINDS[tab], row);
     remember();
     await showMap();
@@ -195,7 +269,8 @@ async function attempt(change) {
   try {
     await change();
   } catch (error) {
-    if (error.status === 412) toast(error.message, { label: t("Look"), act: () => choose(store.state.tab, store.state.chosen.id) });
+    if (error.status === 412)
+      toast(error.message, { label: t("Look"), act: () => choose(store.state.tab, store.state.chosen.id) });
     else if (error.status === 409) toast(error.message);
     else tell(error, () => attempt(change));
   }
@@ -205,15 +280,26 @@ async function attempt(change) {
 async function refresh(id) {
   const moment = choosing;
   await load();
-  if (moment === choosing && store.state.chosen?.id === id && !editing.isOpen()) await choose(store.state.tab, id, { keepFocus: true });
+  if (moment === choosing && store.state.chosen?.id === id && !editing.isOpen())
+    await choose(store.state.tab, id, { keepFocus: true });
 }
 
 function put(state) {
   const row = chosenRow();
-  const words = { active: t("{name} is in service.", row), maintenance: t("{name} is in maintenance.", row), retired: t("{name} is retired.", row) }[state];
+  const words = {
+    active: t("{name} is in service.", row),
+    maintenance: t("{name} is in maintenance.", row),
+    retired: t("{name} is retired.", row),
+  }[state];
   return attempt(async () => {
     const { data } = await patch(`/uavs/${row.id}`, { state }, ifUnchanged(row));
-    const takeBack = () => attempt(async () => (await patch(`/uavs/${row.id}`, { state: row.state }, ifUnchanged(KINDS.uavs.read(data))), await refresh(row.id)));
+    const takeBack = () =>
+      attempt(
+        async () => (
+          await patch(`/uavs/${row.id}`, { state: row.state }, ifUnchanged(KINDS.uavs.read(data))),
+          await refresh(row.id)
+        ),
+      );
     toast(words, { label: t("Undo"), act: takeBack });
     await refresh(row.id);
   });
@@ -227,7 +313,13 @@ function takeOff() {
     await remove(`${path}/${row.id}`, ifUnchanged(row));
     close();
     await load();
-    toast(deleted(row), { label: t("Undo"), act: () => attempt(async () => (await post(`${path}/${row.id}/restore`), await load(), turnTo(tab), await choose(tab, row.id))) });
+    toast(deleted(row), {
+      label: t("Undo"),
+      act: () =>
+        attempt(
+          async () => (await post(`${path}/${row.id}/restore`), await load(), turnTo(tab), await choose(tab, row.id)),
+        ),
+    });
   });
 }
 
@@ -244,17 +336,31 @@ startChrome({
     { keys: ["j"], words: t("Next in the list"), act: () => table.step(1) },
     { keys: ["k"], words: t("Previous in the list"), act: () => table.step(-1) },
     { keys: ["c"], words: t("Add one"), act: () => (page.canPlan ? startNew() : false) },
-    { keys: ["e"], words: t("Edit"), act: () => (chosenRow() && !editing.isOpen() && page.canPlan ? void editing.start(chosenRow()) : false) },
+    {
+      keys: ["e"],
+      words: t("Edit"),
+      act: () => (chosenRow() && !editing.isOpen() && page.canPlan ? void editing.start(chosenRow()) : false),
+    },
     { keys: ["mod+s"], words: t("Save"), whileTyping: true, act: () => (editing.isOpen() ? editing.submit() : false) },
-    { keys: ["escape"], words: t("A step back"), whileTyping: true, act: () => (editing.isOpen() ? editing.cancel() : store.state.chosen ? close() : false) },
+    {
+      keys: ["escape"],
+      words: t("A step back"),
+      whileTyping: true,
+      act: () => (editing.isOpen() ? editing.cancel() : store.state.chosen ? close() : false),
+    },
   ],
 });
 
 async function start() {
-  ground = await get("/ground").then(({ data }) => data, () => null);
+  ground = await get("/ground").then(
+    ({ data }) => data,
+    () => null,
+  );
   await load();
-  if (page.role === "administrator") void mountUnknownVehicles({ onAdopted: async (id) => (await load(), turnTo("uavs"), choose("uavs", id)) });
-  if (/^\d+$/.test(address.get("id") ?? "")) await choose(store.state.tab, Number(address.get("id")), { keepFocus: true });
+  if (page.role === "administrator")
+    void mountUnknownVehicles({ onAdopted: async (id) => (await load(), turnTo("uavs"), choose("uavs", id)) });
+  if (/^\d+$/.test(address.get("id") ?? ""))
+    await choose(store.state.tab, Number(address.get("id")), { keepFocus: true });
   document.documentElement.dataset.loaded = "true";
 }
 

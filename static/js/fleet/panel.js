@@ -1,7 +1,7 @@
 /** What is chosen, in full: its facts, what can be done with it, a UAV's credentials and missions. */
 
-import { byId, h, icon } from "../dom.js";
 import { get } from "../api.js";
+import { byId, h, icon } from "../dom.js";
 import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
 import { whenText } from "../units.js";
@@ -14,13 +14,22 @@ import { MISSION_STATES, stateChip } from "./words.js";
 /** acts: { back, edit, put(state), remove, refresh, showUavs } */
 export function mountPanel({ canPlan, acts }) {
   const panel = byId("fleet-panel");
-  const back = () => h("button", { type: "button", class: "text-button back", onclick: acts.back }, icon("arrow-left", "small"), t("All of them"));
-  const button = (name, words, act, kind = "") => h("button", { type: "button", class: `button ${kind}`, onclick: act }, icon(name, "small"), words);
+  const back = () =>
+    h(
+      "button",
+      { type: "button", class: "text-button back", onclick: acts.back },
+      icon("arrow-left", "small"),
+      t("All of them"),
+    );
+  const button = (name, words, act, kind = "") =>
+    h("button", { type: "button", class: `button ${kind}`, onclick: act }, icon(name, "small"), words);
 
   function stateButtons(uav) {
     if (uav.state === "retired") return [button("archive-restore", t("Bring back"), () => acts.put("active"))];
     return [
-      uav.state === "active" ? button("wrench", t("Maintenance"), () => acts.put("maintenance")) : button("check", t("Back in service"), () => acts.put("active")),
+      uav.state === "active"
+        ? button("wrench", t("Maintenance"), () => acts.put("maintenance"))
+        : button("check", t("Back in service"), () => acts.put("active")),
       button("archive", t("Retire"), () => acts.put("retired")),
     ];
   }
@@ -30,7 +39,12 @@ export function mountPanel({ canPlan, acts }) {
       h(
         "li",
         {},
-        h("div", { class: "what" }, h("a", { href: `/missions/${mission.id}` }, mission.name), h("span", { class: "caption" }, whenText(mission.updated_at))),
+        h(
+          "div",
+          { class: "what" },
+          h("a", { href: `/missions/${mission.id}` }, mission.name),
+          h("span", { class: "caption" }, whenText(mission.updated_at)),
+        ),
         h("span", { class: `chip ${mission.state}` }, MISSION_STATES[mission.state] ?? mission.state),
       ),
     );
@@ -42,7 +56,15 @@ export function mountPanel({ canPlan, acts }) {
     list.append(...missionRows(data.results));
     none.hidden = list.children.length > 0;
     if (!data.next) return;
-    const more = h("button", { type: "button", class: "text-button", onclick: () => (more.parentElement.remove(), fillMissions(list, none, data.next)) }, t("Earlier missions"));
+    const more = h(
+      "button",
+      {
+        type: "button",
+        class: "text-button",
+        onclick: () => (more.parentElement.remove(), fillMissions(list, none, data.next)),
+      },
+      t("Earlier missions"),
+    );
     list.append(h("li", {}, more));
   }
 
@@ -59,11 +81,46 @@ export function mountPanel({ canPlan, acts }) {
     panel.replaceChildren(
       ...[
         back(),
-        h("div", { class: "panel-head" }, title, isUav && row.is_simulated && simulatedMark(), isUav && stateChip(row.state)),
-        isUav && row.state === "retired" && h("p", { class: "quiet-text" }, t("It is not offered for new missions and does not connect.")),
-        canPlan && h("div", { class: "panel-acts" }, button("pencil", t("Edit"), acts.edit), isUav && stateButtons(row), h("button", { type: "button", class: "icon-button", "aria-label": t("Delete {name}", row), title: t("Delete"), onclick: acts.remove }, icon("trash-2"))),
+        h(
+          "div",
+          { class: "panel-head" },
+          title,
+          isUav && row.is_simulated && simulatedMark(),
+          isUav && stateChip(row.state),
+        ),
+        isUav &&
+          row.state === "retired" &&
+          h("p", { class: "quiet-text" }, t("It is not offered for new missions and does not connect.")),
+        canPlan &&
+          h(
+            "div",
+            { class: "panel-acts" },
+            button("pencil", t("Edit"), acts.edit),
+            isUav && stateButtons(row),
+            h(
+              "button",
+              {
+                type: "button",
+                class: "icon-button",
+                "aria-label": t("Delete {name}", row),
+                title: t("Delete"),
+                onclick: acts.remove,
+              },
+              icon("trash-2"),
+            ),
+          ),
         h("dl", { class: "facts" }, kind.facts(row)),
-        !isUav && row.uav_count > 0 && h("p", {}, h("button", { type: "button", class: "text-button", onclick: () => acts.showUavs(kind.tab, row.id) }, tn(row.uav_count, "Show the UAV", "Show the {count} UAVs"))),
+        !isUav &&
+          row.uav_count > 0 &&
+          h(
+            "p",
+            {},
+            h(
+              "button",
+              { type: "button", class: "text-button", onclick: () => acts.showUavs(kind.tab, row.id) },
+              tn(row.uav_count, "Show the UAV", "Show the {count} UAVs"),
+            ),
+          ),
         kind.tab === "types" && h("h3", {}, t("Alerts")),
         kind.tab === "types" && limits,
         kind.tab === "types" && h("h3", {}, t("Simulation")),
@@ -112,9 +169,27 @@ export function conflictNotice({ who, seen, theirs, form, onTheirs, onMine }) {
     h(
       "div",
       {},
-      h("p", {}, h("strong", {}, t("Changed by {who} in the meantime.", { who })), ` ${t("Nothing of yours is stored yet.")}`),
-      h("dl", { class: "differences" }, changed.map((name) => [h("dt", {}, form.label(name)), h("dd", {}, form.words(name, seen[name])), h("dd", {}, `→ ${form.words(name, theirs[name])}`)])),
-      h("p", {}, h("button", { type: "button", class: "text-button", onclick: onTheirs }, t("Take theirs")), h("button", { type: "button", class: "text-button", onclick: onMine }, t("Store mine over it"))),
+      h(
+        "p",
+        {},
+        h("strong", {}, t("Changed by {who} in the meantime.", { who })),
+        ` ${t("Nothing of yours is stored yet.")}`,
+      ),
+      h(
+        "dl",
+        { class: "differences" },
+        changed.map((name) => [
+          h("dt", {}, form.label(name)),
+          h("dd", {}, form.words(name, seen[name])),
+          h("dd", {}, `→ ${form.words(name, theirs[name])}`),
+        ]),
+      ),
+      h(
+        "p",
+        {},
+        h("button", { type: "button", class: "text-button", onclick: onTheirs }, t("Take theirs")),
+        h("button", { type: "button", class: "text-button", onclick: onMine }, t("Store mine over it")),
+      ),
     ),
   );
 }

@@ -8,7 +8,12 @@ import { durationText, speedText } from "../units.js";
 import { kilograms, wattHours } from "./words.js";
 
 const wordsOf = ({ mass_kg, battery_wh, hover_min, max_airspeed_mps }) =>
-  [kilograms(mass_kg), wattHours(battery_wh), t("hovers {time}", { time: durationText(hover_min * 60) }), t("up to {speed}", { speed: speedText(max_airspeed_mps) })].join(" · ");
+  [
+    kilograms(mass_kg),
+    wattHours(battery_wh),
+    t("hovers {time}", { time: durationText(hover_min * 60) }),
+    t("up to {speed}", { speed: speedText(max_airspeed_mps) }),
+  ].join(" · ");
 
 /** Draws itself into `place`. Rejects with ApiError, and calls failed(it) where one comes later. */
 export async function mountTypeAirframe(place, type, { canPlan, failed }) {
@@ -17,7 +22,12 @@ export async function mountTypeAirframe(place, type, { canPlan, failed }) {
   const airframes = new Map(known.results.map((airframe) => [airframe.code, airframe]));
 
   const facts = h("p", { class: "caption" });
-  const choice = h("select", { class: "input", id: "type-airframe" }, h("option", { value: "" }, t("The nearest by mass and endurance")), known.results.map(({ code, name }) => h("option", { value: code }, name)));
+  const choice = h(
+    "select",
+    { class: "input", id: "type-airframe" },
+    h("option", { value: "" }, t("The nearest by mass and endurance")),
+    known.results.map(({ code, name }) => h("option", { value: code }, name)),
+  );
 
   function draw({ airframe, flown }) {
     const flies = airframes.get(flown);
@@ -29,7 +39,12 @@ export async function mountTypeAirframe(place, type, { canPlan, failed }) {
     try {
       const stored = (await put(address, { airframe: choice.value || null })).data;
       draw(stored);
-      toast(t("In simulation {airframe} flies for {name}. Rehearsals of its missions are out of date if another one flew.", { airframe: airframes.get(stored.flown).name, name: type.name }));
+      toast(
+        t(
+          "In simulation {airframe} flies for {name}. Rehearsals of its missions are out of date if another one flew.",
+          { airframe: airframes.get(stored.flown).name, name: type.name },
+        ),
+      );
     } catch (error) {
       draw(data);
       failed(error);
@@ -38,6 +53,10 @@ export async function mountTypeAirframe(place, type, { canPlan, failed }) {
 
   choice.disabled = !canPlan;
   choice.addEventListener("change", () => void choose());
-  place.replaceChildren(h("div", { class: "field" }, h("label", { for: choice.id }, t("Simulated airframe")), choice), facts, h("p", { class: "quiet-text" }, t("It flies with the battery of the UAV where that is stated.")));
+  place.replaceChildren(
+    h("div", { class: "field" }, h("label", { for: choice.id }, t("Simulated airframe")), choice),
+    facts,
+    h("p", { class: "quiet-text" }, t("It flies with the battery of the UAV where that is stated.")),
+  );
   draw(data);
 }

@@ -1,22 +1,39 @@
 /** Where alerts of a type's UAVs begin: what differs from the usual, and the way to change it. */
 
-import { get } from "../api.js";
 import { openAlertLimits } from "../alert_limits/dialog.js";
 import { statedLines } from "../alert_limits/words.js";
+import { get } from "../api.js";
 import { h, icon } from "../dom.js";
 import { t } from "../text.js";
 
 /** Draws itself into `place`. Rejects with ApiError, and calls failed(it) where one comes later. */
 export async function mountTypeLimits(place, type, { canPlan, failed }) {
   const address = `/uav-types/${type.id}/alert-limits`;
-  const hint = t("For all UAVs of this type, at once, also in flight. Empty: the usual, in grey. A mission can state its own.");
+  const hint = t(
+    "For all UAVs of this type, at once, also in flight. Empty: the usual, in grey. A mission can state its own.",
+  );
   const change = () => openAlertLimits({ address, title: t("Where alerts begin: {name}", type), hint, onSaved: draw });
 
   function draw(stated) {
     const lines = statedLines(stated);
     place.replaceChildren(
-      lines.length ? h("dl", { class: "facts" }, lines.map(([label, figure]) => [h("dt", {}, label), h("dd", {}, figure)])) : h("p", { class: "quiet-text" }, t("They begin where they usually do.")),
-      ...(canPlan ? [h("button", { type: "button", class: "button", onclick: () => void change().catch(failed) }, icon("bell", "small"), t("Change where alerts begin"))] : []),
+      lines.length
+        ? h(
+            "dl",
+            { class: "facts" },
+            lines.map(([label, figure]) => [h("dt", {}, label), h("dd", {}, figure)]),
+          )
+        : h("p", { class: "quiet-text" }, t("They begin where they usually do.")),
+      ...(canPlan
+        ? [
+            h(
+              "button",
+              { type: "button", class: "button", onclick: () => void change().catch(failed) },
+              icon("bell", "small"),
+              t("Change where alerts begin"),
+            ),
+          ]
+        : []),
     );
   }
 

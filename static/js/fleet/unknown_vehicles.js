@@ -11,7 +11,13 @@ const NEW = "";
 
 export function aboutVehicle(vehicle, now = Date.now()) {
   const seconds = (now - Date.parse(vehicle.heard_at)) / 1_000;
-  const facts = [vehicle.autopilot, vehicle.vehicle_type, vehicle.address, vehicle.is_signed ? t("signed") : t("not signed"), t("heard {ago}", { ago: agoText(seconds, vehicle.heard_at) })];
+  const facts = [
+    vehicle.autopilot,
+    vehicle.vehicle_type,
+    vehicle.address,
+    vehicle.is_signed ? t("signed") : t("not signed"),
+    t("heard {ago}", { ago: agoText(seconds, vehicle.heard_at) }),
+  ];
   return facts.filter(Boolean).join(" · ");
 }
 
@@ -20,8 +26,18 @@ export function mountUnknownVehicles({ onAdopted }) {
   const section = byId("fleet-unknown");
   const title = h("h2", {}, t("Unknown vehicles"));
   const list = h("ul", { class: "plain-list" });
-  const none = h("p", { class: "quiet-text" }, t("None. A vehicle that speaks to a gateway with a system id of no UAV is listed here."));
-  const ignoredButton = h("button", { type: "button", class: "text-button", hidden: true, "aria-expanded": "false", onclick: () => ((showsIgnored = !showsIgnored), load()) });
+  const none = h(
+    "p",
+    { class: "quiet-text" },
+    t("None. A vehicle that speaks to a gateway with a system id of no UAV is listed here."),
+  );
+  const ignoredButton = h("button", {
+    type: "button",
+    class: "text-button",
+    hidden: true,
+    "aria-expanded": "false",
+    onclick: () => ((showsIgnored = !showsIgnored), load()),
+  });
   let showsIgnored = false;
   let adopting = null; // id of the vehicle whose form is open
   section.hidden = false;
@@ -45,7 +61,10 @@ export function mountUnknownVehicles({ onAdopted }) {
   const ignore = (vehicle) =>
     attempt(async () => {
       await post(`/unknown-vehicles/${vehicle.id}/ignore`);
-      toast(t("System {id} is ignored.", { id: vehicle.mavlink_system_id }), { label: t("Undo"), act: () => heed(vehicle) });
+      toast(t("System {id} is ignored.", { id: vehicle.mavlink_system_id }), {
+        label: t("Undo"),
+        act: () => heed(vehicle),
+      });
     });
 
   async function adopt(vehicle, body) {
@@ -67,8 +86,20 @@ export function mountUnknownVehicles({ onAdopted }) {
   }
 
   function adoptionForm(vehicle, uavs) {
-    const choice = h("select", { class: "input", id: `adopt-${vehicle.id}` }, h("option", { value: NEW }, t("A new UAV")), uavs.map((uav) => h("option", { value: `${uav.id}` }, uav.properties.name)));
-    const name = h("input", { class: "input", type: "text", id: `adopt-name-${vehicle.id}`, maxlength: 100, required: true, autocomplete: "off" });
+    const choice = h(
+      "select",
+      { class: "input", id: `adopt-${vehicle.id}` },
+      h("option", { value: NEW }, t("A new UAV")),
+      uavs.map((uav) => h("option", { value: `${uav.id}` }, uav.properties.name)),
+    );
+    const name = h("input", {
+      class: "input",
+      type: "text",
+      id: `adopt-name-${vehicle.id}`,
+      maxlength: 100,
+      required: true,
+      autocomplete: "off",
+    });
     const nameField = h("div", { class: "field" }, h("label", { for: name.id }, t("Name")), name);
     choice.addEventListener("change", () => {
       nameField.hidden = choice.value !== NEW;
@@ -78,7 +109,11 @@ export function mountUnknownVehicles({ onAdopted }) {
       event.preventDefault();
       adopt(vehicle, choice.value === NEW ? { name: name.value.trim() } : { uav: Number(choice.value) });
     };
-    const cancel = h("button", { type: "button", class: "button", onclick: () => ((adopting = null), load()) }, t("Cancel"));
+    const cancel = h(
+      "button",
+      { type: "button", class: "button", onclick: () => ((adopting = null), load()) },
+      t("Cancel"),
+    );
     return h(
       "form",
       { class: "adoption", onsubmit },
@@ -94,14 +129,48 @@ export function mountUnknownVehicles({ onAdopted }) {
     return h(
       "li",
       {},
-      h("div", { class: "what" }, h("strong", {}, t("System {id}", id)), h("span", { class: "caption" }, aboutVehicle(vehicle))),
+      h(
+        "div",
+        { class: "what" },
+        h("strong", {}, t("System {id}", id)),
+        h("span", { class: "caption" }, aboutVehicle(vehicle)),
+      ),
       h(
         "div",
         { class: "acts" },
-        adopting !== vehicle.id && h("button", { type: "button", class: "button", "aria-label": t("Adopt system {id}", id), onclick: () => openForm(vehicle) }, icon("plus", "small"), t("Adopt")),
+        adopting !== vehicle.id &&
+          h(
+            "button",
+            {
+              type: "button",
+              class: "button",
+              "aria-label": t("Adopt system {id}", id),
+              onclick: () => openForm(vehicle),
+            },
+            icon("plus", "small"),
+            t("Adopt"),
+          ),
         isIgnored
-          ? h("button", { type: "button", class: "button quiet", "aria-label": t("List again: system {id}", id), onclick: () => heed(vehicle) }, t("List again"))
-          : h("button", { type: "button", class: "button quiet", "aria-label": t("Ignore system {id}", id), onclick: () => ignore(vehicle) }, t("Ignore")),
+          ? h(
+              "button",
+              {
+                type: "button",
+                class: "button quiet",
+                "aria-label": t("List again: system {id}", id),
+                onclick: () => heed(vehicle),
+              },
+              t("List again"),
+            )
+          : h(
+              "button",
+              {
+                type: "button",
+                class: "button quiet",
+                "aria-label": t("Ignore system {id}", id),
+                onclick: () => ignore(vehicle),
+              },
+              t("Ignore"),
+            ),
       ),
       adopting === vehicle.id && adoptionForm(vehicle, uavs),
     );
@@ -109,7 +178,9 @@ export function mountUnknownVehicles({ onAdopted }) {
 
   async function load() {
     const [found, ignored, uavs] = await Promise.all([
-      get("/unknown-vehicles"), get("/unknown-vehicles?state=ignored"), adopting === null ? null : get("/uavs?limit=1000"),
+      get("/unknown-vehicles"),
+      get("/unknown-vehicles?state=ignored"),
+      adopting === null ? null : get("/uavs?limit=1000"),
     ]);
     const hidden = ignored.data.results;
     const rows = [...found.data.results, ...(showsIgnored ? hidden : [])];
@@ -117,9 +188,14 @@ export function mountUnknownVehicles({ onAdopted }) {
     none.hidden = rows.length > 0;
     ignoredButton.hidden = hidden.length === 0;
     ignoredButton.setAttribute("aria-expanded", `${showsIgnored}`);
-    ignoredButton.textContent = showsIgnored ? t("Hide the ignored ones") : tn(hidden.length, "Show {count} ignored one", "Show {count} ignored ones");
+    ignoredButton.textContent = showsIgnored
+      ? t("Hide the ignored ones")
+      : tn(hidden.length, "Show {count} ignored one", "Show {count} ignored ones");
   }
 
-  setInterval(() => document.visibilityState === "visible" && adopting === null && load().catch(() => {}), ASKED_EVERY_MS);
+  setInterval(
+    () => document.visibilityState === "visible" && adopting === null && load().catch(() => {}),
+    ASKED_EVERY_MS,
+  );
   return load().catch(tell);
 }

@@ -20,7 +20,13 @@ export const ENDS = [
 ];
 
 export const MISSION_STATES = {
-  draft: t("Draft"), planned: t("Planned"), approved: t("Approved"), dispatched: t("Dispatched"), active: t("Active"), completed: t("Completed"), aborted: t("Aborted"),
+  draft: t("Draft"),
+  planned: t("Planned"),
+  approved: t("Approved"),
+  dispatched: t("Dispatched"),
+  active: t("Active"),
+  completed: t("Completed"),
+  aborted: t("Aborted"),
   failed: t("Failed"),
 };
 
@@ -54,11 +60,18 @@ export function batteryMark(percent) {
   if (percent === null) return h("span", { class: "quiet-text" }, "—");
   const bar = h("b", {});
   bar.style.width = `${percent}%`;
-  return h("span", { class: `battery${percent < LOW_PERCENT ? " low" : ""}` }, h("i", { "aria-hidden": "true" }, bar), percentText(percent));
+  return h(
+    "span",
+    { class: `battery${percent < LOW_PERCENT ? " low" : ""}` },
+    h("i", { "aria-hidden": "true" }, bar),
+    percentText(percent),
+  );
 }
 
-export const wattHours = (battery_wh) => (battery_wh === null ? "—" : `${numberText(battery_wh, Number.isInteger(battery_wh) ? 0 : 1)}\u00a0Wh`);
-export const kilograms = (mass_kg) => (mass_kg === null ? "—" : `${numberText(mass_kg, Number.isInteger(mass_kg) ? 0 : 1)}\u00a0kg`);
+export const wattHours = (battery_wh) =>
+  battery_wh === null ? "—" : `${numberText(battery_wh, Number.isInteger(battery_wh) ? 0 : 1)}\u00a0Wh`;
+export const kilograms = (mass_kg) =>
+  mass_kg === null ? "—" : `${numberText(mass_kg, Number.isInteger(mass_kg) ? 0 : 1)}\u00a0kg`;
 export const squareMetres = (area_m2) => (area_m2 === null ? t("not stated") : `${numberText(area_m2, 3)}\u00a0m²`);
 export const uavsText = (count) => tn(count, "{count} UAV", "{count} UAVs");
 

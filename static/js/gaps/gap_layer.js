@@ -11,28 +11,82 @@ const isPoint = ["==", ["geometry-type"], "Point"];
 const isLine = ["==", ["geometry-type"], "LineString"];
 
 function layers() {
-  const [mark, casing, ground, accent, raised] = ["--warning-mark", "--map-casing", "--ground", "--accent", "--raised"].map(read);
+  const [mark, casing, ground, accent, raised] = [
+    "--warning-mark",
+    "--map-casing",
+    "--ground",
+    "--accent",
+    "--raised",
+  ].map(read);
   const round = { "line-cap": "round", "line-join": "round" };
   return [
-    { id: DOTS, type: "circle", source: "gaps", paint: { "circle-radius": 4, "circle-color": mark, "circle-stroke-color": casing, "circle-stroke-width": 1.5 } },
-    { id: "gap-casing", type: "line", source: "gap", filter: isLine, layout: round, paint: { "line-color": casing, "line-width": 9 } },
-    { id: "gap-line", type: "line", source: "gap", filter: isLine, paint: { "line-color": mark, "line-width": 4, "line-dasharray": [2, 1.2] } },
-    { id: "gap-halo", type: "circle", source: "gap", filter: isPoint, paint: { "circle-radius": byZoom(4, 11), "circle-color": mark, "circle-opacity": 0.18 } },
+    {
+      id: DOTS,
+      type: "circle",
+      source: "gaps",
+      paint: { "circle-radius": 4, "circle-color": mark, "circle-stroke-color": casing, "circle-stroke-width": 1.5 },
+    },
+    {
+      id: "gap-casing",
+      type: "line",
+      source: "gap",
+      filter: isLine,
+      layout: round,
+      paint: { "line-color": casing, "line-width": 9 },
+    },
+    {
+      id: "gap-line",
+      type: "line",
+      source: "gap",
+      filter: isLine,
+      paint: { "line-color": mark, "line-width": 4, "line-dasharray": [2, 1.2] },
+    },
+    {
+      id: "gap-halo",
+      type: "circle",
+      source: "gap",
+      filter: isPoint,
+      paint: { "circle-radius": byZoom(4, 11), "circle-color": mark, "circle-opacity": 0.18 },
+    },
     {
       id: "gap-places",
       type: "circle",
       source: "gap",
       filter: isPoint,
-      paint: { "circle-radius": byZoom(1.6, 5.5), "circle-color": ground, "circle-stroke-color": mark, "circle-stroke-width": byZoom(1, 2.5) },
+      paint: {
+        "circle-radius": byZoom(1.6, 5.5),
+        "circle-color": ground,
+        "circle-stroke-color": mark,
+        "circle-stroke-width": byZoom(1, 2.5),
+      },
     },
-    { id: "gap-repair-casing", type: "line", source: "gap-repair", filter: isLine, layout: round, paint: { "line-color": casing, "line-width": 6.5 } },
-    { id: "gap-repair-line", type: "line", source: "gap-repair", filter: isLine, layout: round, paint: { "line-color": accent, "line-width": 3 } },
+    {
+      id: "gap-repair-casing",
+      type: "line",
+      source: "gap-repair",
+      filter: isLine,
+      layout: round,
+      paint: { "line-color": casing, "line-width": 6.5 },
+    },
+    {
+      id: "gap-repair-line",
+      type: "line",
+      source: "gap-repair",
+      filter: isLine,
+      layout: round,
+      paint: { "line-color": accent, "line-width": 3 },
+    },
     {
       id: "gap-repair-places",
       type: "circle",
       source: "gap-repair",
       filter: isPoint,
-      paint: { "circle-radius": byZoom(2, 5), "circle-color": accent, "circle-stroke-color": raised, "circle-stroke-width": byZoom(0.5, 1.5) },
+      paint: {
+        "circle-radius": byZoom(2, 5),
+        "circle-color": accent,
+        "circle-stroke-color": raised,
+        "circle-stroke-width": byZoom(0.5, 1.5),
+      },
     },
   ];
 }
@@ -66,7 +120,8 @@ export function showGap(map, gap) {
 
 /** A FeatureCollection, or null. Lines first, so that towers stand on them. */
 export function showRepair(map, preview) {
-  const features = preview?.features.filter(({ geometry }) => geometry.type === "Point" || geometry.type === "LineString") ?? [];
+  const features =
+    preview?.features.filter(({ geometry }) => geometry.type === "Point" || geometry.type === "LineString") ?? [];
   map.getSource("gap-repair").setData({ type: "FeatureCollection", features });
 }
 
@@ -77,7 +132,13 @@ export function showPlaces(map, positions) {
 /** The id of the gap whose dot is within reach of a point of the screen, or null. */
 export function gapAt(map, { x, y }) {
   if (!map.getLayer(DOTS)) return null;
-  const met = map.queryRenderedFeatures([[x - REACH_PX, y - REACH_PX], [x + REACH_PX, y + REACH_PX]], { layers: [DOTS] });
+  const met = map.queryRenderedFeatures(
+    [
+      [x - REACH_PX, y - REACH_PX],
+      [x + REACH_PX, y + REACH_PX],
+    ],
+    { layers: [DOTS] },
+  );
   const away = ({ geometry }) => {
     const place = map.project(geometry.coordinates);
     return Math.hypot(place.x - x, place.y - y);

@@ -66,7 +66,11 @@ export function mountGapList(on) {
     const { kind, title, asset, cut_off_m, details } = gap.properties;
     const row = item.firstElementChild;
     item.dataset.id = gap.id;
-    const words = [title, whose(asset), cutOffText({ kind, cut_off_m }) || (details.is_advisory ? t("may be right") : "")];
+    const words = [
+      title,
+      whose(asset),
+      cutOffText({ kind, cut_off_m }) || (details.is_advisory ? t("may be right") : ""),
+    ];
     refill(row, [kind, ...words].join("\n"), () => [
       icon(KINDS[kind].icon),
       h("span", { class: "what" }, h("strong", {}, words[0]), h("small", {}, words[1])),
@@ -88,13 +92,33 @@ export function mountGapList(on) {
   };
 
   function empty(hasSearched) {
-    if (!hasSearched) return [h("strong", {}, t("The ground is being searched.")), h("p", {}, t("Gaps come up here when that is done.")), h("div", { class: "skeleton" }), h("div", { class: "skeleton" })];
+    if (!hasSearched)
+      return [
+        h("strong", {}, t("The ground is being searched.")),
+        h("p", {}, t("Gaps come up here when that is done.")),
+        h("div", { class: "skeleton" }),
+        h("div", { class: "skeleton" }),
+      ];
     if (filter.kinds.size || filter.text || filter.inView) {
       const what = filter.text ? t("No gap matches “{text}”.", { text: filter.text }) : t("No gap like that here.");
-      return [h("strong", {}, what), h("button", { class: "button", type: "button", onclick: clearFilters }, t("Clear the filter"))];
+      return [
+        h("strong", {}, what),
+        h("button", { class: "button", type: "button", onclick: clearFilters }, t("Clear the filter")),
+      ];
     }
-    if (filter.state === "open") return [icon("circle-check"), h("strong", {}, t("Nothing looks wrong here.")), h("p", {}, t("The ground is searched again after each change."))];
-    return [h("strong", {}, filter.state === "repaired" ? t("Nothing has been repaired yet.") : t("Nothing has been left as it is."))];
+    if (filter.state === "open")
+      return [
+        icon("circle-check"),
+        h("strong", {}, t("Nothing looks wrong here.")),
+        h("p", {}, t("The ground is searched again after each change.")),
+      ];
+    return [
+      h(
+        "strong",
+        {},
+        filter.state === "repaired" ? t("Nothing has been repaired yet.") : t("Nothing has been left as it is."),
+      ),
+    ];
   }
 
   return {
@@ -107,12 +131,15 @@ export function mountGapList(on) {
       draw(gaps);
       end.replaceChildren(
         ...(gaps.length ? [] : [h("div", { class: "empty" }, empty(hasSearched))]),
-        ...(hasMore ? [h("button", { class: "button quiet more", type: "button", onclick: on.more }, t("Show more"))] : []),
+        ...(hasMore
+          ? [h("button", { class: "button quiet more", type: "button", onclick: on.more }, t("Show more"))]
+          : []),
       );
     },
     /** kinds: number by kind, then state. */
     counts(numbers) {
-      for (const { state, count } of radios) count.textContent = numberText(sum(Object.values(numbers).map((byState) => byState[state])));
+      for (const { state, count } of radios)
+        count.textContent = numberText(sum(Object.values(numbers).map((byState) => byState[state])));
       for (const { kind, count, chip } of chips) {
         const number = numbers[kind]?.[filter.state] ?? 0;
         count.textContent = numberText(number);

@@ -38,12 +38,34 @@ export function mountGapPanel(canCurate, on) {
         { class: "gap-words" },
         h("h2", { class: "gap-sentence" }, properties.sentence),
         h("p", { class: "gap-assets" }, assetWords(properties)),
-        h("dl", { class: "gap-facts" }, [...factsOf(properties), [t("Place"), coordinateText(properties.position)]].map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value)))),
+        h(
+          "dl",
+          { class: "gap-facts" },
+          [...factsOf(properties), [t("Place"), coordinateText(properties.position)]].map(([term, value]) =>
+            h("div", {}, h("dt", {}, term), h("dd", {}, value)),
+          ),
+        ),
         caution && h("p", { class: "caption" }, caution),
-        properties.state !== "open" && h("p", { class: "gap-decided" }, icon(properties.state === "repaired" ? "circle-check" : "hand"), decidedWords(properties)),
+        properties.state !== "open" &&
+          h(
+            "p",
+            { class: "gap-decided" },
+            icon(properties.state === "repaired" ? "circle-check" : "hand"),
+            decidedWords(properties),
+          ),
       ),
       h("div", { class: "gap-do" }, acts, said),
-      h("button", { class: "icon-button tight gap-close", type: "button", "aria-label": t("Close"), title: t("Close (Esc)"), onclick: on.close }, icon("x")),
+      h(
+        "button",
+        {
+          class: "icon-button tight gap-close",
+          type: "button",
+          "aria-label": t("Close"),
+          title: t("Close (Esc)"),
+          onclick: on.close,
+        },
+        icon("x"),
+      ),
     );
   }
 
@@ -58,7 +80,11 @@ export function mountGapPanel(canCurate, on) {
     const { repairs, state } = gap.properties;
     if (!canCurate) return [h("p", { class: "caption" }, state === "open" ? t("Curators can repair this.") : "")];
     const following = h("button", { class: "button primary", type: "button", onclick: on.next }, t("Next gap"));
-    if (state === "dismissed") return [following, h("button", { class: "button", type: "button", onclick: on.reopen }, icon("undo-2"), t("Open it again"))];
+    if (state === "dismissed")
+      return [
+        following,
+        h("button", { class: "button", type: "button", onclick: on.reopen }, icon("undo-2"), t("Open it again")),
+      ];
     if (state === "repaired") return [following];
     return [...repairs.flatMap((offer, index) => offerActs(offer, index === 0)), dismissAct(gap)];
   }
@@ -67,13 +93,30 @@ export function mountGapPanel(canCurate, on) {
     if (offer.parameter === "way") return [choiceOf(offer)];
     const refused = offer.refused;
     const style = isFirst ? "button primary" : "button";
-    const act = h("button", { class: style, type: "button", disabled: Boolean(refused), title: refused || null }, offer.words);
+    const act = h(
+      "button",
+      { class: style, type: "button", disabled: Boolean(refused), title: refused || null },
+      offer.words,
+    );
     previews(act, offer.preview);
     act.addEventListener("click", () => on.repair({ action: offer.action }));
     if (offer.parameter === "positions") {
-      return [act, h("button", { class: "button", type: "button", onclick: () => (on.place((count) => placing(offer, count)), placing(offer, 0)) }, icon("map-pin"), t("Place them on the map"))];
+      return [
+        act,
+        h(
+          "button",
+          {
+            class: "button",
+            type: "button",
+            onclick: () => (on.place((count) => placing(offer, count)), placing(offer, 0)),
+          },
+          icon("map-pin"),
+          t("Place them on the map"),
+        ),
+      ];
     }
-    if (offer.parameter === "voltages_v") return [offer.choices.length ? act : null, voltageForm(offer, !offer.choices.length)];
+    if (offer.parameter === "voltages_v")
+      return [offer.choices.length ? act : null, voltageForm(offer, !offer.choices.length)];
     return [act];
   }
 
@@ -85,17 +128,41 @@ export function mountGapPanel(canCurate, on) {
 
   function choiceOf(offer) {
     const choices = offer.choices.map(({ value, words }) =>
-      h("button", { class: "button", type: "button", onclick: () => on.repair({ action: offer.action, [offer.parameter]: value }) }, words),
+      h(
+        "button",
+        {
+          class: "button",
+          type: "button",
+          onclick: () => on.repair({ action: offer.action, [offer.parameter]: value }),
+        },
+        words,
+      ),
     );
-    return h("div", { class: "gap-choice", role: "group", "aria-label": offer.words }, h("span", { class: "field-label" }, offer.words), choices);
+    return h(
+      "div",
+      { class: "gap-choice", role: "group", "aria-label": offer.words },
+      h("span", { class: "field-label" }, offer.words),
+      choices,
+    );
   }
 
   function voltageForm(offer, isFirst) {
-    const input = h("input", { class: "input", id: "gap-volts", inputmode: "decimal", placeholder: "110, 20", autocomplete: "off", required: true });
+    const input = h("input", {
+      class: "input",
+      id: "gap-volts",
+      inputmode: "decimal",
+      placeholder: "110, 20",
+      autocomplete: "off",
+      required: true,
+    });
     const submit = (event) => {
       event.preventDefault();
-      const kilovolts = input.value.split(/[,;\s]+/).filter(Boolean).map(Number);
-      if (!kilovolts.length || kilovolts.some((value) => !(value > 0))) return fault("Give one voltage or several in kV, with commas.");
+      const kilovolts = input.value
+        .split(/[,;\s]+/)
+        .filter(Boolean)
+        .map(Number);
+      if (!kilovolts.length || kilovolts.some((value) => !(value > 0)))
+        return fault("Give one voltage or several in kV, with commas.");
       on.repair({ action: offer.action, voltages_v: kilovolts.map((value) => Math.round(value * 1000)) });
     };
     return h(
@@ -111,13 +178,28 @@ export function mountGapPanel(canCurate, on) {
     if (noting) return noting.form;
     const opener = h("button", { class: "button quiet", type: "button" }, dismissWords(properties.kind));
     opener.addEventListener("click", () => {
-      const note = h("input", { class: "input", id: "gap-note", maxlength: LONGEST_NOTE, placeholder: t("Why it is right"), "aria-label": t("Note"), autocomplete: "off" });
+      const note = h("input", {
+        class: "input",
+        id: "gap-note",
+        maxlength: LONGEST_NOTE,
+        placeholder: t("Why it is right"),
+        "aria-label": t("Note"),
+        autocomplete: "off",
+      });
       const form = h(
         "form",
         { class: "gap-form", onsubmit: (event) => (event.preventDefault(), on.dismiss(note.value.trim())) },
         note,
         h("button", { class: "button primary" }, t("Leave it")),
-        h("button", { class: "button quiet", type: "button", onclick: () => ((noting = null), form.replaceWith(opener), opener.focus()) }, t("Cancel")),
+        h(
+          "button",
+          {
+            class: "button quiet",
+            type: "button",
+            onclick: () => ((noting = null), form.replaceWith(opener), opener.focus()),
+          },
+          t("Cancel"),
+        ),
       );
       noting = { id, form };
       opener.replaceWith(form);
@@ -131,8 +213,17 @@ export function mountGapPanel(canCurate, on) {
     drawn = "";
     const words = count ? tn(count, "Place {count} tower", "Place {count} towers") : t("Click along the span");
     acts.replaceChildren(
-      h("button", { class: "button primary", type: "button", disabled: !count, onclick: () => on.placeDone(offer) }, words),
-      h("button", { class: "button", type: "button", disabled: !count, onclick: () => on.placeBack() }, icon("undo-2"), t("Take one back")),
+      h(
+        "button",
+        { class: "button primary", type: "button", disabled: !count, onclick: () => on.placeDone(offer) },
+        words,
+      ),
+      h(
+        "button",
+        { class: "button", type: "button", disabled: !count, onclick: () => on.placeBack() },
+        icon("undo-2"),
+        t("Take one back"),
+      ),
       h("button", { class: "button quiet", type: "button", onclick: () => on.placeCancel() }, t("Cancel")),
     );
   }
@@ -147,7 +238,8 @@ export function mountGapPanel(canCurate, on) {
     fault,
     busy(isBusy) {
       panel.setAttribute("aria-busy", String(isBusy));
-      for (const button of panel.querySelectorAll(".gap-acts button")) button.setAttribute("aria-disabled", String(isBusy));
+      for (const button of panel.querySelectorAll(".gap-acts button"))
+        button.setAttribute("aria-disabled", String(isBusy));
     },
   };
 }

@@ -23,7 +23,9 @@ export const STATES = [
 /** "cuts off 34.2 km", or nothing where the gap cuts off nothing. */
 export function cutOffText({ kind, cut_off_m: cutOff_m }) {
   if (!cutOff_m) return "";
-  return onlyConcerns(kind) ? t("concerns {length}", { length: lengthText(cutOff_m) }) : t("cuts off {length}", { length: lengthText(cutOff_m) });
+  return onlyConcerns(kind)
+    ? t("concerns {length}", { length: lengthText(cutOff_m) })
+    : t("cuts off {length}", { length: lengthText(cutOff_m) });
 }
 
 const onlyConcerns = (kind) => kind === "line_without_towers" || kind === "tower_on_no_line";
@@ -33,9 +35,15 @@ export function factsOf({ kind, details, cut_off_m: cutOff_m }) {
   const cut = cutOff_m ? [[onlyConcerns(kind) ? t("Concerns") : t("Cuts off"), lengthText(cutOff_m)]] : [];
   switch (kind) {
     case "long_span":
-      return [...cut, [t("Beyond it"), details.beyond_m ? lengthText(details.beyond_m) : t("also reached another way")]];
+      return [
+        ...cut,
+        [t("Beyond it"), details.beyond_m ? lengthText(details.beyond_m) : t("also reached another way")],
+      ];
     case "missing_support":
-      return [[t("Line"), lengthText(details.line_m)], [t("Without a tower"), lengthText(details.without_tower_m)]];
+      return [
+        [t("Line"), lengthText(details.line_m)],
+        [t("Without a tower"), lengthText(details.without_tower_m)],
+      ];
     case "dead_end":
       return [...cut, [t("Hangs together with it"), lengthText(details.network_m)]];
     case "impossible_voltage":

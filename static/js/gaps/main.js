@@ -38,12 +38,18 @@ const { page, map, layout, open } = mountGroundPage({
 const list = mountGapList({
   narrow: () => load(),
   choose: (id) => choose(id),
-  point: (gap) => map.ring(gap && gap.id !== chosen?.id ? [{ type: "Point", coordinates: gap.properties.position }] : []),
+  point: (gap) =>
+    map.ring(gap && gap.id !== chosen?.id ? [{ type: "Point", coordinates: gap.properties.position }] : []),
   more: () => load({ more: true }),
 });
 const panel = mountGapPanel(page.canCurate, {
   repair,
-  dismiss: (note) => act(() => post(`/gaps/${chosen.id}/dismiss`, { note }), t("Left as it is."), (id) => post(`/gaps/${id}/reopen`)),
+  dismiss: (note) =>
+    act(
+      () => post(`/gaps/${chosen.id}/dismiss`, { note }),
+      t("Left as it is."),
+      (id) => post(`/gaps/${id}/reopen`),
+    ),
   reopen: () => act(() => post(`/gaps/${chosen.id}/reopen`), t("On the open list again.")),
   preview: (collection) => layer.showRepair(map.map, collection),
   place: startPlacing,
@@ -62,7 +68,14 @@ function query() {
   const parts = new URLSearchParams({ state, limit: PAGE });
   if (kinds.size) parts.set("kind", [...kinds].join(","));
   if (text) parts.set("text", text);
-  if (inView) parts.set("bbox", map.box().map((degrees) => degrees.toFixed(6)).join(","));
+  if (inView)
+    parts.set(
+      "bbox",
+      map
+        .box()
+        .map((degrees) => degrees.toFixed(6))
+        .join(","),
+    );
   return `/gaps?${parts}`;
 }
 
@@ -119,8 +132,10 @@ function tellFacts() {
   const open = Object.values(summary.kinds).reduce((total, byState) => total + byState.open, 0);
   const facts = byId("page-facts");
   facts.dataset.searching = String(!summary.is_current);
-  if (!summary.searched_at) facts.textContent = summary.is_current ? t("Nothing to search yet") : t("Searching the ground…");
-  else facts.textContent = `${tn(open, "{count} gap open", "{count} gaps open")} · ${summary.is_current ? t("searched {when}", { when: whenText(summary.searched_at) }) : t("searching the changed ground…")}`;
+  if (!summary.searched_at)
+    facts.textContent = summary.is_current ? t("Nothing to search yet") : t("Searching the ground…");
+  else
+    facts.textContent = `${tn(open, "{count} gap open", "{count} gaps open")} · ${summary.is_current ? t("searched {when}", { when: whenText(summary.searched_at) }) : t("searching the changed ground…")}`;
 }
 
 async function choose(id, { stay = false } = {}) {
@@ -141,7 +156,8 @@ async function choose(id, { stay = false } = {}) {
     if (!stay) map.fit(boxOf(data));
     say(data.properties.sentence);
   } catch (error) {
-    if (turn === choices) toast(error.status === 404 ? t("This gap is gone: its asset was taken away.") : error.message);
+    if (turn === choices)
+      toast(error.status === 404 ? t("This gap is gone: its asset was taken away.") : error.message);
   }
 }
 

@@ -5,7 +5,12 @@ import { t } from "../text.js";
 import { clockText } from "../units.js";
 import { differences } from "./history_list.js";
 
-const list = (rows) => h("dl", { class: "conflict-facts" }, rows.map(([name, words]) => h("div", {}, h("dt", {}, name), h("dd", {}, words))));
+const list = (rows) =>
+  h(
+    "dl",
+    { class: "conflict-facts" },
+    rows.map(([name, words]) => h("div", {}, h("dt", {}, name), h("dd", {}, words))),
+  );
 
 /** Resolves to "theirs", "mine" or null (look again). `seen`, `mine` and `theirs` are facts under the same names; `theirs` null where it is gone. */
 export function askWhich({ changed_by, changed_at, seen, mine, theirs }) {
@@ -18,15 +23,31 @@ export function askWhich({ changed_by, changed_at, seen, mine, theirs }) {
     const dialog = h(
       "dialog",
       { "aria-labelledby": "conflict-title" },
-      h("h2", { id: "conflict-title" }, changed_at ? t("Changed by {name} at {time}", { name: changed_by, time: clockText(changed_at) }) : t("Changed by {name}", { name: changed_by })),
-      h("p", {}, theirs ? t("Nothing of yours is stored yet.") : t("It was taken off the ground. Nothing of yours is stored.")),
-      theirs && [h("h3", {}, t("What they changed")), list(differences(seen, theirs)), h("h3", {}, t("What yours would change of that")), list(differences(theirs, mine))],
+      h(
+        "h2",
+        { id: "conflict-title" },
+        changed_at
+          ? t("Changed by {name} at {time}", { name: changed_by, time: clockText(changed_at) })
+          : t("Changed by {name}", { name: changed_by }),
+      ),
+      h(
+        "p",
+        {},
+        theirs ? t("Nothing of yours is stored yet.") : t("It was taken off the ground. Nothing of yours is stored."),
+      ),
+      theirs && [
+        h("h3", {}, t("What they changed")),
+        list(differences(seen, theirs)),
+        h("h3", {}, t("What yours would change of that")),
+        list(differences(theirs, mine)),
+      ],
       h(
         "div",
         { class: "acts" },
         h("button", { type: "button", class: "button", onclick: answer(null) }, t("Go on editing")),
         h("button", { type: "button", class: "button", onclick: answer("theirs") }, t("Take theirs")),
-        theirs && h("button", { type: "button", class: "button danger", onclick: answer("mine") }, t("Store mine over it")),
+        theirs &&
+          h("button", { type: "button", class: "button danger", onclick: answer("mine") }, t("Store mine over it")),
       ),
     );
     dialog.addEventListener("cancel", (event) => (event.preventDefault(), answer(null)()));

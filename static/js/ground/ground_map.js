@@ -22,13 +22,24 @@ export function mountGroundMap(page, on = {}) {
   const container = byId("map");
   const frame = container.parentElement;
   let ground = null;
-  const view = createMap(container, { baseMap: page.baseMap, satellite: page.satellite, under: rememberedUnder(page), describe: t("Map"), bounds: page.extent, extent: page.extent });
+  const view = createMap(container, {
+    baseMap: page.baseMap,
+    satellite: page.satellite,
+    under: rememberedUnder(page),
+    describe: t("Map"),
+    bounds: page.extent,
+    extent: page.extent,
+  });
   const { map } = view;
   const repainted = new Set();
   const tip = createTip(frame);
   const isBusy = () => on.isBusy?.() ?? false;
   let pointed = null;
-  const controls = mountControls(view, page, { isBusy, fit: () => fit(extent()), recoloured: (palette) => repainted.forEach((act) => act(palette)) });
+  const controls = mountControls(view, page, {
+    isBusy,
+    fit: () => fit(extent()),
+    recoloured: (palette) => repainted.forEach((act) => act(palette)),
+  });
 
   routeClicks(map, {
     tool: () => on.tool?.() ?? "point",

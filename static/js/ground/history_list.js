@@ -2,16 +2,49 @@
 
 import { h, icon } from "../dom.js";
 import { t } from "../text.js";
-import { clockText, coordinateText, countText, exactHeightText, exactText, lengthText, voltageText, whenText } from "../units.js";
+import {
+  clockText,
+  coordinateText,
+  countText,
+  exactHeightText,
+  exactText,
+  lengthText,
+  voltageText,
+  whenText,
+} from "../units.js";
 
 const ACTS = {
-  created: t("Drawn"), changed: t("Changed"), deleted: t("Taken off the ground"), vanished: t("No longer in its source"), reverted: t("Brought back to an earlier state"),
-  restored: t("Restored"), "followed source": t("Follows its source again"), imported: t("Imported"),
+  created: t("Drawn"),
+  changed: t("Changed"),
+  deleted: t("Taken off the ground"),
+  vanished: t("No longer in its source"),
+  reverted: t("Brought back to an earlier state"),
+  restored: t("Restored"),
+  "followed source": t("Follows its source again"),
+  imported: t("Imported"),
 };
 const NAMES = {
-  ref: t("Ref"), name: t("Name"), operator: t("Operator"), voltages_v: t("Voltages"), circuits: t("Circuits"), height_m: t("Height"), is_flyable: t("Part of the network"), subtype: t("Type"),
-  geometry: t("Shape"), tags: t("Tags"), vanished: t("Off the ground"), restriction: t("Restriction"), reason: t("Reason"), schedule: t("Schedule"), circle: t("Circle"),
-  lower_limit_m: t("Lower limit"), lower_reference: t("Lower limit counted"), upper_limit_m: t("Upper limit"), upper_reference: t("Upper limit counted"), kind: t("Kind"), identifier: t("Identifier"),
+  ref: t("Ref"),
+  name: t("Name"),
+  operator: t("Operator"),
+  voltages_v: t("Voltages"),
+  circuits: t("Circuits"),
+  height_m: t("Height"),
+  is_flyable: t("Part of the network"),
+  subtype: t("Type"),
+  geometry: t("Shape"),
+  tags: t("Tags"),
+  vanished: t("Off the ground"),
+  restriction: t("Restriction"),
+  reason: t("Reason"),
+  schedule: t("Schedule"),
+  circle: t("Circle"),
+  lower_limit_m: t("Lower limit"),
+  lower_reference: t("Lower limit counted"),
+  upper_limit_m: t("Upper limit"),
+  upper_reference: t("Upper limit counted"),
+  kind: t("Kind"),
+  identifier: t("Identifier"),
 };
 const QUIET = new Set(["is_edited", "layer", "osm_type", "osm_id", "source_key", "max_voltage_v"]);
 
@@ -19,24 +52,31 @@ export const factName = (name) => NAMES[name] ?? name;
 
 /** A fact as people say it. */
 export function factText(name, value) {
-  if (value === null || value === undefined || value === "" || (Array.isArray(value) && !value.length)) return t("not stated");
+  if (value === null || value === undefined || value === "" || (Array.isArray(value) && !value.length))
+    return t("not stated");
   if (name === "voltages_v") return value.map((volts) => voltageText(volts / 1000)).join(", ");
   if (name === "geometry") return countText(countPoints(value.coordinates), "point");
   if (name.endsWith("_m")) return exactHeightText(value);
-  if (name === "circle") return t("{radius} round {place}", { radius: lengthText(value.radius_m), place: coordinateText(value.centre) });
+  if (name === "circle")
+    return t("{radius} round {place}", { radius: lengthText(value.radius_m), place: coordinateText(value.centre) });
   if (typeof value === "boolean") return value ? t("yes") : t("no");
-  if (typeof value === "object") return Array.isArray(value) ? countText(value.length, "period") : countText(Object.keys(value).length, "tag");
+  if (typeof value === "object")
+    return Array.isArray(value) ? countText(value.length, "period") : countText(Object.keys(value).length, "tag");
   return String(value);
 }
 
-const countPoints = (coordinates) => (typeof coordinates[0] === "number" ? 1 : coordinates.reduce((sum, part) => sum + countPoints(part), 0));
+const countPoints = (coordinates) =>
+  typeof coordinates[0] === "number" ? 1 : coordinates.reduce((sum, part) => sum + countPoints(part), 0);
 
 /** Lines "Ref: 18 → 18a" of what differs. */
 export function differences(before, after) {
   if (!before || !after) return [];
   return Object.keys(before)
     .filter((name) => !QUIET.has(name) && JSON.stringify(before[name]) !== JSON.stringify(after[name]))
-    .map((name) => [factName(name), name === "geometry" ? t("moved") : `${factText(name, before[name])} → ${factText(name, after[name])}`]);
+    .map((name) => [
+      factName(name),
+      name === "geometry" ? t("moved") : `${factText(name, before[name])} → ${factText(name, after[name])}`,
+    ]);
 }
 
 /** The day and the time of day, in the reader's own zone. */
@@ -53,10 +93,38 @@ export function historyList(entries, { revert = null, ring = () => {} } = {}) {
     entries.map((entry) =>
       h(
         "li",
-        entry.before?.geometry ? { onpointerenter: () => ring([entry.before.geometry]), onpointerleave: () => ring() } : {},
-        h("div", { class: "history-head" }, h("strong", {}, ACTS[entry.action] ?? entry.action), h("span", { class: "caption", title: exactText(entry.recorded_at) }, [entry.actor ?? (entry.file_name ? t("from {name}", { name: entry.file_name }) : t("by a command")), momentText(entry.recorded_at)].join(" · "))),
-        h("dl", {}, differences(entry.before, entry.after).map(([name, words]) => h("div", {}, h("dt", {}, name), h("dd", {}, words)))),
-        revert && entry.id && entry.before && h("button", { type: "button", class: "text-button", onclick: () => revert(entry) }, icon("undo-2", "small"), t("Bring back what was before")),
+        entry.before?.geometry
+          ? { onpointerenter: () => ring([entry.before.geometry]), onpointerleave: () => ring() }
+          : {},
+        h(
+          "div",
+          { class: "history-head" },
+          h("strong", {}, ACTS[entry.action] ?? entry.action),
+          h(
+            "span",
+            { class: "caption", title: exactText(entry.recorded_at) },
+            [
+              entry.actor ?? (entry.file_name ? t("from {name}", { name: entry.file_name }) : t("by a command")),
+              momentText(entry.recorded_at),
+            ].join(" · "),
+          ),
+        ),
+        h(
+          "dl",
+          {},
+          differences(entry.before, entry.after).map(([name, words]) =>
+            h("div", {}, h("dt", {}, name), h("dd", {}, words)),
+          ),
+        ),
+        revert &&
+          entry.id &&
+          entry.before &&
+          h(
+            "button",
+            { type: "button", class: "text-button", onclick: () => revert(entry) },
+            icon("undo-2", "small"),
+            t("Bring back what was before"),
+          ),
       ),
     ),
   );

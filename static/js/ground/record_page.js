@@ -24,7 +24,8 @@ import { historyList } from "./history_list.js";
 const CHECK_AFTER_MS = 700;
 const ROUND_DEG = 0.0008;
 
-const positionsOf = (coordinates) => (typeof coordinates[0] === "number" ? [coordinates] : coordinates.flatMap(positionsOf));
+const positionsOf = (coordinates) =>
+  typeof coordinates[0] === "number" ? [coordinates] : coordinates.flatMap(positionsOf);
 
 export function mountRecordPage(about) {
   let features = [];
@@ -58,7 +59,7 @@ export function mountRecordPage(about) {
   const editor = createEditor(map.map, {
     onChange(state) {
       panel?.update(state);
-      if (edit) (keepDraft(), checkSoon(state));
+      if (edit) keepDraft(), checkSoon(state);
       byId("record-save").toggleAttribute("disabled", !mayBeSaved(state));
     },
     onPreview: (shape) => panel.preview(shape),
@@ -102,11 +103,22 @@ export function mountRecordPage(about) {
           h(
             "button",
             {
-              type: "button", class: "record-row", "data-id": feature.id, onclick: () => choose(feature.id),
-              onpointerenter: () => ring([feature.geometry]), onpointerleave: () => ring(), onfocus: () => ring([feature.geometry]), onblur: () => ring(),
+              type: "button",
+              class: "record-row",
+              "data-id": feature.id,
+              onclick: () => choose(feature.id),
+              onpointerenter: () => ring([feature.geometry]),
+              onpointerleave: () => ring(),
+              onfocus: () => ring([feature.geometry]),
+              onblur: () => ring(),
             },
             icon(row.icon),
-            h("span", { class: "what" }, h("span", { class: "name" }, row.name), row.detail && h("small", {}, row.detail)),
+            h(
+              "span",
+              { class: "what" },
+              h("span", { class: "name" }, row.name),
+              row.detail && h("small", {}, row.detail),
+            ),
             row.chip && h("span", { class: "chip" }, row.chip),
           ),
         );
@@ -116,7 +128,11 @@ export function mountRecordPage(about) {
     const none = byId("record-none");
     none.hidden = features.length > 0;
     if (!features.length) none.replaceChildren(...about.nothing());
-    byId("page-facts").textContent = features.length ? (next ? t("{count} or more found", { count: features.length }) : tn(features.length, "{count} found", "{count} found")) : "";
+    byId("page-facts").textContent = features.length
+      ? next
+        ? t("{count} or more found", { count: features.length })
+        : tn(features.length, "{count} found", "{count} found")
+      : "";
   }
 
   // look
@@ -124,7 +140,10 @@ export function mountRecordPage(about) {
   async function choose(id, { stay = false, keepScroll = false } = {}) {
     if (edit) return;
     try {
-      const [{ data: feature, etag }, { data: history }] = await Promise.all([get(`${about.path}/${id}`), get(`${about.path}/${id}/history`)]);
+      const [{ data: feature, etag }, { data: history }] = await Promise.all([
+        get(`${about.path}/${id}`),
+        get(`${about.path}/${id}/history`),
+      ]);
       chosen = { feature, etag };
       const scroll = byId("side-scroll").scrollTop;
       drawChosen(history);
@@ -162,7 +181,8 @@ export function mountRecordPage(about) {
         failed(error, more);
       }
     };
-    if (earlier) part.append(h("button", { type: "button", class: "text-button", onclick: more }, t("Earlier changes")));
+    if (earlier)
+      part.append(h("button", { type: "button", class: "text-button", onclick: more }, t("Earlier changes")));
     return part;
   }
 
@@ -170,12 +190,29 @@ export function mountRecordPage(about) {
     const { feature } = chosen;
     const isGone = feature.properties.vanished_at;
     const acts = page.canCurate && [
-      h("button", { type: "button", class: "button primary", onclick: () => startEdit(feature), disabled: Boolean(isGone) }, icon("pencil", "small"), t("Edit")),
-      feature.properties.follows && h("button", { type: "button", class: "button", onclick: follow }, t("Follow the source again")),
-      !isGone && h("button", { type: "button", class: "button danger", onclick: takeOff }, icon("trash-2", "small"), t("Delete")),
+      h(
+        "button",
+        { type: "button", class: "button primary", onclick: () => startEdit(feature), disabled: Boolean(isGone) },
+        icon("pencil", "small"),
+        t("Edit"),
+      ),
+      feature.properties.follows &&
+        h("button", { type: "button", class: "button", onclick: follow }, t("Follow the source again")),
+      !isGone &&
+        h(
+          "button",
+          { type: "button", class: "button danger", onclick: takeOff },
+          icon("trash-2", "small"),
+          t("Delete"),
+        ),
     ];
     views.show.replaceChildren(
-      h("button", { type: "button", class: "text-button back", onclick: () => back() }, icon("arrow-left", "small"), about.backWords),
+      h(
+        "button",
+        { type: "button", class: "text-button back", onclick: () => back() },
+        icon("arrow-left", "small"),
+        about.backWords,
+      ),
       h("h2", { class: "record-title", tabindex: -1 }, about.title(feature)),
       ...about.details(feature),
       h("div", { class: "record-acts" }, acts || []),
@@ -208,12 +245,23 @@ export function mountRecordPage(about) {
 
   function follow() {
     const { id } = chosen.feature;
-    change(async () => (await post(`${about.path}/${id}/follow-source`, undefined, match(chosen.etag)), await choose(id, { stay: true })), t("It follows its source again."));
+    change(
+      async () => (
+        await post(`${about.path}/${id}/follow-source`, undefined, match(chosen.etag)), await choose(id, { stay: true })
+      ),
+      t("It follows its source again."),
+    );
   }
 
   function revert(entry) {
     const { id } = chosen.feature;
-    change(async () => (await post(`${about.path}/${id}/revert`, { entry: entry.id }, match(chosen.etag)), await choose(id, { stay: true })), t("What was before is back."));
+    change(
+      async () => (
+        await post(`${about.path}/${id}/revert`, { entry: entry.id }, match(chosen.etag)),
+        await choose(id, { stay: true })
+      ),
+      t("What was before is back."),
+    );
   }
 
   function takeOff() {
@@ -223,18 +271,35 @@ export function mountRecordPage(about) {
       await remove(`${about.path}/${id}`, match(chosen.etag));
       const { data } = await get(`${about.path}/${id}/history`);
       back();
-      toast(t("{name} is taken off the ground.", { name }), { label: t("Undo"), act: () => change(async () => (await post(`/history/${data.results[0].id}/undo`), await choose(id, { stay: true })), t("It is back.")) });
+      toast(t("{name} is taken off the ground.", { name }), {
+        label: t("Undo"),
+        act: () =>
+          change(
+            async () => (await post(`/history/${data.results[0].id}/undo`), await choose(id, { stay: true })),
+            t("It is back."),
+          ),
+      });
     });
   }
 
   // edit
 
   function startEdit(feature, { choice = feature ? about.choiceOf(feature) : null, shape = null, facts = null } = {}) {
-    const first = shape ?? (feature ? shapeOf(feature.geometry, feature.properties.circle) : empty(about.shapeKind(choice)));
+    const first =
+      shape ?? (feature ? shapeOf(feature.geometry, feature.properties.circle) : empty(about.shapeKind(choice)));
     const form = about.form(feature, choice, facts);
     const there = feature ? shapeOf(feature.geometry, feature.properties.circle) : empty(about.shapeKind(choice));
     const factsThere = facts ? about.form(feature, choice, null).read() : form.read();
-    edit = { choice, feature, etag: feature ? chosen.etag : null, form, began: { shape: textOf(there), facts: factsThere }, isKept: false, isSaving: false, sent: null };
+    edit = {
+      choice,
+      feature,
+      etag: feature ? chosen.etag : null,
+      form,
+      began: { shape: textOf(there), facts: factsThere },
+      isKept: false,
+      isSaving: false,
+      sent: null,
+    };
     form.element.addEventListener("input", keepDraft);
     views.edit.replaceChildren(
       h("h2", { class: "record-title", tabindex: -1 }, feature ? about.title(feature) : about.newTitle(choice)),
@@ -253,11 +318,23 @@ export function mountRecordPage(about) {
   const textOf = (shape) => JSON.stringify([geometryOf(shape) ?? shape.parts, circleOf(shape)]);
   const isReshaped = () => textOf(editor.state.shape) !== edit.began.shape;
   /** Only what was changed is sent: what others change besides stays theirs. */
-  const changedFacts = () => Object.fromEntries(Object.entries(edit.form.read()).filter(([name, value]) => JSON.stringify(value) !== JSON.stringify(edit.began.facts[name])));
+  const changedFacts = () =>
+    Object.fromEntries(
+      Object.entries(edit.form.read()).filter(
+        ([name, value]) => JSON.stringify(value) !== JSON.stringify(edit.began.facts[name]),
+      ),
+    );
   const isChanged = () => edit !== null && (isReshaped() || Object.keys(changedFacts()).length > 0);
-  const mayBeSaved = ({ shape, isDrawing, faults }) => edit !== null && shape !== null && !isDrawing && (!faults.length || (edit.feature !== null && !isReshaped()));
+  const mayBeSaved = ({ shape, isDrawing, faults }) =>
+    edit !== null && shape !== null && !isDrawing && (!faults.length || (edit.feature !== null && !isReshaped()));
 
-  const draftNow = () => ({ id: edit.feature?.id ?? null, choice: edit.choice, shape: editor.state.shape, facts: edit.form.read(), etag: edit.etag });
+  const draftNow = () => ({
+    id: edit.feature?.id ?? null,
+    choice: edit.choice,
+    shape: editor.state.shape,
+    facts: edit.form.read(),
+    etag: edit.etag,
+  });
   function keepDraft() {
     if (!edit) return;
     if (isChanged()) edit.isKept = draft.keep(draftNow());
@@ -273,7 +350,11 @@ export function mountRecordPage(about) {
     checkTimer = setTimeout(async () => {
       if (!edit || editor.state.shape !== shape) return;
       try {
-        const { data } = await post("/geometry-checks", { kind: about.checkKind(edit.choice), geometry: geometryOf(shape) ?? undefined, circle: circleOf(shape) });
+        const { data } = await post("/geometry-checks", {
+          kind: about.checkKind(edit.choice),
+          geometry: geometryOf(shape) ?? undefined,
+          circle: circleOf(shape),
+        });
         if (edit && editor.state.shape === shape) panel.verdict(data);
       } catch {
         /* it is checked again when it is saved */
@@ -311,7 +392,24 @@ export function mountRecordPage(about) {
     const fault = error.code === "invalid_geometry" ? error.details : null;
     const words = fault?.message ? `${fault.message[0].toUpperCase()}${fault.message.slice(1)}.` : error.message;
     byId("edit-fault").replaceChildren(
-      h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, h("strong", {}, `${t("Not saved.")} `), words, " ", fault?.position && h("button", { type: "button", class: "text-button", onclick: () => showPlace(fault.position) }, t("See the place")))),
+      h(
+        "div",
+        { class: "notice critical", role: "alert" },
+        icon("circle-alert"),
+        h(
+          "p",
+          {},
+          h("strong", {}, `${t("Not saved.")} `),
+          words,
+          " ",
+          fault?.position &&
+            h(
+              "button",
+              { type: "button", class: "text-button", onclick: () => showPlace(fault.position) },
+              t("See the place"),
+            ),
+        ),
+      ),
     );
     byId("side-scroll").scrollTop = 0;
   }
@@ -329,7 +427,9 @@ export function mountRecordPage(about) {
     edit.isSaving = true;
     button.setAttribute("aria-busy", "true");
     try {
-      const { data } = feature ? await patch(`${about.path}/${feature.id}`, body, match(edit.etag)) : await create({ ...about.fixedFacts(edit.choice), ...body });
+      const { data } = feature
+        ? await patch(`${about.path}/${feature.id}`, body, match(edit.etag))
+        : await create({ ...about.fixedFacts(edit.choice), ...body });
       leaveEdit();
       map.refreshTiles();
       toast("Saved.");
@@ -347,7 +447,13 @@ export function mountRecordPage(about) {
 
   async function settleConflict({ changed_by, changed_at, current }, body) {
     const theirs = current && about.factsOf(current);
-    const which = await askWhich({ changed_by, changed_at, seen: about.factsOf(edit.feature), theirs, mine: theirs && { ...theirs, ...about.factsOfBody(body) } });
+    const which = await askWhich({
+      changed_by,
+      changed_at,
+      seen: about.factsOf(edit.feature),
+      theirs,
+      mine: theirs && { ...theirs, ...about.factsOfBody(body) },
+    });
     if (which === "theirs") {
       const { id } = edit.feature;
       leaveEdit();
@@ -389,7 +495,18 @@ export function mountRecordPage(about) {
         "div",
         { class: "notice advisory" },
         icon("info"),
-        h("p", {}, h("strong", {}, `${t("An edit was not saved.")} `), `${t("It is from {when}.", { when: whenText(kept.kept_at) })} `, h("button", { type: "button", class: "text-button", onclick: goOn }, t("Go on")), h("button", { type: "button", class: "text-button", onclick: () => (draft.drop(), byId("notices").replaceChildren()) }, t("Throw it away"))),
+        h(
+          "p",
+          {},
+          h("strong", {}, `${t("An edit was not saved.")} `),
+          `${t("It is from {when}.", { when: whenText(kept.kept_at) })} `,
+          h("button", { type: "button", class: "text-button", onclick: goOn }, t("Go on")),
+          h(
+            "button",
+            { type: "button", class: "text-button", onclick: () => (draft.drop(), byId("notices").replaceChildren()) },
+            t("Throw it away"),
+          ),
+        ),
       ),
     );
   }
@@ -400,8 +517,15 @@ export function mountRecordPage(about) {
   if (page.canCurate) {
     const opener = byId("record-new");
     opener.hidden = false;
-    const items = () => about.newChoices.map((choice) => ({ icon: choice.icon, label: choice.words, act: () => ((chosen = null), startEdit(null, { choice: choice.value })) }));
-    opener.addEventListener("click", () => (about.newChoices.length > 1 ? toggleMenu(opener, () => menuOf(t("New"), items())) : items()[0].act()));
+    const items = () =>
+      about.newChoices.map((choice) => ({
+        icon: choice.icon,
+        label: choice.words,
+        act: () => ((chosen = null), startEdit(null, { choice: choice.value })),
+      }));
+    opener.addEventListener("click", () =>
+      about.newChoices.length > 1 ? toggleMenu(opener, () => menuOf(t("New"), items())) : items()[0].act(),
+    );
   }
   map.onRecolour(() => editor.recolour());
 
@@ -412,22 +536,41 @@ export function mountRecordPage(about) {
     return true;
   };
   const whenEditing = (act) => () => (edit ? act() : false);
-  const arrow = (right, down) => (event) => (edit && !event.target.matches?.("input, textarea, select") ? editor.nudge(right * (event.shiftKey ? 10 : 1), down * (event.shiftKey ? 10 : 1)) : false);
+  const arrow = (right, down) => (event) =>
+    edit && !event.target.matches?.("input, textarea, select")
+      ? editor.nudge(right * (event.shiftKey ? 10 : 1), down * (event.shiftKey ? 10 : 1))
+      : false;
   const bindings = [
     { keys: ["/"], words: about.findWords, act: () => (views.find.hidden ? false : byId("record-text").focus()) },
     { keys: ["j"], words: t("Next in the list"), act: step(1) },
     { keys: ["k"], words: t("Previous in the list"), act: step(-1) },
-    { keys: ["e"], words: t("Edit"), act: () => (chosen && !edit && page.canCurate ? startEdit(chosen.feature) : false) },
+    {
+      keys: ["e"],
+      words: t("Edit"),
+      act: () => (chosen && !edit && page.canCurate ? startEdit(chosen.feature) : false),
+    },
     { keys: ["mod+z"], words: t("Undo"), act: whenEditing(editor.undo) },
     { keys: ["mod+shift+z", "mod+y"], words: t("Redo"), act: whenEditing(editor.redo) },
     { keys: ["mod+s"], words: t("Save"), whileTyping: true, act: () => (edit ? (save(), true) : false) },
-    { keys: ["enter"], words: t("End the drawing"), act: (event) => (edit && !event.target.matches?.("button, a, summary, input") ? editor.finish() : false) },
-    { keys: ["delete", "backspace"], words: t("Remove the chosen point"), act: whenEditing(() => (editor.state.isDrawing ? editor.back() : editor.removeChosen())) },
+    {
+      keys: ["enter"],
+      words: t("End the drawing"),
+      act: (event) => (edit && !event.target.matches?.("button, a, summary, input") ? editor.finish() : false),
+    },
+    {
+      keys: ["delete", "backspace"],
+      words: t("Remove the chosen point"),
+      act: whenEditing(() => (editor.state.isDrawing ? editor.back() : editor.removeChosen())),
+    },
     { keys: ["arrowleft", "shift+arrowleft"], act: arrow(-1, 0) },
     { keys: ["arrowright", "shift+arrowright"], act: arrow(1, 0) },
     { keys: ["arrowup", "shift+arrowup"], act: arrow(0, -1) },
     { keys: ["arrowdown", "shift+arrowdown"], act: arrow(0, 1) },
-    { keys: ["escape"], words: t("A step back"), act: () => (edit ? editor.back() || cancel() : chosen ? back() : false) },
+    {
+      keys: ["escape"],
+      words: t("A step back"),
+      act: () => (edit ? editor.back() || cancel() : chosen ? back() : false),
+    },
   ];
 
   async function start() {

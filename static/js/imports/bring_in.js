@@ -16,10 +16,25 @@ export function mountBringIn({ userId, onStarted }) {
   const remembered = createRememberedUploads(userId);
   const input = byId("choose-file");
   const drop = byId("file-drop");
-  let items = remembered.all().map((entry) => ({ ...blank(entry.name, entry.size), ...entry, file: null, phase: "lost", received: entry.received ?? 0 }));
+  let items = remembered
+    .all()
+    .map((entry) => ({
+      ...blank(entry.name, entry.size),
+      ...entry,
+      file: null,
+      phase: "lost",
+      received: entry.received ?? 0,
+    }));
 
   const cards = new Map();
-  const acts = { start, stop, choose: () => input.click(), drop: takeOff, kind: setKind, change: (item) => isRemembered(item) && keep(item) };
+  const acts = {
+    start,
+    stop,
+    choose: () => input.click(),
+    drop: takeOff,
+    kind: setKind,
+    change: (item) => isRemembered(item) && keep(item),
+  };
   const drawCards = keyedList(
     byId("files"),
     (item) => item.mark,
@@ -36,10 +51,22 @@ export function mountBringIn({ userId, onStarted }) {
   };
 
   function blank(name, size) {
-    return { name, size, received: 0, waits_s: 0, problem: "", parameters: {}, provenance: {}, uploadId: null, controller: null, wake: null };
+    return {
+      name,
+      size,
+      received: 0,
+      waits_s: 0,
+      problem: "",
+      parameters: {},
+      provenance: {},
+      uploadId: null,
+      controller: null,
+      wake: null,
+    };
   }
   const isRemembered = (item) => remembered.find(item.mark) !== null;
-  const keep = ({ mark, name, size, kind, parameters, provenance, uploadId, received }) => remembered.keep(mark, { name, size, kind, parameters, provenance, uploadId, received });
+  const keep = ({ mark, name, size, kind, parameters, provenance, uploadId, received }) =>
+    remembered.keep(mark, { name, size, kind, parameters, provenance, uploadId, received });
 
   async function take(files) {
     for (const file of files) {
@@ -63,7 +90,8 @@ export function mountBringIn({ userId, onStarted }) {
 
   function setKind(item, kind) {
     item.kind = kind;
-    item.parameters = kind === "zones" || kind === "assets" ? { set_name: item.parameters.set_name ?? setNameOf(item.name) } : {};
+    item.parameters =
+      kind === "zones" || kind === "assets" ? { set_name: item.parameters.set_name ?? setNameOf(item.name) } : {};
   }
 
   async function start(item) {
@@ -168,5 +196,14 @@ function listenToDrops(drop, take) {
 
 /** Said instead of the tools where somebody may not bring data in. */
 export function notAllowed() {
-  return h("div", { class: "notice advisory" }, h("p", {}, h("strong", {}, t("Only curators bring data in.")), ` ${t("Ask an administrator for the curator role.")}`));
+  return h(
+    "div",
+    { class: "notice advisory" },
+    h(
+      "p",
+      {},
+      h("strong", {}, t("Only curators bring data in.")),
+      ` ${t("Ask an administrator for the curator role.")}`,
+    ),
+  );
 }

@@ -5,12 +5,24 @@ import { t, tn } from "../text.js";
 import { numberText } from "../units.js";
 import { ACTIONS, factLines } from "./words.js";
 
-const SUBJECTS = { tower: t("Tower"), line: t("Line"), railway: t("Railway"), bridge: t("Bridge"), zone: t("Zone"), terrain: t("Terrain") };
+const SUBJECTS = {
+  tower: t("Tower"),
+  line: t("Line"),
+  railway: t("Railway"),
+  bridge: t("Bridge"),
+  zone: t("Zone"),
+  terrain: t("Terrain"),
+};
 
 /** acts: { filter(action), point(change or null), show(change), more() } */
 export function mountChanges(store, acts) {
   const list = byId("changes");
-  const draw = keyedList(list, (change) => change.id, (change) => row(change, acts), mark);
+  const draw = keyedList(
+    list,
+    (change) => change.id,
+    (change) => row(change, acts),
+    mark,
+  );
 
   function mark(element, change) {
     const isSelected = change.id === store.state.selected;
@@ -46,7 +58,12 @@ function row(change, acts) {
     "button",
     { type: "button", class: "change", "aria-expanded": "false", onclick: () => acts.show(change) },
     h("span", { class: `change-mark ${action}`, "aria-hidden": "true" }, sign),
-    h("span", { class: "change-what" }, h("strong", {}, label || SUBJECTS[subject] || subject), h("span", { class: "caption" }, `${SUBJECTS[subject] ?? subject}, ${words}${shortOf(change.properties)}`)),
+    h(
+      "span",
+      { class: "change-what" },
+      h("strong", {}, label || SUBJECTS[subject] || subject),
+      h("span", { class: "caption" }, `${SUBJECTS[subject] ?? subject}, ${words}${shortOf(change.properties)}`),
+    ),
   );
   const element = h("li", {}, button);
   for (const come of ["pointerenter", "focusin"]) element.addEventListener(come, () => acts.point(change));
@@ -75,7 +92,19 @@ function factsOf(properties) {
         "div",
         {},
         h("dt", {}, words),
-        h("dd", {}, isPair ? [h("span", { class: "unseen" }, `${t("before")} `), value(before, "before"), h("span", { "aria-hidden": "true" }, " → "), h("span", { class: "unseen" }, `${t(", after")} `), value(after, "after")] : value(after ?? before, "after")),
+        h(
+          "dd",
+          {},
+          isPair
+            ? [
+                h("span", { class: "unseen" }, `${t("before")} `),
+                value(before, "before"),
+                h("span", { "aria-hidden": "true" }, " → "),
+                h("span", { class: "unseen" }, `${t(", after")} `),
+                value(after, "after"),
+              ]
+            : value(after ?? before, "after"),
+        ),
       ),
     ),
   );
@@ -86,7 +115,10 @@ function drawFilters(current, action, acts) {
   const counted = Object.keys(ACTIONS).filter((name) => current?.difference[name] > 0);
   place.hidden = counted.length === 0;
   const all = counted.reduce((sum, name) => sum + current.difference[name], 0);
-  const choices = [["", "", t("All"), all], ...counted.map((name) => [name, ACTIONS[name].sign, ACTIONS[name].short, current.difference[name]])];
+  const choices = [
+    ["", "", t("All"), all],
+    ...counted.map((name) => [name, ACTIONS[name].sign, ACTIONS[name].short, current.difference[name]]),
+  ];
   const had = place.contains(document.activeElement) ? document.activeElement.value : null;
   place.replaceChildren(
     h("legend", { class: "unseen" }, t("Which changes")),
@@ -94,8 +126,19 @@ function drawFilters(current, action, acts) {
       h(
         "label",
         {},
-        h("input", { type: "radio", name: "change-filter", value, checked: action === value, onchange: () => acts.filter(value) }),
-        h("span", { class: "segment" }, h("span", { class: "change-word" }, sign && h("b", { class: value, "aria-hidden": "true" }, sign), words), h("small", {}, numberText(count))),
+        h("input", {
+          type: "radio",
+          name: "change-filter",
+          value,
+          checked: action === value,
+          onchange: () => acts.filter(value),
+        }),
+        h(
+          "span",
+          { class: "segment" },
+          h("span", { class: "change-word" }, sign && h("b", { class: value, "aria-hidden": "true" }, sign), words),
+          h("small", {}, numberText(count)),
+        ),
       ),
     ),
   );

@@ -11,7 +11,17 @@ const SHAPES = ["import-fill", "import-line", "import-line-vanished", "import-li
 const FILTERED = [...SHAPES, "import-casing", "import-sign", "import-before-line", "import-before-dot"];
 
 /** Far off a point is a small dot, and a shape needs none; near by each carries its sign. */
-const byZoom = (far, near) => ["interpolate", ["linear"], ["zoom"], 8, ["case", ["get", "isPoint"], far, 0], 11, ["case", ["get", "isPoint"], (far + near) / 2, 0], 13, near];
+const byZoom = (far, near) => [
+  "interpolate",
+  ["linear"],
+  ["zoom"],
+  8,
+  ["case", ["get", "isPoint"], far, 0],
+  11,
+  ["case", ["get", "isPoint"], (far + near) / 2, 0],
+  13,
+  near,
+];
 const isShape = (type) => ["==", ["geometry-type"], type];
 const actionIs = (...actions) => ["in", ["get", "action"], ["literal", actions]];
 const byAction = (values) => ["match", ["get", "action"], ...Object.entries(values).flat(), values.changed];
@@ -21,7 +31,12 @@ function colours() {
   const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
   return {
     casing: read("--map-casing"),
-    actions: { new: read("--accent"), changed: read("--warning"), vanished: read("--critical"), kept: read("--advisory") },
+    actions: {
+      new: read("--accent"),
+      changed: read("--warning"),
+      vanished: read("--critical"),
+      kept: read("--advisory"),
+    },
     before: read("--ink"),
   };
 }
@@ -41,14 +56,46 @@ function layers({ casing, actions, before }, fonts) {
   const round = { "line-cap": "round", "line-join": "round" };
   const line = { "line-color": colour, "line-width": 3 };
   return [
-    { id: "import-before-line", type: "line", source: BEFORE, paint: { "line-color": before, "line-width": 2.5, "line-dasharray": [2.5, 2] } },
-    { id: "import-before-dot", type: "circle", source: BEFORE, paint: { "circle-radius": 5, "circle-opacity": 0, "circle-stroke-color": before, "circle-stroke-width": 1.5 } },
+    {
+      id: "import-before-line",
+      type: "line",
+      source: BEFORE,
+      paint: { "line-color": before, "line-width": 2.5, "line-dasharray": [2.5, 2] },
+    },
+    {
+      id: "import-before-dot",
+      type: "circle",
+      source: BEFORE,
+      paint: { "circle-radius": 5, "circle-opacity": 0, "circle-stroke-color": before, "circle-stroke-width": 1.5 },
+    },
     { id: "import-fill", type: "fill", source: SOURCE, paint: { "fill-color": colour, "fill-opacity": 0.12 } },
-    { id: "import-casing", type: "line", source: SOURCE, layout: round, paint: { "line-color": casing, "line-width": 6 } },
+    {
+      id: "import-casing",
+      type: "line",
+      source: SOURCE,
+      layout: round,
+      paint: { "line-color": casing, "line-width": 6 },
+    },
     { id: "import-line", type: "line", source: SOURCE, layout: round, paint: line },
     { id: "import-line-vanished", type: "line", source: SOURCE, paint: { ...line, "line-dasharray": [2.4, 1.8] } },
-    { id: "import-line-kept", type: "line", source: SOURCE, layout: round, paint: { ...line, "line-dasharray": [0.1, 2] } },
-    { id: "import-dot", type: "circle", source: SIGNS, paint: { "circle-radius": byZoom(2.5, 8), "circle-color": casing, "circle-stroke-color": colour, "circle-stroke-width": byZoom(1.5, 2) } },
+    {
+      id: "import-line-kept",
+      type: "line",
+      source: SOURCE,
+      layout: round,
+      paint: { ...line, "line-dasharray": [0.1, 2] },
+    },
+    {
+      id: "import-dot",
+      type: "circle",
+      source: SIGNS,
+      paint: {
+        "circle-radius": byZoom(2.5, 8),
+        "circle-color": casing,
+        "circle-stroke-color": colour,
+        "circle-stroke-width": byZoom(1.5, 2),
+      },
+    },
     {
       id: "import-sign",
       type: "symbol",
@@ -92,11 +139,31 @@ export function createChangesLayer({ map, view }) {
     show(changes, action) {
       shownAction = action;
       const drawn = changes.filter((change) => change.geometry);
-      const feature = (change, geometry) => ({ type: "Feature", geometry, properties: { id: change.id, action: change.properties.action, isPoint: change.geometry.type === "Point" } });
-      map.getSource(SOURCE).setData({ type: "FeatureCollection", features: drawn.map((change) => feature(change, change.geometry)) });
-      map.getSource(SIGNS).setData({ type: "FeatureCollection", features: drawn.map((change) => feature(change, { type: "Point", coordinates: placeOfSign(change.geometry) })) });
-      const moved = changes.filter((change) => change.properties.action !== "vanished" && isGeometry(change.properties.before?.geometry));
-      map.getSource(BEFORE).setData({ type: "FeatureCollection", features: moved.map((change) => feature(change, change.properties.before.geometry)) });
+      const feature = (change, geometry) => ({
+        type: "Feature",
+        geometry,
+        properties: { id: change.id, action: change.properties.action, isPoint: change.geometry.type === "Point" },
+      });
+      map
+        .getSource(SOURCE)
+        .setData({ type: "FeatureCollection", features: drawn.map((change) => feature(change, change.geometry)) });
+      map
+        .getSource(SIGNS)
+        .setData({
+          type: "FeatureCollection",
+          features: drawn.map((change) =>
+            feature(change, { type: "Point", coordinates: placeOfSign(change.geometry) }),
+          ),
+        });
+      const moved = changes.filter(
+        (change) => change.properties.action !== "vanished" && isGeometry(change.properties.before?.geometry),
+      );
+      map
+        .getSource(BEFORE)
+        .setData({
+          type: "FeatureCollection",
+          features: moved.map((change) => feature(change, change.properties.before.geometry)),
+        });
       filter();
     },
     /** The id of the change under a point of the screen, or null. */
@@ -104,7 +171,13 @@ export function createChangesLayer({ map, view }) {
       const shown = SHAPES.filter((id) => map.getLayer(id));
       if (!shown.length || !point) return null;
       const reach = reach_px();
-      const found = map.queryRenderedFeatures([[point.x - reach, point.y - reach], [point.x + reach, point.y + reach]], { layers: shown });
+      const found = map.queryRenderedFeatures(
+        [
+          [point.x - reach, point.y - reach],
+          [point.x + reach, point.y + reach],
+        ],
+        { layers: shown },
+      );
       const rank = ({ layer }) => -SHAPES.indexOf(layer.id);
       return found.sort((a, b) => rank(a) - rank(b))[0]?.properties.id ?? null;
     },
@@ -114,7 +187,8 @@ export function createChangesLayer({ map, view }) {
 /** Where a geometry's sign stands: on a line its middle vertex, on an area its northernmost one, where no name is drawn. */
 export function placeOfSign(geometry) {
   const positions = positionsOf(geometry);
-  if (geometry.type.endsWith("Polygon")) return positions.reduce((best, position) => (position[1] > best[1] ? position : best));
+  if (geometry.type.endsWith("Polygon"))
+    return positions.reduce((best, position) => (position[1] > best[1] ? position : best));
   return positions[Math.floor(positions.length / 2)];
 }
 

@@ -29,7 +29,8 @@ const roleOf = (meaning) => meaning.split(":")[0];
 export function meaningsOf({ kind, columns = {}, units = {}, geometry = {} }) {
   const found = {};
   for (const [role, name] of Object.entries(columns)) {
-    if (role === "voltage" || role === "height") found[name] ??= `${role}:${units[role] ?? (role === "voltage" ? "V" : "m")}`;
+    if (role === "voltage" || role === "height")
+      found[name] ??= `${role}:${units[role] ?? (role === "voltage" ? "V" : "m")}`;
     else found[name] ??= role;
   }
   for (const [role, name] of Object.entries(geometry)) found[name] = role;
@@ -57,7 +58,9 @@ export function mappingOf(meanings, kind, kindValues) {
 
 /** Each role once: what another column had of it is taken from that one. */
 export function withMeaning(meanings, name, meaning) {
-  const rest = Object.entries(meanings).filter(([other, known]) => other !== name && (!meaning || roleOf(known) !== roleOf(meaning)));
+  const rest = Object.entries(meanings).filter(
+    ([other, known]) => other !== name && (!meaning || roleOf(known) !== roleOf(meaning)),
+  );
   return meaning ? { ...Object.fromEntries(rest), [name]: meaning } : Object.fromEntries(rest);
 }
 
@@ -72,12 +75,24 @@ export function columnMapping({ summary, parameters, state }, readAgain) {
   let meanings = meaningsOf(stated);
   const kindValues = { ...(stated.kind?.values ?? {}) };
   const option = ([value, words]) => h("option", { value }, words);
-  const field = (words, control, hint) => h("div", { class: "field" }, h("label", { for: control.id }, words), control, hint && h("span", { class: "caption" }, hint));
+  const field = (words, control, hint) =>
+    h(
+      "div",
+      { class: "field" },
+      h("label", { for: control.id }, words),
+      control,
+      hint && h("span", { class: "caption" }, hint),
+    );
 
   const kind = h(
     "select",
     { class: "input", id: `${id}-kind` },
-    [["", t("Choose")], [BY_GEOMETRY, t("Points towers, lines power lines, areas bridges")], ...Object.entries(KINDS), [BY_COLUMN, t("What a column says")]].map(option),
+    [
+      ["", t("Choose")],
+      [BY_GEOMETRY, t("Points towers, lines power lines, areas bridges")],
+      ...Object.entries(KINDS),
+      [BY_COLUMN, t("What a column says")],
+    ].map(option),
   );
   kind.value = stated.kind?.column ? BY_COLUMN : (stated.kind ?? "");
   const values = h("div", { class: "kind-values" });
@@ -86,14 +101,29 @@ export function columnMapping({ summary, parameters, state }, readAgain) {
   function drawValues() {
     const name = Object.keys(meanings).find((known) => meanings[known] === "kind");
     const column = kind.value === BY_COLUMN && summary.columns.find((known) => known.name === name);
-    if (kind.value === BY_COLUMN && !column) return values.replaceChildren(h("p", { class: "caption" }, t("Say below which column has the kind.")));
+    if (kind.value === BY_COLUMN && !column)
+      return values.replaceChildren(h("p", { class: "caption" }, t("Say below which column has the kind.")));
     values.replaceChildren(
       ...Object.entries((column && column.values) || {}).map(([value, rows], place) => {
-        const choice = h("select", { class: "input", id: `${id}-value-${place}` }, [["", t("Left out")], ...Object.entries(KINDS)].map(option));
+        const choice = h(
+          "select",
+          { class: "input", id: `${id}-value-${place}` },
+          [["", t("Left out")], ...Object.entries(KINDS)].map(option),
+        );
         choice.value = kindValues[value] ?? "";
         kindValues[value] = choice.value;
         choice.addEventListener("change", () => (kindValues[value] = choice.value));
-        return h("div", { class: "column-row" }, h("div", { class: "column-name" }, h("label", { for: choice.id }, value), h("span", { class: "caption" }, countText(rows, "row"))), choice);
+        return h(
+          "div",
+          { class: "column-row" },
+          h(
+            "div",
+            { class: "column-name" },
+            h("label", { for: choice.id }, value),
+            h("span", { class: "caption" }, countText(rows, "row")),
+          ),
+          choice,
+        );
       }),
     );
   }
@@ -104,13 +134,18 @@ export function columnMapping({ summary, parameters, state }, readAgain) {
   }
 
   kind.addEventListener("change", () => {
-    if (kind.value !== BY_COLUMN) meanings = Object.fromEntries(Object.entries(meanings).filter(([, meaning]) => meaning !== "kind"));
+    if (kind.value !== BY_COLUMN)
+      meanings = Object.fromEntries(Object.entries(meanings).filter(([, meaning]) => meaning !== "kind"));
     show();
   });
 
   const rows = summary.columns.map((column, place) => {
     const can = Object.entries(MEANINGS).filter(([meaning]) => meaning !== "kind" || column.values);
-    const choice = h("select", { class: "input", id: `${id}-${place}`, "aria-describedby": `${id}-${place}-samples` }, [["", t("Kept as a tag")], ...can, ...(isTable ? Object.entries(PLACES) : [])].map(option));
+    const choice = h(
+      "select",
+      { class: "input", id: `${id}-${place}`, "aria-describedby": `${id}-${place}-samples` },
+      [["", t("Kept as a tag")], ...can, ...(isTable ? Object.entries(PLACES) : [])].map(option),
+    );
     choices.set(column.name, choice);
     choice.addEventListener("change", () => {
       meanings = withMeaning(meanings, column.name, choice.value);
@@ -118,11 +153,31 @@ export function columnMapping({ summary, parameters, state }, readAgain) {
       show();
     });
     const samples = (column.samples ?? []).map(String).join(" · ") || t("always empty");
-    return h("div", { class: "column-row" }, h("div", { class: "column-name" }, h("label", { for: choice.id }, column.name), h("span", { class: "caption", id: `${id}-${place}-samples`, title: samples }, samples)), choice);
+    return h(
+      "div",
+      { class: "column-row" },
+      h(
+        "div",
+        { class: "column-name" },
+        h("label", { for: choice.id }, column.name),
+        h("span", { class: "caption", id: `${id}-${place}-samples`, title: samples }, samples),
+      ),
+      choice,
+    );
   });
 
-  const system = h("input", { class: "input", id: `${id}-crs`, placeholder: summary.crs || "EPSG:4326", value: parameters.crs ?? "", maxlength: "40" });
-  const layer = h("select", { class: "input", id: `${id}-layer` }, (summary.layers ?? []).map((name) => option([name, name])));
+  const system = h("input", {
+    class: "input",
+    id: `${id}-crs`,
+    placeholder: summary.crs || "EPSG:4326",
+    value: parameters.crs ?? "",
+    maxlength: "40",
+  });
+  const layer = h(
+    "select",
+    { class: "input", id: `${id}-layer` },
+    (summary.layers ?? []).map((name) => option([name, name])),
+  );
   layer.value = summary.layer ?? "";
   const form = h(
     "form",
@@ -133,15 +188,33 @@ export function columnMapping({ summary, parameters, state }, readAgain) {
     h("p", { class: "field-label" }, t("Columns")),
     rows,
     field(t("Coordinate system"), system, t("Only where the file does not say it.")),
-    h("div", { class: "row-acts" }, h("button", { type: "submit", class: summary.needs_mapping ? "button primary" : "button" }, icon("eye", "small"), t("Show what would change"))),
+    h(
+      "div",
+      { class: "row-acts" },
+      h(
+        "button",
+        { type: "submit", class: summary.needs_mapping ? "button primary" : "button" },
+        icon("eye", "small"),
+        t("Show what would change"),
+      ),
+    ),
   );
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     const mapping = mappingOf(meanings, kind.value, kindValues);
     if (!isTable) delete mapping.geometry;
     const crs = system.value.trim();
-    readAgain({ ...mapping, ...(crs || parameters.crs ? { crs: crs || null } : {}), ...(layer.options.length > 1 ? { layer: layer.value } : {}) });
+    readAgain({
+      ...mapping,
+      ...(crs || parameters.crs ? { crs: crs || null } : {}),
+      ...(layer.options.length > 1 ? { layer: layer.value } : {}),
+    });
   });
   show();
-  return h("details", { class: "import-facts", open: Boolean(summary.needs_mapping) }, h("summary", {}, t("What the columns are")), form);
+  return h(
+    "details",
+    { class: "import-facts", open: Boolean(summary.needs_mapping) },
+    h("summary", {}, t("What the columns are")),
+    form,
+  );
 }

@@ -30,7 +30,12 @@ export function fileCard(item, acts) {
   );
   const form = h(
     "form",
-    { class: "stack", id: `${id}-form`, "aria-label": item.name, onsubmit: (event) => (event.preventDefault(), acts.start(item)) },
+    {
+      class: "stack",
+      id: `${id}-form`,
+      "aria-label": item.name,
+      onsubmit: (event) => (event.preventDefault(), acts.start(item)),
+    },
     h("div", { class: "field" }, h("label", { for: `${id}-kind` }, t("What it is")), kind),
     fields,
   );
@@ -41,15 +46,37 @@ export function fileCard(item, acts) {
       "div",
       { class: "file-head" },
       icon("file"),
-      h("span", { class: "file-name" }, h("strong", {}, item.name), h("span", { class: "caption" }, sizeText(item.size))),
-      h("button", { type: "button", class: "icon-button tight", "aria-label": t("Take {name} off", { name: item.name }), title: t("Take it off"), onclick: () => acts.drop(item) }, icon("x", "small")),
+      h(
+        "span",
+        { class: "file-name" },
+        h("strong", {}, item.name),
+        h("span", { class: "caption" }, sizeText(item.size)),
+      ),
+      h(
+        "button",
+        {
+          type: "button",
+          class: "icon-button tight",
+          "aria-label": t("Take {name} off", { name: item.name }),
+          title: t("Take it off"),
+          onclick: () => acts.drop(item),
+        },
+        icon("x", "small"),
+      ),
     ),
     form,
     status,
   );
 
   function input(group, name, hint, isUrl) {
-    const box = h("input", { class: "input", id: `${id}-${name}`, type: isUrl ? "url" : "text", placeholder: hint, maxlength: "300", value: item[group][name] ?? "" });
+    const box = h("input", {
+      class: "input",
+      id: `${id}-${name}`,
+      type: isUrl ? "url" : "text",
+      placeholder: hint,
+      maxlength: "300",
+      value: item[group][name] ?? "",
+    });
     box.addEventListener("input", () => {
       item[group][name] = box.value;
       acts.change(item);
@@ -58,7 +85,11 @@ export function fileCard(item, acts) {
   }
 
   function datumChoice(name) {
-    const choice = h("select", { class: "input", id: `${id}-${name}` }, VERTICAL_DATUMS.map((datum) => h("option", {}, datum)));
+    const choice = h(
+      "select",
+      { class: "input", id: `${id}-${name}` },
+      VERTICAL_DATUMS.map((datum) => h("option", {}, datum)),
+    );
     choice.value = item.parameters[name] ?? VERTICAL_DATUMS[0];
     item.parameters[name] = choice.value;
     choice.addEventListener("change", () => {
@@ -72,7 +103,12 @@ export function fileCard(item, acts) {
     kind.value = item.kind;
     fields.replaceChildren(
       ...FIELDS[item.kind].map(([name, words, hint]) =>
-        h("div", { class: "field" }, h("label", { for: `${id}-${name}` }, words), name === "vertical_datum" ? datumChoice(name) : input("parameters", name, hint)),
+        h(
+          "div",
+          { class: "field" },
+          h("label", { for: `${id}-${name}` }, words),
+          name === "vertical_datum" ? datumChoice(name) : input("parameters", name, hint),
+        ),
       ),
       item.kind === "osm"
         ? h("p", { class: "caption" }, t("© OpenStreetMap contributors, ODbL."))
@@ -80,7 +116,18 @@ export function fileCard(item, acts) {
             "details",
             { open: item.kind === "zones" },
             h("summary", {}, t("Where it comes from")),
-            h("div", { class: "stack" }, PROVENANCE.map(([name, words, hint]) => h("div", { class: "field" }, h("label", { for: `${id}-${name}` }, words), input("provenance", name, hint, name === "source_address")))),
+            h(
+              "div",
+              { class: "stack" },
+              PROVENANCE.map(([name, words, hint]) =>
+                h(
+                  "div",
+                  { class: "field" },
+                  h("label", { for: `${id}-${name}` }, words),
+                  input("provenance", name, hint, name === "source_address"),
+                ),
+              ),
+            ),
           ),
     );
   }
@@ -109,25 +156,77 @@ export function fileCard(item, acts) {
 
 function statusOf(item, acts, formId) {
   const share = () => h("span", { dataset: { share: "" } });
-  const button = (words, act, look = "") => h("button", { type: "button", class: `button ${look}`.trim(), onclick: act }, words);
-  const bar = () => h("div", { class: "progress", role: "progressbar", "aria-label": t("Sending {name}", { name: item.name }), "aria-valuemin": "0", "aria-valuemax": "100" }, h("i"));
-  if (item.phase === "sending") return [h("div", { class: "job-words" }, h("span", {}, t("Sending")), share()), bar(), h("div", { class: "row-acts" }, button(t("Stop"), () => acts.stop(item)))];
-  if (item.phase === "starting") return [h("div", { class: "job-words" }, h("span", { role: "status" }, t("Sent. It will be read now.")))];
+  const button = (words, act, look = "") =>
+    h("button", { type: "button", class: `button ${look}`.trim(), onclick: act }, words);
+  const bar = () =>
+    h(
+      "div",
+      {
+        class: "progress",
+        role: "progressbar",
+        "aria-label": t("Sending {name}", { name: item.name }),
+        "aria-valuemin": "0",
+        "aria-valuemax": "100",
+      },
+      h("i"),
+    );
+  if (item.phase === "sending")
+    return [
+      h("div", { class: "job-words" }, h("span", {}, t("Sending")), share()),
+      bar(),
+      h(
+        "div",
+        { class: "row-acts" },
+        button(t("Stop"), () => acts.stop(item)),
+      ),
+    ];
+  if (item.phase === "starting")
+    return [h("div", { class: "job-words" }, h("span", { role: "status" }, t("Sent. It will be read now.")))];
   if (item.phase === "waiting") {
     const wait = h("span", { dataset: { wait: "" } });
     return [
-      h("div", { class: "notice warning" }, icon("cloud-off"), h("p", {}, h("strong", { role: "status" }, t("The connection was cut.")), " ", share(), ` ${t("is there and stays. Next try in")} `, wait, ". ", h("button", { type: "button", class: "text-button", onclick: () => item.wake?.() }, t("Try now")))),
+      h(
+        "div",
+        { class: "notice warning" },
+        icon("cloud-off"),
+        h(
+          "p",
+          {},
+          h("strong", { role: "status" }, t("The connection was cut.")),
+          " ",
+          share(),
+          ` ${t("is there and stays. Next try in")} `,
+          wait,
+          ". ",
+          h("button", { type: "button", class: "text-button", onclick: () => item.wake?.() }, t("Try now")),
+        ),
+      ),
       bar(),
-      h("div", { class: "row-acts" }, button(t("Stop"), () => acts.stop(item))),
+      h(
+        "div",
+        { class: "row-acts" },
+        button(t("Stop"), () => acts.stop(item)),
+      ),
     ];
   }
   if (item.phase === "lost") {
     return [
       h("p", {}, share(), ` ${t("is there already. Choose the same file again, and it goes on from there.")}`),
-      h("div", { class: "row-acts" }, button(t("Choose the file"), () => acts.choose(item))),
+      h(
+        "div",
+        { class: "row-acts" },
+        button(t("Choose the file"), () => acts.choose(item)),
+      ),
     ];
   }
-  const problem = item.phase === "failed" && h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", { dataset: { problem: "" } }));
+  const problem =
+    item.phase === "failed" &&
+    h(
+      "p",
+      { class: "field-error", role: "alert" },
+      icon("circle-alert", "small"),
+      h("span", { dataset: { problem: "" } }),
+    );
   const submit = h("button", { type: "submit", form: formId, class: "button primary" }, t("Read the file")); // Enter in a field does the same
   return [problem, h("div", { class: "row-acts" }, submit)].filter(Boolean);
 }

@@ -8,8 +8,16 @@ import { percentText } from "../units.js";
 export function jobLine(what, cancel) {
   const words = h("span", {});
   const share = h("span", {});
-  const bar = h("div", { class: "progress", role: "progressbar", "aria-label": what, "aria-valuemin": "0", "aria-valuemax": "100" }, h("i"));
-  const stop = h("button", { type: "button", class: "button", "aria-label": t("Cancel: {what}", { what }) }, t("Cancel"));
+  const bar = h(
+    "div",
+    { class: "progress", role: "progressbar", "aria-label": what, "aria-valuemin": "0", "aria-valuemax": "100" },
+    h("i"),
+  );
+  const stop = h(
+    "button",
+    { type: "button", class: "button", "aria-label": t("Cancel: {what}", { what }) },
+    t("Cancel"),
+  );
   stop.addEventListener("click", () => {
     stop.disabled = true;
     stop.textContent = t("Stopping");
@@ -18,7 +26,13 @@ export function jobLine(what, cancel) {
       stop.textContent = t("Cancel");
     });
   });
-  const element = h("div", { class: "import-job" }, h("div", { class: "job-words" }, words, share), bar, h("div", { class: "row-acts" }, stop));
+  const element = h(
+    "div",
+    { class: "import-job" },
+    h("div", { class: "job-words" }, words, share),
+    bar,
+    h("div", { class: "row-acts" }, stop),
+  );
 
   function refresh(job) {
     const text = job?.message || what;

@@ -8,7 +8,8 @@ const BY_NAME = [
   [/\.(txt|air|openair)$/i, "zones"],
 ];
 
-const ZONE_WORDS = /"(UASZone|uasZoneList|uSpaceClass|zoneAuthority|restriction|lowerLimit|upperLimit|verticalReference)"/i;
+const ZONE_WORDS =
+  /"(UASZone|uasZoneList|uSpaceClass|zoneAuthority|restriction|lowerLimit|upperLimit|verticalReference)"/i;
 const ASSET_WORDS = /"(power|voltage|voltages_v|railway|bridge|cables)"\s*:|"(LineString|MultiLineString|Point)"/;
 
 export const HEAD_BYTES = 4096;
@@ -17,7 +18,8 @@ export const HEAD_BYTES = 4096;
 export function guessKind(name, head = new Uint8Array()) {
   const text = new TextDecoder("latin1").decode(head.subarray(0, HEAD_BYTES));
   if (text.slice(0, 32).includes("OSMHeader") || /<osm\b/.test(text)) return "osm";
-  if (text.startsWith("II*\0") || text.startsWith("MM\0*") || text.startsWith("II+\0") || text.startsWith("MM\0+")) return "terrain";
+  if (text.startsWith("II*\0") || text.startsWith("MM\0*") || text.startsWith("II+\0") || text.startsWith("MM\0+"))
+    return "terrain";
   if (text.startsWith("SQLite format 3") || /<kml\b/.test(text)) return "assets";
   const named = BY_NAME.find(([pattern]) => pattern.test(name));
   if (named) return named[1];
@@ -29,5 +31,10 @@ export function guessKind(name, head = new Uint8Array()) {
 
 /** What a set is called if nobody says otherwise: the file's name without its ending. */
 export function setNameOf(fileName) {
-  return fileName.replace(/\.(osm\.(pbf|gz|bz2)|[a-z0-9]{1,8})$/i, "").replaceAll("_", " ").trim() || fileName;
+  return (
+    fileName
+      .replace(/\.(osm\.(pbf|gz|bz2)|[a-z0-9]{1,8})$/i, "")
+      .replaceAll("_", " ")
+      .trim() || fileName
+  );
 }

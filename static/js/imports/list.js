@@ -54,10 +54,12 @@ function content(proposal) {
   ];
 }
 
-export const titleOf = (proposal) => proposal.file_name || `${KINDS[proposal.kind].words} ${ORIGINS[proposal.origin]}`.trim();
+export const titleOf = (proposal) =>
+  proposal.file_name || `${KINDS[proposal.kind].words} ${ORIGINS[proposal.origin]}`.trim();
 
 function whatOf({ kind, summary, difference }) {
-  const sentence = kind === "terrain" && summary.vertical_datum ? terrainSentence(summary, {}) : differenceSentence(difference);
+  const sentence =
+    kind === "terrain" && summary.vertical_datum ? terrainSentence(summary, {}) : differenceSentence(difference);
   return summary.needs_mapping ? t("Columns to be explained") : sentence.replace(/\.$/, "");
 }
 

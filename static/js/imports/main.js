@@ -9,8 +9,8 @@ import { createStore } from "../store.js";
 import { t, tn } from "../text.js";
 import { numberText } from "../units.js";
 import { mountBringIn, notAllowed } from "./bring_in.js";
-import { createChangesLayer, positionsOf } from "./changes_layer.js";
 import { mountChanges } from "./changes.js";
+import { createChangesLayer, positionsOf } from "./changes_layer.js";
 import { mountList, titleOf } from "./list.js";
 import { mountOverpassBox } from "./overpass_box.js";
 import { mountProposal } from "./proposal.js";
@@ -45,8 +45,17 @@ const changeAt = (point) => {
 
 function tell(error, title) {
   if (!(error instanceof ApiError)) throw error;
-  const words = error.isSignedOut ? [`${t("Sign in to go on.")} `, h("a", { class: "text-button", href: signInAddress() }, t("Sign in"))] : [error.message];
-  byId("notices").replaceChildren(h("div", { class: "notice critical", role: "alert" }, icon("circle-alert"), h("p", {}, h("strong", {}, title), " ", ...words)));
+  const words = error.isSignedOut
+    ? [`${t("Sign in to go on.")} `, h("a", { class: "text-button", href: signInAddress() }, t("Sign in"))]
+    : [error.message];
+  byId("notices").replaceChildren(
+    h(
+      "div",
+      { class: "notice critical", role: "alert" },
+      icon("circle-alert"),
+      h("p", {}, h("strong", {}, title), " ", ...words),
+    ),
+  );
 }
 const clearNotices = () => byId("notices").replaceChildren();
 
@@ -74,13 +83,20 @@ async function loadList({ more = false } = {}) {
 function tellFacts(proposals) {
   const waiting = proposals.filter(({ state }) => state === "ready").length;
   const working = proposals.filter(isOpen).length;
-  byId("page-facts").textContent = [working && t("{count} being worked on", { count: numberText(working) }), waiting ? tn(waiting, "{count} import to be decided", "{count} imports to be decided") : t("Nothing to be decided")].filter(Boolean).join(" · ");
+  byId("page-facts").textContent = [
+    working && t("{count} being worked on", { count: numberText(working) }),
+    waiting ? tn(waiting, "{count} import to be decided", "{count} imports to be decided") : t("Nothing to be decided"),
+  ]
+    .filter(Boolean)
+    .join(" · ");
 }
 
 const put = (proposal) => {
   const proposals = store.state.proposals ?? [];
   const isKnown = proposals.some(({ id }) => id === proposal.id);
-  const next = isKnown ? proposals.map((known) => (known.id === proposal.id ? proposal : known)) : [proposal, ...proposals];
+  const next = isKnown
+    ? proposals.map((known) => (known.id === proposal.id ? proposal : known))
+    : [proposal, ...proposals];
   store.update({ proposals: next, ...(store.state.current?.id === proposal.id ? { current: proposal } : {}) });
   tellFacts(next);
 };
@@ -134,11 +150,33 @@ function previewOf(proposal) {
   const { kind, summary, difference } = proposal;
   if (kind === "terrain" && summary.extent) {
     const [west, south, east, north] = summary.extent;
-    const geometry = { type: "Polygon", coordinates: [[[west, south], [east, south], [east, north], [west, north], [west, south]]] };
-    return [{ type: "Feature", id: -1, geometry, properties: { action: difference.changed ? "changed" : "new", before: null, after: null } }];
+    const geometry = {
+      type: "Polygon",
+      coordinates: [
+        [
+          [west, south],
+          [east, south],
+          [east, north],
+          [west, north],
+          [west, south],
+        ],
+      ],
+    };
+    return [
+      {
+        type: "Feature",
+        id: -1,
+        geometry,
+        properties: { action: difference.changed ? "changed" : "new", before: null, after: null },
+      },
+    ];
   }
   const features = summary.needs_mapping ? (summary.preview?.features ?? []) : [];
-  return features.map((feature, place) => ({ ...feature, id: -1 - place, properties: { action: "new", before: null, after: null } }));
+  return features.map((feature, place) => ({
+    ...feature,
+    id: -1 - place,
+    properties: { action: "new", before: null, after: null },
+  }));
 }
 
 const drawn = () => [...store.state.changes, ...previewOf(store.state.current)];
@@ -152,7 +190,9 @@ const geometriesOf = (change) => (change?.geometry ? [change.geometry] : []);
 function light(id) {
   if (id === store.state.lit) return;
   store.update({ lit: id });
-  const change = store.state.changes.find((known) => known.id === id) ?? store.state.changes.find((known) => known.id === store.state.selected);
+  const change =
+    store.state.changes.find((known) => known.id === id) ??
+    store.state.changes.find((known) => known.id === store.state.selected);
   map.ring(geometriesOf(change));
 }
 
@@ -191,7 +231,10 @@ const acts = {
       throw error;
     }
   },
-  apply: (overwrites) => decide("apply", t("Not applied."), () => post(`/imports/${store.state.current.id}/apply`, { parameters: { replace_edited: overwrites } })),
+  apply: (overwrites) =>
+    decide("apply", t("Not applied."), () =>
+      post(`/imports/${store.state.current.id}/apply`, { parameters: { replace_edited: overwrites } }),
+    ),
   async discard() {
     const { current } = store.state;
     await decide("discard", t("Not discarded."), () => post(`/imports/${current.id}/discard`, {}));
@@ -225,7 +268,10 @@ const acts = {
 };
 
 mountProposal(store, acts);
-mountList(store, { open: (id) => openProposal(id), more: () => attempt("Not loaded.", () => loadList({ more: true })) });
+mountList(store, {
+  open: (id) => openProposal(id),
+  more: () => attempt("Not loaded.", () => loadList({ more: true })),
+});
 mountChanges(store, {
   filter(action) {
     store.update({ action, selected: null, listed: LISTED });
@@ -284,7 +330,13 @@ if (page.canCurate) {
   });
   addEventListener("popstate", openWhatTheAddressNames);
   open({
-    bindings: [{ keys: ["u"], words: t("Choose a file"), act: () => (store.state.current ? closeProposal() : undefined, bringIn.choose()) }],
+    bindings: [
+      {
+        keys: ["u"],
+        words: t("Choose a file"),
+        act: () => (store.state.current ? closeProposal() : undefined, bringIn.choose()),
+      },
+    ],
     async load() {
       changesLayer = createChangesLayer(map);
       changesLayer.addTo();

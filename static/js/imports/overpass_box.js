@@ -9,7 +9,12 @@ const EARTH_RADIUS_KM = 6_371.0088; // IUGG mean radius
 /** Area of [west, south, east, north] on the sphere. */
 export function areaKm2([west, south, east, north]) {
   const radians = Math.PI / 180;
-  return EARTH_RADIUS_KM ** 2 * Math.abs(east - west) * radians * Math.abs(Math.sin(north * radians) - Math.sin(south * radians));
+  return (
+    EARTH_RADIUS_KM ** 2 *
+    Math.abs(east - west) *
+    radians *
+    Math.abs(Math.sin(north * radians) - Math.sin(south * radians))
+  );
 }
 
 const text = (area_km2) => areaText(area_km2 * 1e6);
@@ -27,7 +32,12 @@ export function mountOverpassBox(map, limit, take) {
     const area_km2 = areaKm2([west, south, east, north]);
     isTooLarge = area_km2 > limit.most_km2 || west < -180 || east > 180;
     button.setAttribute("aria-disabled", String(isTooLarge));
-    words.textContent = isTooLarge ? t("The map shows {area}; at most {most} are taken at once. Zoom in.", { area: text(area_km2), most: text(limit.most_km2) }) : t("The map shows {area}, of at most {most}.", { area: text(area_km2), most: text(limit.most_km2) });
+    words.textContent = isTooLarge
+      ? t("The map shows {area}; at most {most} are taken at once. Zoom in.", {
+          area: text(area_km2),
+          most: text(limit.most_km2),
+        })
+      : t("The map shows {area}, of at most {most}.", { area: text(area_km2), most: text(limit.most_km2) });
   }
   map.map.on("moveend", measure);
   measure();

@@ -8,7 +8,17 @@ import { columnMapping } from "./column_mapping.js";
 import { jobLine } from "./job_line.js";
 import { stateChip, titleOf } from "./list.js";
 import { otherSystem } from "./other_system.js";
-import { differenceSentence, isOpen, KINDS, notesOf, ORIGINS, sizeText, summaryLines, terrainSentence, touched } from "./words.js";
+import {
+  differenceSentence,
+  isOpen,
+  KINDS,
+  notesOf,
+  ORIGINS,
+  sizeText,
+  summaryLines,
+  terrainSentence,
+  touched,
+} from "./words.js";
 
 const MOST_LISTED = 2_000; // of each action; the numbers are of all
 
@@ -41,9 +51,12 @@ export function mountProposal(store, acts) {
 
   function draw(proposal, busy) {
     const hadFocus = panel.contains(document.activeElement) && document.activeElement.id;
-    line = isOpen(proposal) ? jobLine(proposal.state === "reading" ? t("Reading") : t("Applying"), () => acts.cancel(proposal)) : null;
+    line = isOpen(proposal)
+      ? jobLine(proposal.state === "reading" ? t("Reading") : t("Applying"), () => acts.cancel(proposal))
+      : null;
     panel.replaceChildren(...head(proposal, acts), ...body(proposal).filter(Boolean));
-    byId("changes-panel").hidden = proposal.kind === "terrain" || !["ready", "applying", "applied"].includes(proposal.state);
+    byId("changes-panel").hidden =
+      proposal.kind === "terrain" || !["ready", "applying", "applied"].includes(proposal.state);
     foot.replaceChildren(...decision(proposal, busy));
     foot.hidden = foot.children.length === 0;
     if (hadFocus) document.getElementById(hadFocus)?.focus();
@@ -51,20 +64,28 @@ export function mountProposal(store, acts) {
 
   function body(proposal) {
     const { state, difference, summary, job } = proposal;
-    if (state === "refused") return [refusal(proposal, acts), otherSystem(proposal, acts.readAgain) ?? leaveOut(proposal)];
+    if (state === "refused")
+      return [refusal(proposal, acts), otherSystem(proposal, acts.readAgain) ?? leaveOut(proposal)];
     const isNew = job?.message && state === "ready" && job.state === "done" && job.message !== "Read";
     return [
       line?.element,
       isNew && h("div", { class: "notice warning" }, icon("triangle-alert"), h("p", {}, job.message)),
-      state === "ready" || state === "applied" || state === "applying" ? h("p", { class: "import-sentence", id: "import-sentence", role: "status" }, sentenceOf(proposal)) : null,
-      difference.unchanged > 0 && state !== "discarded" && h("p", { class: "caption" }, tn(difference.unchanged, "{count} is as it was.", "{count} are as they were.")),
+      state === "ready" || state === "applied" || state === "applying"
+        ? h("p", { class: "import-sentence", id: "import-sentence", role: "status" }, sentenceOf(proposal))
+        : null,
+      difference.unchanged > 0 &&
+        state !== "discarded" &&
+        h("p", { class: "caption" }, tn(difference.unchanged, "{count} is as it was.", "{count} are as they were.")),
       ...notesOf(summary).map((note) => h("p", { class: "caption" }, note)),
       mapping(proposal),
       regionChoice(proposal),
       overwriteChoice(proposal),
       facts(proposal),
-      proposal.kind === "zones" && state === "applied" && typeof summary.set === "string" ? versions(summary.set, acts) : null,
-      Object.values(difference).some((count) => count > MOST_LISTED) && h("p", { class: "caption" }, t("Below are the first {count} of each.", { count: numberText(MOST_LISTED) })),
+      proposal.kind === "zones" && state === "applied" && typeof summary.set === "string"
+        ? versions(summary.set, acts)
+        : null,
+      Object.values(difference).some((count) => count > MOST_LISTED) &&
+        h("p", { class: "caption" }, t("Below are the first {count} of each.", { count: numberText(MOST_LISTED) })),
     ];
   }
 
@@ -76,15 +97,32 @@ export function mountProposal(store, acts) {
   function leaveOut({ kind, faults, parameters, size_bytes }) {
     if (kind !== "assets" || parameters.leave_out_faulty || size_bytes === null || !faults.length) return null;
     const again = () => acts.readAgain({ leave_out_faulty: true });
-    return h("button", { type: "button", class: "button", id: "leave-out", onclick: again }, t("Read again without the faulty rows"));
+    return h(
+      "button",
+      { type: "button", class: "button", id: "leave-out", onclick: again },
+      t("Read again without the faulty rows"),
+    );
   }
 
   /** Another difference: the file is read again for it. */
   function regionChoice({ kind, state, parameters }) {
     if (kind !== "osm" || state !== "ready") return null;
-    const box = h("input", { class: "check", type: "checkbox", id: "replace-region", checked: Boolean(parameters.replace_region) });
+    const box = h("input", {
+      class: "check",
+      type: "checkbox",
+      id: "replace-region",
+      checked: Boolean(parameters.replace_region),
+    });
     box.addEventListener("change", () => acts.readAgain({ replace_region: box.checked }));
-    return h("label", { class: "overwrite", title: t("Also what another file brought in vanishes where this one covers the ground and does not have it") }, box, h("span", {}, t("Replace the whole region with this file")));
+    return h(
+      "label",
+      {
+        class: "overwrite",
+        title: t("Also what another file brought in vanishes where this one covers the ground and does not have it"),
+      },
+      box,
+      h("span", {}, t("Replace the whole region with this file")),
+    );
   }
 
   function overwriteChoice(proposal) {
@@ -95,7 +133,12 @@ export function mountProposal(store, acts) {
       overwrites = box.checked;
       foot.replaceChildren(...decision(proposal, null));
     });
-    return h("label", { class: "overwrite" }, box, h("span", {}, t("Overwrite what was edited by hand ({count})", { count: numberText(kept) })));
+    return h(
+      "label",
+      { class: "overwrite" },
+      box,
+      h("span", {}, t("Overwrite what was edited by hand ({count})", { count: numberText(kept) })),
+    );
   }
 
   function decision(proposal, busy) {
@@ -104,14 +147,34 @@ export function mountProposal(store, acts) {
     const count = touched(proposal.difference, { overwrites });
     const needsMapping = Boolean(proposal.summary.needs_mapping);
     const isIdle = needsMapping || (count === 0 && Object.keys(proposal.difference).length > 0);
-    const words = busy === "apply" ? t("Applying") : count && proposal.kind !== "terrain" ? tn(count, "Apply {count} change", "Apply {count} changes") : t("Apply");
-    const apply = h("button", { type: "button", class: needsMapping ? "button" : "button primary", id: "apply", disabled: isIdle || Boolean(busy), "aria-busy": String(busy === "apply"), title: needsMapping ? t("Say first what the columns are") : isIdle ? t("Nothing would change") : null }, words);
+    const words =
+      busy === "apply"
+        ? t("Applying")
+        : count && proposal.kind !== "terrain"
+          ? tn(count, "Apply {count} change", "Apply {count} changes")
+          : t("Apply");
+    const apply = h(
+      "button",
+      {
+        type: "button",
+        class: needsMapping ? "button" : "button primary",
+        id: "apply",
+        disabled: isIdle || Boolean(busy),
+        "aria-busy": String(busy === "apply"),
+        title: needsMapping ? t("Say first what the columns are") : isIdle ? t("Nothing would change") : null,
+      },
+      words,
+    );
     apply.addEventListener("click", () => (overwrites ? askFirst(proposal) : acts.apply(false)));
     return [h("div", { class: "foot-buttons" }, discard(busy), apply)];
   }
 
   function discard(busy) {
-    return h("button", { type: "button", class: "button", id: "discard", disabled: Boolean(busy), onclick: () => acts.discard() }, t("Discard"));
+    return h(
+      "button",
+      { type: "button", class: "button", id: "discard", disabled: Boolean(busy), onclick: () => acts.discard() },
+      t("Discard"),
+    );
   }
 
   function askFirst(proposal) {
@@ -119,8 +182,16 @@ export function mountProposal(store, acts) {
     const dialog = h(
       "dialog",
       { "aria-labelledby": "overwrite-title" },
-      h("h2", { id: "overwrite-title" }, tn(kept, "Overwrite {count} edit by hand?", "Overwrite {count} edits by hand?")),
-      h("p", {}, `${tn(kept, "{count} row that was edited by hand is set to what the file says.", "{count} rows that were edited by hand are set to what the file says.")} ${t("The edits stay in the history, and can be brought back one by one.")}`),
+      h(
+        "h2",
+        { id: "overwrite-title" },
+        tn(kept, "Overwrite {count} edit by hand?", "Overwrite {count} edits by hand?"),
+      ),
+      h(
+        "p",
+        {},
+        `${tn(kept, "{count} row that was edited by hand is set to what the file says.", "{count} rows that were edited by hand are set to what the file says.")} ${t("The edits stay in the history, and can be brought back one by one.")}`,
+      ),
       h(
         "form",
         { method: "dialog", class: "acts" },
@@ -145,27 +216,64 @@ function head(proposal, acts) {
   const parts = [KINDS[proposal.kind].words, ORIGINS[proposal.origin], sizeText(proposal.size_bytes)].filter(Boolean);
   const who = [proposal.created_by, whenText(proposal.created_at)].filter(Boolean).join(", ");
   const decision = { name: proposal.decided_by, when: proposal.decided_at && whenText(proposal.decided_at) };
-  const decided = proposal.decided_by && ["applied", "discarded", "applying"].includes(proposal.state) ? (proposal.state === "discarded" ? t("Discarded by {name}, {when}", decision) : t("Applied by {name}, {when}", decision)) : "";
+  const decided =
+    proposal.decided_by && ["applied", "discarded", "applying"].includes(proposal.state)
+      ? proposal.state === "discarded"
+        ? t("Discarded by {name}, {when}", decision)
+        : t("Applied by {name}, {when}", decision)
+      : "";
   return [
-    h("a", { class: "back", id: "back-to-imports", href: "/imports", onclick: (event) => (event.preventDefault(), acts.back()) }, icon("arrow-left", "small"), t("All imports")),
-    h("div", { class: "proposal-head" }, h("h2", { id: "proposal-title", tabindex: "-1" }, titleOf(proposal)), stateChip(proposal)),
+    h(
+      "a",
+      {
+        class: "back",
+        id: "back-to-imports",
+        href: "/imports",
+        onclick: (event) => (event.preventDefault(), acts.back()),
+      },
+      icon("arrow-left", "small"),
+      t("All imports"),
+    ),
+    h(
+      "div",
+      { class: "proposal-head" },
+      h("h2", { id: "proposal-title", tabindex: "-1" }, titleOf(proposal)),
+      stateChip(proposal),
+    ),
     h("p", { class: "caption" }, `${parts.join(" · ")} · ${who}`),
     decided && h("p", { class: "caption" }, decided),
   ].filter(Boolean);
 }
 
 function refusal({ faults }, acts) {
-  const [first, ...rest] = faults.length ? faults : [{ place: "", message: t("The file could not be read."), position: null }];
+  const [first, ...rest] = faults.length
+    ? faults
+    : [{ place: "", message: t("The file could not be read."), position: null }];
   const said = (fault, isFirst) => [
     h(isFirst ? "strong" : "span", {}, fault.place ? `${fault.place}: ${fault.message}` : fault.message),
     isFirst && ` ${t("Nothing was imported.")} `,
-    fault.position && h("button", { type: "button", class: "text-button", title: coordinateText(fault.position), onclick: () => acts.place(fault.position) }, t("See the place")),
+    fault.position &&
+      h(
+        "button",
+        {
+          type: "button",
+          class: "text-button",
+          title: coordinateText(fault.position),
+          onclick: () => acts.place(fault.position),
+        },
+        t("See the place"),
+      ),
   ];
   return h(
     "div",
     {},
     h("div", { class: "notice critical", role: "alert" }, icon("octagon-alert"), h("p", {}, said(first, true))),
-    rest.length > 0 && h("ul", { class: "faults", "aria-label": t("Further faults") }, rest.map((fault) => h("li", {}, said(fault, false)))),
+    rest.length > 0 &&
+      h(
+        "ul",
+        { class: "faults", "aria-label": t("Further faults") },
+        rest.map((fault) => h("li", {}, said(fault, false))),
+      ),
   );
 }
 
@@ -173,11 +281,26 @@ function facts({ summary, provenance, state }) {
   if (state === "reading") return null;
   const lines = [
     ...summaryLines(summary),
-    ...[["licence", t("licence")], ["attribution", t("attribution")], ["source_address", t("address")]].filter(([name]) => provenance[name]).map(([name, words]) => ({ words, value: provenance[name] })),
+    ...[
+      ["licence", t("licence")],
+      ["attribution", t("attribution")],
+      ["source_address", t("address")],
+    ]
+      .filter(([name]) => provenance[name])
+      .map(([name, words]) => ({ words, value: provenance[name] })),
     ...(provenance.fetched_at ? [{ words: t("fetched"), value: whenText(provenance.fetched_at) }] : []),
   ];
   if (!lines.length) return null;
-  return h("details", { class: "import-facts" }, h("summary", {}, t("What is in the file")), h("dl", {}, lines.map(({ words, value }) => h("div", {}, h("dt", {}, words), h("dd", {}, value)))));
+  return h(
+    "details",
+    { class: "import-facts" },
+    h("summary", {}, t("What is in the file")),
+    h(
+      "dl",
+      {},
+      lines.map(({ words, value }) => h("div", {}, h("dt", {}, words), h("dd", {}, value))),
+    ),
+  );
 }
 
 /** Earlier states of a zone set, each one press away from being proposed again. */
@@ -193,8 +316,20 @@ function versions(setName, acts) {
         h(
           "li",
           {},
-          h("span", {}, `${t("Version {number}", { number: row.version })}: ${countText(row.zone_count, "zone")}`, h("span", { class: "caption" }, [row.created_by, whenText(row.created_at)].filter(Boolean).join(", "))),
-          place === 0 ? h("span", { class: "caption" }, t("now")) : h("button", { type: "button", class: "button", onclick: () => acts.rollBack(set, row.version) }, icon("rotate-ccw", "small"), t("Roll back")),
+          h(
+            "span",
+            {},
+            `${t("Version {number}", { number: row.version })}: ${countText(row.zone_count, "zone")}`,
+            h("span", { class: "caption" }, [row.created_by, whenText(row.created_at)].filter(Boolean).join(", ")),
+          ),
+          place === 0
+            ? h("span", { class: "caption" }, t("now"))
+            : h(
+                "button",
+                { type: "button", class: "button", onclick: () => acts.rollBack(set, row.version) },
+                icon("rotate-ccw", "small"),
+                t("Roll back"),
+              ),
         ),
       ),
     );

@@ -10,7 +10,9 @@ export function createRememberedUploads(userId, storage = localStorage, now = ()
   const read = () => {
     try {
       const entries = JSON.parse(storage.getItem(key) ?? "[]");
-      return Array.isArray(entries) ? entries.filter((entry) => typeof entry?.mark === "string" && now() - entry.at < KEPT_MS) : [];
+      return Array.isArray(entries)
+        ? entries.filter((entry) => typeof entry?.mark === "string" && now() - entry.at < KEPT_MS)
+        : [];
     } catch {
       return [];
     }

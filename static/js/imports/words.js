@@ -29,7 +29,12 @@ export const ACTIONS = {
   kept: { words: t("kept as edited by hand"), short: t("Kept"), sign: "=" },
 };
 
-export const ORIGINS = { upload: "", overpass: t("from Overpass"), subscription: t("from a subscription"), roll_back: t("roll-back") };
+export const ORIGINS = {
+  upload: "",
+  overpass: t("from Overpass"),
+  subscription: t("from a subscription"),
+  roll_back: t("roll-back"),
+};
 
 /** Where heights count from, for files that do not say it. */
 export const VERTICAL_DATUMS = ["EGM96", "EGM2008", "EGM84", "EVRF2007", "DHHN2016", "NAVD88"];
@@ -49,7 +54,8 @@ export function differenceSentence(difference) {
 /** "Heights from 431 m to 2,599 m above EGM96, in place of the earlier model of this name." */
 export function terrainSentence({ lowest_m, highest_m, vertical_datum }, difference) {
   const values = { low: heightText(lowest_m), high: heightText(highest_m), datum: vertical_datum };
-  if (difference.changed > 0) return t("Heights from {low} to {high} above {datum}, in place of the earlier model of this name.", values);
+  if (difference.changed > 0)
+    return t("Heights from {low} to {high} above {datum}, in place of the earlier model of this name.", values);
   return t("Heights from {low} to {high} above {datum}.", values);
 }
 
@@ -65,7 +71,18 @@ export function sizeText(bytes) {
   return `${(bytes / 1024 / 1024).toLocaleString(localeOf(language), { maximumFractionDigits: 1 })}${SPACE}MiB`;
 }
 
-const UNITS = { m: "m", km: "km", v: "V", kv: "kV", hz: "Hz", deg: "°", km2: "km²", m2: "m²", bytes: t("bytes"), s: "s" };
+const UNITS = {
+  m: "m",
+  km: "km",
+  v: "V",
+  kv: "kV",
+  hz: "Hz",
+  deg: "°",
+  km2: "km²",
+  m2: "m²",
+  bytes: t("bytes"),
+  s: "s",
+};
 
 /** "height_m" → { words: "height", unit: "m" } */
 export function factName(name) {
@@ -85,13 +102,22 @@ export function factText(name, value) {
   if (typeof value === "number") return number(value).replace("-", "−");
   if (typeof value === "string") return value.length > 120 ? `${value.slice(0, 119)}…` : value;
   if (isGeometry(value)) return t("on the map");
-  if (Array.isArray(value)) return value.length && value.every((entry) => typeof entry !== "object") ? value.join(", ") : countText(value.length, "entry", "entries");
+  if (Array.isArray(value))
+    return value.length && value.every((entry) => typeof entry !== "object")
+      ? value.join(", ")
+      : countText(value.length, "entry", "entries");
   if ("value_m" in value) return `${number(value.value_m)}${SPACE}m ${value.reference ?? ""}`.trim();
   const entries = Object.entries(value);
-  return entries.length ? factText(name, entries.map(([key, inner]) => `${key}: ${factText(key, inner)}`).join(", ")) : t("nothing");
+  return entries.length
+    ? factText(name, entries.map(([key, inner]) => `${key}: ${factText(key, inner)}`).join(", "))
+    : t("nothing");
 }
 
-export const isGeometry = (value) => Boolean(value) && typeof value === "object" && typeof value.type === "string" && ("coordinates" in value || "geometries" in value);
+export const isGeometry = (value) =>
+  Boolean(value) &&
+  typeof value === "object" &&
+  typeof value.type === "string" &&
+  ("coordinates" in value || "geometries" in value);
 
 /** The facts of a change, one line each: { words, before, after }; null where that side does not exist. */
 export function factLines({ before, after }) {
@@ -104,19 +130,29 @@ export function factLines({ before, after }) {
       const text = factText(name, facts[name]);
       return unit && typeof facts[name] === "number" ? `${text}${SPACE}${unit}` : text;
     };
-    if (isGeometry(before?.[name]) && isGeometry(after?.[name])) return { words, before: t("dashed on the map"), after: t("drawn on the map") };
+    if (isGeometry(before?.[name]) && isGeometry(after?.[name]))
+      return { words, before: t("dashed on the map"), after: t("drawn on the map") };
     return { words, before: side(before), after: side(after) };
   });
 }
 
-const isEmpty = (value) => value === null || value === undefined || value === "" || (typeof value === "object" && Object.keys(value).length === 0);
+const isEmpty = (value) =>
+  value === null ||
+  value === undefined ||
+  value === "" ||
+  (typeof value === "object" && Object.keys(value).length === 0);
 
 const NOT_SAID = new Set(["words", "needs_mapping", "datum_is_stated"]); // said elsewhere
 
 /** Figures of a file, for people: numbers and short texts alone. */
 export function summaryLines(summary) {
   return Object.entries(summary)
-    .filter(([name, value]) => !NOT_SAID.has(name) && (typeof value === "number" || typeof value === "string" || typeof value === "boolean") && value !== "")
+    .filter(
+      ([name, value]) =>
+        !NOT_SAID.has(name) &&
+        (typeof value === "number" || typeof value === "string" || typeof value === "boolean") &&
+        value !== "",
+    )
     .map(([name, value]) => {
       const { words, unit } = factName(name);
       return { words, value: `${factText(name, value)}${unit ? `${SPACE}${unit}` : ""}` };
@@ -124,4 +160,5 @@ export function summaryLines(summary) {
 }
 
 /** Sentences that a reader of files has left for people. */
-export const notesOf = (summary) => (Array.isArray(summary.notes) ? summary.notes.filter((note) => typeof note === "string") : []);
+export const notesOf = (summary) =>
+  Array.isArray(summary.notes) ? summary.notes.filter((note) => typeof note === "string") : [];

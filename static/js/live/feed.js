@@ -73,7 +73,10 @@ export function openFeed({
     const opened = (socket = new Socket(socketAddress(mission)));
     const isCurrent = () => socket === opened && !isOver;
     opened.addEventListener("message", ({ data }) => isCurrent() && hear(JSON.parse(data)));
-    opened.addEventListener("close", (event) => isCurrent() && (event?.code === RESTARTS && feed.state === LIVE ? comeBack() : lose()));
+    opened.addEventListener(
+      "close",
+      (event) => isCurrent() && (event?.code === RESTARTS && feed.state === LIVE ? comeBack() : lose()),
+    );
     expectWord();
     timers.first = setTimeout(startAsking, FIRST_WORD_MS);
   }
@@ -133,7 +136,8 @@ export function openFeed({
     socket = null;
     for (const name of ["silence", "first", "connect"]) clearTimeout(timers[name]);
     if (!lost) return;
-    if (lost.readyState === Socket.CONNECTING) lost.addEventListener("open", () => lost.close()); // closing one that is not open yet is a fault
+    if (lost.readyState === Socket.CONNECTING)
+      lost.addEventListener("open", () => lost.close()); // closing one that is not open yet is a fault
     else lost.close();
   }
 

@@ -17,7 +17,8 @@ function listen(jobId, { onProgress, signal, Socket }) {
     let timer = 0;
     const hangUp = () => {
       clearTimeout(timer);
-      if (socket.readyState === Socket.CONNECTING) socket.addEventListener("open", () => socket.close()); // closing one that is not open yet is a fault
+      if (socket.readyState === Socket.CONNECTING)
+        socket.addEventListener("open", () => socket.close()); // closing one that is not open yet is a fault
       else socket.close();
     };
     const finish = (settle, value) => (hangUp(), settle(value));
@@ -30,7 +31,11 @@ function listen(jobId, { onProgress, signal, Socket }) {
       wait();
       const { type, job } = JSON.parse(data);
       if (type !== "job") return;
-      if (job.state === "failed") finish(reject, new ApiError(job.error?.message ?? t("The job failed."), { status: 500, code: job.error?.code ?? "" }));
+      if (job.state === "failed")
+        finish(
+          reject,
+          new ApiError(job.error?.message ?? t("The job failed."), { status: 500, code: job.error?.code ?? "" }),
+        );
       else if (job.state === "done" || job.state === "cancelled") finish(resolve, job);
       else onProgress?.(job);
     });

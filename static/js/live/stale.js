@@ -8,8 +8,14 @@ const GRACE_MS = 2500; // a page that has just been opened, or a wink of the net
 
 /** link, since_ms: state of feed.js and since when, by the server's clock. → { words, rest, isBad, needsDoor } or null. */
 export function staleWords({ link, since_ms, now_ms }) {
-  if (link === SIGNED_OUT) return { words: t("You are signed out: nothing comes in any more."), isBad: true, needsDoor: true };
+  if (link === SIGNED_OUT)
+    return { words: t("You are signed out: nothing comes in any more."), isBad: true, needsDoor: true };
   if (link === GONE) return { words: t("This mission has been deleted."), isBad: true };
-  if (link === CONNECTING && now_ms - since_ms > GRACE_MS) return { words: t("No live data since {time}.", { time: exactClockText(new Date(since_ms).toISOString()) }), rest: t("What you see is from then. Connecting again."), isBad: true };
+  if (link === CONNECTING && now_ms - since_ms > GRACE_MS)
+    return {
+      words: t("No live data since {time}.", { time: exactClockText(new Date(since_ms).toISOString()) }),
+      rest: t("What you see is from then. Connecting again."),
+      isBad: true,
+    };
   return null;
 }

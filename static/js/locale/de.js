@@ -27,4 +27,31 @@ import terrain from "./de/terrain.js";
 import uavChanges from "./de/uav_changes.js";
 import zones from "./de/zones.js";
 
-export default { ...account, ...admin, ...administration, ...alertLimits, ...assets, ...draw, ...fleet, ...flight, ...flying, ...gaps, ...general, ...ground, ...imports, ...map, ...mission, ...missionPanels, ...missions, ...monitor, ...planning, ...rehearsal, ...report, ...scene, ...simulation, ...terrain, ...uavChanges, ...zones };
+export default {
+  ...account,
+  ...admin,
+  ...administration,
+  ...alertLimits,
+  ...assets,
+  ...draw,
+  ...fleet,
+  ...flight,
+  ...flying,
+  ...gaps,
+  ...general,
+  ...ground,
+  ...imports,
+  ...map,
+  ...mission,
+  ...missionPanels,
+  ...missions,
+  ...monitor,
+  ...planning,
+  ...rehearsal,
+  ...report,
+  ...scene,
+  ...simulation,
+  ...terrain,
+  ...uavChanges,
+  ...zones,
+};

@@ -3,11 +3,24 @@
 import { language, t } from "../text.js";
 
 const KINDS = {
-  Tower: t("Tower"), Line: t("Line"), Railway: t("Railway"), Bridge: t("Bridge"), Cable: t("Cable"), Pole: t("Pole"), Portal: t("Portal"), Tramway: t("Tramway"), Subway: t("Subway"),
+  Tower: t("Tower"),
+  Line: t("Line"),
+  Railway: t("Railway"),
+  Bridge: t("Bridge"),
+  Cable: t("Cable"),
+  Pole: t("Pole"),
+  Portal: t("Portal"),
+  Tramway: t("Tramway"),
+  Subway: t("Subway"),
 };
 const DETAILS = {
-  "voltage not stated": t("voltage not stated"), "carries a road and a railway": t("carries a road and a railway"), "carries a railway": t("carries a railway"),
-  "carries a road": t("carries a road"), "carries a path": t("carries a path"), "carries water": t("carries water"), "carries a pipeline": t("carries a pipeline"),
+  "voltage not stated": t("voltage not stated"),
+  "carries a road and a railway": t("carries a road and a railway"),
+  "carries a railway": t("carries a railway"),
+  "carries a road": t("carries a road"),
+  "carries a path": t("carries a path"),
+  "carries water": t("carries water"),
+  "carries a pipeline": t("carries a pipeline"),
 };
 const MADE_NAME = new RegExp(`^(${Object.keys(KINDS).join("|")}) (?:(\\d+) of (\\d+)|([nwr]?\\d+))$`);
 
@@ -29,5 +42,9 @@ function detailOf(detail) {
 /** The properties of a thing of a tile, with label and detail for people. */
 export function inWords(properties) {
   if (language === "en" || !properties.kind) return properties;
-  return { ...properties, label: nameOf(properties), ...(properties.detail ? { detail: detailOf(properties.detail) } : {}) };
+  return {
+    ...properties,
+    label: nameOf(properties),
+    ...(properties.detail ? { detail: detailOf(properties.detail) } : {}),
+  };
 }

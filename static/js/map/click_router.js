@@ -6,16 +6,30 @@ import { drawLassos } from "./lasso.js";
 import { PICKABLE, TILES } from "./style.js";
 
 const REACH_PX = { fine: 6, coarse: 16 };
-const KINDS = { towers: "tower", bridges: "bridge", bridge_points: "bridge", railways: "railway", lines: "line", zones: "zone" };
+const KINDS = {
+  towers: "tower",
+  bridges: "bridge",
+  bridge_points: "bridge",
+  railways: "railway",
+  lines: "line",
+  zones: "zone",
+};
 
 /** Of what lies under the pointer, the first in the order of picking: { kind, layer, id, properties, geometry } or null. */
 export function firstInOrder(features, kinds = null) {
   const isIdle = (feature) => feature.properties.flyable === false; // underground, out of use: behind all that can be flown to
   const rank = (feature) => PICKABLE.indexOf(feature.layer.id) + (isIdle(feature) ? PICKABLE.length : 0);
-  const isWanted = (feature) => PICKABLE.includes(feature.layer.id) && (!kinds || kinds.includes(KINDS[feature.sourceLayer]));
+  const isWanted = (feature) =>
+    PICKABLE.includes(feature.layer.id) && (!kinds || kinds.includes(KINDS[feature.sourceLayer]));
   const best = features.filter(isWanted).sort((a, b) => rank(a) - rank(b))[0];
   if (!best) return null;
-  return { kind: KINDS[best.sourceLayer], layer: best.sourceLayer, id: best.properties.id, properties: inWords(best.properties), geometry: best.geometry };
+  return {
+    kind: KINDS[best.sourceLayer],
+    layer: best.sourceLayer,
+    id: best.properties.id,
+    properties: inWords(best.properties),
+    geometry: best.geometry,
+  };
 }
 
 /** The point of a drawn line nearest to a place, both lon lat; lengths are compared on the local plane. */
@@ -29,7 +43,9 @@ export function nearestOnLine(geometry, [longitude, latitude]) {
       const [bx, by] = [part[index][0] * shrink, part[index][1]];
       const [dx, dy] = [bx - ax, by - ay];
       const square = dx * dx + dy * dy;
-      const share = square ? Math.min(1, Math.max(0, ((longitude * shrink - ax) * dx + (latitude - ay) * dy) / square)) : 0;
+      const share = square
+        ? Math.min(1, Math.max(0, ((longitude * shrink - ax) * dx + (latitude - ay) * dy) / square))
+        : 0;
       const [x, y] = [ax + share * dx, ay + share * dy];
       const distance = (x - longitude * shrink) ** 2 + (y - latitude) ** 2;
       if (!best || distance < best.distance) best = { distance, position: [x / shrink, y] };
@@ -41,7 +57,9 @@ export function nearestOnLine(geometry, [longitude, latitude]) {
 /** All pieces of what was met that the map has loaded: a tile holds a line only as far as its own edge. */
 export function piecesOf(map, thing) {
   if (thing.geometry.type === "Point") return [thing.geometry];
-  const pieces = map.querySourceFeatures(TILES, { sourceLayer: thing.layer, filter: ["==", ["get", "id"], thing.id] }).map((feature) => feature.geometry);
+  const pieces = map
+    .querySourceFeatures(TILES, { sourceLayer: thing.layer, filter: ["==", ["get", "id"], thing.id] })
+    .map((feature) => feature.geometry);
   return pieces.length ? pieces : [thing.geometry];
 }
 
@@ -51,7 +69,16 @@ export function routeClicks(map, on) {
   const reach = matchMedia("(pointer: coarse)").matches ? REACH_PX.coarse : REACH_PX.fine;
   const thingAt = (point) => {
     const layers = PICKABLE.filter((id) => map.getLayer(id));
-    return firstInOrder(map.queryRenderedFeatures([[point.x - reach, point.y - reach], [point.x + reach, point.y + reach]], { layers }), on.kinds());
+    return firstInOrder(
+      map.queryRenderedFeatures(
+        [
+          [point.x - reach, point.y - reach],
+          [point.x + reach, point.y + reach],
+        ],
+        { layers },
+      ),
+      on.kinds(),
+    );
   };
 
   map.on("click", (event) => on.click(thingAt(event.point), [event.lngLat.lng, event.lngLat.lat], event.point));

@@ -50,7 +50,12 @@ export function mountControls(view, page, act) {
     }),
   );
 
-  const attribute = () => setAttribution([...(ground?.attribution ?? []), under === "base-map" && page.baseMap.attribution, under === "satellite" && page.satellite.attribution]);
+  const attribute = () =>
+    setAttribution([
+      ...(ground?.attribution ?? []),
+      under === "base-map" && page.baseMap.attribution,
+      under === "satellite" && page.satellite.attribution,
+    ]);
 
   const layers = byId("open-layers");
   const shown = createShown(map, () => {
@@ -68,7 +73,9 @@ export function mountControls(view, page, act) {
       rememberUnder(name);
     },
   };
-  layers.addEventListener("click", () => toggleMenu(layers, () => layersMenu({ under: choices, shown, more: act.layers?.() })));
+  layers.addEventListener("click", () =>
+    toggleMenu(layers, () => layersMenu({ under: choices, shown, more: act.layers?.() })),
+  );
 
   const measure = createMeasure(map, frame, byId("measure"), { onSwitch: act.measures, isBusy: act.isBusy });
   const middle = () => map.getCenter().toArray();
@@ -123,7 +130,11 @@ export function mountControls(view, page, act) {
     closeTop: measure.end,
     bindings: [
       { keys: ["m"], words: t("Measure"), act: () => (measure.isOn() ? measure.end() : measure.start()) },
-      { keys: ["c"], words: t("Copy the coordinates at the pointer, or of the middle"), act: () => copyPlace(pointer ?? middle()) },
+      {
+        keys: ["c"],
+        words: t("Copy the coordinates at the pointer, or of the middle"),
+        act: () => copyPlace(pointer ?? middle()),
+      },
     ],
   };
 }
@@ -140,8 +151,20 @@ function watchTiles(map, frame) {
     // by their names: MapLibre 6.17 leaves tiles that failed alone when it is asked for all
     map.refreshTiles(TILES, wanted);
   };
-  const words = h("span", {}, h("strong", {}, t("The map cannot be read.")), " ", t("What you see may be incomplete. It is tried again every few seconds."));
-  const notice = h("div", { class: "map-fault notice warning float", role: "status", hidden: true }, icon("cloud-off"), words, h("button", { type: "button", class: "text-button", onclick: again }, t("Try now")));
+  const words = h(
+    "span",
+    {},
+    h("strong", {}, t("The map cannot be read.")),
+    " ",
+    t("What you see may be incomplete. It is tried again every few seconds."),
+  );
+  const notice = h(
+    "div",
+    { class: "map-fault notice warning float", role: "status", hidden: true },
+    icon("cloud-off"),
+    words,
+    h("button", { type: "button", class: "text-button", onclick: again }, t("Try now")),
+  );
   frame.append(notice);
   map.on("error", ({ sourceId, error, tile }) => {
     if (sourceId !== TILES || error?.name === "AbortError") return;

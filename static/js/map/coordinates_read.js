@@ -5,7 +5,10 @@ const isNorthSouth = (letter) => letter === "N" || letter === "S";
 
 /** One angle: degrees, minutes, seconds, with a letter before or behind. */
 const FIGURES = String.raw`([+-]?\d{1,3}(?:\.\d+)?)(?:\s*°)?(?:\s*(\d{1,2}(?:\.\d+)?)\s*')?(?:\s*(\d{1,2}(?:\.\d+)?)\s*")?`;
-const ANGLES = [new RegExp(String.raw`([NSEWO])\s*${FIGURES}`, "y"), new RegExp(String.raw`()${FIGURES}(?:\s*([NSEWO]))?`, "y")];
+const ANGLES = [
+  new RegExp(String.raw`([NSEWO])\s*${FIGURES}`, "y"),
+  new RegExp(String.raw`()${FIGURES}(?:\s*([NSEWO]))?`, "y"),
+];
 
 /** Signs of all keyboards to the plain ones; a decimal comma to a point, where the two figures are parted by something else. */
 function plain(text) {
@@ -24,7 +27,10 @@ function plain(text) {
 /** "39 57 36" is degrees, minutes, seconds too: with letters, blanks may stand where signs belong. */
 function withSigns(text) {
   if (!/[NSEWO]/.test(text) || /[°'"]/.test(text)) return text;
-  return text.replace(/(\d+)\s+(\d+(?:\.\d+)?)(?:\s+(\d+(?:\.\d+)?))?/g, (whole, degrees, minutes, seconds) => `${degrees}°${minutes}'${seconds ? `${seconds}"` : ""}`);
+  return text.replace(
+    /(\d+)\s+(\d+(?:\.\d+)?)(?:\s+(\d+(?:\.\d+)?))?/g,
+    (whole, degrees, minutes, seconds) => `${degrees}°${minutes}'${seconds ? `${seconds}"` : ""}`,
+  );
 }
 
 function angleAt(words, at) {
@@ -67,7 +73,9 @@ export function positionIn(text) {
     if (isNorthSouth(first.letter) === isNorthSouth(second.letter)) return null;
     return placed(isNorthSouth(first.letter) ? [second, first] : [first, second], "letters");
   }
-  return Math.abs(first.degrees) > 90 ? placed([first, second], "longitude first") : placed([second, first], "latitude first");
+  return Math.abs(first.degrees) > 90
+    ? placed([first, second], "longitude first")
+    : placed([second, first], "latitude first");
 }
 
 function placed([longitude, latitude], order) {

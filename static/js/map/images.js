@@ -72,7 +72,15 @@ function stop(palette, kind) {
   if (kind === "base") return pixels(pen);
   pen.fillStyle = palette.ink;
   pen.beginPath();
-  for (const [x, y] of [[11, 4], [6.5, 11], [9.5, 11], [9, 16], [13.5, 9], [10.5, 9]]) pen.lineTo(x, y);
+  for (const [x, y] of [
+    [11, 4],
+    [6.5, 11],
+    [9.5, 11],
+    [9, 16],
+    [13.5, 9],
+    [10.5, 9],
+  ])
+    pen.lineTo(x, y);
   pen.closePath();
   pen.fill();
   return pixels(pen);

@@ -5,8 +5,10 @@ import { t } from "../text.js";
 import { bandName } from "./shown.js";
 import { voltageBand } from "./style.js";
 
-const sample = (...drawing) => svg("svg", { width: 26, height: 12, viewBox: "0 0 26 12", "aria-hidden": "true" }, drawing);
-const stroke = (token, width, rest = {}) => svg("path", { d: "M1 6H25", stroke: `var(${token})`, "stroke-width": width, fill: "none", ...rest });
+const sample = (...drawing) =>
+  svg("svg", { width: 26, height: 12, viewBox: "0 0 26 12", "aria-hidden": "true" }, drawing);
+const stroke = (token, width, rest = {}) =>
+  svg("path", { d: "M1 6H25", stroke: `var(${token})`, "stroke-width": width, fill: "none", ...rest });
 
 const line = (token, width, rest) => () => sample(stroke(token, width, rest));
 
@@ -17,15 +19,36 @@ const ROWS = [
   { layer: "lines", words: bandName("100"), band: "100", draw: line("--volt-132", 1.6) },
   { layer: "lines", words: bandName("50"), band: "50", draw: line("--volt-66", 1.1) },
   { layer: "lines", words: bandName("0"), band: "0", draw: line("--volt-20", 0.9) },
-  { layer: "lines-unknown", words: bandName("none"), band: "none", draw: line("--volt-unknown", 1.3, { "stroke-dasharray": "5 3" }) },
-  { layer: "railways", words: t("Railway"), draw: () => sample(stroke("--railway", 2.6), stroke("--ground", 1.3, { "stroke-dasharray": "5 5" })) },
-  { layer: "bridges", words: t("Bridge"), draw: () => sample(svg("path", { d: "M1 4H25M1 8H25", stroke: "var(--bridge)", "stroke-width": 1.5 })) },
+  {
+    layer: "lines-unknown",
+    words: bandName("none"),
+    band: "none",
+    draw: line("--volt-unknown", 1.3, { "stroke-dasharray": "5 3" }),
+  },
+  {
+    layer: "railways",
+    words: t("Railway"),
+    draw: () => sample(stroke("--railway", 2.6), stroke("--ground", 1.3, { "stroke-dasharray": "5 5" })),
+  },
+  {
+    layer: "bridges",
+    words: t("Bridge"),
+    draw: () => sample(svg("path", { d: "M1 4H25M1 8H25", stroke: "var(--bridge)", "stroke-width": 1.5 })),
+  },
   {
     layer: "zones-fill",
     words: t("No-fly zone"),
     draw: () =>
       sample(
-        svg("rect", { x: 3, y: 1, width: 20, height: 10, fill: "var(--zone-fill)", stroke: "var(--zone)", "stroke-width": 1.3 }),
+        svg("rect", {
+          x: 3,
+          y: 1,
+          width: 20,
+          height: 10,
+          fill: "var(--zone-fill)",
+          stroke: "var(--zone)",
+          "stroke-width": 1.3,
+        }),
         svg("path", { d: "M5 10l8-8M11 10l8-8M17 10l5-5", stroke: "var(--zone)", "stroke-width": 0.9 }),
       ),
   },
@@ -35,7 +58,16 @@ const ROWS = [
     words: t("No-fly zone at times"),
     draw: () =>
       sample(
-        svg("rect", { x: 3, y: 1, width: 20, height: 10, fill: "var(--zone-fill)", stroke: "var(--zone)", "stroke-width": 1.3, "stroke-dasharray": "6 1.5 1 1.5" }),
+        svg("rect", {
+          x: 3,
+          y: 1,
+          width: 20,
+          height: 10,
+          fill: "var(--zone-fill)",
+          stroke: "var(--zone)",
+          "stroke-width": 1.3,
+          "stroke-dasharray": "6 1.5 1 1.5",
+        }),
         svg("path", { d: "M5 9l3-3M10 5l3-3M11 9l3-3M16 5l3-3M17 9l3-3", stroke: "var(--zone)", "stroke-width": 0.9 }),
       ),
   },
@@ -43,35 +75,90 @@ const ROWS = [
     layer: "zones-fill",
     kind: "resting",
     words: t("No-fly zone, not in force now"),
-    draw: () => sample(svg("rect", { x: 3, y: 1, width: 20, height: 10, fill: "var(--zone-fill)", stroke: "var(--zone)", "stroke-width": 1.3, "stroke-dasharray": "4 3" })),
+    draw: () =>
+      sample(
+        svg("rect", {
+          x: 3,
+          y: 1,
+          width: 20,
+          height: 10,
+          fill: "var(--zone-fill)",
+          stroke: "var(--zone)",
+          "stroke-width": 1.3,
+          "stroke-dasharray": "4 3",
+        }),
+      ),
   },
   {
     layer: "towers-ring",
     words: t("Tower"),
-    draw: () => sample(svg("circle", { cx: 13, cy: 6, r: 3, fill: "var(--ground)", stroke: "var(--tower)", "stroke-width": 1.4 })),
+    draw: () =>
+      sample(
+        svg("circle", { cx: 13, cy: 6, r: 3, fill: "var(--ground)", stroke: "var(--tower)", "stroke-width": 1.4 }),
+      ),
   },
   {
     layer: "routes",
     words: t("Route, flown to the arrow"),
-    draw: () => sample(stroke("--route-1", 3), svg("path", { d: "M17 6L10 2L12 6L10 10Z", fill: "var(--route-1)", stroke: "var(--map-casing)", "stroke-width": 1 })),
+    draw: () =>
+      sample(
+        stroke("--route-1", 3),
+        svg("path", {
+          d: "M17 6L10 2L12 6L10 10Z",
+          fill: "var(--route-1)",
+          stroke: "var(--map-casing)",
+          "stroke-width": 1,
+        }),
+      ),
   },
   {
     layer: "route-stops",
     kind: "charging",
     words: t("Charging stop"),
-    draw: () => sample(svg("circle", { cx: 13, cy: 6, r: 5.25, fill: "var(--raised)", stroke: "var(--ink)", "stroke-width": 1.25 }), svg("path", { d: "M13.7 2L10.5 6.8H12.7L12.2 10L15.5 5.3H13.2Z", fill: "var(--ink)" })),
+    draw: () =>
+      sample(
+        svg("circle", { cx: 13, cy: 6, r: 5.25, fill: "var(--raised)", stroke: "var(--ink)", "stroke-width": 1.25 }),
+        svg("path", { d: "M13.7 2L10.5 6.8H12.7L12.2 10L15.5 5.3H13.2Z", fill: "var(--ink)" }),
+      ),
   },
-  { layer: "route-stops", kind: "base", words: t("Base between two flights"), draw: () => sample(svg("rect", { x: 9, y: 2, width: 8, height: 8, fill: "var(--raised)", stroke: "var(--ink)", "stroke-width": 1.5 })) },
-  { layer: "lost-link-quiet", words: t("Way back without a link"), draw: line("--ink-2", 1, { "stroke-dasharray": "2 3" }) },
+  {
+    layer: "route-stops",
+    kind: "base",
+    words: t("Base between two flights"),
+    draw: () =>
+      sample(
+        svg("rect", {
+          x: 9,
+          y: 2,
+          width: 8,
+          height: 8,
+          fill: "var(--raised)",
+          stroke: "var(--ink)",
+          "stroke-width": 1.5,
+        }),
+      ),
+  },
+  {
+    layer: "lost-link-quiet",
+    words: t("Way back without a link"),
+    draw: line("--ink-2", 1, { "stroke-dasharray": "2 3" }),
+  },
   {
     layer: "lost-link-lines",
     words: t("Way back without a link that fails"),
-    draw: () => sample(stroke("--critical", 1.5, { "stroke-dasharray": "4 3" }), svg("circle", { cx: 4, cy: 6, r: 3, fill: "var(--raised)", stroke: "var(--critical)", "stroke-width": 1.75 })),
+    draw: () =>
+      sample(
+        stroke("--critical", 1.5, { "stroke-dasharray": "4 3" }),
+        svg("circle", { cx: 4, cy: 6, r: 3, fill: "var(--raised)", stroke: "var(--critical)", "stroke-width": 1.75 }),
+      ),
   },
   {
     layer: "many-targets",
     words: t("Target"),
-    draw: () => sample(svg("circle", { cx: 13, cy: 6, r: 4.5, fill: "var(--raised)", stroke: "var(--ink-2)", "stroke-width": 1.75 })),
+    draw: () =>
+      sample(
+        svg("circle", { cx: 13, cy: 6, r: 4.5, fill: "var(--raised)", stroke: "var(--ink-2)", "stroke-width": 1.75 }),
+      ),
   },
 ];
 
@@ -80,7 +167,10 @@ const UAV_ROW = {
   words: t("UAV"),
   draw: () => {
     const look = { fill: "var(--map-casing)", stroke: "var(--ink-2)", "stroke-width": 1.3, "stroke-linejoin": "round" };
-    return sample(svg("circle", { cx: 6, cy: 6, r: 4, ...look }), svg("path", { d: "M19 1L24 11L19 8.5L14 11Z", ...look })); // with and without a heading
+    return sample(
+      svg("circle", { cx: 6, cy: 6, r: 4, ...look }),
+      svg("path", { d: "M19 1L24 11L19 8.5L14 11Z", ...look }),
+    ); // with and without a heading
   },
 };
 
@@ -116,7 +206,8 @@ export function mountLegend(map) {
     const seen = new Set();
     for (const feature of map.queryRenderedFeatures({ layers })) seen.add(keyOf(feature.layer.id, kindOf(feature)));
     const rows = ROWS.filter((row) => seen.has(keyOf(row.layer, row.kind ?? (row.layer === "lines" ? row.band : ""))));
-    if ([...map.getContainer().querySelectorAll(".map-dart")].some((dart) => isWithin(dart, map.getContainer()))) rows.push(UAV_ROW);
+    if ([...map.getContainer().querySelectorAll(".map-dart")].some((dart) => isWithin(dart, map.getContainer())))
+      rows.push(UAV_ROW);
     const words = rows.map((row) => row.words).join();
     if (words === shown) return;
     shown = words;

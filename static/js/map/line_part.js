@@ -8,7 +8,9 @@ function placeOn(path, [longitude, latitude]) {
     const [ax, ay] = [path[index - 1][0] * shrink, path[index - 1][1]];
     const [dx, dy] = [path[index][0] * shrink - ax, path[index][1] - ay];
     const square = dx * dx + dy * dy;
-    const share = square ? Math.min(1, Math.max(0, ((longitude * shrink - ax) * dx + (latitude - ay) * dy) / square)) : 0;
+    const share = square
+      ? Math.min(1, Math.max(0, ((longitude * shrink - ax) * dx + (latitude - ay) * dy) / square))
+      : 0;
     const distance = (ax + share * dx - longitude * shrink) ** 2 + (ay + share * dy - latitude) ** 2;
     if (!best || distance < best.distance) best = { index: index - 1, share, distance };
   }

@@ -25,7 +25,9 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
   const map = new maplibre.Map({
     container,
     style: mapStyle(palette, options),
-    ...(opened ? { center: opened.centre, zoom: opened.zoom } : { bounds: bounds ?? WORLD, fitBoundsOptions: { padding: paddingIn(container), maxZoom: NEAREST_FIT } }),
+    ...(opened
+      ? { center: opened.centre, zoom: opened.zoom }
+      : { bounds: bounds ?? WORLD, fitBoundsOptions: { padding: paddingIn(container), maxZoom: NEAREST_FIT } }),
     attributionControl: false,
     dragRotate: false,
     pitchWithRotate: false,
@@ -41,7 +43,8 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
   map.on("load", () => graticule.addTo(map));
   let keepsAddress = opened !== null;
   map.on("moveend", () => {
-    if (keepsAddress) history.replaceState(history.state, "", hashOf({ zoom: map.getZoom(), centre: map.getCenter().toArray() }));
+    if (keepsAddress)
+      history.replaceState(history.state, "", hashOf({ zoom: map.getZoom(), centre: map.getCenter().toArray() }));
   });
   addEventListener("hashchange", () => {
     const view = addressed();
@@ -61,7 +64,13 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
     fitted = box;
     isFitting = true;
     footOfFit = footOf(container);
-    map.fitBounds([[box[0], box[1]], [box[2], box[3]]], { padding: paddingIn(container), maxZoom: NEAREST_FIT, duration });
+    map.fitBounds(
+      [
+        [box[0], box[1]],
+        [box[2], box[3]],
+      ],
+      { padding: paddingIn(container), maxZoom: NEAREST_FIT, duration },
+    );
     isFitting = false;
   }
   // Legend and dock grow when routes come: what was fitted stays in view. A legend that shrinks is let be: its rows go by the zoom, and
@@ -76,7 +85,8 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
     size = sizeOf(container);
   }
   const watcher = new ResizeObserver(() => (fitted ? fitAgain() : (size = sizeOf(container))));
-  for (const element of [container, container.parentElement.querySelector(".map-edge")]) if (element) watcher.observe(element);
+  for (const element of [container, container.parentElement.querySelector(".map-edge")])
+    if (element) watcher.observe(element);
 
   return {
     map,

@@ -13,14 +13,23 @@ const RADIANS = Math.PI / 180;
 /** Direction of a leg at its beginning, degrees from north, 0 to 359. */
 export function bearing_deg([lon1, lat1], [lon2, lat2]) {
   const [a, b, turn] = [lat1 * RADIANS, lat2 * RADIANS, (lon2 - lon1) * RADIANS];
-  const angle = Math.atan2(Math.sin(turn) * Math.cos(b), Math.cos(a) * Math.sin(b) - Math.sin(a) * Math.cos(b) * Math.cos(turn));
+  const angle = Math.atan2(
+    Math.sin(turn) * Math.cos(b),
+    Math.cos(a) * Math.sin(b) - Math.sin(a) * Math.cos(b) * Math.cos(turn),
+  );
   return (Math.round(angle / RADIANS) + 360) % 360;
 }
 
 /** What is drawn: the path, what the pointer would add, and points with the length as far as them. */
 export function measured(points, pointer = null) {
-  const feature = (role, type, coordinates, label = "") => ({ type: "Feature", properties: { role, label }, geometry: { type, coordinates } });
-  const features = points.map((position, index) => feature("point", "Point", position, index ? lengthText(pathLength_m(points.slice(0, index + 1))) : ""));
+  const feature = (role, type, coordinates, label = "") => ({
+    type: "Feature",
+    properties: { role, label },
+    geometry: { type, coordinates },
+  });
+  const features = points.map((position, index) =>
+    feature("point", "Point", position, index ? lengthText(pathLength_m(points.slice(0, index + 1))) : ""),
+  );
   if (points.length > 1) features.push(feature("path", "LineString", points));
   if (points.length && pointer) features.push(feature("next", "LineString", [points.at(-1), pointer]));
   return { type: "FeatureCollection", features };
@@ -29,7 +38,10 @@ export function measured(points, pointer = null) {
 /** The sentence of what has been measured. */
 export function measureWords(points, pointer = null) {
   const all = pointer && points.length ? [...points, pointer] : points;
-  if (all.length < 2) return points.length ? t("Click the next point.") : t("Click where to measure from, or press Enter for the middle of the map.");
+  if (all.length < 2)
+    return points.length
+      ? t("Click the next point.")
+      : t("Click where to measure from, or press Enter for the middle of the map.");
   const leg = distance_m(all.at(-2), all.at(-1));
   const words = [lengthText(pathLength_m(all))];
   if (all.length > 2) words.push(t("last leg {length}", { length: lengthText(leg) }));
@@ -45,7 +57,13 @@ export function createMeasure(map, frame, button, { onSwitch = () => {}, isBusy 
   let waits = false;
   const words = h("span", { class: "measure-words" });
   const undo = h("button", { type: "button", class: "text-button", onclick: () => back() }, t("Remove the last point"));
-  const banner = h("div", { class: "map-banner measure-banner float", role: "group", "aria-label": t("Measuring"), hidden: true }, words, undo, h("button", { type: "button", class: "text-button", onclick: () => end() }, t("Done")));
+  const banner = h(
+    "div",
+    { class: "map-banner measure-banner float", role: "group", "aria-label": t("Measuring"), hidden: true },
+    words,
+    undo,
+    h("button", { type: "button", class: "text-button", onclick: () => end() }, t("Done")),
+  );
   frame.append(banner);
 
   function draw() {
@@ -93,11 +111,22 @@ export function createMeasure(map, frame, button, { onSwitch = () => {}, isBusy 
     say(words.textContent);
   };
 
-  const acts = { Escape: end, Backspace: () => points.length > 0 && back(), Delete: () => points.length > 0 && back(), Enter: (target) => target.matches("canvas, body") && add(map.getCenter().toArray()) };
+  const acts = {
+    Escape: end,
+    Backspace: () => points.length > 0 && back(),
+    Delete: () => points.length > 0 && back(),
+    Enter: (target) => target.matches("canvas, body") && add(map.getCenter().toArray()),
+  };
   document.addEventListener(
     "keydown",
     (event) => {
-      if (points === null || event.defaultPrevented || isTyping(event.target) || document.querySelector("dialog[open], .menu")) return;
+      if (
+        points === null ||
+        event.defaultPrevented ||
+        isTyping(event.target) ||
+        document.querySelector("dialog[open], .menu")
+      )
+        return;
       if (acts[event.key] && acts[event.key](event.target) !== false) event.preventDefault();
     },
     true,

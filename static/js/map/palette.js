@@ -33,10 +33,14 @@ export function routeNumber(sequence) {
 }
 
 export function routeLetter(sequence) {
-  return sequence < 26 ? String.fromCharCode(65 + sequence) : `${String.fromCharCode(64 + Math.floor(sequence / 26))}${String.fromCharCode(65 + (sequence % 26))}`;
+  return sequence < 26
+    ? String.fromCharCode(65 + sequence)
+    : `${String.fromCharCode(64 + Math.floor(sequence / 26))}${String.fromCharCode(65 + (sequence % 26))}`;
 }
 
-export function readPalette(read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim()) {
+export function readPalette(
+  read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim(),
+) {
   const palette = Object.fromEntries(Object.entries(NAMES).map(([name, token]) => [name, read(token)]));
   palette.routes = Array.from({ length: ROUTE_COUNT }, (_, index) => read(`--route-${index + 1}`));
   palette.fonts = palette.font

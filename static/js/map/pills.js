@@ -23,7 +23,11 @@ export function mergePills(pills) {
 
 /** Groups of UAVs that would stand on each other or on each other's names: [{ members, x, y, label }]. x is where the mark stands, its label to the right. */
 export function mergeDarts(darts) {
-  return merged(darts, dartLabel, (a, b) => Math.abs(a.y - b.y) < DART_HEIGHT_PX && a.x < b.x + dartWidth(b.label) && b.x < a.x + dartWidth(a.label));
+  return merged(
+    darts,
+    dartLabel,
+    (a, b) => Math.abs(a.y - b.y) < DART_HEIGHT_PX && a.x < b.x + dartWidth(b.label) && b.x < a.x + dartWidth(a.label),
+  );
 }
 
 /** A group stands where its first member does. */
@@ -55,7 +59,10 @@ function overlap(a, b) {
 function groupLabel(members) {
   const [first] = members;
   if (first.isMissed) return members.length === 1 ? "×" : `× ${countText(members.length, "target")}`;
-  return mergedLabel(first.letter, members.map((pill) => pill.number));
+  return mergedLabel(
+    first.letter,
+    members.map((pill) => pill.number),
+  );
 }
 
 /** "C3", "C3–4", "C1, 3–4": letter once, runs with a dash; "C, 12 targets" where that would be long. */

@@ -13,21 +13,41 @@ const MOST_NAMED = 4;
 export function coordinatesFound(text) {
   const found = positionIn(text);
   if (!found) return [];
-  const orders = { letters: t("Coordinates"), "latitude first": t("Coordinates, latitude first"), "longitude first": t("Coordinates, longitude first: the first figure can be no latitude") };
-  return [{ icon: "map-pin", label: coordinateText(found.position), detail: orders[found.order], position: found.position, zoom: COORDINATES_ZOOM }];
+  const orders = {
+    letters: t("Coordinates"),
+    "latitude first": t("Coordinates, latitude first"),
+    "longitude first": t("Coordinates, longitude first: the first figure can be no latitude"),
+  };
+  return [
+    {
+      icon: "map-pin",
+      label: coordinateText(found.position),
+      detail: orders[found.order],
+      position: found.position,
+      zoom: COORDINATES_ZOOM,
+    },
+  ];
 }
 
 /** Of [{ name, position, icon, detail }], those whose name holds the text; at most four. */
 export function namedFound(text, things) {
   const wanted = text.trim().toLocaleLowerCase();
   if (!wanted) return [];
-  return things.filter(({ name }) => name.toLocaleLowerCase().includes(wanted)).slice(0, MOST_NAMED).map(({ name, ...rest }) => ({ label: name, zoom: COORDINATES_ZOOM - 1, ...rest }));
+  return things
+    .filter(({ name }) => name.toLocaleLowerCase().includes(wanted))
+    .slice(0, MOST_NAMED)
+    .map(({ name, ...rest }) => ({ label: name, zoom: COORDINATES_ZOOM - 1, ...rest }));
 }
 
 /** Zones by name: [{ icon, label, detail, box }]. */
 async function zonesFound(text, signal) {
   const { data } = await get(`/zones?text=${encodeURIComponent(text)}&limit=${MOST_ZONES}`, { signal });
-  return data.features.map(({ geometry, properties }) => ({ icon: "zone", label: properties.name, detail: t("No-fly zone"), box: boxOf(geometry.coordinates) }));
+  return data.features.map(({ geometry, properties }) => ({
+    icon: "zone",
+    label: properties.name,
+    detail: t("No-fly zone"),
+    box: boxOf(geometry.coordinates),
+  }));
 }
 
 function boxOf(coordinates) {

@@ -7,17 +7,30 @@ import { BANDS, bandOf, GROUPS, TILES } from "./style.js";
 const LOOK_AGAIN_MS = 60_000;
 const ZONE_LAYERS = ["zones", "zone_labels"];
 
-export const groupName = (key) => ({ lines: t("Power lines"), towers: t("Towers"), railways: t("Railways"), bridges: t("Bridges"), zones: t("No-fly zones") })[key];
+export const groupName = (key) =>
+  ({
+    lines: t("Power lines"),
+    towers: t("Towers"),
+    railways: t("Railways"),
+    bridges: t("Bridges"),
+    zones: t("No-fly zones"),
+  })[key];
 
 export const bandName = (key) =>
   ({
-    380: t("380 kV and over"), 200: t("200 to 379 kV"), 100: t("100 to 199 kV"), 50: t("50 to 99 kV"), 0: t("under 50 kV"), none: t("Voltage not stated"),
+    380: t("380 kV and over"),
+    200: t("200 to 379 kV"),
+    100: t("100 to 199 kV"),
+    50: t("50 to 99 kV"),
+    0: t("under 50 kV"),
+    none: t("Voltage not stated"),
   })[key];
 
 /** Filter of a layer with some voltages and some zones left out; `own` is what the style says. Without anything left out it is `own`. */
 export function filterOf(own, { group, bands, resting }) {
   const more = [];
-  if ((group === "lines" || group === "towers") && bands.size) more.push(["!", ["in", bandOf, ["literal", [...bands]]]]);
+  if ((group === "lines" || group === "towers") && bands.size)
+    more.push(["!", ["in", bandOf, ["literal", [...bands]]]]);
   if (group === "zones" && resting.length) more.push(["!", ["in", ["id"], ["literal", resting]]]);
   return more.length ? ["all", ...(own ? [own] : []), ...more] : (own ?? null);
 }
@@ -49,9 +62,15 @@ export function createShown(map, onChange = () => {}) {
       seen.set(feature.id, isInForce(JSON.parse(feature.properties.schedule), Date.now(), place) === false);
     }
     for (const [id, rests] of seen) {
-      for (const sourceLayer of ZONE_LAYERS) map.setFeatureState({ source: TILES, sourceLayer, id }, { resting: rests });
+      for (const sourceLayer of ZONE_LAYERS)
+        map.setFeatureState({ source: TILES, sourceLayer, id }, { resting: rests });
     }
-    const next = [...new Set([...resting.filter((id) => seen.get(id) !== false), ...[...seen].filter(([, rests]) => rests).map(([id]) => id)])].sort((a, b) => a - b);
+    const next = [
+      ...new Set([
+        ...resting.filter((id) => seen.get(id) !== false),
+        ...[...seen].filter(([, rests]) => rests).map(([id]) => id),
+      ]),
+    ].sort((a, b) => a - b);
     if (next.join() === resting.join()) return;
     resting = next;
     if (hidesResting) filterLayers("zones");
@@ -80,7 +99,8 @@ export function createShown(map, onChange = () => {}) {
     showGroup(key, visible) {
       if (visible) groups.delete(key);
       else groups.add(key);
-      for (const id of GROUPS.find((group) => group.key === key).layers) map.setLayoutProperty(id, "visibility", visible ? "visible" : "none");
+      for (const id of GROUPS.find((group) => group.key === key).layers)
+        map.setLayoutProperty(id, "visibility", visible ? "visible" : "none");
       onChange();
     },
     showBand(key, visible) {

@@ -9,21 +9,42 @@ import { scheduleText } from "../zones/schedule_words.js";
 import { zoneDetails, zoneDetailsKept } from "./zone_details.js";
 
 const KIND_WORDS = () => ({
-  tower: t("Power tower"), line: t("Power line"), railway: t("Railway"), bridge: t("Bridge"), pole: t("Pole"), portal: t("Portal"),
-  minor_line: t("Minor power line"), cable: t("Cable"), tram: t("Tramway"), subway: t("Subway"),
+  tower: t("Power tower"),
+  line: t("Power line"),
+  railway: t("Railway"),
+  bridge: t("Bridge"),
+  pole: t("Pole"),
+  portal: t("Portal"),
+  minor_line: t("Minor power line"),
+  cable: t("Cable"),
+  tram: t("Tramway"),
+  subway: t("Subway"),
 });
 
 /** What the codes of ED-269 and ED-318 mean. */
 const CODES = () => ({
-  PROHIBITED: t("prohibited"), REQ_AUTHORISATION: t("authorisation required"), CONDITIONAL: t("conditional"), NO_RESTRICTION: t("no restriction"),
-  AIR_TRAFFIC: t("air traffic"), SENSITIVE: t("sensitive site"), PRIVACY: t("privacy"), POPULATION: t("population"), NATURE: t("nature"), NOISE: t("noise"),
-  FOREIGN_TERRITORY: t("foreign territory"), EMERGENCY: t("emergency"), OTHER: t("other"),
+  PROHIBITED: t("prohibited"),
+  REQ_AUTHORISATION: t("authorisation required"),
+  CONDITIONAL: t("conditional"),
+  NO_RESTRICTION: t("no restriction"),
+  AIR_TRAFFIC: t("air traffic"),
+  SENSITIVE: t("sensitive site"),
+  PRIVACY: t("privacy"),
+  POPULATION: t("population"),
+  NATURE: t("nature"),
+  NOISE: t("noise"),
+  FOREIGN_TERRITORY: t("foreign territory"),
+  EMERGENCY: t("emergency"),
+  OTHER: t("other"),
 });
 
 /** The words of a zone file's code: "AIR_TRAFFIC, NATURE" becomes "Air traffic, nature". Other texts stay as they are. */
 export function plainWords(text) {
   if (!/^[A-Z][A-Z_]+(, ?[A-Z][A-Z_]+)*$/.test(text)) return text;
-  const words = text.split(/, ?/).map((code) => CODES()[code] ?? code.toLowerCase().replaceAll("_", " ")).join(", ");
+  const words = text
+    .split(/, ?/)
+    .map((code) => CODES()[code] ?? code.toLowerCase().replaceAll("_", " "))
+    .join(", ");
   return words[0].toUpperCase() + words.slice(1);
 }
 
@@ -53,12 +74,15 @@ function zoneTip(thing, refresh) {
   return zoneContent(thing, kept);
 }
 
-const limitOf = (value_m, reference) => (value_m === undefined || value_m === null ? null : { value_m, reference: reference ?? "" });
+const limitOf = (value_m, reference) =>
+  value_m === undefined || value_m === null ? null : { value_m, reference: reference ?? "" };
 
 /** Whether the zone applies now, in words; by the schedule in the tile. */
 function nowWords({ schedule }, place) {
   if (!schedule) return "";
-  return { true: t("In force now"), false: t("Not in force now"), null: t("Whether it is in force now is not known") }[isInForce(JSON.parse(schedule), Date.now(), place)];
+  return { true: t("In force now"), false: t("Not in force now"), null: t("Whether it is in force now is not known") }[
+    isInForce(JSON.parse(schedule), Date.now(), place)
+  ];
 }
 
 function zoneContent({ properties, place }, details, problem = "") {
@@ -74,7 +98,21 @@ function zoneContent({ properties, place }, details, problem = "") {
       "div",
       { class: "tip-band" },
       bandDrawing(limits),
-      h("div", {}, h("div", {}, heightsText(limits)), h("div", {}, details ? scheduleText(details.schedule, { otherwise: details.schedule_words }) : properties.schedule ? t("At times") : ""), quiet(place ? nowWords(properties, place) : "")),
+      h(
+        "div",
+        {},
+        h("div", {}, heightsText(limits)),
+        h(
+          "div",
+          {},
+          details
+            ? scheduleText(details.schedule, { otherwise: details.schedule_words })
+            : properties.schedule
+              ? t("At times")
+              : "",
+        ),
+        quiet(place ? nowWords(properties, place) : ""),
+      ),
     ),
     why && h("div", {}, why),
     quiet(problem || (details ? sourceWords(details) : t("Reading times and source…"))),
@@ -86,6 +124,8 @@ function zoneContent({ properties, place }, details, problem = "") {
 function sourceWords({ zone_set, source, is_edited, updated_at }) {
   if (!source) return t("Drawn here, changed {when}", { when: whenText(updated_at) });
   const name = zone_set ?? source.file_name;
-  const words = source.fetched_at ? t("From {name}, fetched {when}", { name, when: whenText(source.fetched_at) }) : t("From {name}, read in {when}", { name, when: whenText(source.imported_at) });
+  const words = source.fetched_at
+    ? t("From {name}, fetched {when}", { name, when: whenText(source.fetched_at) })
+    : t("From {name}, read in {when}", { name, when: whenText(source.imported_at) });
   return is_edited ? `${words} · ${t("edited by hand")}` : words;
 }

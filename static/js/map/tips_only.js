@@ -9,10 +9,17 @@ export function showTipsOnly(map, { controls, tip }) {
   routeClicks(map, {
     tool: () => "point",
     kinds: () => null,
-    click: (thing, place) => controls.click(place) || (thing && tip(`${thing.kind} ${thing.id}`, map.project(place), (refresh) => tipOf({ ...thing, place }, refresh), { soon: true })),
+    click: (thing, place) =>
+      controls.click(place) ||
+      (thing &&
+        tip(`${thing.kind} ${thing.id}`, map.project(place), (refresh) => tipOf({ ...thing, place }, refresh), {
+          soon: true,
+        })),
     hover(thing, point, place) {
       controls.hover(place);
-      tip(thing && !controls.isMeasuring() ? `${thing.kind} ${thing.id}` : null, point, (refresh) => tipOf({ ...thing, place }, refresh));
+      tip(thing && !controls.isMeasuring() ? `${thing.kind} ${thing.id}` : null, point, (refresh) =>
+        tipOf({ ...thing, place }, refresh),
+      );
     },
     box: () => {},
     lasso: () => {},

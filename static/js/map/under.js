@@ -4,7 +4,13 @@ import { t } from "../text.js";
 
 const KEY = "spanwise.base-map";
 
-const offered = (page) => [["base-map", page.baseMap], ["satellite", page.satellite]].filter(([, layer]) => layer.tiles).map(([name]) => name);
+const offered = (page) =>
+  [
+    ["base-map", page.baseMap],
+    ["satellite", page.satellite],
+  ]
+    .filter(([, layer]) => layer.tiles)
+    .map(([name]) => name);
 const WORDS = { "base-map": t("Map"), satellite: t("Satellite") };
 
 export function underChoices(page) {

@@ -8,16 +8,114 @@ export const LATE = t("If it cannot be reached in time, the command expires and 
 export const WHY = { name: "why", label: t("Why (kept in the history)") };
 
 const ASKED = {
-  start: ({ name, route }) => ({ title: t("Start {name}?", { name }), lines: [t("It takes off and flies its approved route: {length}, {time}.", { length: lengthText(route.length_m), time: durationText(route.duration_s) }), LATE], act: t("Start {name}", { name }), image: "plane-takeoff" }),
-  arm: ({ name }) => ({ title: t("Arm {name}?", { name }), lines: [t("Its rotors may turn from then on. Make sure that nobody stands beside it."), LATE], act: t("Arm {name}", { name }) }),
-  "take-off": ({ name }) => ({ title: t("Let {name} take off?", { name }), lines: [t("It rises straight up from where it stands, and stays there until it is told otherwise."), LATE], act: t("Let {name} take off", { name }), field: { name: "altitude_relative_m", label: t("Height above the place of take-off [m]"), type: "number", value: 10, min: 1, max: 120, step: "any", isNeeded: true }, image: "plane-takeoff" }),
-  pause: ({ name }) => ({ title: t("Pause {name}?", { name }), lines: [t("It stops on its route and waits for Resume, as long as its battery lasts."), LATE], keep: t("Keep flying"), act: t("Pause {name}", { name }), isBack: true }),
-  resume: ({ name }) => ({ title: t("Resume the flight of {name}?", { name }), lines: [t("It flies on along its route from where it is."), LATE], act: t("Resume {name}", { name }), isBack: true }),
-  hold: ({ name }) => ({ title: t("Hold {name}?", { name }), lines: [t("It stops where it is and stays there until it is told otherwise, as long as its battery lasts."), LATE], keep: t("Keep flying"), act: t("Hold {name}", { name }), isBack: true, image: "hand" }),
-  return: ({ name, returns }) => ({ title: t("Return {name}?", { name }), lines: [t("It flies back to where it took off and lands there. Targets that it has not reached stay undone."), ...returnLines(returns), LATE], keep: t("Keep flying"), act: t("Return {name}", { name }), isBack: true, image: "rotate-ccw" }),
-  land: ({ name }) => ({ title: t("Land {name} here?", { name }), lines: [t("It comes straight down where it is now, whatever is below. Targets that it has not reached stay undone."), LATE], keep: t("Keep flying"), act: t("Land {name} here", { name }), isDanger: true, image: "plane-landing" }),
-  abort: ({ name, returns }) => ({ title: t("Abort the flight of {name}?", { name }), lines: [t("Whatever else it was told no longer counts. Targets that it has not reached stay undone; the other UAVs go on."), ...returnLines(returns), LATE], keep: t("Keep flying"), act: t("Abort {name}", { name }), isDanger: true, field: WHY, image: "octagon-alert" }),
-  "change-speed": ({ name, speed_mps }) => ({ title: t("Change the speed of {name}?", { name }), lines: [t("Over ground, until its route says otherwise. Planned times no longer hold."), LATE], act: t("Change the speed of {name}", { name }), field: { name: "speed_mps", label: t("Speed [m/s]; now planned with {speed}", { speed: speedText(speed_mps) }), type: "number", value: Math.round(speed_mps * 10) / 10, min: 0.5, max: 100, step: "any", isNeeded: true }, isBack: true }),
+  start: ({ name, route }) => ({
+    title: t("Start {name}?", { name }),
+    lines: [
+      t("It takes off and flies its approved route: {length}, {time}.", {
+        length: lengthText(route.length_m),
+        time: durationText(route.duration_s),
+      }),
+      LATE,
+    ],
+    act: t("Start {name}", { name }),
+    image: "plane-takeoff",
+  }),
+  arm: ({ name }) => ({
+    title: t("Arm {name}?", { name }),
+    lines: [t("Its rotors may turn from then on. Make sure that nobody stands beside it."), LATE],
+    act: t("Arm {name}", { name }),
+  }),
+  "take-off": ({ name }) => ({
+    title: t("Let {name} take off?", { name }),
+    lines: [t("It rises straight up from where it stands, and stays there until it is told otherwise."), LATE],
+    act: t("Let {name} take off", { name }),
+    field: {
+      name: "altitude_relative_m",
+      label: t("Height above the place of take-off [m]"),
+      type: "number",
+      value: 10,
+      min: 1,
+      max: 120,
+      step: "any",
+      isNeeded: true,
+    },
+    image: "plane-takeoff",
+  }),
+  pause: ({ name }) => ({
+    title: t("Pause {name}?", { name }),
+    lines: [t("It stops on its route and waits for Resume, as long as its battery lasts."), LATE],
+    keep: t("Keep flying"),
+    act: t("Pause {name}", { name }),
+    isBack: true,
+  }),
+  resume: ({ name }) => ({
+    title: t("Resume the flight of {name}?", { name }),
+    lines: [t("It flies on along its route from where it is."), LATE],
+    act: t("Resume {name}", { name }),
+    isBack: true,
+  }),
+  hold: ({ name }) => ({
+    title: t("Hold {name}?", { name }),
+    lines: [t("It stops where it is and stays there until it is told otherwise, as long as its battery lasts."), LATE],
+    keep: t("Keep flying"),
+    act: t("Hold {name}", { name }),
+    isBack: true,
+    image: "hand",
+  }),
+  return: ({ name, returns }) => ({
+    title: t("Return {name}?", { name }),
+    lines: [
+      t("It flies back to where it took off and lands there. Targets that it has not reached stay undone."),
+      ...returnLines(returns),
+      LATE,
+    ],
+    keep: t("Keep flying"),
+    act: t("Return {name}", { name }),
+    isBack: true,
+    image: "rotate-ccw",
+  }),
+  land: ({ name }) => ({
+    title: t("Land {name} here?", { name }),
+    lines: [
+      t("It comes straight down where it is now, whatever is below. Targets that it has not reached stay undone."),
+      LATE,
+    ],
+    keep: t("Keep flying"),
+    act: t("Land {name} here", { name }),
+    isDanger: true,
+    image: "plane-landing",
+  }),
+  abort: ({ name, returns }) => ({
+    title: t("Abort the flight of {name}?", { name }),
+    lines: [
+      t(
+        "Whatever else it was told no longer counts. Targets that it has not reached stay undone; the other UAVs go on.",
+      ),
+      ...returnLines(returns),
+      LATE,
+    ],
+    keep: t("Keep flying"),
+    act: t("Abort {name}", { name }),
+    isDanger: true,
+    field: WHY,
+    image: "octagon-alert",
+  }),
+  "change-speed": ({ name, speed_mps }) => ({
+    title: t("Change the speed of {name}?", { name }),
+    lines: [t("Over ground, until its route says otherwise. Planned times no longer hold."), LATE],
+    act: t("Change the speed of {name}", { name }),
+    field: {
+      name: "speed_mps",
+      label: t("Speed [m/s]; now planned with {speed}", { speed: speedText(speed_mps) }),
+      type: "number",
+      value: Math.round(speed_mps * 10) / 10,
+      min: 0.5,
+      max: 100,
+      step: "any",
+      isNeeded: true,
+    },
+    isBack: true,
+  }),
 };
 
 /** What confirmAct asks. flyer: { name, route, speed_mps, returns }, as far as the command needs it. */

@@ -21,7 +21,9 @@ export function summaryOfPlan({ result, targets }) {
         base: route.base ?? null,
         length_m: route.length_m,
         duration_s: route.duration_s,
-        stops: profile.targets.filter(({ target }) => targets[target]).map(({ target, at }) => ({ ...pickOf(targets[target]), at_m: at })),
+        stops: profile.targets
+          .filter(({ target }) => targets[target])
+          .map(({ target, at }) => ({ ...pickOf(targets[target]), at_m: at })),
         off_network: profile.legs.filter((leg) => leg.offNetwork).map(({ from, to }) => [from, to]),
       };
     }),
@@ -29,13 +31,19 @@ export function summaryOfPlan({ result, targets }) {
   };
 }
 
-const pickOf = ({ asset, position, stretch, label }) => ({ asset, position: position ?? null, stretch: stretch ?? null, label });
+const pickOf = ({ asset, position, stretch, label }) => ({
+  asset,
+  position: position ?? null,
+  stretch: stretch ?? null,
+  label,
+});
 
 const isSameUav = (a, b) => (a.uav_id !== null && b.uav_id !== null ? a.uav_id === b.uav_id : a.uav === b.uav);
 
 /** Whether two plans fly the same: planning again what has not changed is not another plan. */
 export function isSamePlan(a, b) {
-  const essence = ({ routes }) => JSON.stringify(routes.map(({ uav, length_m, stops }) => [uav, Math.round(length_m), stopsOf(stops).map(keyOf)]));
+  const essence = ({ routes }) =>
+    JSON.stringify(routes.map(({ uav, length_m, stops }) => [uav, Math.round(length_m), stopsOf(stops).map(keyOf)]));
   const beginsAndEndsAlike = (route) => {
     const { moved_m, to } = endsBetween(counterpart(route, a), route);
     return moved_m === 0 && to === null;
@@ -56,15 +64,21 @@ export function isWorse(plan, than) {
 
 /** Less is better, in this order; as the planner counts. */
 function meritOf({ result, targets }) {
-  const missed = PRIORITIES.map((priority) => result.unassigned.filter(({ target }) => wishesOf(targets[target] ?? {}).priority === priority).length);
+  const missed = PRIORITIES.map(
+    (priority) =>
+      result.unassigned.filter(({ target }) => wishesOf(targets[target] ?? {}).priority === priority).length,
+  );
   const [total, longest] = [result.total_length_m, Math.max(0, ...result.routes.map((route) => route.duration_s))];
-  const first = { total, time: result.total_duration_s ?? longest, energy: result.total_energy_wh ?? total }[result.objective] ?? longest;
+  const first =
+    { total, time: result.total_duration_s ?? longest, energy: result.total_energy_wh ?? total }[result.objective] ??
+    longest;
   return [...missed, first, ...(result.objective === "total" ? [longest] : [total])];
 }
 
 /** Nothing stands between the two but the search: the same network, zones, heights, and UAVs that can fly; bases may have moved. */
 function isOnSameGround(a, b) {
-  const ground = ({ graph_version, ground_revision, warnings }) => JSON.stringify([graph_version, ground_revision, (warnings ?? []).map(({ code, uav }) => [code, uav])]);
+  const ground = ({ graph_version, ground_revision, warnings }) =>
+    JSON.stringify([graph_version, ground_revision, (warnings ?? []).map(({ code, uav }) => [code, uav])]);
   const landsAtBase = ({ routes }) => routes.some(({ end_action }) => end_action === "base");
   return ground(a) === ground(b) && !landsAtBase(a) && !landsAtBase(b);
 }
@@ -78,7 +92,11 @@ function stopsOf(stops) {
 function placesIn(plan) {
   const places = new Map();
   plan.unassigned.forEach((target) => places.set(keyOf(target), { route: null, number: 0, label: target.label }));
-  plan.routes.forEach((route) => stopsOf(route.stops).forEach((stop, index) => places.set(keyOf(stop), { route, number: index + 1, label: stop.label })));
+  plan.routes.forEach((route) =>
+    stopsOf(route.stops).forEach((stop, index) =>
+      places.set(keyOf(stop), { route, number: index + 1, label: stop.label }),
+    ),
+  );
   return places;
 }
 
@@ -91,7 +109,8 @@ export function movesBetween(before, now) {
     const isSame = was && (was.route === route || (was.route && route && isSameUav(was.route, route)));
     if (!isSame) moves.push({ key, label, from: was?.route, to: route });
   }
-  for (const [key, { route, label }] of old) if (!fresh.has(key)) moves.push({ key, label, from: route, to: undefined });
+  for (const [key, { route, label }] of old)
+    if (!fresh.has(key)) moves.push({ key, label, from: route, to: undefined });
   return moves;
 }
 
@@ -111,8 +130,15 @@ export function endsBetween(old, now) {
 
 /** A route in short, as the drawing of a strip takes it. */
 export function profileOfSummary({ length_m, stops, off_network }) {
-  const cuts = [...new Set([0, length_m, ...off_network.flat()])].filter((at) => at >= 0 && at <= length_m).sort((a, b) => a - b);
+  const cuts = [...new Set([0, length_m, ...off_network.flat()])]
+    .filter((at) => at >= 0 && at <= length_m)
+    .sort((a, b) => a - b);
   const isOff = (at) => off_network.some(([from, to]) => at >= from && at < to);
   const legs = cuts.slice(1).map((to, index) => ({ from: cuts[index], to, offNetwork: isOff(cuts[index]) }));
-  return { places: [0, length_m], legs, targets: stopsOf(stops).map((stop) => ({ target: keyOf(stop), at: stop.at_m })), ticks: [] };
+  return {
+    places: [0, length_m],
+    legs,
+    targets: stopsOf(stops).map((stop) => ({ target: keyOf(stop), at: stop.at_m })),
+    ticks: [],
+  };
 }

@@ -16,8 +16,15 @@ export function createConflicts({ store, history, selection, change, problem, fa
 
   /** Whose save it was: the newest entry of the history, where that can be read. */
   async function lastSave(mission) {
-    const newest = await get(`/missions/${mission.id}/history?limit=1`).then(({ data }) => data.results[0], () => null);
-    return { actor: newest?.actor ?? null, whose: whoseSave(newest?.actor, page.userName), at: newest?.recorded_at ?? mission.updated_at };
+    const newest = await get(`/missions/${mission.id}/history?limit=1`).then(
+      ({ data }) => data.results[0],
+      () => null,
+    );
+    return {
+      actor: newest?.actor ?? null,
+      whose: whoseSave(newest?.actor, page.userName),
+      at: newest?.recorded_at ?? mission.updated_at,
+    };
   }
 
   /** A younger revision than the one on the page. `lost` is what this page had sent when no answer came: then it is this page's own. */
@@ -48,7 +55,15 @@ export function createConflicts({ store, history, selection, change, problem, fa
       const { data } = await get(`/missions/${store.state.mission.id}`);
       await take(data, lost);
     } catch (error) {
-      failed(t("Not saved: changed by another operator."), error, [{ label: t("Try again"), act: () => saving().save() }, { label: t("Keep mine as a copy"), act: () => saving().keepMineAsCopy() }], { isOfSaving: true });
+      failed(
+        t("Not saved: changed by another operator."),
+        error,
+        [
+          { label: t("Try again"), act: () => saving().save() },
+          { label: t("Keep mine as a copy"), act: () => saving().keepMineAsCopy() },
+        ],
+        { isOfSaving: true },
+      );
     }
   }
 
@@ -64,7 +79,14 @@ export function createConflicts({ store, history, selection, change, problem, fa
     }
     const between = await lastSave(theirs);
     const clashes = before ? merged(before, mineNow(), now).clashes : ["targets"];
-    store.update({ mission: theirs, stored: now, planIsStored: false, savedBasis: picks.storedBasisOf(stored), problem: null, conflict: { ...between, base, before, theirs: now, clashes } });
+    store.update({
+      mission: theirs,
+      stored: now,
+      planIsStored: false,
+      savedBasis: picks.storedBasisOf(stored),
+      problem: null,
+      conflict: { ...between, base, before, theirs: now, clashes },
+    });
   }
 
   /** Theirs becomes one more step of the history, so that mine is one step back. */
@@ -102,14 +124,26 @@ export function createConflicts({ store, history, selection, change, problem, fa
   function seeBoth() {
     const { conflict } = store.state;
     if (!conflict) return;
-    showBoth(conflict, mineNow(), { takeTheirs, putMineOnTop, mergeBoth: conflict.before && mergeBoth, keepMineAsCopy: () => saving().keepMineAsCopy() });
+    showBoth(conflict, mineNow(), {
+      takeTheirs,
+      putMineOnTop,
+      mergeBoth: conflict.before && mergeBoth,
+      keepMineAsCopy: () => saving().keepMineAsCopy(),
+    });
   }
 
   function tellDeleted() {
     const ways = [{ label: t("Keep mine as a copy"), act: () => saving().keepMineAsCopy() }];
     if (page.canPlan) ways.unshift({ label: t("Bring it back"), act: bringBack });
-    const kept = isUnsaved(store.state) ? t("Your selection is kept in this browser.") : t("Its targets and routes are still on this page.");
-    problem(isUnsaved(store.state) ? t("Not saved: the mission has been deleted.") : t("The mission has been deleted."), kept, page.canPlan ? ways : [], { isOfSaving: true });
+    const kept = isUnsaved(store.state)
+      ? t("Your selection is kept in this browser.")
+      : t("Its targets and routes are still on this page.");
+    problem(
+      isUnsaved(store.state) ? t("Not saved: the mission has been deleted.") : t("The mission has been deleted."),
+      kept,
+      page.canPlan ? ways : [],
+      { isOfSaving: true },
+    );
   }
 
   async function bringBack() {

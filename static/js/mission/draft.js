@@ -34,7 +34,10 @@ export function createDrafts({ user, editor, storage = () => globalThis.localSto
     /** draft: { name, selection, revision }. False where storage is full or closed: leaving the page asks first. */
     keep(mission, draft) {
       try {
-        storage().setItem(keyOf(user, mission), JSON.stringify({ ...draft, editor, kept_at: new Date().toISOString() }));
+        storage().setItem(
+          keyOf(user, mission),
+          JSON.stringify({ ...draft, editor, kept_at: new Date().toISOString() }),
+        );
         return true;
       } catch {
         return false;

@@ -13,7 +13,9 @@ export function createFleetActions({ store, selection, change }) {
     const before = selection().uavs.length;
     change(uavs.reduce(picks.withUav, selection()));
     const added = selection().uavs.slice(before);
-    const renamed = uavs.map(({ id, name }) => ({ name, other: added.find((uav) => uav.id === id)?.name ?? name })).find(({ name, other }) => other !== name);
+    const renamed = uavs
+      .map(({ id, name }) => ({ name, other: added.find((uav) => uav.id === id)?.name ?? name }))
+      .find(({ name, other }) => other !== name);
     if (renamed) toast(t("{name} is called {other} in this mission: another UAV has its name.", renamed));
     return added.length;
   }
@@ -51,7 +53,9 @@ export function createFleetActions({ store, selection, change }) {
   return {
     takePresentFigures,
     takeFleetFigures,
-    addUav, addUavOfFleet, addUavsOfFleet,
+    addUav,
+    addUavOfFleet,
+    addUavsOfFleet,
     removeUav: (sequence) => change(picks.withoutUavAt(selection(), sequence)),
     moveUav: (sequence, position) => change(picks.withUavAt(selection(), sequence, position)),
     changeUav: (sequence, values) => change(picks.withUavAs(selection(), sequence, values)),

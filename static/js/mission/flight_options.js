@@ -8,7 +8,16 @@ import { lostLinkOf } from "./lost_link.js";
 export const UNSAID = Object.freeze({ departs_at: null, conditions: null, charging_w: null, lost_link: null });
 export const MILD_C = 15; // ISA at sea level, where nobody says otherwise
 export const MOST_LAYERS = 10; // missions/serializers/limits.py
-const COMPASS = [t("north"), t("north-east"), t("east"), t("south-east"), t("south"), t("south-west"), t("west"), t("north-west")];
+const COMPASS = [
+  t("north"),
+  t("north-east"),
+  t("east"),
+  t("south-east"),
+  t("south"),
+  t("south-west"),
+  t("west"),
+  t("north-west"),
+];
 
 const layerOf = ({ altitude_agl_m, speed_mps, from_deg }) => ({ altitude_agl_m, speed_mps, from_deg });
 
@@ -25,7 +34,12 @@ export function conditionsOf(conditions) {
 export const momentOf = (departs_at) => (departs_at ? new Date(departs_at).toISOString() : null);
 
 /** The four of a stored mission or a draft. */
-export const flightOptionsOf = ({ departs_at, conditions, charging_w, lost_link }) => ({ departs_at: momentOf(departs_at), conditions: conditionsOf(conditions), charging_w: charging_w ?? null, lost_link: lostLinkOf(lost_link) });
+export const flightOptionsOf = ({ departs_at, conditions, charging_w, lost_link }) => ({
+  departs_at: momentOf(departs_at),
+  conditions: conditionsOf(conditions),
+  charging_w: charging_w ?? null,
+  lost_link: lostLinkOf(lost_link),
+});
 
 /** What of them is said, as the API takes it. */
 export function flightOptionsAsked(selection) {
@@ -38,7 +52,13 @@ export const compassText = (from_deg) => COMPASS[Math.round((((from_deg % 360) +
 /** "Calm, 15 °C", "8 m/s from the west at 100 m above ground, 5 °C". */
 export function conditionsText(conditions) {
   const { wind, temperature_c } = conditionsOf(conditions) ?? { wind: [], temperature_c: MILD_C };
-  const layers = wind.map(({ altitude_agl_m, speed_mps, from_deg }) => t("{speed} from the {side} at {height}", { speed: speedText(speed_mps), side: compassText(from_deg), height: heightText(altitude_agl_m) }));
+  const layers = wind.map(({ altitude_agl_m, speed_mps, from_deg }) =>
+    t("{speed} from the {side} at {height}", {
+      speed: speedText(speed_mps),
+      side: compassText(from_deg),
+      height: heightText(altitude_agl_m),
+    }),
+  );
   return [layers.length ? layers.join("; ") : t("Calm"), temperatureText(temperature_c)].join(", ");
 }
 

@@ -39,7 +39,16 @@ const isOfMission = ({ kind }) => kind === "upload-mission" || kind === "clear-m
 export function flyersOf(mission) {
   const flights = new Map((mission.approval?.flights ?? []).map((entry) => [entry.uav, entry]));
   return (mission.plan?.routes ?? [])
-    .map((route, place) => ({ place, letter: routeLetter(place), name: route.uav, uav: route.uav_id, flights: flights.get(place)?.flights ?? 1, flown: flights.get(place)?.flown ?? 0, hasFailed: flights.get(place)?.has_failed ?? false, route }))
+    .map((route, place) => ({
+      place,
+      letter: routeLetter(place),
+      name: route.uav,
+      uav: route.uav_id,
+      flights: flights.get(place)?.flights ?? 1,
+      flown: flights.get(place)?.flown ?? 0,
+      hasFailed: flights.get(place)?.has_failed ?? false,
+      route,
+    }))
     .filter(({ route }) => route.geometry);
 }
 
@@ -63,12 +72,17 @@ const DOUBTS = {
 };
 
 /** Whether what was brought by this upload is what was read back from the UAV last; `connection` is null while that is not known here. */
-const isSeenThere = ({ approval, finished_at }, connection) => !connection || Date.parse(connection.server_time) < Date.parse(finished_at) || connection.loaded_approval === approval;
+const isSeenThere = ({ approval, finished_at }, connection) =>
+  !connection ||
+  Date.parse(connection.server_time) < Date.parse(finished_at) ||
+  connection.loaded_approval === approval;
 
 /** "read back 3 min ago", and what speaks for something else by now: { words, isDoubted }. */
 function readBack({ loaded_read_at, loaded_doubt, server_time }) {
   const ago = agoText((Date.parse(server_time) - Date.parse(loaded_read_at)) / 1000, loaded_read_at);
-  return loaded_doubt ? { words: t("read back {ago}; not known now: {why}", { ago, why: DOUBTS[loaded_doubt] }), isDoubted: true } : { words: t("read back {ago}", { ago }), isDoubted: false };
+  return loaded_doubt
+    ? { words: t("read back {ago}; not known now: {why}", { ago, why: DOUBTS[loaded_doubt] }), isDoubted: true }
+    : { words: t("read back {ago}", { ago }), isDoubted: false };
 }
 
 /** What is on board, in words: { words, image, level, share }. share: 0 to 1 of an upload that is under way. */
@@ -81,19 +95,37 @@ export function boardWords(command, connection = null) {
     if (isOpen(command)) return { words: t("Being taken off the UAV"), image: "loader-circle" };
     return { words: t("Still on the UAV: {why}", { why }), image: "octagon-alert", level: "critical" };
   }
-  if (isMixed(command)) return { words: t("Mixed mission on the UAV – {why}", { why }), image: "octagon-alert", level: "critical" };
+  if (isMixed(command))
+    return { words: t("Mixed mission on the UAV – {why}", { why }), image: "octagon-alert", level: "critical" };
   if (state === "applied") {
     const flight = parameters.flight ?? 1;
-    const what = flight > 1 ? t("On the UAV: flight {flight}, what was approved", { flight }) : t("On the UAV: what was approved");
-    if (!isSeenThere(command, connection)) return { words: t("It is not known what is on the UAV: send it again."), image: "triangle-alert", level: "warning" };
+    const what =
+      flight > 1 ? t("On the UAV: flight {flight}, what was approved", { flight }) : t("On the UAV: what was approved");
+    if (!isSeenThere(command, connection))
+      return {
+        words: t("It is not known what is on the UAV: send it again."),
+        image: "triangle-alert",
+        level: "warning",
+      };
     const read = connection?.loaded_read_at ? readBack(connection) : null;
     const words = read ? t("{what}, {read}", { what, read: read.words }) : what;
-    if (read?.isDoubted) return { words: outcome ? `${words} – ${outcome}` : words, image: "triangle-alert", level: "warning" };
-    return outcome ? { words: `${words} – ${outcome}`, image: "triangle-alert", level: "warning" } : { words, image: "circle-check", level: "good" };
+    if (read?.isDoubted)
+      return { words: outcome ? `${words} – ${outcome}` : words, image: "triangle-alert", level: "warning" };
+    return outcome
+      ? { words: `${words} – ${outcome}`, image: "triangle-alert", level: "warning" }
+      : { words, image: "circle-check", level: "good" };
   }
-  if (state === "failed" || state === "expired") return { words: t("Not on the UAV: {why}", { why }), image: "triangle-alert", level: "warning" };
-  if (progress?.total) return { words: t("Sending, {done} of {total} items", progress), image: "loader-circle", share: progress.done / progress.total };
-  return state === "queued" ? { words: t("Waiting for the UAV"), image: "timer" } : { words: t("Sending"), image: "loader-circle", share: 0 };
+  if (state === "failed" || state === "expired")
+    return { words: t("Not on the UAV: {why}", { why }), image: "triangle-alert", level: "warning" };
+  if (progress?.total)
+    return {
+      words: t("Sending, {done} of {total} items", progress),
+      image: "loader-circle",
+      share: progress.done / progress.total,
+    };
+  return state === "queued"
+    ? { words: t("Waiting for the UAV"), image: "timer" }
+    : { words: t("Sending"), image: "loader-circle", share: 0 };
 }
 
 /** "Hold: done 14:05", with the reason where it did not come to that: { words, image, level }. */
@@ -103,16 +135,35 @@ export function commandWords(command) {
   const said = t("{kind}: {state} {time}", { kind: KINDS[command.kind], state: words, time: clockText(at) });
   const { progress } = command;
   if (command.state === "queued" && progress?.total && !isOfMission(command)) {
-    return { words: t("{kind}: reading back what is on board, {done} of {total} items", { kind: KINDS[command.kind], ...progress }), image: "loader-circle", level: null };
+    return {
+      words: t("{kind}: reading back what is on board, {done} of {total} items", {
+        kind: KINDS[command.kind],
+        ...progress,
+      }),
+      image: "loader-circle",
+      level: null,
+    };
   }
   const level = command.state === "failed" ? "critical" : command.state === "expired" ? "warning" : null;
-  return { words: command.outcome && command.state !== "applied" ? `${said} – ${command.outcome}` : said, image, level };
+  return {
+    words: command.outcome && command.state !== "applied" ? `${said} – ${command.outcome}` : said,
+    image,
+    level,
+  };
 }
 
 /** Its times, one after the other: "given 14:02:10, sent 14:02:11". */
 export function timesOf({ created_at, sent_at, acknowledged_at, finished_at, state }, timeText) {
-  const steps = [[t("given"), created_at], [t("sent"), sent_at], [t("acknowledged"), acknowledged_at], [STATES[state].words, finished_at]];
-  return steps.filter(([, at]) => at).map(([word, at]) => `${word} ${timeText(at)}`).join(", ");
+  const steps = [
+    [t("given"), created_at],
+    [t("sent"), sent_at],
+    [t("acknowledged"), acknowledged_at],
+    [STATES[state].words, finished_at],
+  ];
+  return steps
+    .filter(([, at]) => at)
+    .map(([word, at]) => `${word} ${timeText(at)}`)
+    .join(", ");
 }
 
 const IN_MOTION = ["arm", "take-off", "start", "resume"];
@@ -123,8 +174,13 @@ export function whyNotMoved(kind, mission, { uav, name, hasFailed }, commands) {
   if (!isOnItsWay(mission) || !mission.approval) return t("{name} has no mission.", { name });
   if (mission.approval.revoke_requested_at) return t("The approval is being taken back.");
   if (hasFailed) return t("A flight of {name} has failed: it does not fly on in this mission.", { name });
-  const wasStarted = commands.some((command) => command.kind === "start" && command.uav.id === uav && command.sent_at && command.approval === mission.approval.id);
-  return kind === "resume" && !(mission.state === "active" && wasStarted) ? t("{name} has not started its mission: there is nothing to go on with.", { name }) : "";
+  const wasStarted = commands.some(
+    (command) =>
+      command.kind === "start" && command.uav.id === uav && command.sent_at && command.approval === mission.approval.id,
+  );
+  return kind === "resume" && !(mission.state === "active" && wasStarted)
+    ? t("{name} has not started its mission: there is nothing to go on with.", { name })
+    : "";
 }
 
 /** Why a UAV cannot be started; empty where it can. */
@@ -133,10 +189,18 @@ export function whyNoStart(mission, flyer, commands) {
   const unmoved = whyNotMoved("start", mission, flyer, commands);
   if (unmoved) return unmoved;
   const board = boardOf(commands, uav);
-  if (board?.kind !== "upload-mission" || board.state !== "applied") return t("{name} does not have its mission yet.", { name });
+  if (board?.kind !== "upload-mission" || board.state !== "applied")
+    return t("{name} does not have its mission yet.", { name });
   const flight = board.parameters.flight ?? 1;
   if (flight <= flown) return t("{name} has flown this flight.", { name });
-  const started = commands.find(({ kind, uav: { id }, parameters, state, approval }) => kind === "start" && id === uav && state === "applied" && parameters.flight === flight && approval === mission.approval?.id);
+  const started = commands.find(
+    ({ kind, uav: { id }, parameters, state, approval }) =>
+      kind === "start" &&
+      id === uav &&
+      state === "applied" &&
+      parameters.flight === flight &&
+      approval === mission.approval?.id,
+  );
   return started ? t("{name} is flying.", { name }) : "";
 }
 
@@ -145,7 +209,10 @@ export function flightToSend({ uav, flights, flown }, commands, connection = nul
   const board = boardOf(commands, uav);
   const next = flown + 1;
   if (next > flights) return null;
-  const isThere = board?.kind === "upload-mission" && (isOpen(board) || (board.state === "applied" && isSeenThere(board, connection))) && (board.parameters.flight ?? 1) === next;
+  const isThere =
+    board?.kind === "upload-mission" &&
+    (isOpen(board) || (board.state === "applied" && isSeenThere(board, connection))) &&
+    (board.parameters.flight ?? 1) === next;
   return isThere ? null : next;
 }
 
@@ -155,9 +222,18 @@ export function stageWords(mission) {
   if (state === "completed") return t("Flown to its end. Save a copy to fly it again.");
   if (state === "aborted") return t("Aborted. Save a copy to fly it again.");
   if (state === "failed") return t("A flight failed. Save a copy to fly it again.");
-  if (approval?.revoke_requested_at) return t("The approval is being taken back: {reason}. It ends once every UAV was seen without the mission.", { reason: approval.revoke_reason });
-  const by = t("Approved by {name} {time}.", { name: approval?.approved_by ?? t("somebody who has left"), time: approval ? clockText(approval.approved_at) : "" });
-  const how = state === "active" ? t("It is being flown: nothing of it can be changed.") : t("Nothing of it can be changed until that is revoked.");
+  if (approval?.revoke_requested_at)
+    return t("The approval is being taken back: {reason}. It ends once every UAV was seen without the mission.", {
+      reason: approval.revoke_reason,
+    });
+  const by = t("Approved by {name} {time}.", {
+    name: approval?.approved_by ?? t("somebody who has left"),
+    time: approval ? clockText(approval.approved_at) : "",
+  });
+  const how =
+    state === "active"
+      ? t("It is being flown: nothing of it can be changed.")
+      : t("Nothing of it can be changed until that is revoked.");
   return `${by} ${how}`;
 }
 
@@ -167,7 +243,11 @@ export function stageActs(mission, commands) {
   const toSend = flyersOf(mission).filter((flyer) => flightToSend(flyer, commands) !== null);
   const stale = mission.is_stale && mission.stale_causes.some(({ what }) => what !== "elsewhere");
   const send = mission.state === "approved" || (mission.state === "dispatched" && toSend.length > 0 && !isBeingRevoked);
-  const whyNot = stale ? t("The ground has changed since it was approved. Revoke it, and plan again.") : isBeingRevoked ? t("The approval is being taken back.") : "";
+  const whyNot = stale
+    ? t("The ground has changed since it was approved. Revoke it, and plan again.")
+    : isBeingRevoked
+      ? t("The approval is being taken back.")
+      : "";
   return {
     send: send && (whyNot || true),
     revoke: ["approved", "dispatched"].includes(mission.state),

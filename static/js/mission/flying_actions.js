@@ -21,7 +21,12 @@ export function createFlying(store, { failed, page }) {
   let returnsAt = 0;
 
   const mission = () => store.state.mission;
-  const ifMatch = () => ({ headers: { "If-Match": `"${mission().revision}"`, "Idempotency-Key": crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` } });
+  const ifMatch = () => ({
+    headers: {
+      "If-Match": `"${mission().revision}"`,
+      "Idempotency-Key": crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`,
+    },
+  });
   const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
 
   /** Tells what was refused, in the server's words. */
@@ -33,7 +38,10 @@ export function createFlying(store, { failed, page }) {
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.isSignedOut) failed(title, error, [{ label: t("Sign in"), href: signInAddress }]);
-      else if (error.status === 412) failed(title, new ApiError(t("Somebody else has changed the mission. Look at it again."), { status: 412 }), [{ label: t("Load again"), act: () => location.reload() }]);
+      else if (error.status === 412)
+        failed(title, new ApiError(t("Somebody else has changed the mission. Look at it again."), { status: 412 }), [
+          { label: t("Load again"), act: () => location.reload() },
+        ]);
       else failed(title, error);
     } finally {
       store.update({ isDispatching: false });
@@ -49,8 +57,17 @@ export function createFlying(store, { failed, page }) {
   /** store.connections: by UAV, what is known of it and of what is on board; null while that could not be read. */
   async function readConnections() {
     connectionsAt = Date.now();
-    const uavs = flyersOf(mission()).map(({ uav }) => uav).filter((uav) => uav !== null);
-    const read = await Promise.all(uavs.map((uav) => get(`/uavs/${uav}/connection`).then(({ data }) => [uav, data], () => [uav, null])));
+    const uavs = flyersOf(mission())
+      .map(({ uav }) => uav)
+      .filter((uav) => uav !== null);
+    const read = await Promise.all(
+      uavs.map((uav) =>
+        get(`/uavs/${uav}/connection`).then(
+          ({ data }) => [uav, data],
+          () => [uav, null],
+        ),
+      ),
+    );
     store.update({ connections: new Map(read) });
   }
 
@@ -67,10 +84,14 @@ export function createFlying(store, { failed, page }) {
   }
 
   /** Warnings only, each once. */
-  const returnsOf = (flyers) => [...new Set(flyers.flatMap(({ place }) => {
-    const check = returnOf(store.state.returns, place);
-    return check ? check.warnings : returnLines(check);
-  }))];
+  const returnsOf = (flyers) => [
+    ...new Set(
+      flyers.flatMap(({ place }) => {
+        const check = returnOf(store.state.returns, place);
+        return check ? check.warnings : returnLines(check);
+      }),
+    ),
+  ];
 
   async function approve() {
     const flyers = flyersOf(mission());
@@ -79,17 +100,33 @@ export function createFlying(store, { failed, page }) {
     const asked = await confirmAct({
       title: t("Approve “{name}”?", { name: mission().name }),
       lines: [
-        tn(flyers.length, "{count} UAV flies {length} in all: {names}.", "{count} UAVs fly {length} in all: {names}.", { length: lengthText(mission().plan.total_length_m), names: uavsWords(flyers) }),
+        tn(flyers.length, "{count} UAV flies {length} in all: {names}.", "{count} UAVs fly {length} in all: {names}.", {
+          length: lengthText(mission().plan.total_length_m),
+          names: uavsWords(flyers),
+        }),
         simulated.length > 0 && t("Simulated, no real aircraft: {names}.", { names: uavsWords(simulated) }),
-        t("From then on nothing of the mission can be changed, and only what is approved is sent to UAVs. The approval can be revoked."),
+        t(
+          "From then on nothing of the mission can be changed, and only what is approved is sent to UAVs. The approval can be revoked.",
+        ),
         ...returnsOf(flyers),
       ],
-      field: { name: "longest_leg_m", label: t("Put points in on legs longer than [m]; empty: as planned"), type: "number", min: 50, max: 5000, step: "any" },
-      act: t("Approve"), isBack: true, image: "badge-check",
+      field: {
+        name: "longest_leg_m",
+        label: t("Put points in on legs longer than [m]; empty: as planned"),
+        type: "number",
+        min: 50,
+        max: 5000,
+        step: "any",
+      },
+      act: t("Approve"),
+      isBack: true,
+      image: "badge-check",
     });
     if (!asked) return;
     const wishes = Number.isFinite(asked.longest_leg_m) ? asked : {};
-    await tried(t("Not approved."), async () => store.update({ mission: (await post(`/missions/${mission().id}/approve`, wishes, ifMatch())).data }));
+    await tried(t("Not approved."), async () =>
+      store.update({ mission: (await post(`/missions/${mission().id}/approve`, wishes, ifMatch())).data }),
+    );
   }
 
   async function revoke() {
@@ -97,22 +134,45 @@ export function createFlying(store, { failed, page }) {
     const asked = await confirmAct({
       title: t("Revoke the approval of “{name}”?", { name: mission().name }),
       lines: away
-        ? [t("Every UAV that may have the mission is told to drop it. The approval ends once all of them were seen without it; then the mission can be changed again."), t("Until then it can be neither sent nor started.")]
+        ? [
+            t(
+              "Every UAV that may have the mission is told to drop it. The approval ends once all of them were seen without it; then the mission can be changed again.",
+            ),
+            t("Until then it can be neither sent nor started."),
+          ]
         : [t("The mission can be changed again, and has to be approved anew before it is sent.")],
       field: { name: "reason", label: t("Why (kept in the history)"), isNeeded: true },
-      keep: t("Keep it approved"), act: t("Revoke"),
+      keep: t("Keep it approved"),
+      act: t("Revoke"),
     });
-    if (asked) await tried(t("Not revoked."), async () => store.update({ mission: (await post(`/missions/${mission().id}/revoke`, { reason: asked.reason }, ifMatch())).data }));
+    if (asked)
+      await tried(t("Not revoked."), async () =>
+        store.update({
+          mission: (await post(`/missions/${mission().id}/revoke`, { reason: asked.reason }, ifMatch())).data,
+        }),
+      );
   }
 
   /** flyer: one UAV's flight; without: all that have nothing yet. */
   async function send(flyer = null, flight = 1) {
     const flyers = flyer ? [flyer] : flyersOf(mission());
-    const title = flyer ? (flight > 1 ? t("Send flight {flight} to {name}?", { flight, name: flyer.name }) : t("Send its route to {name}?", { name: flyer.name })) : tn(flyers.length, "Send the mission to {count} UAV?", "Send the mission to {count} UAVs?");
+    const title = flyer
+      ? flight > 1
+        ? t("Send flight {flight} to {name}?", { flight, name: flyer.name })
+        : t("Send its route to {name}?", { name: flyer.name })
+      : tn(flyers.length, "Send the mission to {count} UAV?", "Send the mission to {count} UAVs?");
     const asked = await confirmAct({
       title,
-      lines: [t("{names}: what each one then has on board is read back and compared with what was approved. Nothing takes off by this.", { names: uavsWords(flyers) }), t("A UAV that is not connected gets its route when it is, within the hour.")],
-      act: flyer ? t("Send to {name}", { name: flyer.name }) : t("Send to UAVs"), isBack: true, image: "send",
+      lines: [
+        t(
+          "{names}: what each one then has on board is read back and compared with what was approved. Nothing takes off by this.",
+          { names: uavsWords(flyers) },
+        ),
+        t("A UAV that is not connected gets its route when it is, within the hour."),
+      ],
+      act: flyer ? t("Send to {name}", { name: flyer.name }) : t("Send to UAVs"),
+      isBack: true,
+      image: "send",
     });
     if (!asked) return;
     await tried(t("Not sent."), async () => {
@@ -125,8 +185,19 @@ export function createFlying(store, { failed, page }) {
     const flyers = flyersOf(mission());
     const asked = await confirmAct({
       title: t("Abort “{name}”?", { name: mission().name }),
-      lines: [t("{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.", { names: uavsWords(flyers) }), ...returnsOf(flyers), LATE],
-      field: WHY, keep: mission().state === "active" ? t("Keep flying") : t("Keep it"), act: t("Abort the mission"), isDanger: true, image: "octagon-alert",
+      lines: [
+        t(
+          "{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.",
+          { names: uavsWords(flyers) },
+        ),
+        ...returnsOf(flyers),
+        LATE,
+      ],
+      field: WHY,
+      keep: mission().state === "active" ? t("Keep flying") : t("Keep it"),
+      act: t("Abort the mission"),
+      isDanger: true,
+      image: "octagon-alert",
     });
     if (!asked) return;
     await tried(t("Not aborted."), async () => {
@@ -140,7 +211,11 @@ export function createFlying(store, { failed, page }) {
     if (!asked) return;
     const { why = "", ...parameters } = asked;
     await tried(t("{name} was not told: {act}.", { name: flyer.name, act: KINDS[kind] }), async () => {
-      await post(`/uavs/${flyer.uav}/commands`, { kind, why, parameters }, { headers: { "Idempotency-Key": ifMatch().headers["Idempotency-Key"] } });
+      await post(
+        `/uavs/${flyer.uav}/commands`,
+        { kind, why, parameters },
+        { headers: { "Idempotency-Key": ifMatch().headers["Idempotency-Key"] } },
+      );
       say(t("{act}: {name} is being told.", { act: KINDS[kind], name: flyer.name }));
     });
   }

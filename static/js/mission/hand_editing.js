@@ -3,8 +3,8 @@
 import { post, request } from "../api.js";
 import { say, toast } from "../page/toast.js";
 import { t } from "../text.js";
-import { isPlanCurrent } from "./plan_view.js";
 import * as hand from "./hand_route.js";
+import { isPlanCurrent } from "./plan_view.js";
 
 const MOST_KNOWN = 50; // routes as they were wished, with what the server said of them
 const NO_FAULTS = hand.faultsOf(null);
@@ -35,7 +35,25 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
     [past, future] = [[], []];
     looks.clear();
     const original = hand.pointsOf(route);
-    store.update({ hand: { sequence, original, points: original, chosen: null, dragged: null, look: null, isLookOld: true, unknown: "", faults: NO_FAULTS, legs: new Map(), canUndo: false, canRedo: false, isSaving: false }, why: { byHand: sequence }, tool: "point" });
+    store.update({
+      hand: {
+        sequence,
+        original,
+        points: original,
+        chosen: null,
+        dragged: null,
+        look: null,
+        isLookOld: true,
+        unknown: "",
+        faults: NO_FAULTS,
+        legs: new Map(),
+        canUndo: false,
+        canRedo: false,
+        isSaving: false,
+      },
+      why: { byHand: sequence },
+      tool: "point",
+    });
     void ask();
   }
 
@@ -44,7 +62,13 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
   }
 
   const show = (points, chosen) => {
-    put({ points, chosen: chosen !== null && points[chosen] ? chosen : null, canUndo: past.length > 0, canRedo: future.length > 0, ...knownOf(points) });
+    put({
+      points,
+      chosen: chosen !== null && points[chosen] ? chosen : null,
+      canUndo: past.length > 0,
+      canRedo: future.length > 0,
+      ...knownOf(points),
+    });
     void ask();
   };
 
@@ -66,7 +90,11 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
     const look = exact ?? (last?.waypoints.length === points.length ? last : null);
     const faults = look && (exact || dragged) ? hand.faultsOf(look.faults) : NO_FAULTS;
     const isKnown = look !== null && (exact !== null || Boolean(dragged));
-    const legs = new Map(hand.changedLegs(points, original).map((index) => [index, isKnown ? { is_clear: hand.isLegClear(faults, index) } : null]));
+    const legs = new Map(
+      hand
+        .changedLegs(points, original)
+        .map((index) => [index, isKnown ? { is_clear: hand.isLegClear(faults, index) } : null]),
+    );
     return { look: exact ?? last, isLookOld: exact === null, faults, legs, unknown: "" };
   }
 
@@ -78,7 +106,10 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
     if (looks.has(keyOf(points))) return;
     isAsking = true;
     try {
-      const { data } = await post(`/missions/${store.state.mission.id}/routes/${asked.sequence}/waypoints/look`, hand.bodyOf(points));
+      const { data } = await post(
+        `/missions/${store.state.mission.id}/routes/${asked.sequence}/waypoints/look`,
+        hand.bodyOf(points),
+      );
       looks.set(keyOf(points), data);
       if (looks.size > MOST_KNOWN) looks.delete(looks.keys().next().value);
       if (state()?.sequence !== asked.sequence) return;
@@ -101,7 +132,10 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
   }
 
   async function stored(mission, sequence, points) {
-    const answer = await request("PUT", `/missions/${mission.id}/routes/${sequence}/waypoints`, { body: hand.bodyOf(points), headers: { "If-Match": `"${mission.revision}"` } });
+    const answer = await request("PUT", `/missions/${mission.id}/routes/${sequence}/waypoints`, {
+      body: hand.bodyOf(points),
+      headers: { "If-Match": `"${mission.revision}"` },
+    });
     return answer.data;
   }
 
@@ -110,7 +144,9 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
     const { mission, name } = store.state;
     if (state()) put({ isSaving: true });
     try {
-      const { data } = await request("POST", `/missions/${mission.id}/routes/${sequence}/waypoints/undo`, { headers: { "If-Match": `"${mission.revision}"` } });
+      const { data } = await request("POST", `/missions/${mission.id}/routes/${sequence}/waypoints/undo`, {
+        headers: { "If-Match": `"${mission.revision}"` },
+      });
       end();
       keepOpen(data, { selection: selection(), name });
       history.startFrom(selection());
@@ -140,7 +176,11 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
       const places = faults.points.size + faults.legs.size;
       const told = places || faults.other.length ? faults : { ...faults, other: [wordsOf(error)] };
       toast(t("Not kept: {reason}", { reason: [...told.other, ...told.points.values(), ...told.legs.values()][0] }));
-      put({ isSaving: false, faults: told, chosen: [...faults.points.keys(), ...faults.legs.keys()][0] ?? state().chosen });
+      put({
+        isSaving: false,
+        faults: told,
+        chosen: [...faults.points.keys(), ...faults.legs.keys()][0] ?? state().chosen,
+      });
       if (error.isSignedOut) problem(t("You are signed out."), wordsOf(error));
     }
     return undefined;
@@ -148,7 +188,13 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
 
   // Who plans anew, picks something else or closes the panel is not changing this route any more.
   store.listen(["plan", "why"], ({ hand: now, why, plan }) => {
-    if (now && (why?.byHand !== now.sequence || !plan?.result.routes[now.sequence]?.geometry || hand.pointsOf(plan.result.routes[now.sequence]).length !== now.original.length)) end();
+    if (
+      now &&
+      (why?.byHand !== now.sequence ||
+        !plan?.result.routes[now.sequence]?.geometry ||
+        hand.pointsOf(plan.result.routes[now.sequence]).length !== now.original.length)
+    )
+      end();
   });
 
   return {

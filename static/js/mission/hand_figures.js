@@ -9,7 +9,8 @@ const LEAST_M = 1;
 const LEAST_S = 30;
 const LEAST_PERCENT = 0.5;
 
-const signed = (difference, least, textOf) => (Math.abs(difference) < least ? "" : ` (${difference < 0 ? "−" : "+"}${textOf(Math.abs(difference))})`);
+const signed = (difference, least, textOf) =>
+  Math.abs(difference) < least ? "" : ` (${difference < 0 ? "−" : "+"}${textOf(Math.abs(difference))})`;
 
 /** "21.7 km (+412 m) · 32 min (+1 min) · 51 % at landing (−2 %)"; empty where nothing can be flown. `stored` is the route as it is kept. */
 export function figuresOfLook(look, stored) {
@@ -20,7 +21,11 @@ export function figuresOfLook(look, stored) {
   ];
   if (look.battery_percent !== null) {
     const difference = stored.battery_percent === null ? 0 : look.battery_percent - stored.battery_percent;
-    told.push(t("{percent} at landing", { percent: `${percentText(look.battery_percent)}${signed(difference, LEAST_PERCENT, percentText)}` }));
+    told.push(
+      t("{percent} at landing", {
+        percent: `${percentText(look.battery_percent)}${signed(difference, LEAST_PERCENT, percentText)}`,
+      }),
+    );
   }
   return told.join(" · ");
 }
@@ -28,11 +33,14 @@ export function figuresOfLook(look, stored) {
 /** Over the leg to a point: as set by hand, or what the UAV flies there. own_mps is its speed in still air, flown_mps over ground; null: not known. */
 export function speedWords(point, own_mps, flown_mps) {
   if (!isFlownTo(point)) return t("No leg leads here.");
-  if (point.speed_mps !== null) return own_mps ? t("By hand; empty: {speed} as planned.", { speed: speedText(own_mps) }) : t("By hand.");
+  if (point.speed_mps !== null)
+    return own_mps ? t("By hand; empty: {speed} as planned.", { speed: speedText(own_mps) }) : t("By hand.");
   const speed_mps = flown_mps ?? own_mps;
   if (!speed_mps) return t("As planned.");
   const values = { speed: speedText(speed_mps), own: speedText(own_mps ?? speed_mps) };
-  if (flown_mps !== null && own_mps && flown_mps < own_mps - SAME_MPS) return t("{speed} over ground: the wind leaves no more of {own}.", values);
-  if (flown_mps !== null && own_mps && flown_mps > own_mps + SAME_MPS) return t("{speed} over ground: the wind carries it, {own} are planned.", values);
+  if (flown_mps !== null && own_mps && flown_mps < own_mps - SAME_MPS)
+    return t("{speed} over ground: the wind leaves no more of {own}.", values);
+  if (flown_mps !== null && own_mps && flown_mps > own_mps + SAME_MPS)
+    return t("{speed} over ground: the wind carries it, {own} are planned.", values);
   return t("{speed} over ground, as planned.", values);
 }

@@ -27,7 +27,11 @@ export function mountHandMap(map, store, actions) {
 
   function draw({ hand }) {
     if (!hand) return layer.show(map, null);
-    return layer.show(map, hand.dragged ?? hand.points, { chosen: hand.chosen, stateOf: stateOf(hand.legs, hand.faults), isFree });
+    return layer.show(map, hand.dragged ?? hand.points, {
+      chosen: hand.chosen,
+      stateOf: stateOf(hand.legs, hand.faults),
+      isFree,
+    });
   }
 
   /** The nearest waypoint within reach, else the middle of a leg. */
@@ -37,8 +41,16 @@ export function mountHandMap(map, store, actions) {
       const place = map.project(position);
       return Math.hypot(place.x - at.x, place.y - at.y);
     };
-    const nearest = (list) => list.map((item) => ({ ...item, far: far(item.position) })).filter((item) => item.far <= REACH_PX).sort((a, b) => a.far - b.far)[0];
-    const free = nearest(points.map(({ position, kind }, index) => ({ position, index, isFixed: !isFree({ kind }) })).filter(({ isFixed }) => !isFixed));
+    const nearest = (list) =>
+      list
+        .map((item) => ({ ...item, far: far(item.position) }))
+        .filter((item) => item.far <= REACH_PX)
+        .sort((a, b) => a.far - b.far)[0];
+    const free = nearest(
+      points
+        .map(({ position, kind }, index) => ({ position, index, isFixed: !isFree({ kind }) }))
+        .filter(({ isFixed }) => !isFixed),
+    );
     if (free) return { index: free.index, isNew: false };
     const middle = nearest(layer.middlesOf(map, points));
     if (middle) return { index: middle.index + 1, isNew: true };
@@ -64,7 +76,13 @@ export function mountHandMap(map, store, actions) {
       map.dragPan.disable();
       canvas.setPointerCapture(event.pointerId);
       const { points } = store.state.hand;
-      drag = { from: at, index: handle.index, points: handle.isNew ? inserted(points, handle.index - 1) : points, isNew: handle.isNew, now: null };
+      drag = {
+        from: at,
+        index: handle.index,
+        points: handle.isNew ? inserted(points, handle.index - 1) : points,
+        isNew: handle.isNew,
+        now: null,
+      };
     },
     true,
   );

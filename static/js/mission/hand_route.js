@@ -17,33 +17,60 @@ export const isFlownTo = ({ kind }) => kind !== "start" && kind !== "base";
 export function pointsOf({ waypoints, by_hand, speeds_by_hand }) {
   const byHand = new Set(by_hand ?? []);
   const speeds = new Map((speeds_by_hand ?? []).map(({ waypoint, speed_mps }) => [waypoint, speed_mps]));
-  return waypoints.map(({ position, altitude_agl_m, kind, target }, was) => ({ position, altitude_agl_m, speed_mps: speeds.get(was) ?? null, was, kind, target, isByHand: byHand.has(was) }));
+  return waypoints.map(({ position, altitude_agl_m, kind, target }, was) => ({
+    position,
+    altitude_agl_m,
+    speed_mps: speeds.get(was) ?? null,
+    was,
+    kind,
+    target,
+    isByHand: byHand.has(was),
+  }));
 }
 
-const replaced = (points, index, values) => points.map((point, at) => (at === index ? { ...point, ...values, isByHand: true } : point));
+const replaced = (points, index, values) =>
+  points.map((point, at) => (at === index ? { ...point, ...values, isByHand: true } : point));
 
 /** The same points where one that has to stay would be moved. */
 export function moved(points, index, position) {
   return points[index] && isFree(points[index]) ? replaced(points, index, { position: rounded(position) }) : points;
 }
 
-export const raised = (points, index, altitude_agl_m) => (points[index] && points[index].altitude_agl_m !== altitude_agl_m ? replaced(points, index, { altitude_agl_m }) : points);
+export const raised = (points, index, altitude_agl_m) =>
+  points[index] && points[index].altitude_agl_m !== altitude_agl_m
+    ? replaced(points, index, { altitude_agl_m })
+    : points;
 
 /** speed_mps on the leg to a point; null: the UAV's own again. */
-export const paced = (points, index, speed_mps) => (points[index] && isFlownTo(points[index]) && points[index].speed_mps !== speed_mps ? replaced(points, index, { speed_mps }) : points);
+export const paced = (points, index, speed_mps) =>
+  points[index] && isFlownTo(points[index]) && points[index].speed_mps !== speed_mps
+    ? replaced(points, index, { speed_mps })
+    : points;
 
 /** A new one after `index`, as high as the higher of its neighbours, the leg as fast as before; in the middle of the leg where no place is said. */
 export function inserted(points, index, position = null) {
   const [before, after] = [points[index], points[index + 1]];
   if (!before || !after) return points;
   const middle = before.position.map((degrees, axis) => (degrees + after.position[axis]) / 2);
-  const point = { position: rounded(position ?? middle), altitude_agl_m: Math.max(before.altitude_agl_m, after.altitude_agl_m), speed_mps: after.speed_mps, was: null, kind: "pass", target: null, isByHand: true };
+  const point = {
+    position: rounded(position ?? middle),
+    altitude_agl_m: Math.max(before.altitude_agl_m, after.altitude_agl_m),
+    speed_mps: after.speed_mps,
+    was: null,
+    kind: "pass",
+    target: null,
+    isByHand: true,
+  };
   return [...points.slice(0, index + 1), point, ...points.slice(index + 1)];
 }
 
-export const dropped = (points, index) => (points[index] && isFree(points[index]) ? points.filter((_, at) => at !== index) : points);
+export const dropped = (points, index) =>
+  points[index] && isFree(points[index]) ? points.filter((_, at) => at !== index) : points;
 
-const isAtPlace = (point, original) => point.was !== null && point.altitude_agl_m === original[point.was].altitude_agl_m && point.position.every((degrees, axis) => degrees === original[point.was].position[axis]);
+const isAtPlace = (point, original) =>
+  point.was !== null &&
+  point.altitude_agl_m === original[point.was].altitude_agl_m &&
+  point.position.every((degrees, axis) => degrees === original[point.was].position[axis]);
 
 const isAsFast = (point, original) => point.speed_mps === original[point.was].speed_mps;
 
@@ -51,7 +78,8 @@ const isAsFast = (point, original) => point.speed_mps === original[point.was].sp
 export function changedLegs(points, original) {
   return points.slice(1).flatMap((end, index) => {
     const start = points[index];
-    const isAsStored = isAtPlace(start, original) && isAtPlace(end, original) && isAsFast(end, original) && end.was === start.was + 1;
+    const isAsStored =
+      isAtPlace(start, original) && isAtPlace(end, original) && isAsFast(end, original) && end.was === start.was + 1;
     return isAsStored ? [] : [index];
   });
 }
@@ -59,11 +87,22 @@ export function changedLegs(points, original) {
 /** How many waypoints are another than stored: moved, higher, reached faster or slower, put in, taken out. */
 export function changesOf(points, original) {
   const kept = points.filter(({ was }) => was !== null);
-  return original.length - kept.length + points.filter((point) => !isAtPlace(point, original) || !isAsFast(point, original)).length;
+  return (
+    original.length -
+    kept.length +
+    points.filter((point) => !isAtPlace(point, original) || !isAsFast(point, original)).length
+  );
 }
 
 /** What the server takes for the whole route. */
-export const bodyOf = (points) => ({ waypoints: points.map(({ position, altitude_agl_m, was, speed_mps }) => ({ position, altitude_agl_m, was, speed_mps })) });
+export const bodyOf = (points) => ({
+  waypoints: points.map(({ position, altitude_agl_m, was, speed_mps }) => ({
+    position,
+    altitude_agl_m,
+    was,
+    speed_mps,
+  })),
+});
 
 /** What the server says of single places: { points: Map index → words, legs: Map index → words, other: [words] }. */
 export function faultsOf(details) {

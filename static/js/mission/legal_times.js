@@ -14,8 +14,17 @@ const span = ({ from, to }) => ({ from_ms: Date.parse(from), to_ms: Date.parse(t
 
 /** The server's answer with moments as ms; routes: those that were asked about, with name, letter and waypoints. */
 export function legalTimesOf({ from, to, windows, zones, margin_s = 0, height_margin_m = 0 }, routes = []) {
-  const named = (legs) => legs.filter(({ uav }) => routes[uav]).map(({ uav, leg }) => ({ uav: routes[uav].name, way: wayOf(routes[uav], leg) }));
-  return { ...span({ from, to }), margin_s, height_margin_m, windows: windows.map(span), zones: zones.map((zone) => ({ ...zone, blocked: zone.blocked.map(span), legs: named(zone.legs) })) };
+  const named = (legs) =>
+    legs
+      .filter(({ uav }) => routes[uav])
+      .map(({ uav, leg }) => ({ uav: routes[uav].name, way: wayOf(routes[uav], leg) }));
+  return {
+    ...span({ from, to }),
+    margin_s,
+    height_margin_m,
+    windows: windows.map(span),
+    zones: zones.map((zone) => ({ ...zone, blocked: zone.blocked.map(span), legs: named(zone.legs) })),
+  };
 }
 
 /** How far along the bar, 0 to 1. */
@@ -28,7 +37,8 @@ export function momentAt({ from_ms, to_ms }, share) {
 }
 
 /** The span that holds a moment; spans are open at their end. */
-export const spanAt = (spans, moment) => spans.find(({ from_ms, to_ms }) => from_ms <= moment && moment < to_ms) ?? null;
+export const spanAt = (spans, moment) =>
+  spans.find(({ from_ms, to_ms }) => from_ms <= moment && moment < to_ms) ?? null;
 
 /** A step within a span, as near to the moment as there is one; the span's own begin where it is shorter than a step. */
 export function stepWithin({ from_ms, to_ms }, moment) {
@@ -50,7 +60,13 @@ export function ticksOf({ from_ms, to_ms }) {
 }
 
 /** "Sun 22 Nov" of a moment as it is typed by the reader's clock. */
-const dayName = (typed) => new Date(`${typed}Z`).toLocaleDateString(localeOf(language), { timeZone: "UTC", weekday: "short", day: "numeric", month: "short" });
+const dayName = (typed) =>
+  new Date(`${typed}Z`).toLocaleDateString(localeOf(language), {
+    timeZone: "UTC",
+    weekday: "short",
+    day: "numeric",
+    month: "short",
+  });
 
 /** "Sat 21 Nov, 19:30 to 22:00". */
 export function spanText({ from_ms, to_ms }) {
@@ -60,7 +76,8 @@ export function spanText({ from_ms, to_ms }) {
 }
 
 /** Why a window ends sooner than a zone begins; empty where that is not so. */
-export const marginText = ({ zones, margin_s: time_s, height_margin_m: height_m }) => (zones.length ? marginWords({ time_s, height_m }) : "");
+export const marginText = ({ zones, margin_s: time_s, height_margin_m: height_m }) =>
+  zones.length ? marginWords({ time_s, height_m }) : "";
 
 /** What the bar says, and whether the chosen departure is one of the legal ones: { sentence, departure }. */
 export function wordsOf(times, departs_at) {
@@ -72,17 +89,30 @@ export function wordsOf(times, departs_at) {
     : free_ms === 0
       ? tn(hours, "Legal at no time of the next hour.", "Legal at no time of the next {count} hours.")
       : t("Legal for {free} of the next {hours} hours.", { free: durationText(free_ms / 1000), hours });
-  return { sentence, departure: departs_at ? departureWords(times, Date.parse(departs_at)) : t("No departure is chosen: the plan keeps clear of all zones at all times.") };
+  return {
+    sentence,
+    departure: departs_at
+      ? departureWords(times, Date.parse(departs_at))
+      : t("No departure is chosen: the plan keeps clear of all zones at all times."),
+  };
 }
 
 function departureWords(times, moment) {
   const when = departureText(new Date(moment).toISOString());
-  if (moment < times.from_ms || moment >= times.to_ms) return t("The departure {when} is outside these hours.", { when });
+  if (moment < times.from_ms || moment >= times.to_ms)
+    return t("The departure {when} is outside these hours.", { when });
   if (spanAt(times.windows, moment)) return t("The departure {when} is legal.", { when });
-  const names = times.zones.filter(({ blocked }) => spanAt(blocked, moment)).map(({ name }) => name).join(", ");
+  const names = times.zones
+    .filter(({ blocked }) => spanAt(blocked, moment))
+    .map(({ name }) => name)
+    .join(", ");
   const next = times.windows.find(({ from_ms }) => from_ms > moment);
-  const words = names ? t("The departure {when} is not legal: {zones}.", { when, zones: names }) : t("The departure {when} is not legal.", { when });
-  return next ? `${words} ${t("The next legal one is {when}.", { when: departureText(new Date(next.from_ms).toISOString()) })}` : words;
+  const words = names
+    ? t("The departure {when} is not legal: {zones}.", { when, zones: names })
+    : t("The departure {when} is not legal.", { when });
+  return next
+    ? `${words} ${t("The next legal one is {when}.", { when: departureText(new Date(next.from_ms).toISOString()) })}`
+    : words;
 }
 
 /** "Heron, A1 to A2, after A4; Kite, start to B1": on which ways between targets routes meet a zone; the climb at the start is the take-off.
@@ -90,7 +120,11 @@ function departureWords(times, moment) {
 export function legsText(legs) {
   const byUav = new Map();
   for (const { uav, way } of legs) byUav.set(uav, new Set([...(byUav.get(uav) ?? []), way]));
-  return [...byUav].map(([uav, ways]) => [uav, ...[...ways].slice(0, MOST_WAYS), ...(ways.size > MOST_WAYS ? [t("and more")] : [])].join(", ")).join("; ");
+  return [...byUav]
+    .map(([uav, ways]) =>
+      [uav, ...[...ways].slice(0, MOST_WAYS), ...(ways.size > MOST_WAYS ? [t("and more")] : [])].join(", "),
+    )
+    .join("; ");
 }
 
 /** Between which targets, as the map numbers them, a leg of a route lies that begins at this waypoint. */
@@ -108,22 +142,50 @@ const LEAST_M = 1;
 
 /** Whether looking for a better departure may be of use: a zone is in the way of the plan, for a while or for ever. */
 export function mayDepartBetter({ gap_of, unassigned = [] }, targets) {
-  return targets <= MOST_COMPARED && (gap_of === "without_timed_zones" || unassigned.some(({ reason }) => reason === "inside_zone" || reason === "no_path"));
+  return (
+    targets <= MOST_COMPARED &&
+    (gap_of === "without_timed_zones" ||
+      unassigned.some(({ reason }) => reason === "inside_zone" || reason === "no_path"))
+  );
 }
 
 /** The answer about a better departure in words: { words, departs_at }. */
 export function betterWords({ departs_at, looked_until, before, then }) {
   if (departs_at === null) {
-    const words = looked_until === null ? t("No zone near ends in the next 48 hours.") : t("No departure until {when} does better: one was looked at after each end of a zone near.", { when: departureText(looked_until) });
+    const words =
+      looked_until === null
+        ? t("No zone near ends in the next 48 hours.")
+        : t("No departure until {when} does better: one was looked at after each end of a zone near.", {
+            when: departureText(looked_until),
+          });
     return { words, departs_at };
   }
   const when = departureText(departs_at);
   const more = before.left_out - then.left_out;
-  if (more > 0) return { words: tn(more, "Departing {when} reaches {count} target more.", "Departing {when} reaches {count} targets more.", { when }), departs_at };
+  if (more > 0)
+    return {
+      words: tn(
+        more,
+        "Departing {when} reaches {count} target more.",
+        "Departing {when} reaches {count} targets more.",
+        { when },
+      ),
+      departs_at,
+    };
   const gains = [
-    before.total_length_m - then.total_length_m >= LEAST_M && t("{length} less", { length: lengthText(before.total_length_m - then.total_length_m) }),
-    before.done_s - then.done_s >= 60 && t("done {time} sooner after it", { time: durationText(before.done_s - then.done_s) }),
-    before.total_energy_wh !== null && before.total_energy_wh - then.total_energy_wh >= 1 && t("{energy} less", { energy: energyText(before.total_energy_wh - then.total_energy_wh) }),
+    before.total_length_m - then.total_length_m >= LEAST_M &&
+      t("{length} less", { length: lengthText(before.total_length_m - then.total_length_m) }),
+    before.done_s - then.done_s >= 60 &&
+      t("done {time} sooner after it", { time: durationText(before.done_s - then.done_s) }),
+    before.total_energy_wh !== null &&
+      before.total_energy_wh - then.total_energy_wh >= 1 &&
+      t("{energy} less", { energy: energyText(before.total_energy_wh - then.total_energy_wh) }),
   ].filter(Boolean);
-  return { words: t("Departing {when} does better: {gains}.", { when, gains: gains.join(", ") || t("by what the plan is best at") }), departs_at };
+  return {
+    words: t("Departing {when} does better: {gains}.", {
+      when,
+      gains: gains.join(", ") || t("by what the plan is best at"),
+    }),
+    departs_at,
+  };
 }

@@ -7,7 +7,12 @@ export const MOST_REFS = 10_000;
 
 /** Each reference once, in the order of the list: one a line, or parted by tabs, commas or semicolons; quotes are dropped. */
 export function refsIn(text) {
-  const refs = text.split(/[\n\r\t,;]+/).map((ref) => ref.trim().replace(/^(["'])(.*)\1$/, "$2").trim());
+  const refs = text.split(/[\n\r\t,;]+/).map((ref) =>
+    ref
+      .trim()
+      .replace(/^(["'])(.*)\1$/, "$2")
+      .trim(),
+  );
   return [...new Set(refs.filter(Boolean))];
 }
 

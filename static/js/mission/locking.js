@@ -21,14 +21,24 @@ export function createLocking({ store, history, selection, change }) {
   /** "Tower 4 is locked as target 2 of Kite." */
   function placeWords(key) {
     const place = locks.wishedPlace(orders(), selection(), key);
-    return t("{target} is locked as target {number} of {uav}.", { target: labelOf(key), number: place.index + 1, uav: place.uav });
+    return t("{target} is locked as target {number} of {uav}.", {
+      target: labelOf(key),
+      number: place.index + 1,
+      uav: place.uav,
+    });
   }
 
   function placeAs(next, keys, uav) {
     const namesakes = selection().uavs.filter(({ name }) => name === uav).length;
-    if (namesakes > 1) toast(t("Nothing is locked: {count} UAVs of this mission are called {name}.", { count: namesakes, name: uav }));
+    if (namesakes > 1)
+      toast(t("Nothing is locked: {count} UAVs of this mission are called {name}.", { count: namesakes, name: uav }));
     if (namesakes > 1 || !change(next)) return false;
-    toast(keys.length === 1 ? placeWords(keys[0]) : tn(keys.length, "{count} target is locked.", "{count} targets are locked."), undo);
+    toast(
+      keys.length === 1
+        ? placeWords(keys[0])
+        : tn(keys.length, "{count} target is locked.", "{count} targets are locked."),
+      undo,
+    );
     return true;
   }
 
@@ -37,14 +47,19 @@ export function createLocking({ store, history, selection, change }) {
     placeTargets: (keys, place) => placeAs(locks.placed(selection(), orders(), keys, place), keys, place.uav),
     shiftTarget: (key, step) => placeAs(locks.shifted(selection(), orders(), key, step), [key], uavOf(key)),
     lockTarget: (key) => placeAs(locks.lockedHere(selection(), orders(), key), [key], uavOf(key)),
-    giveTarget: (key, uav) => wish(locks.flownBy(selection(), key, uav), t("{target} is locked to {uav}.", { target: labelOf(key), uav })),
-    unlockTarget: (key) => wish(locks.unlocked(selection(), key), t("{target} is not locked any more.", { target: labelOf(key) })),
+    giveTarget: (key, uav) =>
+      wish(locks.flownBy(selection(), key, uav), t("{target} is locked to {uav}.", { target: labelOf(key), uav })),
+    unlockTarget: (key) =>
+      wish(locks.unlocked(selection(), key), t("{target} is not locked any more.", { target: labelOf(key) })),
     unlockAll: () => wish(withoutLocks(selection()), t("Nothing is locked any more.")),
     /** uav: a name, or null for any. */
     tieTargets(keys, uav) {
-      const words = uav === null
-        ? tn(keys.length, "{count} target may be flown by any UAV.", "{count} targets may be flown by any UAV.")
-        : tn(keys.length, "{count} target is flown by {uav} alone.", "{count} targets are flown by {uav} alone.", { uav });
+      const words =
+        uav === null
+          ? tn(keys.length, "{count} target may be flown by any UAV.", "{count} targets may be flown by any UAV.")
+          : tn(keys.length, "{count} target is flown by {uav} alone.", "{count} targets are flown by {uav} alone.", {
+              uav,
+            });
       return wish(locks.tied(selection(), keys, uav), words);
     },
   };

@@ -13,7 +13,10 @@ const isWholeRoute = ({ at_start, at_end }) => Boolean(at_start && at_end);
 /** Whether no plan can keep both: a target in each, or one end of a route wished for twice, or all of it and something more. */
 export function areContrary(a, b) {
   if (a.targets.some((key) => b.targets.includes(key))) return true;
-  return a.uav === b.uav && Boolean((a.at_start && b.at_start) || (a.at_end && b.at_end) || isWholeRoute(a) || isWholeRoute(b));
+  return (
+    a.uav === b.uav &&
+    Boolean((a.at_start && b.at_start) || (a.at_end && b.at_end) || isWholeRoute(a) || isWholeRoute(b))
+  );
 }
 
 /** Whether a lock to this name says which UAV is meant. */
@@ -21,7 +24,10 @@ const isOneUav = (selection, uav) => uavsByName(selection).some(({ name }) => na
 
 /** The order of each UAV's targets in a plan; one that is visited in several pieces stands once. */
 export function ordersOf(plan) {
-  return (plan?.result.routes ?? []).map((route) => ({ uav: route.uav, targets: [...new Set(route.targets.map((target) => plan.targets[target]?.key).filter(Boolean))] }));
+  return (plan?.result.routes ?? []).map((route) => ({
+    uav: route.uav,
+    targets: [...new Set(route.targets.map((target) => plan.targets[target]?.key).filter(Boolean))],
+  }));
 }
 
 export const lockOf = (selection, key) => locksOf(selection).find(({ targets }) => targets.includes(key)) ?? null;
@@ -33,7 +39,13 @@ function leftOf(lock, targets) {
   return [{ ...lock, targets }];
 }
 
-const without = (locks, keys) => locks.flatMap((lock) => leftOf(lock, lock.targets.filter((key) => !keys.includes(key))));
+const without = (locks, keys) =>
+  locks.flatMap((lock) =>
+    leftOf(
+      lock,
+      lock.targets.filter((key) => !keys.includes(key)),
+    ),
+  );
 
 /** Locks and ties of targets and UAVs that are still there; the same selection where nothing has gone. */
 export function settled(selection) {
@@ -41,11 +53,21 @@ export function settled(selection) {
   const names = new Set(selection.uavs.map(({ name }) => name));
   const locks = locksOf(selection)
     .filter(({ uav }) => names.has(uav))
-    .flatMap((lock) => leftOf(lock, lock.targets.filter((key) => known.has(key))));
+    .flatMap((lock) =>
+      leftOf(
+        lock,
+        lock.targets.filter((key) => known.has(key)),
+      ),
+    );
   const isTiedToNobody = (target) => wishesOf(target).uav !== null && !names.has(target.uav);
-  const isSame = locks.length === locksOf(selection).length && locks.every((lock, index) => lock === locksOf(selection)[index]);
+  const isSame =
+    locks.length === locksOf(selection).length && locks.every((lock, index) => lock === locksOf(selection)[index]);
   if (isSame && !selection.targets.some(isTiedToNobody)) return selection;
-  return { ...selection, locks, targets: selection.targets.map((target) => (isTiedToNobody(target) ? { ...target, uav: null } : target)) };
+  return {
+    ...selection,
+    locks,
+    targets: selection.targets.map((target) => (isTiedToNobody(target) ? { ...target, uav: null } : target)),
+  };
 }
 
 /** The orders as they would be with the locks: what is locked stands where it is wished, the rest as it was planned.
@@ -71,14 +93,20 @@ export function wishedOrders(orders, locks) {
 /** Whoever is given to another UAV than the one it was tied to is tied no more: the younger wish stands. */
 function untied(selection, keys, uav) {
   const isTiedElsewhere = (target) => keys.includes(target.key) && wishesOf(target).uav !== null && target.uav !== uav;
-  return selection.targets.some(isTiedElsewhere) ? selection.targets.map((target) => (isTiedElsewhere(target) ? { ...target, uav: null } : target)) : selection.targets;
+  return selection.targets.some(isTiedElsewhere)
+    ? selection.targets.map((target) => (isTiedElsewhere(target) ? { ...target, uav: null } : target))
+    : selection.targets;
 }
 
 /** Locks with one more; a run that was the whole route of its UAV keeps the begin alone, so that there is room. */
-const withLock = (locks, lock) => [...locks.map((other) => (other.uav === lock.uav && isWholeRoute(other) ? { ...other, at_end: false } : other)), lock];
+const withLock = (locks, lock) => [
+  ...locks.map((other) => (other.uav === lock.uav && isWholeRoute(other) ? { ...other, at_end: false } : other)),
+  lock,
+];
 
 /** Keys of the targets that a UAV may fly: they are picked still, and tied to nobody else. */
-const flyableBy = ({ targets }, uav) => new Set(targets.filter((target) => [null, uav].includes(wishesOf(target).uav)).map(({ key }) => key));
+const flyableBy = ({ targets }, uav) =>
+  new Set(targets.filter((target) => [null, uav].includes(wishesOf(target).uav)).map(({ key }) => key));
 
 const orderOf = (orders, uav) => orders.find((order) => order.uav === uav)?.targets ?? [];
 
@@ -103,7 +131,12 @@ export function placed(selection, orders, keys, { uav, index }) {
   const runWith = (key) => locks.find((lock) => key !== undefined && lock.uav === uav && lock.targets.includes(key));
   const [left, right] = [runWith(before), runWith(after)];
   const isAlone = before === undefined && after === undefined;
-  const lock = { uav, targets: [...keys], at_start: before === undefined && !isAlone, at_end: after === undefined && !isAlone };
+  const lock = {
+    uav,
+    targets: [...keys],
+    at_start: before === undefined && !isAlone,
+    at_end: after === undefined && !isAlone,
+  };
   const joinsLeft = before !== undefined && (!lock.at_end || left?.at_end);
   const joinsRight = after !== undefined && (!lock.at_start || right?.at_start);
   if (joinsLeft) {
@@ -115,20 +148,33 @@ export function placed(selection, orders, keys, { uav, index }) {
     lock.at_end = Boolean(right?.at_end);
   }
   const joined = [joinsLeft && left, joinsRight && right];
-  return { ...selection, targets: untied(selection, keys, uav), locks: withLock(locks.filter((other) => !joined.includes(other)), lock) };
+  return {
+    ...selection,
+    targets: untied(selection, keys, uav),
+    locks: withLock(
+      locks.filter((other) => !joined.includes(other)),
+      lock,
+    ),
+  };
 }
 
 /** A target is flown by this UAV, wherever in its order that is best. The same selection where two UAVs have the name. */
 export function flownBy(selection, key, uav) {
   if (!isOneUav(selection, uav)) return selection;
-  return { ...selection, targets: untied(selection, [key], uav), locks: withLock(without(locksOf(selection), [key]), { uav, targets: [key], at_start: false, at_end: false }) };
+  return {
+    ...selection,
+    targets: untied(selection, [key], uav),
+    locks: withLock(without(locksOf(selection), [key]), { uav, targets: [key], at_start: false, at_end: false }),
+  };
 }
 
 /** One place earlier (−1) or later (1) in the order of its UAV; the same selection at an end. */
 export function shifted(selection, orders, key, step) {
   const place = wishedPlace(orders, selection, key);
   const index = place ? place.index + step : -1;
-  return place && index >= 0 && index <= place.last ? placed(selection, orders, [key], { uav: place.uav, index }) : selection;
+  return place && index >= 0 && index <= place.last
+    ? placed(selection, orders, [key], { uav: place.uav, index })
+    : selection;
 }
 
 /** Locked where it is flown now. */
@@ -162,14 +208,19 @@ export function stopsWished(stops, wished, length_m) {
   const planned = new Map();
   for (const { target, at } of stops) if (!planned.has(target)) planned.set(target, at);
   const kept = longestRising(wished.map((target) => planned.get(target)));
-  const result = wished.map((target, index) => ({ target, at: kept.has(index) ? planned.get(target) : null, isMoved: !kept.has(index) }));
+  const result = wished.map((target, index) => ({
+    target,
+    at: kept.has(index) ? planned.get(target) : null,
+    isMoved: !kept.has(index),
+  }));
   for (let index = 0; index < result.length; ) {
     if (result[index].at !== null) index += 1;
     else {
       let end = index;
       while (end < result.length && result[end].at === null) end += 1;
       const [from, to] = [index ? result[index - 1].at : 0, result[end]?.at ?? length_m];
-      for (let step = index; step < end; step += 1) result[step].at = from + ((to - from) * (step - index + 1)) / (end - index + 1);
+      for (let step = index; step < end; step += 1)
+        result[step].at = from + ((to - from) * (step - index + 1)) / (end - index + 1);
       index = end;
     }
   }
@@ -184,7 +235,8 @@ function longestRising(values) {
     if (value === undefined) return;
     best[index].length = 1;
     for (let other = 0; other < index; other += 1) {
-      if (values[other] < value && best[other].length >= best[index].length) best[index] = { length: best[other].length + 1, before: other };
+      if (values[other] < value && best[other].length >= best[index].length)
+        best[index] = { length: best[other].length + 1, before: other };
     }
     if (last < 0 || best[index].length > best[last].length) last = index;
   });

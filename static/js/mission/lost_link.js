@@ -13,8 +13,18 @@ const DIGITS = 6; // some 0.1 m
 
 export const BEHAVIOURS = [
   { value: "go_on", words: t("Fly on"), meaning: t("Each UAV flies its route to the end, as it was checked.") },
-  { value: "hold", words: t("Hold, then return"), meaning: t("Each UAV stays where it is for a while, then flies straight to the nearest of its start and the rally points, and lands.") },
-  { value: "return", words: t("Return"), meaning: t("Each UAV flies straight to the nearest of its start and the rally points, and lands.") },
+  {
+    value: "hold",
+    words: t("Hold, then return"),
+    meaning: t(
+      "Each UAV stays where it is for a while, then flies straight to the nearest of its start and the rally points, and lands.",
+    ),
+  },
+  {
+    value: "return",
+    words: t("Return"),
+    meaning: t("Each UAV flies straight to the nearest of its start and the rally points, and lands."),
+  },
 ];
 const GO_ON = "go_on";
 
@@ -24,7 +34,11 @@ const rounded = (position) => position.slice(0, 2).map((degrees) => Number(degre
 export function lostLinkOf(lost_link) {
   const { behaviour = GO_ON, rally_points = [], hold_s = 0 } = lost_link ?? {};
   if (behaviour === GO_ON && !rally_points.length) return null;
-  return { behaviour, rally_points: rally_points.map((position) => position.slice(0, 2)), hold_s: behaviour === "hold" ? hold_s : 0 };
+  return {
+    behaviour,
+    rally_points: rally_points.map((position) => position.slice(0, 2)),
+    hold_s: behaviour === "hold" ? hold_s : 0,
+  };
 }
 
 /** The same as one object with all parts. */
@@ -32,16 +46,23 @@ export const wholeLostLink = (lost_link) => lostLinkOf(lost_link) ?? { behaviour
 
 const changed = (lost_link, values) => lostLinkOf({ ...wholeLostLink(lost_link), ...values });
 
-export const withBehaviour = (lost_link, behaviour) => changed(lost_link, { behaviour, hold_s: wholeLostLink(lost_link).hold_s || USUAL_HOLD_S });
+export const withBehaviour = (lost_link, behaviour) =>
+  changed(lost_link, { behaviour, hold_s: wholeLostLink(lost_link).hold_s || USUAL_HOLD_S });
 export const withHold = (lost_link, hold_s) => changed(lost_link, { hold_s });
 
 export function withRallyPoint(lost_link, position) {
   const { rally_points } = wholeLostLink(lost_link);
-  return rally_points.length < MOST_RALLY_POINTS ? changed(lost_link, { rally_points: [...rally_points, rounded(position)] }) : lostLinkOf(lost_link);
+  return rally_points.length < MOST_RALLY_POINTS
+    ? changed(lost_link, { rally_points: [...rally_points, rounded(position)] })
+    : lostLinkOf(lost_link);
 }
 
-export const withRallyPointAt = (lost_link, index, position) => changed(lost_link, { rally_points: wholeLostLink(lost_link).rally_points.map((at, place) => (place === index ? rounded(position) : at)) });
-export const withoutRallyPoint = (lost_link, index) => changed(lost_link, { rally_points: wholeLostLink(lost_link).rally_points.filter((_, place) => place !== index) });
+export const withRallyPointAt = (lost_link, index, position) =>
+  changed(lost_link, {
+    rally_points: wholeLostLink(lost_link).rally_points.map((at, place) => (place === index ? rounded(position) : at)),
+  });
+export const withoutRallyPoint = (lost_link, index) =>
+  changed(lost_link, { rally_points: wholeLostLink(lost_link).rally_points.filter((_, place) => place !== index) });
 
 /** Whether UAVs may land at rally points: where they go on, none is used. */
 export const usesRallyPoints = (lost_link) => wholeLostLink(lost_link).behaviour !== GO_ON;
@@ -56,7 +77,9 @@ export function lostLinkText(lost_link) {
   const { behaviour, rally_points, hold_s } = wholeLostLink(lost_link);
   if (behaviour === GO_ON) return t("flies on");
   const does = behaviour === "hold" ? t("holds {time}, then returns", { time: holdText(hold_s) }) : t("returns");
-  return rally_points.length ? [does, tn(rally_points.length, "{count} rally point", "{count} rally points")].join(", ") : does;
+  return rally_points.length
+    ? [does, tn(rally_points.length, "{count} rally point", "{count} rally points")].join(", ")
+    : does;
 }
 
 const areSame = (a, b) => JSON.stringify(lostLinkOf(a)) === JSON.stringify(lostLinkOf(b));
@@ -74,9 +97,22 @@ export function checkStateOf(lost_link, plan, isCurrent) {
 /** Places in a route that do not return: [{ sequence, letter, name, haven, trouble, zone, zone_id, waypoints: [index], missing_wh, over_m }], worst figures. */
 export function failuresOf(plan) {
   const groups = new Map();
-  for (const { route, waypoint, haven, trouble, missing_wh, zone, zone_id = null, over_m } of plan.result.lost_link.failed) {
+  for (const { route, waypoint, haven, trouble, missing_wh, zone, zone_id = null, over_m } of plan.result.lost_link
+    .failed) {
     const key = [route, haven, trouble, zone_id ?? zone].join("|");
-    const group = groups.get(key) ?? { key, sequence: route, letter: routeLetter(route), name: plan.result.routes[route]?.uav ?? "", haven, trouble, zone, zone_id, waypoints: [], missing_wh: 0, over_m: 0 };
+    const group = groups.get(key) ?? {
+      key,
+      sequence: route,
+      letter: routeLetter(route),
+      name: plan.result.routes[route]?.uav ?? "",
+      haven,
+      trouble,
+      zone,
+      zone_id,
+      waypoints: [],
+      missing_wh: 0,
+      over_m: 0,
+    };
     group.waypoints.push(waypoint);
     group.missing_wh = Math.max(group.missing_wh, missing_wh ?? 0);
     group.over_m = Math.max(group.over_m, over_m ?? 0);
@@ -104,15 +140,24 @@ const lackText = (missing_wh) => `${numberText(Math.max(0.1, Math.ceil(missing_w
 /** What a group of failures says: { where: "waypoints 3–9, back to R2", why: "up to 12.4 Wh are missing with the reserve kept" }. */
 export function failureText({ waypoints, haven, trouble, zone, missing_wh, over_m }) {
   const values = { places: placesText(waypoints), haven: havenText(haven) };
-  const where = waypoints.length === 1 ? t("waypoint {places}, back to {haven}", values) : t("waypoints {places}, back to {haven}", values);
+  const where =
+    waypoints.length === 1
+      ? t("waypoint {places}, back to {haven}", values)
+      : t("waypoints {places}, back to {haven}", values);
   const isOne = waypoints.length === 1;
   const lack = lackText(missing_wh);
   const why = {
-    battery: isOne ? t("{energy} are missing with the reserve kept", { energy: lack }) : t("up to {energy} are missing with the reserve kept", { energy: lack }),
+    battery: isOne
+      ? t("{energy} are missing with the reserve kept", { energy: lack })
+      : t("up to {energy} are missing with the reserve kept", { energy: lack }),
     wind: t("the wind is too strong for the way back"),
     zone: zone ? t("the way back meets {zone}", { zone }) : t("the way back meets a no-fly zone"),
-    too_high: t("the way back would be {height} above the greatest allowed height", { height: exactHeightText(over_m) }),
-    obstacle: t("a mast or wires are in the way: over them it would be {height} above the greatest allowed height", { height: exactHeightText(over_m) }),
+    too_high: t("the way back would be {height} above the greatest allowed height", {
+      height: exactHeightText(over_m),
+    }),
+    obstacle: t("a mast or wires are in the way: over them it would be {height} above the greatest allowed height", {
+      height: exactHeightText(over_m),
+    }),
     unknown_ground: t("the ground under the way back is not known"),
   }[trouble];
   return { where, why };
@@ -121,7 +166,10 @@ export function failureText({ waypoints, haven, trouble, zone, missing_wh, over_
 const flownOf = (plan) => plan.result.routes.filter(({ geometry }) => geometry);
 
 /** UAVs whose energy nobody counts: their return may be too far all the same. */
-export const uncountedOf = (plan) => flownOf(plan).filter(({ energy_wh }) => energy_wh === null || energy_wh === undefined).map(({ uav }) => uav);
+export const uncountedOf = (plan) =>
+  flownOf(plan)
+    .filter(({ energy_wh }) => energy_wh === null || energy_wh === undefined)
+    .map(({ uav }) => uav);
 
 /** The sentence over the check. */
 export function checkText(state, plan) {
@@ -132,9 +180,16 @@ export function checkText(state, plan) {
   if (state === "lost") {
     const count = new Set(plan.result.lost_link.failed.map(({ route, waypoint }) => `${route} ${waypoint}`)).size;
     const total = flownOf(plan).reduce((sum, { waypoints }) => sum + waypoints.length, 0);
-    return tn(count, "From {count} of {total} waypoints a UAV would not get home.", "From {count} of {total} waypoints a UAV would not get home.", { total: total.toLocaleString(localeOf(language)) });
+    return tn(
+      count,
+      "From {count} of {total} waypoints a UAV would not get home.",
+      "From {count} of {total} waypoints a UAV would not get home.",
+      { total: total.toLocaleString(localeOf(language)) },
+    );
   }
-  return uncountedOf(plan).length === flownOf(plan).length ? t("From every waypoint the way back meets no zone.") : t("From every waypoint each UAV gets home with its reserve, and meets no zone.");
+  return uncountedOf(plan).length === flownOf(plan).length
+    ? t("From every waypoint the way back meets no zone.")
+    : t("From every waypoint each UAV gets home with its reserve, and meets no zone.");
 }
 
 /** Nothing that is not known is taken for safe: who has no battery stated is named. */
@@ -146,13 +201,26 @@ export function uncountedText(plan) {
 /** Rally points in which nothing may land, whether a UAV would now return to them or not. */
 export function inZonesText(plan) {
   const found = plan.result.lost_link.rally_points_in_zones ?? [];
-  return found.map(({ rally_point, zone }) => t("{name} lies inside {zone}: nothing may land there.", { name: rallyName(rally_point - 1), zone: zone || t("the margin round a no-fly zone") })).join(" ");
+  return found
+    .map(({ rally_point, zone }) =>
+      t("{name} lies inside {zone}: nothing may land there.", {
+        name: rallyName(rally_point - 1),
+        zone: zone || t("the margin round a no-fly zone"),
+      }),
+    )
+    .join(" ");
 }
 
 /** Which heights the check counts on: UAVs have to be set to climb so high. Nothing for a check of before. */
 export function heightsText(plan) {
-  const heights = (plan.result.lost_link.highest_m ?? []).map((height_m, sequence) => ({ height_m, uav: plan.result.routes[sequence]?.uav })).filter(({ height_m }) => height_m !== null);
-  return heights.length ? t("Highest way back, above the start: {heights}.", { heights: heights.map(({ uav, height_m }) => `${uav} ${exactHeightText(height_m)}`).join(", ") }) : "";
+  const heights = (plan.result.lost_link.highest_m ?? [])
+    .map((height_m, sequence) => ({ height_m, uav: plan.result.routes[sequence]?.uav }))
+    .filter(({ height_m }) => height_m !== null);
+  return heights.length
+    ? t("Highest way back, above the start: {heights}.", {
+        heights: heights.map(({ uav, height_m }) => `${uav} ${exactHeightText(height_m)}`).join(", "),
+      })
+    : "";
 }
 
 const STAYS_DOWN = ["start", "base"];
@@ -164,7 +232,8 @@ export function quietReturnsOf(plan) {
   return plan.result.routes.flatMap(({ waypoints, geometry }, route) => {
     if (!geometry) return [];
     const havens = [waypoints[0].position, ...rally_points];
-    const nearest = (from) => havens.reduce((best, haven) => (distance_m(from, haven) < distance_m(from, best) ? haven : best));
+    const nearest = (from) =>
+      havens.reduce((best, haven) => (distance_m(from, haven) < distance_m(from, best) ? haven : best));
     return waypoints
       .filter(({ kind }, index) => !STAYS_DOWN.includes(kind) && !fails.has(`${route} ${index}`))
       .map(({ position }) => ({ from: position, to: nearest(position) }))
@@ -178,6 +247,8 @@ export function returnLinesOf(plan) {
   return failuresOf(plan).flatMap(({ key, sequence, haven, waypoints }) => {
     const places = plan.result.routes[sequence]?.waypoints ?? [];
     const to = haven === 0 ? places[0]?.position : rally_points[haven - 1];
-    return waypoints.filter((waypoint) => places[waypoint] && to).map((waypoint) => ({ key, from: places[waypoint].position, to }));
+    return waypoints
+      .filter((waypoint) => places[waypoint] && to)
+      .map((waypoint) => ({ key, from: places[waypoint].position, to }));
   });
 }

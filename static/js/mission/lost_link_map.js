@@ -10,12 +10,17 @@ export function mountLostLinkMap(map, store, actions, { canPlan }) {
 
   store.listen(["selection"], ({ selection: { lost_link } }) => {
     const points = usesRallyPoints(lost_link) ? wholeLostLink(lost_link).rally_points : [];
-    rally.update(points.map((position, index) => ({ position, name: rallyName(index) })), canPlan);
+    rally.update(
+      points.map((position, index) => ({ position, name: rallyName(index) })),
+      canPlan,
+    );
   });
   store.listen(["selection", "plan", "litReturn", "hand"], (state) => {
     const { plan, selection, litReturn, hand } = state;
     const isChecked = !hand && ["home", "lost"].includes(checkStateOf(selection.lost_link, plan, isPlanCurrent(state)));
-    const failing = isChecked ? returnLinesOf(plan).map((line) => ({ ...line, fails: true, lit: line.key === litReturn })) : [];
+    const failing = isChecked
+      ? returnLinesOf(plan).map((line) => ({ ...line, fails: true, lit: line.key === litReturn }))
+      : [];
     layer.showReturns(map, [...(isChecked ? quietReturnsOf(plan) : []), ...failing]);
   });
 

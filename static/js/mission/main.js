@@ -10,8 +10,8 @@ import { createHistory, createStore } from "../store.js";
 import { t } from "../text.js";
 import { createActions } from "./actions.js";
 import { createDrafts } from "./draft.js";
-import { createFlying } from "./flying_actions.js";
 import { standingUavs } from "./fleet.js";
+import { createFlying } from "./flying_actions.js";
 import { lockOf } from "./locks.js";
 import { mountMap } from "./map_panel.js";
 import { mountApprove } from "./panels/approve.js";
@@ -24,12 +24,12 @@ import { mountHeader } from "./panels/header.js";
 import { mountLostLink } from "./panels/lost_link.js";
 import { mountOptions } from "./panels/options.js";
 import { mountOptionsRead } from "./panels/options_read.js";
+import { askForList } from "./panels/paste_list.js";
 import { mountProfile } from "./panels/profile.js";
 import { mountRehearsal } from "./panels/rehearsal.js";
 import { mountRoutes } from "./panels/routes.js";
-import { askForList } from "./panels/paste_list.js";
-import { mountSavedState } from "./panels/saved_state.js";
 import { showSelections } from "./panels/saved_selections.js";
+import { mountSavedState } from "./panels/saved_state.js";
 import { mountTargets } from "./panels/targets.js";
 import { mountTools } from "./panels/tools.js";
 import { mountUavs } from "./panels/uavs.js";
@@ -44,12 +44,45 @@ import { watchMission } from "./together.js";
 const page = readPage();
 const isStage = page.stage === "rehearse";
 const store = createStore({
-  ground: null, fleet: [], mission: null, name: "", selection: { ...EMPTY }, canUndo: false, canRedo: false,
-  plan: null, groundRevision: null, planIsStored: false, savedBasis: null, figures: {}, planning: null, saving: false, problem: null, conflict: null,
-  stored: null, isAway: !navigator.onLine, others: [],
-  lastPlan: null, planningBeside: null, refusedBeside: {}, why: null, along: null,
-  tool: "point", stretchFrom: null, litTarget: null, chosenTarget: null, chosenTargets: [], lookedAt: null, chosenRoute: null, litZones: [], litReturn: null, hand: null,
-  commands: null, returns: null, connections: new Map(), isDispatching: false, rehearsal: NO_REHEARSAL,
+  ground: null,
+  fleet: [],
+  mission: null,
+  name: "",
+  selection: { ...EMPTY },
+  canUndo: false,
+  canRedo: false,
+  plan: null,
+  groundRevision: null,
+  planIsStored: false,
+  savedBasis: null,
+  figures: {},
+  planning: null,
+  saving: false,
+  problem: null,
+  conflict: null,
+  stored: null,
+  isAway: !navigator.onLine,
+  others: [],
+  lastPlan: null,
+  planningBeside: null,
+  refusedBeside: {},
+  why: null,
+  along: null,
+  tool: "point",
+  stretchFrom: null,
+  litTarget: null,
+  chosenTarget: null,
+  chosenTargets: [],
+  lookedAt: null,
+  chosenRoute: null,
+  litZones: [],
+  litReturn: null,
+  hand: null,
+  commands: null,
+  returns: null,
+  connections: new Map(),
+  isDispatching: false,
+  rehearsal: NO_REHEARSAL,
 });
 const history = createHistory(store, "selection");
 const editor = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
@@ -62,11 +95,21 @@ const layout = mountWorkbench({ dockOnPhone: byId("routes-on-phone") });
 const map = mountMap(store, actions, page, { askForUav: (position) => uavPanel.askForUav(position) });
 const targetOfFeature = (feature) => actions.targetOfFeature(feature);
 mountStages(store);
-mountHeader(store, actions, page.canPlan, { canCopy: page.canFly, showPlace: (position) => map.goTo({ position, zoom: 14 }) });
-const flyingKeys = page.isFrozen ? mountFlying(store, flying, { canFly: page.canFly, saveCopy: () => void actions.save({ asCopy: true }) }) : [];
+mountHeader(store, actions, page.canPlan, {
+  canCopy: page.canFly,
+  showPlace: (position) => map.goTo({ position, zoom: 14 }),
+});
+const flyingKeys = page.isFrozen
+  ? mountFlying(store, flying, { canFly: page.canFly, saveCopy: () => void actions.save({ asCopy: true }) })
+  : [];
 if (page.canPlan) mountApprove(store, flying);
 const scene = mountSceneOpener(sceneOfMission);
-const rehearsalKeys = mountRehearsal(store, createRehearsing(store, { isStage }), { canRehearse: page.canFly, isFrozen: page.isFrozen, isStage, seeInSpace: () => void scene.open() });
+const rehearsalKeys = mountRehearsal(store, createRehearsing(store, { isStage }), {
+  canRehearse: page.canFly,
+  isFrozen: page.isFrozen,
+  isStage,
+  seeInSpace: () => void scene.open(),
+});
 flying.watch();
 mountSavedState(store, page.canPlan);
 mountTargets(store, actions, page.canPlan, (target) => map.show(target));
@@ -76,7 +119,10 @@ if (page.canPlan) {
   mountFlightOptions(store, actions);
   mountEndings(store, actions);
 } else mountOptionsRead(store);
-mountLostLink(store, actions, { canPlan: page.canPlan, showPlaces: (positions) => (layout.showMap(), map.showPlaces(positions)) });
+mountLostLink(store, actions, {
+  canPlan: page.canPlan,
+  showPlaces: (positions) => (layout.showMap(), map.showPlaces(positions)),
+});
 mountFoot(store, actions);
 const grounds = createGrounds();
 mountRoutes(store, actions, { canPlan: page.canPlan, grounds, showPoint: (position) => map.showPoint(position) });
@@ -87,11 +133,19 @@ const finder = mountFinder({
   box: () => map.box(),
   show: (feature) => map.show(targetOfFeature(feature)),
   add: (feature) => actions.addTargets([targetOfFeature(feature)]),
-  addAll: (features) => actions.addMany(features.map(targetOfFeature), (added) => t("{added} from the search.", { added })),
-  things: () => standingUavs(store.state).map(({ name, base_name, position }) => ({ name, position, icon: "uav", detail: base_name })),
+  addAll: (features) =>
+    actions.addMany(features.map(targetOfFeature), (added) => t("{added} from the search.", { added })),
+  things: () =>
+    standingUavs(store.state).map(({ name, base_name, position }) => ({
+      name,
+      position,
+      icon: "uav",
+      detail: base_name,
+    })),
   goTo: (place) => map.goTo(place),
 });
-if (page.canPlan) mountTools(store, { pasteList: () => askForList(actions), savedSelections: () => showSelections(store, actions) });
+if (page.canPlan)
+  mountTools(store, { pasteList: () => askForList(actions), savedSelections: () => showSelections(store, actions) });
 
 startChrome({
   bindings: [
@@ -111,7 +165,13 @@ startChrome({
   ],
 });
 
-watchMission(store, { editor, take: actions.take, connectedAgain: actions.connectedAgain, tellDeleted: actions.tellDeleted, readFleet: fleetOfOrganisation });
+watchMission(store, {
+  editor,
+  take: actions.take,
+  connectedAgain: actions.connectedAgain,
+  tellDeleted: actions.tellDeleted,
+  readFleet: fleetOfOrganisation,
+});
 
 store.listen(["tool"], ({ tool }) => tool !== "point" && layout.showMap());
 
@@ -143,7 +203,11 @@ function planningKeys() {
     { keys: ["p"], words: t("Plan, plan again"), act: actions.plan },
     { keys: ["mod+s"], words: t("Save"), whileTyping: true, act: () => void actions.save() },
     { keys: ["mod+z"], words: t("Undo"), act: () => (store.state.hand ? actions.undoByHand() : actions.undo()) },
-    { keys: ["mod+shift+z", "mod+y"], words: t("Redo"), act: () => (store.state.hand ? actions.redoByHand() : actions.redo()) },
+    {
+      keys: ["mod+shift+z", "mod+y"],
+      words: t("Redo"),
+      act: () => (store.state.hand ? actions.redoByHand() : actions.redo()),
+    },
     { keys: ["delete", "backspace"], words: t("Remove the chosen targets"), act: removeChosen },
     { keys: ["l"], words: t("Lock or unlock the chosen target"), act: lockChosen },
     { keys: ["alt+arrowup"], words: t("The chosen target earlier"), act: () => shiftChosen(-1) },

@@ -5,41 +5,55 @@ import { byId, h } from "../dom.js";
 import { piecesOf, routeClicks } from "../map/click_router.js";
 import { mountControls } from "../map/controls.js";
 import { createTip } from "../map/furniture.js";
-import { partOfLine } from "../map/line_part.js";
 import * as rehearsedLayer from "../map/layers/rehearsed.js";
 import * as routesLayer from "../map/layers/routes.js";
 import * as selectionLayer from "../map/layers/selection.js";
 import { createTargets } from "../map/layers/targets.js";
-import * as zonesLayer from "../map/layers/zones.js";
 import { createUavs } from "../map/layers/uavs.js";
+import * as zonesLayer from "../map/layers/zones.js";
+import { partOfLine } from "../map/line_part.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { goTo } from "../map/places_found.js";
 import { TILES } from "../map/style.js";
 import { tipOf } from "../map/tips.js";
 import { rememberedUnder } from "../map/under.js";
 import { t, tn } from "../text.js";
-import { isPlanCurrent, routesOf, shownPlaces } from "./plan_view.js";
 import { standingUavs } from "./fleet.js";
-import { staysOf } from "./route_times.js";
 import { mountHandMap } from "./hand_map.js";
 import { usesRallyPoints } from "./lost_link.js";
 import { mountLostLinkMap } from "./lost_link_map.js";
-import { mountReachLayer } from "./reach_layer.js";
 import { createMapPicking } from "./map_picking.js";
+import { isPlanCurrent, routesOf, shownPlaces } from "./plan_view.js";
+import { mountReachLayer } from "./reach_layer.js";
+import { staysOf } from "./route_times.js";
 import { isWhole, nameOf } from "./selection.js";
 
-const cornersOf = (...boxes) => boxes.flatMap(([west, south, east, north]) => [[west, south], [east, north]]);
+const cornersOf = (...boxes) =>
+  boxes.flatMap(([west, south, east, north]) => [
+    [west, south],
+    [east, north],
+  ]);
 
 export function mountMap(store, actions, page, { askForUav }) {
   const frame = byId("map").parentElement;
   const container = byId("map");
   const { baseMap, satellite, extent } = page;
-  const view = createMap(container, { baseMap, satellite, under: rememberedUnder(page), describe: t("Map"), bounds: page.bounds ?? extent, extent: page.bounds && extent ? boxAround(cornersOf(page.bounds, extent)) : extent });
+  const view = createMap(container, {
+    baseMap,
+    satellite,
+    under: rememberedUnder(page),
+    describe: t("Map"),
+    bounds: page.bounds ?? extent,
+    extent: page.bounds && extent ? boxAround(cornersOf(page.bounds, extent)) : extent,
+  });
   const { map, opensAtPlace } = view;
   const shapes = new Map(); // asset id → geometry of what is picked whole
   let pointed = null; // what the pointer is at on the map
   let litHere = false; // the target that is lit is under the pointer
-  const targets = createTargets(map, { onPick: (key) => store.update({ chosenTarget: key }), onHover: (key) => store.update({ litTarget: key }) });
+  const targets = createTargets(map, {
+    onPick: (key) => store.update({ chosenTarget: key }),
+    onHover: (key) => store.update({ litTarget: key }),
+  });
   const uavs = createUavs(map, {
     onMove: actions.moveUav,
     onPick: (id) => page.canPlan && actions.addUavOfFleet(id),
@@ -48,7 +62,16 @@ export function mountMap(store, actions, page, { askForUav }) {
   const tip = createTip(frame);
   let [handMap, reachLayer, lostLinkMap] = [null, null, null]; // once the map has its style
 
-  const controls = mountControls(view, page, { fit: () => fit(), isBusy: () => ["place", "rally"].includes(store.state.tool), measures: (isOn) => isOn && store.update({ tool: "point" }), recoloured: () => [handMap, reachLayer, lostLinkMap, { recolour: () => rehearsedLayer.recolour(map, view.palette()) }].forEach((drawn) => drawn?.recolour()), layers: () => (reachLayer && page.canPlan ? [reachLayer.entry] : []) });
+  const controls = mountControls(view, page, {
+    fit: () => fit(),
+    isBusy: () => ["place", "rally"].includes(store.state.tool),
+    measures: (isOn) => isOn && store.update({ tool: "point" }),
+    recoloured: () =>
+      [handMap, reachLayer, lostLinkMap, { recolour: () => rehearsedLayer.recolour(map, view.palette()) }].forEach(
+        (drawn) => drawn?.recolour(),
+      ),
+    layers: () => (reachLayer && page.canPlan ? [reachLayer.entry] : []),
+  });
 
   // clicks
 
@@ -80,7 +103,8 @@ export function mountMap(store, actions, page, { askForUav }) {
       return;
     }
     picking.pick(thing, place, point);
-    if (["no", "partly"].includes(reachLayer?.verdict(thing.id))) tip(`${thing.kind} ${thing.id}`, point, (refresh) => saidOf({ ...thing, place }, refresh), { soon: true });
+    if (["no", "partly"].includes(reachLayer?.verdict(thing.id)))
+      tip(`${thing.kind} ${thing.id}`, point, (refresh) => saidOf({ ...thing, place }, refresh), { soon: true });
   }
 
   /** What the tooltip says, with the reason why the asset can be inspected or not while that layer is shown. */
@@ -154,7 +178,15 @@ export function mountMap(store, actions, page, { askForUav }) {
     const pills = state.selection.targets
       .map((target, index) => {
         const place = places.get(target.key);
-        return { key: target.key, name: nameOf(target), position: target.centre, sequence: place?.sequence ?? null, letter: place?.letter ?? "", number: place?.number ?? index + 1, isMissed: missed.has(target.key) };
+        return {
+          key: target.key,
+          name: nameOf(target),
+          position: target.centre,
+          sequence: place?.sequence ?? null,
+          letter: place?.letter ?? "",
+          number: place?.number ?? index + 1,
+          isMissed: missed.has(target.key),
+        };
       })
       .filter((pill) => pill.position);
     targets.update(pills);
@@ -176,7 +208,12 @@ export function mountMap(store, actions, page, { askForUav }) {
     store.listen(["selection", "plan"], drawTargets);
     store.listen(["plan"], ({ plan }) => {
       routesLayer.update(map, routesOf(plan));
-      routesLayer.showStops(map, routesOf(plan).flatMap((route) => staysOf(route).map(({ kind, index }) => ({ kind, position: route.waypoints[index].position }))));
+      routesLayer.showStops(
+        map,
+        routesOf(plan).flatMap((route) =>
+          staysOf(route).map(({ kind, index }) => ({ kind, position: route.waypoints[index].position })),
+        ),
+      );
       // A plan that was just made is looked at. A stored one is what the map opened at, but the dock took room from it; after saving nothing moves.
       if (plan && !store.state.planIsStored) fit();
       else if (plan && !opensAtPlace && !wasFitted) fit({ animate: false });
@@ -189,24 +226,32 @@ export function mountMap(store, actions, page, { askForUav }) {
       soFar = best;
       routesLayer.showSoFar(map, best?.routes ?? null);
       lookAt(store.state);
-      if (isFirst && best.routes.features.length) view.fit(boxAround(best.routes.features.flatMap(({ geometry }) => geometry.coordinates)));
+      if (isFirst && best.routes.features.length)
+        view.fit(boxAround(best.routes.features.flatMap(({ geometry }) => geometry.coordinates)));
     });
-    store.listen(["fleet", "selection"], (state) => uavs.update(standingUavs(state).map((uav) => ({ ...uav, canMove: page.canPlan }))));
+    store.listen(["fleet", "selection"], (state) =>
+      uavs.update(standingUavs(state).map((uav) => ({ ...uav, canMove: page.canPlan }))),
+    );
     store.listen(["lookedAt", "chosenRoute", "plan", "selection"], lookAt);
     lostLinkMap = mountLostLinkMap(map, store, actions, page);
     handMap = mountHandMap(map, store, actions);
     reachLayer = mountReachLayer(map, frame, store);
-    store.listen(["rehearsal"], ({ rehearsal }) => rehearsedLayer.show(map, view.palette(), rehearsal.track?.routes ?? null));
+    store.listen(["rehearsal"], ({ rehearsal }) =>
+      rehearsedLayer.show(map, view.palette(), rehearsal.track?.routes ?? null),
+    );
     store.listen(["litZones"], ({ litZones }) => zonesLayer.light(map, litZones));
     store.listen(["litTarget", "selection", "stretchFrom"], ringHovered);
     store.listen(["chosenTarget"], ({ chosenTarget }) => targets.choose(chosenTarget));
     let drawnGround = null;
     const drawGround = (revision) => {
       if (!(revision > (drawnGround ?? -1))) return;
-      if (drawnGround !== null) map.getSource(TILES)?.setTiles([`${location.origin}/api/v1/tiles/{z}/{x}/{y}?of=${revision}`]); // a zone may have come in
+      if (drawnGround !== null)
+        map.getSource(TILES)?.setTiles([`${location.origin}/api/v1/tiles/{z}/{x}/{y}?of=${revision}`]); // a zone may have come in
       drawnGround = revision;
     };
-    store.listen(["groundRevision", "plan"], ({ groundRevision, plan }) => [plan?.result.ground_revision, groundRevision].forEach(drawGround));
+    store.listen(["groundRevision", "plan"], ({ groundRevision, plan }) =>
+      [plan?.result.ground_revision, groundRevision].forEach(drawGround),
+    );
     store.listen(["ground"], ({ ground }) => {
       controls.setGround(ground);
     });
@@ -219,15 +264,35 @@ export function mountMap(store, actions, page, { askForUav }) {
   store.listen(["tool", "stretchFrom"], (state) => {
     const isPlacing = state.tool === "place";
     const banner = byId("map-banner");
-    const placing = { place: t("Click where the UAV takes off, or press Enter for the middle of the map."), rally: t("Click where UAVs may land without a link, or press Enter for the middle of the map.") };
+    const placing = {
+      place: t("Click where the UAV takes off, or press Enter for the middle of the map."),
+      rally: t("Click where UAVs may land without a link, or press Enter for the middle of the map."),
+    };
     const words = placing[state.tool] ?? picking.words(state);
     banner.hidden = !words;
-    banner.replaceChildren(words ?? "", h("button", { type: "button", class: "text-button", onclick: () => store.update({ tool: "point" }) }, isPlacing ? t("Cancel") : t("Done")));
+    banner.replaceChildren(
+      words ?? "",
+      h(
+        "button",
+        { type: "button", class: "text-button", onclick: () => store.update({ tool: "point" }) },
+        isPlacing ? t("Cancel") : t("Done"),
+      ),
+    );
   });
   store.listen(["selection", "plan", "planning"], ({ selection, plan, planning }) => {
     const flown = planning?.best?.routes.features ?? (plan?.result.routes ?? []).filter((route) => route.geometry);
-    const routes = planning?.best ? tn(flown.length, "{count} route so far", "{count} routes so far") : tn(flown.length, "{count} route", "{count} routes");
-    map.getCanvas().setAttribute("aria-label", t("Map, {targets}, {routes}", { targets: tn(selection.targets.length, "{count} target", "{count} targets"), routes }));
+    const routes = planning?.best
+      ? tn(flown.length, "{count} route so far", "{count} routes so far")
+      : tn(flown.length, "{count} route", "{count} routes");
+    map
+      .getCanvas()
+      .setAttribute(
+        "aria-label",
+        t("Map, {targets}, {routes}", {
+          targets: tn(selection.targets.length, "{count} target", "{count} targets"),
+          routes,
+        }),
+      );
   });
 
   /** Routes, targets and rally points; UAVs only as long as nothing says which of them fly. */
@@ -243,7 +308,10 @@ export function mountMap(store, actions, page, { askForUav }) {
     wasFitted = true;
     map.resize(); // the dock may just have come: fit into what is left
     const positions = positionsOfMission(store.state);
-    view.fit(positions.length > 1 ? boxAround(positions) : (store.state.ground?.extent ?? extent ?? boxAround(positions)), options);
+    view.fit(
+      positions.length > 1 ? boxAround(positions) : (store.state.ground?.extent ?? extent ?? boxAround(positions)),
+      options,
+    );
   }
 
   return {
@@ -268,7 +336,12 @@ export function mountMap(store, actions, page, { askForUav }) {
     show(target) {
       const shape = isWhole(target) ? shapeOf(target) : null;
       if (shape) view.fit(boxAround(shape.type === "MultiLineString" ? shape.coordinates.flat() : shape.coordinates));
-      else if (target.centre) map.easeTo({ center: target.centre, zoom: Math.max(map.getZoom(), 13.5), duration: matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : 350 });
+      else if (target.centre)
+        map.easeTo({
+          center: target.centre,
+          zoom: Math.max(map.getZoom(), 13.5),
+          duration: matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : 350,
+        });
     },
   };
 }

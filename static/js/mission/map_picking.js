@@ -36,7 +36,9 @@ function createChoice(frame, opened) {
         "div",
         { class: "map-choice float", role: "group", "aria-label": title },
         h("p", { class: "caption" }, title),
-        items.map((item) => h("button", { type: "button", onclick: () => (close(), item.act()) }, icon(item.icon), item.words)),
+        items.map((item) =>
+          h("button", { type: "button", onclick: () => (close(), item.act()) }, icon(item.icon), item.words),
+        ),
       );
       frame.append(box);
       box.style.left = `${Math.min(Math.max(8, point.x - 60), frame.clientWidth - box.offsetWidth - 8)}px`;
@@ -52,13 +54,25 @@ export function createMapPicking({ frame, store, actions, opened }) {
   /** A line can be flown end to end, looked at in one place, or be left to its towers: the operator says which. */
   function chooseOnLine(thing, place, point) {
     const { kind, properties } = thing;
-    const whole = { icon: kind, words: sentence(extentOf(kind, properties.length_m)), act: () => actions.addTargets([targetOf({ ...thing, centre: place })]) };
-    const here = { icon: "map-pin", words: t("This point"), act: () => actions.addTargets([targetOf({ ...thing, position: place })]) };
+    const whole = {
+      icon: kind,
+      words: sentence(extentOf(kind, properties.length_m)),
+      act: () => actions.addTargets([targetOf({ ...thing, centre: place })]),
+    };
+    const here = {
+      icon: "map-pin",
+      words: t("This point"),
+      act: () => actions.addTargets([targetOf({ ...thing, position: place })]),
+    };
     const others =
       kind === "line"
         ? [{ icon: "tower", words: t("Every tower of it"), act: () => actions.addTowersOf(thing.id) }]
         : [
-            { icon: "bridge", words: t("Every bridge of this section"), act: () => actions.addBridgesOf(thing.id, { allSections: false }) },
+            {
+              icon: "bridge",
+              words: t("Every bridge of this section"),
+              act: () => actions.addBridgesOf(thing.id, { allSections: false }),
+            },
             { icon: "bridge", words: t("Every bridge of the railway"), act: () => actions.addBridgesOf(thing.id) },
           ];
     choice.open(nameOf(properties), [whole, here, ...others], point);
@@ -81,8 +95,16 @@ export function createMapPicking({ frame, store, actions, opened }) {
   function offerStretch({ supports, parts, length_m }, point) {
     const lines = parts.length > 1 ? `, ${tn(parts.length, "{count} line", "{count} lines")}` : "";
     const title = `${supports[0].label} – ${supports.at(-1).label}${lines}`;
-    const towers = { icon: "tower", words: tn(supports.length, "{count} tower", "All {count} towers"), act: () => actions.addSupports(supports) };
-    const flown = { icon: "line", words: t("Fly along, {length}", { length: lengthText(length_m) }), act: () => actions.addStretch(parts) };
+    const towers = {
+      icon: "tower",
+      words: tn(supports.length, "{count} tower", "All {count} towers"),
+      act: () => actions.addSupports(supports),
+    };
+    const flown = {
+      icon: "line",
+      words: t("Fly along, {length}", { length: lengthText(length_m) }),
+      act: () => actions.addStretch(parts),
+    };
     choice.open(title, [towers, flown], point);
   }
 
@@ -90,7 +112,11 @@ export function createMapPicking({ frame, store, actions, opened }) {
   function pick(thing, place, point) {
     const { tool } = store.state;
     if (thing.properties.flyable === false) {
-      toast(t("{name} cannot be flown to: it is underground, out of use or a siding or busbar.", { name: thing.properties.label }));
+      toast(
+        t("{name} cannot be flown to: it is underground, out of use or a siding or busbar.", {
+          name: thing.properties.label,
+        }),
+      );
       return;
     }
     const centre = thing.geometry.type === "Point" ? thing.geometry.coordinates : place;
@@ -135,7 +161,9 @@ export function createMapPicking({ frame, store, actions, opened }) {
         box: t("Drag a box round towers and bridges."),
         lasso: t("Draw a line round towers and bridges."),
         line: t("Click a line, or a section of a railway: it is flown end to end."),
-        stretch: stretchFrom ? t("From {name}. Now click the last tower.", { name: stretchFrom.label }) : t("Click the first tower of the stretch."),
+        stretch: stretchFrom
+          ? t("From {name}. Now click the last tower.", { name: stretchFrom.label })
+          : t("Click the first tower of the stretch."),
       })[tool],
   };
 }

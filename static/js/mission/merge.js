@@ -1,22 +1,37 @@
 /** Two people's changes of one mission put together, part by part. Values in, values out. */
 
 import { t, tn } from "../text.js";
-import { areContrary, settled } from "./locks.js";
 import { flightOptionsOf } from "./flight_options.js";
+import { areContrary, settled } from "./locks.js";
 import { PERFORMANCE, wishesOf } from "./selection.js";
 
 /** Options that each have one value. */
-const optionsOf = ({ objective, return_to_start, ...selection }) => ({ objective, return_to_start, ...flightOptionsOf(selection) });
+const optionsOf = ({ objective, return_to_start, ...selection }) => ({
+  objective,
+  return_to_start,
+  ...flightOptionsOf(selection),
+});
 const areSameValues = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 const keyOfTarget = ({ key }) => key;
 const keyOfUav = (uav) => (uav.id === null || uav.id === undefined ? `name ${uav.name}` : `id ${uav.id}`);
 /** Without a task a target has its kind's own, which the server writes down: that is the same. */
-const isSameTask = (a, b) => !a.task || !b.task || (a.task.kind === b.task.kind && (a.task.hold_s ?? b.task.hold_s) === (b.task.hold_s ?? a.task.hold_s));
+const isSameTask = (a, b) =>
+  !a.task ||
+  !b.task ||
+  (a.task.kind === b.task.kind && (a.task.hold_s ?? b.task.hold_s) === (b.task.hold_s ?? a.task.hold_s));
 const isSameTarget = (a, b) => isSameTask(a, b) && JSON.stringify(wishesOf(a)) === JSON.stringify(wishesOf(b));
-const uavFacts = ({ name, position, max_range_m = null, cruise_speed_mps = null, end_action = null, most_targets = null, sorties = 1 }) =>
-  JSON.stringify([name, position, max_range_m, cruise_speed_mps, end_action, most_targets, sorties ?? 1]);
+const uavFacts = ({
+  name,
+  position,
+  max_range_m = null,
+  cruise_speed_mps = null,
+  end_action = null,
+  most_targets = null,
+  sorties = 1,
+}) => JSON.stringify([name, position, max_range_m, cruise_speed_mps, end_action, most_targets, sorties ?? 1]);
 /** What nobody has said of a UAV is its type's, which the server writes down: that is the same. */
-const isSamePerformance = (a, b) => PERFORMANCE.every((fact) => a[fact] === undefined || b[fact] === undefined || a[fact] === b[fact]);
+const isSamePerformance = (a, b) =>
+  PERFORMANCE.every((fact) => a[fact] === undefined || b[fact] === undefined || a[fact] === b[fact]);
 const isSameUav = (a, b) => uavFacts(a) === uavFacts(b) && isSamePerformance(a, b);
 
 /** Items of three lists by their keys: theirs, with what I added, changed and took away. */
@@ -47,7 +62,8 @@ function mergedList(base, mine, theirs, keyOf, isSame) {
 }
 
 const locksOf = ({ locks }) => locks ?? [];
-const keyOfLock = ({ uav, targets, at_start, at_end }) => JSON.stringify([uav, targets, Boolean(at_start), Boolean(at_end)]);
+const keyOfLock = ({ uav, targets, at_start, at_end }) =>
+  JSON.stringify([uav, targets, Boolean(at_start), Boolean(at_end)]);
 const areSameLocks = (a, b) => locksOf(a).map(keyOfLock).join() === locksOf(b).map(keyOfLock).join();
 
 /** Whether somebody else than `uav` alone may fly a target. */
@@ -59,10 +75,19 @@ function mergedLocks(base, mine, theirs, targets) {
   const own = new Set(locksOf(mine).map(keyOfLock));
   const held = list.filter((lock) => own.has(keyOfLock(lock)));
   const uavs = new Map(held.flatMap((lock) => lock.targets.map((key) => [key, lock.uav])));
-  const free = targets.map((target) => (uavs.has(target.key) && isTiedElsewhere(target, uavs.get(target.key)) ? { ...target, uav: null } : target));
-  const isAgainstTie = (lock) => free.some((target) => lock.targets.includes(target.key) && isTiedElsewhere(target, lock.uav));
-  const locks = list.filter((lock) => held.includes(lock) || !(isAgainstTie(lock) || held.some((other) => areContrary(other, lock))));
-  return { locks, targets: free, isClash: locks.length < list.length || free.some((target, index) => target !== targets[index]) };
+  const free = targets.map((target) =>
+    uavs.has(target.key) && isTiedElsewhere(target, uavs.get(target.key)) ? { ...target, uav: null } : target,
+  );
+  const isAgainstTie = (lock) =>
+    free.some((target) => lock.targets.includes(target.key) && isTiedElsewhere(target, lock.uav));
+  const locks = list.filter(
+    (lock) => held.includes(lock) || !(isAgainstTie(lock) || held.some((other) => areContrary(other, lock))),
+  );
+  return {
+    locks,
+    targets: free,
+    isClash: locks.length < list.length || free.some((target, index) => target !== targets[index]),
+  };
 }
 
 /** base, mine and theirs are { name, selection }. What both changed differently is a clash, and there mine stands. */
@@ -75,8 +100,17 @@ export function merged(base, mine, theirs) {
   };
   const name = single("name", base.name, mine.name.trim() || base.name, theirs.name);
   const selection = {};
-  for (const [part, keyOf, isSame] of [["targets", keyOfTarget, isSameTarget], ["uavs", keyOfUav, isSameUav]]) {
-    const { list, isClash } = mergedList(base.selection[part], mine.selection[part], theirs.selection[part], keyOf, isSame);
+  for (const [part, keyOf, isSame] of [
+    ["targets", keyOfTarget, isSameTarget],
+    ["uavs", keyOfUav, isSameUav],
+  ]) {
+    const { list, isClash } = mergedList(
+      base.selection[part],
+      mine.selection[part],
+      theirs.selection[part],
+      keyOf,
+      isSame,
+    );
     selection[part] = list;
     if (isClash) clashes.push(part);
   }
@@ -96,13 +130,21 @@ function differences(before, after, keyOf, isSame) {
   };
 }
 
-export const targetDifferences = (before, after) => differences(before.targets, after.targets, keyOfTarget, isSameTarget);
+export const targetDifferences = (before, after) =>
+  differences(before.targets, after.targets, keyOfTarget, isSameTarget);
 export const uavDifferences = (before, after) => differences(before.uavs, after.uavs, keyOfUav, isSameUav);
 
 /** Whether two ask for the same; what one of them leaves to the server counts as the same. */
 export function isAlike(a, b) {
-  if (a.name !== b.name || !areSameValues(optionsOf(a.selection), optionsOf(b.selection)) || !areSameLocks(a.selection, b.selection)) return false;
-  return [targetDifferences(a.selection, b.selection), uavDifferences(a.selection, b.selection)].every((found) => Object.values(found).every((list) => !list.length));
+  if (
+    a.name !== b.name ||
+    !areSameValues(optionsOf(a.selection), optionsOf(b.selection)) ||
+    !areSameLocks(a.selection, b.selection)
+  )
+    return false;
+  return [targetDifferences(a.selection, b.selection), uavDifferences(a.selection, b.selection)].every((found) =>
+    Object.values(found).every((list) => !list.length),
+  );
 }
 
 /** ["2 targets added", "renamed"]: what somebody did. */
@@ -111,8 +153,10 @@ export function wordsOfChange(before, after) {
   if (before.name !== after.name) words.push(t("renamed to “{name}”", { name: after.name }));
   const targets = targetDifferences(before.selection, after.selection);
   if (targets.added.length) words.push(tn(targets.added.length, "{count} target added", "{count} targets added"));
-  if (targets.removed.length) words.push(tn(targets.removed.length, "{count} target removed", "{count} targets removed"));
-  if (targets.changed.length) words.push(tn(targets.changed.length, "{count} target changed", "{count} targets changed"));
+  if (targets.removed.length)
+    words.push(tn(targets.removed.length, "{count} target removed", "{count} targets removed"));
+  if (targets.changed.length)
+    words.push(tn(targets.changed.length, "{count} target changed", "{count} targets changed"));
   const uavs = uavDifferences(before.selection, after.selection);
   if (uavs.added.length) words.push(tn(uavs.added.length, "{count} UAV added", "{count} UAVs added"));
   if (uavs.removed.length) words.push(tn(uavs.removed.length, "{count} UAV removed", "{count} UAVs removed"));

@@ -16,7 +16,11 @@ export function returnLines(check) {
 export function returnSaid(check) {
   if (!check) return null;
   if (check.state === "clear") return { words: clearText(check), image: "rotate-ccw", level: null };
-  return { words: check.warnings.join(" "), image: check.state === "in_the_way" ? "triangle-alert" : "info", level: check.state === "in_the_way" ? "warning" : null };
+  return {
+    words: check.warnings.join(" "),
+    image: check.state === "in_the_way" ? "triangle-alert" : "info",
+    level: check.state === "in_the_way" ? "warning" : null,
+  };
 }
 
 function clearText({ height_m, read_at }) {

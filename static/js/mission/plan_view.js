@@ -4,10 +4,10 @@ import { routeLetter } from "../map/palette.js";
 import { t, tn } from "../text.js";
 import { durationText, energyText, lengthText, numberText } from "../units.js";
 import { changesOf } from "./hand_route.js";
-import { inWords } from "./plan_words.js";
 import { ordersOf, wishedOrders } from "./locks.js";
-import { positionAt, profileOf } from "./span_strip.js";
+import { inWords } from "./plan_words.js";
 import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";
+import { positionAt, profileOf } from "./span_strip.js";
 
 const REASONS = {
   no_path: t("No way along the network leads there."),
@@ -25,8 +25,16 @@ const REASONS = {
 export const OBJECTIVES = [
   { value: "makespan", words: t("Finish soonest"), meaning: t("The last UAV is done as early as possible") },
   { value: "total", words: t("Fly least"), meaning: t("All routes together as short as possible") },
-  { value: "time", words: t("Least flying time"), meaning: t("All UAVs together as few minutes in the air as possible") },
-  { value: "energy", words: t("Least energy"), meaning: t("All UAVs together with as little of their batteries as possible") },
+  {
+    value: "time",
+    words: t("Least flying time"),
+    meaning: t("All UAVs together as few minutes in the air as possible"),
+  },
+  {
+    value: "energy",
+    words: t("Least energy"),
+    meaning: t("All UAVs together with as little of their batteries as possible"),
+  },
 ];
 
 /** The one to set beside another: the soonest end, beside which the fewest metres. */
@@ -38,7 +46,12 @@ export const isWithoutBattery = (plan) => plan !== null && (plan.result.total_en
 /** Routes with their place in the mission: [{ sequence, letter, name, route, targets }]. */
 export function routesOf(plan) {
   if (!plan) return [];
-  return plan.result.routes.map((route, sequence) => ({ ...route, sequence, letter: routeLetter(sequence), name: route.uav }));
+  return plan.result.routes.map((route, sequence) => ({
+    ...route,
+    sequence,
+    letter: routeLetter(sequence),
+    name: route.uav,
+  }));
 }
 
 /** Where each target stands in the plan, or would stand with what is locked: key → { sequence, letter, number }. */
@@ -57,7 +70,10 @@ export function inPlanOrder(targets, places) {
     const place = places.get(target.key);
     return place ? place.sequence * 100_000 + place.number : Number.MAX_SAFE_INTEGER;
   };
-  return targets.map((target, index) => ({ target, index })).sort((a, b) => rank(a.target) - rank(b.target) || a.index - b.index).map(({ target }) => target);
+  return targets
+    .map((target, index) => ({ target, index }))
+    .sort((a, b) => rank(a.target) - rank(b.target) || a.index - b.index)
+    .map(({ target }) => target);
 }
 
 /** [{ target, sentence, reason }] for the targets that no route visits. */
@@ -85,17 +101,32 @@ export function sentenceOf(plan) {
   const { routes, unassigned, total_length_m } = plan.result;
   const flying = routes.filter((route) => route.geometry).length;
   const visited = plan.targets.length - unassigned.length;
-  if (!flying) return { sentence: t("No target can be reached"), facts: tn(plan.targets.length, "{count} target", "{count} targets") };
+  if (!flying)
+    return {
+      sentence: t("No target can be reached"),
+      facts: tn(plan.targets.length, "{count} target", "{count} targets"),
+    };
   const reached = unassigned.length
     ? tn(plan.targets.length, "{visited} of {count} target", "{visited} of {count} targets", { visited })
     : tn(visited, "all {count} target", "all {count} targets");
   const time = durationText(longestDuration_s(plan.result));
-  const endsAfield = routes.some((route) => route.geometry && route.end_action !== "return" && !plan.result.return_to_start);
+  const endsAfield = routes.some(
+    (route) => route.geometry && route.end_action !== "return" && !plan.result.return_to_start,
+  );
   const sentence = endsAfield ? t("Done in {time}", { time }) : t("All back in {time}", { time });
-  return { sentence, facts: [reached, tn(flying, "{count} UAV", "{count} UAVs"), lengthText(total_length_m), ...energyFacts(plan.result)].join(" · ") };
+  return {
+    sentence,
+    facts: [
+      reached,
+      tn(flying, "{count} UAV", "{count} UAVs"),
+      lengthText(total_length_m),
+      ...energyFacts(plan.result),
+    ].join(" · "),
+  };
 }
 
-const energyFacts = ({ total_energy_wh }) => (total_energy_wh === null || total_energy_wh === undefined ? [] : [energyText(total_energy_wh)]);
+const energyFacts = ({ total_energy_wh }) =>
+  total_energy_wh === null || total_energy_wh === undefined ? [] : [energyText(total_energy_wh)];
 
 const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
 const LEAST_SHARE = 0.0005; // less is not told from nothing
@@ -107,23 +138,46 @@ const LEFT_TO_THE_SEARCH = ["beyond_range", "beyond_energy", "most_targets"]; //
  * A bound is of the plans that reach as many targets. Which ones can be reached together is not bounded: where the search has left some
  * out, a figure would be taken for more than it is.
  */
-export function qualityOf({ objective, lower_bound_m, lower_bound_s, lower_bound_wh, gap, gap_of, is_proven, wish, routes, unassigned = [] }) {
+export function qualityOf({
+  objective,
+  lower_bound_m,
+  lower_bound_s,
+  lower_bound_wh,
+  gap,
+  gap_of,
+  is_proven,
+  wish,
+  routes,
+  unassigned = [],
+}) {
   const isKnown = is_proven || (gap !== null && gap !== undefined && gap < 1);
   if (!isKnown || !routes.some((route) => route.geometry)) return null;
   const above = gap / (1 - gap); // `gap` is a share of this plan
-  if (is_proven) return { isProven: true, words: provenWords(objective, Boolean(wish), unassigned.length > 0), detail: "" };
+  if (is_proven)
+    return { isProven: true, words: provenWords(objective, Boolean(wish), unassigned.length > 0), detail: "" };
   if (unassigned.some(({ reason }) => LEFT_TO_THE_SEARCH.includes(reason))) return null;
-  const bound = { total: lower_bound_m, energy: lower_bound_wh }[objective] ?? (["makespan", "time"].includes(objective) ? lower_bound_s : null);
+  const bound =
+    { total: lower_bound_m, energy: lower_bound_wh }[objective] ??
+    (["makespan", "time"].includes(objective) ? lower_bound_s : null);
   const share = shareText(above);
-  if (gap_of === "without_timed_zones") return { isProven: false, words: beyondTimedZones(above < LEAST_SHARE ? null : share, Boolean(wish)), detail: "" };
-  const words = above < LEAST_SHARE ? t("As good as is possible.") : wish ? t("At most {share} above what is possible with what is locked.", { share }) : t("At most {share} above what is possible.", { share });
+  if (gap_of === "without_timed_zones")
+    return { isProven: false, words: beyondTimedZones(above < LEAST_SHARE ? null : share, Boolean(wish)), detail: "" };
+  const words =
+    above < LEAST_SHARE
+      ? t("As good as is possible.")
+      : wish
+        ? t("At most {share} above what is possible with what is locked.", { share })
+        : t("At most {share} above what is possible.", { share });
   return { isProven: false, words, detail: bound === null || bound === undefined ? "" : boundWords(objective, bound) };
 }
 
 /** Against the best plan without the zones that come or go meanwhile: it may be that none is as good that keeps clear of them. share: null: nothing. */
 function beyondTimedZones(share, isLocked) {
   if (share === null) return t("No worse than the best plan without the zones that come or go meanwhile.");
-  if (isLocked) return t("At most {share} above the best plan with what is locked, without the zones that come or go meanwhile.", { share });
+  if (isLocked)
+    return t("At most {share} above the best plan with what is locked, without the zones that come or go meanwhile.", {
+      share,
+    });
   return t("At most {share} above the best plan without the zones that come or go meanwhile.", { share });
 }
 
@@ -136,14 +190,28 @@ function boundWords(objective, bound) {
 
 /** By objective: as it is, with locks, where targets are left out, with both. */
 const PROVEN = {
-  total: [t("Proven shortest."), t("Proven shortest with what is locked."), t("Proven shortest of plans that reach as many targets."), t("Proven shortest with what is locked, of plans that reach as many targets.")],
-  makespan: [t("Proven soonest."), t("Proven soonest with what is locked."), t("Proven soonest of plans that reach as many targets."), t("Proven soonest with what is locked, of plans that reach as many targets.")],
+  total: [
+    t("Proven shortest."),
+    t("Proven shortest with what is locked."),
+    t("Proven shortest of plans that reach as many targets."),
+    t("Proven shortest with what is locked, of plans that reach as many targets."),
+  ],
+  makespan: [
+    t("Proven soonest."),
+    t("Proven soonest with what is locked."),
+    t("Proven soonest of plans that reach as many targets."),
+    t("Proven soonest with what is locked, of plans that reach as many targets."),
+  ],
   time: [
-    t("Proven least flying time."), t("Proven least flying time with what is locked."), t("Proven least flying time of plans that reach as many targets."),
+    t("Proven least flying time."),
+    t("Proven least flying time with what is locked."),
+    t("Proven least flying time of plans that reach as many targets."),
     t("Proven least flying time with what is locked, of plans that reach as many targets."),
   ],
   energy: [
-    t("Proven least energy."), t("Proven least energy with what is locked."), t("Proven least energy of plans that reach as many targets."),
+    t("Proven least energy."),
+    t("Proven least energy with what is locked."),
+    t("Proven least energy of plans that reach as many targets."),
     t("Proven least energy with what is locked, of plans that reach as many targets."),
   ],
 };
@@ -155,12 +223,19 @@ export function wishWordsOf({ objective, wish }) {
   if (!wish) return "";
   const isTotal = objective !== "makespan"; // what it costs in time in the air or in energy is not told: its metres are
   const [cost, free] = isTotal ? [wish.cost_m, wish.free_total_m] : [wish.cost_s, wish.free_longest_s];
-  const leftOut = wish.left_out > 0 ? tn(wish.left_out, "Your wish leaves out {count} target more.", "Your wish leaves out {count} targets more.") : "";
+  const leftOut =
+    wish.left_out > 0
+      ? tn(wish.left_out, "Your wish leaves out {count} target more.", "Your wish leaves out {count} targets more.")
+      : "";
   if (cost === null || cost === undefined) return leftOut || t("What your wish costs is not known.");
   const figure = (isTotal ? lengthText : durationText)(Math.abs(cost));
   const share = free > 0 ? ` (${cost < 0 ? "−" : "+"}${shareText(Math.abs(cost) / free)})` : "";
   const isNothing = Math.abs(cost) < (isTotal ? 1 : 0.5);
-  const words = isNothing ? t("Your wish costs nothing.") : cost > 0 ? t("Your wish costs {figure} more{share}.", { figure, share }) : t("Your wish saves {figure}{share}: the search had not found it.", { figure, share });
+  const words = isNothing
+    ? t("Your wish costs nothing.")
+    : cost > 0
+      ? t("Your wish costs {figure} more{share}.", { figure, share })
+      : t("Your wish saves {figure}{share}: the search had not found it.", { figure, share });
   return [words, leftOut].filter(Boolean).join(" ");
 }
 
@@ -170,16 +245,28 @@ export function bestWordsOf(best) {
   const { unit, value, bound, left_out } = best;
   const textOf = { m: lengthText, s: durationText, Wh: energyText }[unit];
   const figure = textOf(value);
-  const words = bound > 0 && !left_out ? t("{figure} so far, at most {share} above what is possible ({least})", { figure, share: shareText(Math.max(0, value / bound - 1)), least: textOf(bound) }) : t("{figure} so far", { figure });
-  return [words, left_out > 0 && tn(left_out, "{count} target is not reached", "{count} targets are not reached")].filter(Boolean).join(", ");
+  const words =
+    bound > 0 && !left_out
+      ? t("{figure} so far, at most {share} above what is possible ({least})", {
+          figure,
+          share: shareText(Math.max(0, value / bound - 1)),
+          least: textOf(bound),
+        })
+      : t("{figure} so far", { figure });
+  return [words, left_out > 0 && tn(left_out, "{count} target is not reached", "{count} targets are not reached")]
+    .filter(Boolean)
+    .join(", ");
 }
 
 /** How a route's flight ends: "ends hovering at A2". */
 export function endingOf({ end_action, base, letter, targets }) {
   if (end_action === "return") return t("returns to start");
-  if (end_action === "base") return base ? t("lands at the base {name}", { name: base }) : t("lands at the nearest base");
+  if (end_action === "base")
+    return base ? t("lands at the base {name}", { name: base }) : t("lands at the nearest base");
   const last = `${letter}${targets.length}`;
-  return end_action === "land" ? t("lands at {target}", { target: last }) : t("ends hovering at {target}", { target: last });
+  return end_action === "land"
+    ? t("lands at {target}", { target: last })
+    : t("ends hovering at {target}", { target: last });
 }
 
 /** The same for what is picked, before it is planned. */
@@ -195,8 +282,16 @@ export function endingsOf({ return_to_start, uavs }) {
 
 /** targets: in the order flown: [{ label, isLocked? }]. */
 export function stripLabel(route, targets) {
-  const names = targets.map(({ label, isLocked }, index) => `${index + 1} ${label ?? t("Target")}${isLocked ? ` ${t("(locked)")}` : ""}`).join(", ");
-  const values = { name: route.name, length: lengthText(route.length_m), time: durationText(route.duration_s), ending: endingOf(route), targets: names || t("no targets") };
+  const names = targets
+    .map(({ label, isLocked }, index) => `${index + 1} ${label ?? t("Target")}${isLocked ? ` ${t("(locked)")}` : ""}`)
+    .join(", ");
+  const values = {
+    name: route.name,
+    length: lengthText(route.length_m),
+    time: durationText(route.duration_s),
+    ending: endingOf(route),
+    targets: names || t("no targets"),
+  };
   return t("{name} flies {length} in {time} and {ending}: {targets}.", values);
 }
 
@@ -216,7 +311,11 @@ export function shownRoute({ plan, lookedAt, chosenRoute, hand }) {
   const flown = routesOf(plan).filter((route) => route.geometry);
   const changed = hand && flown.find((route) => route.sequence === hand.sequence);
   if (changed) return wishedRoute(changed, hand);
-  return [lookedAt, chosenRoute].map((sequence) => flown.find((route) => route.sequence === sequence)).find(Boolean) ?? flown.sort((a, b) => b.length_m - a.length_m)[0] ?? null;
+  return (
+    [lookedAt, chosenRoute].map((sequence) => flown.find((route) => route.sequence === sequence)).find(Boolean) ??
+    flown.sort((a, b) => b.length_m - a.length_m)[0] ??
+    null
+  );
 }
 
 /**
@@ -239,19 +338,32 @@ export function isPlanCurrent(state) {
 
 /** Whether the plan on the page is that, but for locks and wishes of targets that are younger: they can be shown in it. */
 export function isPlanInSight(state) {
-  return isPlanCurrent(state) || (state.plan !== null && state.plan.freeBasis === basisOf(withoutWishes(state.selection)));
+  return (
+    isPlanCurrent(state) || (state.plan !== null && state.plan.freeBasis === basisOf(withoutWishes(state.selection)))
+  );
 }
 
 /** Places of what is picked, none where the plan is of something else; and the keys that no route visits. */
 export function shownPlaces(state) {
   if (!isPlanInSight(state)) return { places: new Map(), missed: new Set() };
   const places = placesOf(state.plan, state.selection.locks);
-  return { places, missed: new Set(unreachedOf(state.plan).map(({ target }) => target?.key).filter((key) => !places.has(key))) };
+  return {
+    places,
+    missed: new Set(
+      unreachedOf(state.plan)
+        .map(({ target }) => target?.key)
+        .filter((key) => !places.has(key)),
+    ),
+  };
 }
 
 /** Whether leaving the page would lose something. */
 export function isUnsaved(state) {
   if (!state.mission) return state.selection.targets.length > 0 || state.name.trim() !== "";
   const planUnsaved = isPlanCurrent(state) && !state.planIsStored;
-  return planUnsaved || storedBasisOf(state.selection) !== state.savedBasis || (state.name.trim() || state.mission.name) !== state.mission.name;
+  return (
+    planUnsaved ||
+    storedBasisOf(state.selection) !== state.savedBasis ||
+    (state.name.trim() || state.mission.name) !== state.mission.name
+  );
 }

@@ -5,7 +5,17 @@ import { followLive } from "../live/jobs.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { isSamePlan, isWorse, summaryOfPlan } from "./compare.js";
-import { figuresOf, isPlanCurrent, isWithoutBattery, OBJECTIVES, otherObjective, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "./plan_view.js";
+import {
+  figuresOf,
+  isPlanCurrent,
+  isWithoutBattery,
+  OBJECTIVES,
+  otherObjective,
+  qualityOf,
+  sentenceOf,
+  unreachedOf,
+  wishWordsOf,
+} from "./plan_view.js";
 import * as picks from "./selection.js";
 
 const MOST_PLANNED_AT_ONCE = 12; // up to here the server answers at once, and a mission that is opened gets both plans
@@ -14,12 +24,21 @@ const MOST_KEPT = 16; // plans that undo, redo and the choice of what is best at
 /** The plan of a result, with the selection that it was made for: its indices point into that. */
 export function planOf(result, selection) {
   const { targets, uavs, charging_w = null } = selection;
-  return { result, basis: picks.basisOf(selection), freeBasis: picks.basisOf(picks.withoutWishes(selection)), targets, uavs, charging_w };
+  return {
+    result,
+    basis: picks.basisOf(selection),
+    freeBasis: picks.basisOf(picks.withoutWishes(selection)),
+    targets,
+    uavs,
+    charging_w,
+  };
 }
 
 /** Results by what they were made for; the oldest go, and those of another ground: a zone may have come in since. */
 export function withResult(figures, basis, result) {
-  const rest = Object.entries(figures).filter(([known, other]) => known !== basis && other.ground_revision === result.ground_revision);
+  const rest = Object.entries(figures).filter(
+    ([known, other]) => known !== basis && other.ground_revision === result.ground_revision,
+  );
   return Object.fromEntries([...rest.slice(-MOST_KEPT + 1), [basis, result]]);
 }
 
@@ -31,14 +50,26 @@ export function createPlanning({ store, selection, change, problem, failed, runn
   async function waitForJob(jobId, what) {
     const job = await followLive(jobId, {
       signal: running.stopping?.signal,
-      onProgress: (at) => store.update({ planning: { ...store.state.planning, what, found: at.message, share: at.state === "queued" ? null : at.progress, isQueued: at.state === "queued", best: at.best ?? store.state.planning?.best ?? null, job: jobId } }),
+      onProgress: (at) =>
+        store.update({
+          planning: {
+            ...store.state.planning,
+            what,
+            found: at.message,
+            share: at.state === "queued" ? null : at.progress,
+            isQueued: at.state === "queued",
+            best: at.best ?? store.state.planning?.best ?? null,
+            job: jobId,
+          },
+        }),
     });
     if (job.state === "cancelled" && !job.result) throw new DOMException("stopped", "AbortError");
     return job;
   }
 
   function missing() {
-    if (!selection().targets.length) return [t("Nothing picked yet."), t("Click a tower, bridge or track on the map, then plan.")];
+    if (!selection().targets.length)
+      return [t("Nothing picked yet."), t("Click a tower, bridge or track on the map, then plan.")];
     if (!selection().uavs.length) return [t("No UAV is chosen."), t("Tick one in the list, or add the first one.")];
     return null;
   }
@@ -91,11 +122,26 @@ export function createPlanning({ store, selection, change, problem, failed, runn
         return;
       }
       if (store.state.planning.isStopping) toast(t("Stopped. The best plan so far is kept."));
-      store.update({ plan: made, figures: withResult(store.state.figures, made.basis, result), planIsStored: false, chosenRoute: null, why: null });
+      store.update({
+        plan: made,
+        figures: withResult(store.state.figures, made.basis, result),
+        planIsStored: false,
+        chosenRoute: null,
+        why: null,
+      });
       const { sentence, facts } = sentenceOf(made);
       const unreached = unreachedOf(made).length;
       const quality = qualityOf(result);
-      say([`${sentence}. ${facts}.`, quality?.words, wishWordsOf(result), unreached && tn(unreached, "{count} target is not reached.", "{count} targets are not reached.")].filter(Boolean).join(" "));
+      say(
+        [
+          `${sentence}. ${facts}.`,
+          quality?.words,
+          wishWordsOf(result),
+          unreached && tn(unreached, "{count} target is not reached.", "{count} targets are not reached."),
+        ]
+          .filter(Boolean)
+          .join(" "),
+      );
       if (picks.basisOf(selection()) === made.basis) aside.want(asked);
       else if (!isPlanCurrent(store.state)) tellChanged();
     } catch (error) {
@@ -110,7 +156,10 @@ export function createPlanning({ store, selection, change, problem, failed, runn
 
   function tellChanged() {
     const words = t("The plan is of what was picked when planning began.");
-    problem(t("The selection has changed since."), words, [{ label: t("Plan again"), act: plan }], { untilChanged: true, level: "warning" });
+    problem(t("The selection has changed since."), words, [{ label: t("Plan again"), act: plan }], {
+      untilChanged: true,
+      level: "warning",
+    });
   }
 
   /** A large plan that was being made when the page was left: its progress comes back, or its result. */
@@ -159,11 +208,16 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     const basis = picks.basisOf(state.selection);
     const known = state.figures[basis];
     if (known && state.plan?.basis !== basis) {
-      store.update({ plan: planOf(known, state.selection), planIsStored: known === state.mission?.plan, why: state.why?.compare || state.why?.alternatives ? state.why : null });
+      store.update({
+        plan: planOf(known, state.selection),
+        planIsStored: known === state.mission?.plan,
+        why: state.why?.compare || state.why?.alternatives ? state.why : null,
+      });
     }
     aside.keepOnlyFor(state.selection);
     const isShownAsStored = state.planIsStored && state.plan?.basis === basis;
-    if (page.canPlan && isShownAsStored && state.selection.targets.length <= MOST_PLANNED_AT_ONCE) aside.want(state.selection);
+    if (page.canPlan && isShownAsStored && state.selection.targets.length <= MOST_PLANNED_AT_ONCE)
+      aside.want(state.selection);
   });
 
   let shown = null; // the plan on the page in short
@@ -181,11 +235,20 @@ export function createPlanning({ store, selection, change, problem, failed, runn
       return { ...part, key: picks.keyOf(part) };
     });
     store.update({ why: null });
-    change({ ...selection(), targets: selection().targets.flatMap((other) => (other.key === target.key ? parts : [other])) });
+    change({
+      ...selection(),
+      targets: selection().targets.flatMap((other) => (other.key === target.key ? parts : [other])),
+    });
   }
 
   return {
-    plan, stop, cancel, resume, replaceByStretches, waitForJob, makeRoom: aside.giveWay,
+    plan,
+    stop,
+    cancel,
+    resume,
+    replaceByStretches,
+    waitForJob,
+    makeRoom: aside.giveWay,
     planAlternatives: () => store.state.plan && isPlanCurrent(store.state) && aside.wantAll(selection()),
     stopAlternatives: aside.stop,
   };
@@ -252,7 +315,8 @@ function planBeside(store) {
       if (asked.targets.length > MOST_PLANNED_AT_ONCE && !(await isAlone(own.signal))) return;
       await make(other, own);
     } catch (error) {
-      if (error.name !== "AbortError") say(t("The other way of planning has no figures: {reason}", { reason: error.message }));
+      if (error.name !== "AbortError")
+        say(t("The other way of planning has no figures: {reason}", { reason: error.message }));
     } finally {
       end(own);
     }
@@ -266,7 +330,8 @@ function planBeside(store) {
       for (const { value } of OBJECTIVES) {
         const other = { ...asked, objective: value };
         if (own.signal.aborted) return;
-        if (store.state.figures[picks.basisOf(other)] || (value === "energy" && isWithoutBattery(store.state.plan))) continue;
+        if (store.state.figures[picks.basisOf(other)] || (value === "energy" && isWithoutBattery(store.state.plan)))
+          continue;
         try {
           await make(other, own);
         } catch (error) {

@@ -2,12 +2,12 @@
 
 import { post } from "../api.js";
 import { h, svg } from "../dom.js";
+import { rulesOf } from "../terrain/profile_chart.js";
 import { t } from "../text.js";
 import { heightText, lengthText, percentText } from "../units.js";
 import { heightsText } from "../zones/heights.js";
 import { timeAt } from "./flight_options.js";
 import { staysOf, stayText } from "./route_times.js";
-import { rulesOf } from "../terrain/profile_chart.js";
 import { profileOf, scaleOf } from "./span_strip.js";
 import { passedZones, zoneWords } from "./zones_passed.js";
 
@@ -34,7 +34,11 @@ export function createGrounds() {
     const { waypoints, length_m } = route;
     if (!known.has(waypoints)) {
       const line = thinned(waypoints.map(({ position }) => position));
-      const asked = post("/terrain/profile", { line, step_m: Math.max(5, length_m / MOST_STEPS), near_m: NEAR_ZONE_M }).then(({ data }) => groundOf(data, length_m));
+      const asked = post("/terrain/profile", {
+        line,
+        step_m: Math.max(5, length_m / MOST_STEPS),
+        near_m: NEAR_ZONE_M,
+      }).then(({ data }) => groundOf(data, length_m));
       asked.catch(() => known.delete(waypoints)); // asked again the next time
       known.set(waypoints, asked);
     }
@@ -46,7 +50,10 @@ export function createGrounds() {
 export function groundOf(profile, length_m) {
   const scale = profile.length_m > 0 ? length_m / profile.length_m : 1;
   return {
-    samples: profile.distance_m.map((distance, index) => ({ at_m: distance * scale, ground_m: profile.ground_amsl_m[index] })),
+    samples: profile.distance_m.map((distance, index) => ({
+      at_m: distance * scale,
+      ground_m: profile.ground_amsl_m[index],
+    })),
     zones: profile.zones.map((zone) => ({ ...zone, from_m: zone.from_m * scale, to_m: zone.to_m * scale })),
     zone_margins: profile.zone_margins,
   };
@@ -60,14 +67,33 @@ export function flightOf(route, ground, battery_wh = null, departs_at = null) {
   const heightOf = (waypoint) => (isFlat ? waypoint.altitude_relative_m : waypoint.altitude_amsl_m);
   const stays = new Map(staysOf(route).map((stay) => [stay.index, stay]));
   const path = route.waypoints.flatMap((waypoint, index) => {
-    const point = { at_m: places[index], height_m: heightOf(waypoint), arrival_s: route.arrival_s?.[index] ?? null, battery_percent: route.battery_left_percent?.[index] ?? null };
+    const point = {
+      at_m: places[index],
+      height_m: heightOf(waypoint),
+      arrival_s: route.arrival_s?.[index] ?? null,
+      battery_percent: route.battery_left_percent?.[index] ?? null,
+    };
     const stay = stays.get(index) ?? (waypoint.task?.hold_s ? { kind: "task", stay_s: waypoint.task.hold_s } : null);
     return stay ? [point, afterStay(point, stay, battery_wh)] : [point];
   });
-  const under = isFlat ? [{ at_m: 0, ground_m: 0 }, { at_m: route.length_m, ground_m: 0 }] : (ground?.samples ?? []);
+  const under = isFlat
+    ? [
+        { at_m: 0, ground_m: 0 },
+        { at_m: route.length_m, ground_m: 0 },
+      ]
+    : (ground?.samples ?? []);
   const tasks = targets.map(({ target, at }) => ({ target, at_m: at, height_m: heightAt(path, at, "height_m") }));
   const waits = [...stays.values()].map((stay) => ({ ...stay, at_m: places[stay.index] }));
-  return { isFlat, path, under, tasks, waits, zones: ground ? passedZones(ground, route, places, departs_at) : [], margins: ground?.zone_margins, hasBattery: path.some(({ battery_percent }) => battery_percent !== null) };
+  return {
+    isFlat,
+    path,
+    under,
+    tasks,
+    waits,
+    zones: ground ? passedZones(ground, route, places, departs_at) : [],
+    margins: ground?.zone_margins,
+    hasBattery: path.some(({ battery_percent }) => battery_percent !== null),
+  };
 }
 
 /** The same place when it goes on from there: later, and with a battery that is full after a base and fuller after charging. */
@@ -95,7 +121,9 @@ export function readingAt(flight, at_m) {
   const height_m = heightAt(flight.path, at_m, "height_m");
   const ground_m = heightAt(flight.under, at_m, "ground_m");
   return {
-    at_m, height_m, ground_m,
+    at_m,
+    height_m,
+    ground_m,
     above_m: height_m === null || ground_m === null ? null : height_m - ground_m,
     arrival_s: heightAt(flight.path, at_m, "arrival_s"),
     battery_percent: heightAt(flight.path, at_m, "battery_percent"),
@@ -105,7 +133,9 @@ export function readingAt(flight, at_m) {
 
 /** Lowest and highest of what is drawn; a zone without a ceiling does not count. */
 export function spanOf({ path, under }) {
-  const known = [...path.map(({ height_m }) => height_m), ...under.map(({ ground_m }) => ground_m)].filter((height) => height !== null);
+  const known = [...path.map(({ height_m }) => height_m), ...under.map(({ ground_m }) => ground_m)].filter(
+    (height) => height !== null,
+  );
   const low = known.reduce((a, b) => Math.min(a, b), Infinity);
   const high = known.reduce((a, b) => Math.max(a, b), -Infinity);
   const room = Math.max(0, LEAST_SPAN_M - (high - low));
@@ -146,7 +176,14 @@ export function drawProfile({ route, flight, longest_m, width_px, reserve_percen
   const end = x(route.length_m);
   const bottom_px = flight.hasBattery ? BATTERY_PX.empty : FLOOR_PX;
   const height_px = flight.hasBattery ? BATTERY_PX.empty + 4 : PROFILE_HEIGHT_PX;
-  const element = svg("svg", { class: "route-profile-chart", role: "img", "aria-label": profileSentence(route, flight), width: width_px, height: height_px, viewBox: `0 0 ${width_px} ${height_px}` });
+  const element = svg("svg", {
+    class: "route-profile-chart",
+    role: "img",
+    "aria-label": profileSentence(route, flight),
+    width: width_px,
+    height: height_px,
+    viewBox: `0 0 ${width_px} ${height_px}`,
+  });
   element.append(hatching());
   if (flight.hasBattery) element.append(...batteryDrawing(flight.path, { x, width_px, reserve_percent }));
   for (const rule of rulesOf(span.low, span.high)) {
@@ -155,7 +192,14 @@ export function drawProfile({ route, flight, longest_m, width_px, reserve_percen
   for (const piece of knownPieces(flight.under)) {
     const line = piece.map(({ at_m, ground_m }) => `${x(at_m).toFixed(1)},${y(ground_m).toFixed(1)}`);
     element.append(
-      svg("polygon", { class: "ground", points: [...line, `${x(piece.at(-1).at_m).toFixed(1)},${FLOOR_PX}`, `${x(piece[0].at_m).toFixed(1)},${FLOOR_PX}`].join(" ") }),
+      svg("polygon", {
+        class: "ground",
+        points: [
+          ...line,
+          `${x(piece.at(-1).at_m).toFixed(1)},${FLOOR_PX}`,
+          `${x(piece[0].at_m).toFixed(1)},${FLOOR_PX}`,
+        ].join(" "),
+      }),
       svg("polyline", { class: "ground-edge", points: line.join(" ") }),
     );
   }
@@ -163,19 +207,50 @@ export function drawProfile({ route, flight, longest_m, width_px, reserve_percen
     const { from, to } = bandOf(zone, flight, span);
     const [left, right] = [x(zone.from_m), Math.max(x(zone.to_m), x(zone.from_m) + 3)];
     element.append(
-      svg("rect", { class: `zone-band ${zone.kind}`, x: left, width: right - left, y: y(to), height: Math.max(1, y(from) - y(to)), fill: isHatched(zone) ? "url(#zone-hatch)" : "none" }, svg("title", {}, `${zoneWords(zone)}, ${heightsText(zone)}`)),
+      svg(
+        "rect",
+        {
+          class: `zone-band ${zone.kind}`,
+          x: left,
+          width: right - left,
+          y: y(to),
+          height: Math.max(1, y(from) - y(to)),
+          fill: isHatched(zone) ? "url(#zone-hatch)" : "none",
+        },
+        svg("title", {}, `${zoneWords(zone)}, ${heightsText(zone)}`),
+      ),
     );
   }
-  element.append(svg("polyline", { class: "flight", points: flight.path.map(({ at_m, height_m }) => `${x(at_m).toFixed(1)},${y(height_m).toFixed(1)}`).join(" ") }));
-  for (const rule of rulesOf(span.low, span.high)) element.append(svg("text", { class: "tick", x: x(0) + 2, y: y(rule) - 3 }, heightText(rule)));
+  element.append(
+    svg("polyline", {
+      class: "flight",
+      points: flight.path.map(({ at_m, height_m }) => `${x(at_m).toFixed(1)},${y(height_m).toFixed(1)}`).join(" "),
+    }),
+  );
+  for (const rule of rulesOf(span.low, span.high))
+    element.append(svg("text", { class: "tick", x: x(0) + 2, y: y(rule) - 3 }, heightText(rule)));
   const dots = new Map();
   for (const task of flight.tasks) {
-    const dot = svg("circle", { class: "task", cx: x(task.at_m), cy: y(task.height_m), r: 4.5, onpointerenter: () => onTask?.(task.target), onpointerleave: () => onTask?.(null) });
+    const dot = svg("circle", {
+      class: "task",
+      cx: x(task.at_m),
+      cy: y(task.height_m),
+      r: 4.5,
+      onpointerenter: () => onTask?.(task.target),
+      onpointerleave: () => onTask?.(null),
+    });
     if (!dots.has(task.target)) dots.set(task.target, []);
     dots.get(task.target).push(dot);
     element.append(dot);
   }
-  for (const wait of flight.waits) element.append(svg("line", { class: "wait", x1: x(wait.at_m), x2: x(wait.at_m), y1: TOP_PX, y2: bottom_px }, svg("title", {}, stayText(wait))));
+  for (const wait of flight.waits)
+    element.append(
+      svg(
+        "line",
+        { class: "wait", x1: x(wait.at_m), x2: x(wait.at_m), y1: TOP_PX, y2: bottom_px },
+        svg("title", {}, stayText(wait)),
+      ),
+    );
   const line = svg("line", { class: "strip-cursor", y1: 0, y2: bottom_px, visibility: "hidden" });
   const dot = svg("circle", { class: "cursor-dot", r: 3.5, visibility: "hidden" });
   element.append(line, dot);
@@ -209,8 +284,26 @@ function batteryDrawing(path, { x, width_px, reserve_percent }) {
   const points = known.map(({ at_m, battery_percent }) => `${x(at_m).toFixed(1)},${y(battery_percent).toFixed(1)}`);
   return [
     svg("line", { class: "rule", x1: x(0), x2: width_px, y1: BATTERY_PX.empty, y2: BATTERY_PX.empty }),
-    svg("polygon", { class: "battery-left", points: [...points, `${x(known.at(-1).at_m).toFixed(1)},${BATTERY_PX.empty}`, `${x(known[0].at_m).toFixed(1)},${BATTERY_PX.empty}`].join(" ") }),
-    reserve_percent !== null && svg("line", { class: "battery-reserve", x1: x(0), x2: x(known.at(-1).at_m), y1: y(reserve_percent), y2: y(reserve_percent) }, svg("title", {}, t("Kept in reserve"))),
+    svg("polygon", {
+      class: "battery-left",
+      points: [
+        ...points,
+        `${x(known.at(-1).at_m).toFixed(1)},${BATTERY_PX.empty}`,
+        `${x(known[0].at_m).toFixed(1)},${BATTERY_PX.empty}`,
+      ].join(" "),
+    }),
+    reserve_percent !== null &&
+      svg(
+        "line",
+        {
+          class: "battery-reserve",
+          x1: x(0),
+          x2: x(known.at(-1).at_m),
+          y1: y(reserve_percent),
+          y2: y(reserve_percent),
+        },
+        svg("title", {}, t("Kept in reserve")),
+      ),
     svg("polyline", { class: "battery-curve", points: points.join(" ") }),
     svg("text", { class: "tick", x: x(0) + 2, y: BATTERY_PX.empty - 4 }, t("Battery")),
   ].filter(Boolean);
@@ -220,7 +313,11 @@ function hatching() {
   return svg(
     "defs",
     {},
-    svg("pattern", { id: "zone-hatch", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" }, svg("line", { class: "hatch-line", x1: 0, x2: 0, y1: 0, y2: 6 })),
+    svg(
+      "pattern",
+      { id: "zone-hatch", width: 6, height: 6, patternUnits: "userSpaceOnUse", patternTransform: "rotate(45)" },
+      svg("line", { class: "hatch-line", x1: 0, x2: 0, y1: 0, y2: 6 }),
+    ),
   );
 }
 
@@ -243,13 +340,43 @@ export function profileTable(route, flight, targets, departs_at) {
     "table",
     { class: "unseen" },
     h("caption", {}, t("Heights of {name}", { name: route.name })),
-    h("thead", {}, h("tr", {}, [t("Target"), t("Distance flown"), t("Ground"), height, hasTimes && t("Arrival"), flight.hasBattery && t("Battery left")].filter(Boolean).map((words) => h("th", { scope: "col" }, words)))),
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        [
+          t("Target"),
+          t("Distance flown"),
+          t("Ground"),
+          height,
+          hasTimes && t("Arrival"),
+          flight.hasBattery && t("Battery left"),
+        ]
+          .filter(Boolean)
+          .map((words) => h("th", { scope: "col" }, words)),
+      ),
+    ),
     h(
       "tbody",
       {},
       flight.tasks.map(({ target, at_m }) => {
         const at = readingAt(flight, at_m);
-        return h("tr", {}, [targets[target]?.label ?? t("Target"), lengthText(at_m), said(at.ground_m), said(at.height_m), hasTimes && timeAt(departs_at, at.arrival_s), flight.hasBattery && percentText(at.battery_percent)].filter(Boolean).map((words) => h("td", {}, words)));
+        return h(
+          "tr",
+          {},
+          [
+            targets[target]?.label ?? t("Target"),
+            lengthText(at_m),
+            said(at.ground_m),
+            said(at.height_m),
+            hasTimes && timeAt(departs_at, at.arrival_s),
+            flight.hasBattery && percentText(at.battery_percent),
+          ]
+            .filter(Boolean)
+            .map((words) => h("td", {}, words)),
+        );
       }),
     ),
   );

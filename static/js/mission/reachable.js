@@ -44,8 +44,10 @@ export function reachText({ assets, reasons, flights }, id, uavs) {
     return name ? t("Can be inspected: {name} has the shortest way.", { name }) : t("Can be inspected.");
   }
   const { code: why, message } = reasons[code - 1];
-  if (why === "beyond_range" && assets.missing_m[place] > 0) return t("Out of range: {length} are missing at best.", { length: lengthText(assets.missing_m[place]) });
+  if (why === "beyond_range" && assets.missing_m[place] > 0)
+    return t("Out of range: {length} are missing at best.", { length: lengthText(assets.missing_m[place]) });
   const lacking_wh = assets.missing_wh?.[place] ?? 0;
-  if (why === "beyond_energy" && lacking_wh > 0) return t("Out of range: {length} are missing at best.", { length: energyText(lacking_wh) });
+  if (why === "beyond_energy" && lacking_wh > 0)
+    return t("Out of range: {length} are missing at best.", { length: energyText(lacking_wh) });
   return message;
 }

@@ -7,7 +7,10 @@ import { withoutLocks, withUavAs, withWishes } from "./selection.js";
 function firstFault(details, place = []) {
   if (typeof details === "string") return { place, words: details };
   if (!details || typeof details !== "object") return null;
-  const entries = Array.isArray(details) && details.every((entry) => typeof entry === "string") ? details.map((entry) => [[], entry]) : Object.entries(details).map(([key, value]) => [key.split("."), value]);
+  const entries =
+    Array.isArray(details) && details.every((entry) => typeof entry === "string")
+      ? details.map((entry) => [[], entry])
+      : Object.entries(details).map(([key, value]) => [key.split("."), value]);
   for (const [names, value] of entries) {
     const found = firstFault(value, [...place, ...names]);
     if (found) return found;
@@ -36,8 +39,19 @@ function waysOf({ part, field, uav, target }, asked) {
     const isOfUav = (lock) => lock.uav === uav.name;
     const locked = asked.locks.filter(isOfUav).flatMap(({ targets }) => targets).length;
     return [
-      { label: t("Raise its limit to {count}", { count: locked }), changed: (now) => withUavAs(now, now.uavs.findIndex(({ name }) => name === uav.name), { most_targets: locked }) },
-      { label: t("Unlock its targets"), changed: (now) => ({ ...now, locks: now.locks.filter((lock) => !isOfUav(lock)) }) },
+      {
+        label: t("Raise its limit to {count}", { count: locked }),
+        changed: (now) =>
+          withUavAs(
+            now,
+            now.uavs.findIndex(({ name }) => name === uav.name),
+            { most_targets: locked },
+          ),
+      },
+      {
+        label: t("Unlock its targets"),
+        changed: (now) => ({ ...now, locks: now.locks.filter((lock) => !isOfUav(lock)) }),
+      },
     ];
   }
   if (uav && field === "end_action") {
@@ -46,6 +60,7 @@ function waysOf({ part, field, uav, target }, asked) {
       { label: t("Let all return to the start"), changed: (now) => ({ ...now, return_to_start: true }) },
     ];
   }
-  if (target && field === "uav") return [{ label: t("Let any UAV fly it"), changed: (now) => withWishes(now, [target.key], { uav: null }) }];
+  if (target && field === "uav")
+    return [{ label: t("Let any UAV fly it"), changed: (now) => withWishes(now, [target.key], { uav: null }) }];
   return part === "locks" ? [{ label: t("Unlock all"), changed: withoutLocks }] : [];
 }

@@ -4,9 +4,16 @@ import { t, tn } from "../text.js";
 import { durationText, energyText, heightText, percentText } from "../units.js";
 
 export const CONDITIONS = ["calm", "as-planned", "strong-wind", "weak-battery"];
-export const conditionWords = (code) => ({ calm: t("Calm"), "as-planned": t("As planned"), "strong-wind": t("Strong wind"), "weak-battery": t("Weak battery") })[code];
+export const conditionWords = (code) =>
+  ({
+    calm: t("Calm"),
+    "as-planned": t("As planned"),
+    "strong-wind": t("Strong wind"),
+    "weak-battery": t("Weak battery"),
+  })[code];
 export const LEVELS = { pass: "circle-check", warnings: "triangle-alert", fail: "circle-x" };
-export const levelWords = (level) => ({ pass: t("Pass"), warnings: t("Pass with warnings"), fail: t("Fail") })[level] ?? t("Not flown");
+export const levelWords = (level) =>
+  ({ pass: t("Pass"), warnings: t("Pass with warnings"), fail: t("Fail") })[level] ?? t("Not flown");
 
 export const isRunning = (rehearsal) => ["queued", "running"].includes(rehearsal?.state);
 
@@ -19,13 +26,19 @@ export function sentenceOf(detail) {
   if (!detail.level) return t("It has not been flown yet.");
   const of = (level) => detail.runs.filter((run) => run.level === level);
   if (detail.level === "pass") return t("It passes: {conditions}.", { conditions: namesOf(of("pass")) });
-  if (detail.level === "warnings") return t("It passes with warnings: {conditions}.", { conditions: namesOf(of("warnings")) });
+  if (detail.level === "warnings")
+    return t("It passes with warnings: {conditions}.", { conditions: namesOf(of("warnings")) });
   const failing = of("fail");
   const targets = failing.flatMap(({ verdict }) => verdict.routes.flatMap((route) => route.targets));
   const failed = new Set(targets.filter(({ level }) => level === "fail").map(({ target }) => target));
   const all = new Set(targets.map(({ target }) => target)).size;
   const conditions = namesOf(failing);
-  return failed.size ? tn(failed.size, "{count} of {all} targets fails: {conditions}.", "{count} of {all} targets fail: {conditions}.", { all, conditions }) : t("It fails: {conditions}.", { conditions });
+  return failed.size
+    ? tn(failed.size, "{count} of {all} targets fails: {conditions}.", "{count} of {all} targets fail: {conditions}.", {
+        all,
+        conditions,
+      })
+    : t("It fails: {conditions}.", { conditions });
 }
 
 const apart = (metres) => (metres === null || metres === undefined ? "–" : heightText(metres));
@@ -36,20 +49,57 @@ export function figuresOf(route, limits) {
   const left = Math.min(...route.energy.map(({ left_percent }) => left_percent));
   const zone = route.zones[0];
   return [
-    { words: t("Time"), flown: durationText(route.flown_s), beside: route.planned_s === null ? "" : t("{time} planned", { time: durationText(route.planned_s) }) },
-    { words: t("Energy"), flown: energyText(route.used_wh), beside: route.planned_wh === null ? "" : t("{energy} planned", { energy: energyText(route.planned_wh) }) },
-    { words: t("Battery at landing"), flown: Number.isFinite(left) ? percentText(left) : "–", beside: t("limit {limit}", { limit: percentText(route.reserve_percent) }) },
-    { words: t("Off the line, most"), flown: apart(route.across.max_m), beside: t("limit {limit}", { limit: apart(limit("across_fail_m")) }) },
-    { words: t("Off the height, most"), flown: apart(route.height.max_m), beside: t("limit {limit}", { limit: apart(limit("height_fail_m")) }) },
-    { words: t("Lowest above ground"), flown: apart(route.lowest?.away_m), beside: t("limit {limit}", { limit: apart(limit("ground_fail_m")) }) },
-    { words: t("From towers and wires"), flown: route.obstacle ? apart(route.obstacle.away_m) : t("none near"), beside: t("limit {limit}", { limit: apart(limit("obstacle_fail_m")) }) },
-    { words: t("From zones in force"), flown: zone ? apart(Math.hypot(zone.beside_m, zone.height_m)) : t("none near"), beside: zone?.name ?? "" },
+    {
+      words: t("Time"),
+      flown: durationText(route.flown_s),
+      beside: route.planned_s === null ? "" : t("{time} planned", { time: durationText(route.planned_s) }),
+    },
+    {
+      words: t("Energy"),
+      flown: energyText(route.used_wh),
+      beside: route.planned_wh === null ? "" : t("{energy} planned", { energy: energyText(route.planned_wh) }),
+    },
+    {
+      words: t("Battery at landing"),
+      flown: Number.isFinite(left) ? percentText(left) : "–",
+      beside: t("limit {limit}", { limit: percentText(route.reserve_percent) }),
+    },
+    {
+      words: t("Off the line, most"),
+      flown: apart(route.across.max_m),
+      beside: t("limit {limit}", { limit: apart(limit("across_fail_m")) }),
+    },
+    {
+      words: t("Off the height, most"),
+      flown: apart(route.height.max_m),
+      beside: t("limit {limit}", { limit: apart(limit("height_fail_m")) }),
+    },
+    {
+      words: t("Lowest above ground"),
+      flown: apart(route.lowest?.away_m),
+      beside: t("limit {limit}", { limit: apart(limit("ground_fail_m")) }),
+    },
+    {
+      words: t("From towers and wires"),
+      flown: route.obstacle ? apart(route.obstacle.away_m) : t("none near"),
+      beside: t("limit {limit}", { limit: apart(limit("obstacle_fail_m")) }),
+    },
+    {
+      words: t("From zones in force"),
+      flown: zone ? apart(Math.hypot(zone.beside_m, zone.height_m)) : t("none near"),
+      beside: zone?.name ?? "",
+    },
   ];
 }
 
 /** The nearest that the route's UAV came to another one in the air: { away_m, other } or null. */
 export function nearestOther(verdict, uav) {
-  const met = verdict.meetings.filter(({ uavs }) => uavs.includes(uav)).map(({ uavs, beside_m, height_m }) => ({ away_m: Math.hypot(beside_m, height_m), other: uavs.find((place) => place !== uav) }));
+  const met = verdict.meetings
+    .filter(({ uavs }) => uavs.includes(uav))
+    .map(({ uavs, beside_m, height_m }) => ({
+      away_m: Math.hypot(beside_m, height_m),
+      other: uavs.find((place) => place !== uav),
+    }));
   return met.sort((a, b) => a.away_m - b.away_m)[0] ?? null;
 }
 
@@ -60,10 +110,19 @@ export function nearestOther(verdict, uav) {
 export function curvesOf(route) {
   const [first] = route.flights;
   const ground_m = first ? first.altitude_amsl_m[0] - first.altitude_relative_m[0] : 0;
-  const lines = (value) => route.flights.map((flight) => flight.t_s.map((at_s, row) => ({ at_s, value: value(flight, row) })));
-  const planned = (name) => [route.planned.filter((point) => point.at_s !== null && point[name] !== null).map((point) => ({ at_s: point.at_s, value: point[name] }))].filter((line) => line.length > 1);
+  const lines = (value) =>
+    route.flights.map((flight) => flight.t_s.map((at_s, row) => ({ at_s, value: value(flight, row) })));
+  const planned = (name) =>
+    [
+      route.planned
+        .filter((point) => point.at_s !== null && point[name] !== null)
+        .map((point) => ({ at_s: point.at_s, value: point[name] })),
+    ].filter((line) => line.length > 1);
   return {
-    flown: { height: lines((flight, row) => flight.altitude_amsl_m[row] - ground_m), battery: lines((flight, row) => flight.battery_percent[row]) },
+    flown: {
+      height: lines((flight, row) => flight.altitude_amsl_m[row] - ground_m),
+      battery: lines((flight, row) => flight.battery_percent[row]),
+    },
     planned: { height: planned("altitude_relative_m"), battery: planned("battery_percent") },
   };
 }
@@ -79,7 +138,10 @@ export function rulesUpTo(top) {
 /** Own figures of the form, as the request has them; what is empty is as planned. */
 export function ownConditions({ wind_mps, from_deg, gusts_mps, battery_percent }) {
   const own = {};
-  if (Number.isFinite(wind_mps)) own.wind = [{ altitude_agl_m: 10, speed_mps: wind_mps, from_deg: (Number.isFinite(from_deg) ? from_deg : 270) % 360 }];
+  if (Number.isFinite(wind_mps))
+    own.wind = [
+      { altitude_agl_m: 10, speed_mps: wind_mps, from_deg: (Number.isFinite(from_deg) ? from_deg : 270) % 360 },
+    ];
   if (Number.isFinite(gusts_mps)) own.gusts_mps = gusts_mps;
   if (Number.isFinite(battery_percent)) own.battery_percent = battery_percent;
   return own;

@@ -15,7 +15,8 @@ export function createRehearsing(store, { isStage = false } = {}) {
 
   const change = (values) => store.update({ rehearsal: { ...store.state.rehearsal, ...values } });
   const missionId = () => store.state.mission?.id ?? null;
-  const address = (rehearsal = "", rest = "") => `/missions/${missionId()}/rehearsals${rehearsal ? `/${rehearsal}` : ""}${rest}`;
+  const address = (rehearsal = "", rest = "") =>
+    `/missions/${missionId()}/rehearsals${rehearsal ? `/${rehearsal}` : ""}${rest}`;
 
   async function told(act) {
     try {
@@ -41,7 +42,9 @@ export function createRehearsing(store, { isStage = false } = {}) {
       const { detail, run } = store.state.rehearsal;
       const named = wanted || detail ? null : ofAddress.get("rehearsal");
       if (named) return await show(named, ofAddress.has("run") ? Number(ofAddress.get("run")) : null);
-      const shown = data.results.find(({ id }) => id === (wanted ?? detail?.id)) ?? data.results.find(({ level, state }) => level || ["failed", "cancelled"].includes(state));
+      const shown =
+        data.results.find(({ id }) => id === (wanted ?? detail?.id)) ??
+        data.results.find(({ level, state }) => level || ["failed", "cancelled"].includes(state));
       if (shown) await show(shown.id, detail?.id === shown.id ? run : null);
       else change({ detail: null, track: null });
     });
@@ -51,7 +54,9 @@ export function createRehearsing(store, { isStage = false } = {}) {
     told(async () => {
       const { data: detail } = await get(address(id));
       const order = ["fail", "warnings", "pass"];
-      const flown = detail.runs.filter(({ level }) => level).sort((a, b) => order.indexOf(a.level) - order.indexOf(b.level) || a.sequence - b.sequence);
+      const flown = detail.runs
+        .filter(({ level }) => level)
+        .sort((a, b) => order.indexOf(a.level) - order.indexOf(b.level) || a.sequence - b.sequence);
       const chosen = detail.runs[run] ? run : (flown[0]?.sequence ?? 0);
       change({ detail, run: chosen, track: null });
       remember();
@@ -62,7 +67,11 @@ export function createRehearsing(store, { isStage = false } = {}) {
   function remember() {
     if (!isStage) return;
     const { detail, run } = store.state.rehearsal;
-    history.replaceState(history.state, "", `${location.pathname}?${new URLSearchParams({ rehearsal: detail.id, run })}${location.hash}`);
+    history.replaceState(
+      history.state,
+      "",
+      `${location.pathname}?${new URLSearchParams({ rehearsal: detail.id, run })}${location.hash}`,
+    );
   }
 
   async function showTrack(id, run) {
@@ -91,7 +100,16 @@ export function createRehearsing(store, { isStage = false } = {}) {
     if (following === job) return;
     following = job;
     const mission = missionId();
-    const onProgress = (at) => mission === missionId() && change({ running: { id, job, progress: at.state === "queued" ? null : at.progress, message: at.state === "queued" ? t("Waiting for a worker") : at.message } });
+    const onProgress = (at) =>
+      mission === missionId() &&
+      change({
+        running: {
+          id,
+          job,
+          progress: at.state === "queued" ? null : at.progress,
+          message: at.state === "queued" ? t("Waiting for a worker") : at.message,
+        },
+      });
     change({ running: { id, job, progress, message } });
     try {
       await followLive(job, { onProgress });

@@ -15,15 +15,27 @@ function chart({ words, flown, planned, limit = null, highest = null, unit, text
   const bottom = Math.min(0, ...values);
   const x = (at_s) => LEFT_PX + (at_s / longest_s) * (WIDTH_PX - LEFT_PX - 2);
   const y = (value) => TOP_PX + ((top - value) / (top - bottom)) * (height_px - TOP_PX - BOTTOM_PX);
-  const line = (points, name) => svg("polyline", { class: name, points: points.map(({ at_s, value }) => `${x(at_s).toFixed(1)},${y(value).toFixed(1)}`).join(" ") });
+  const line = (points, name) =>
+    svg("polyline", {
+      class: name,
+      points: points.map(({ at_s, value }) => `${x(at_s).toFixed(1)},${y(value).toFixed(1)}`).join(" "),
+    });
   return h(
     "figure",
     { class: "rehearsal-chart" },
     h("figcaption", {}, words),
     svg(
       "svg",
-      { role: "img", "aria-label": words, viewBox: `0 0 ${WIDTH_PX} ${height_px}`, class: `route-${routeNumber(place)}` },
-      [0, ...rulesUpTo(top / unit).map((rule) => rule * unit)].map((rule) => [svg("line", { class: "rule", x1: LEFT_PX, x2: WIDTH_PX, y1: y(rule), y2: y(rule) }), svg("text", { class: "tick", x: LEFT_PX - 6, y: y(rule) + 4 }, text(rule))]),
+      {
+        role: "img",
+        "aria-label": words,
+        viewBox: `0 0 ${WIDTH_PX} ${height_px}`,
+        class: `route-${routeNumber(place)}`,
+      },
+      [0, ...rulesUpTo(top / unit).map((rule) => rule * unit)].map((rule) => [
+        svg("line", { class: "rule", x1: LEFT_PX, x2: WIDTH_PX, y1: y(rule), y2: y(rule) }),
+        svg("text", { class: "tick", x: LEFT_PX - 6, y: y(rule) + 4 }, text(rule)),
+      ]),
       limit !== null && svg("line", { class: "limit", x1: LEFT_PX, x2: WIDTH_PX, y1: y(limit), y2: y(limit) }),
       planned.map((points) => line(points, "planned")),
       flown.map((points) => line(points, "flown")),
@@ -39,10 +51,48 @@ export function drawCharts(route, reserve_percent) {
   return h(
     "div",
     { class: "rehearsal-charts" },
-    chart({ words: t("Height above take-off by time"), flown: flown.height, planned: planned.height, unit: SHORT_UNIT.metres, text: heightText, height_px: 104, longest_s, place }),
-    chart({ words: t("Battery by time"), flown: flown.battery, planned: planned.battery, limit: reserve_percent, highest: 100, unit: 1, text: percentText, height_px: 84, longest_s, place }),
+    chart({
+      words: t("Height above take-off by time"),
+      flown: flown.height,
+      planned: planned.height,
+      unit: SHORT_UNIT.metres,
+      text: heightText,
+      height_px: 104,
+      longest_s,
+      place,
+    }),
+    chart({
+      words: t("Battery by time"),
+      flown: flown.battery,
+      planned: planned.battery,
+      limit: reserve_percent,
+      highest: 100,
+      unit: 1,
+      text: percentText,
+      height_px: 84,
+      longest_s,
+      place,
+    }),
     h("p", { class: "rehearsal-axis" }, h("span", {}, t("departure")), h("span", {}, durationText(longest_s))),
-    h("ul", { class: "rehearsal-key", "aria-label": t("How the lines are drawn") },
-      [["flown", t("flown in simulation")], ["planned", t("planned")], ["limit", t("reserve")]].map(([name, words]) => h("li", {}, svg("svg", { width: 22, height: 8, "aria-hidden": "true", class: `route-${routeNumber(place)}` }, svg("line", { class: name, x1: 0, x2: 22, y1: 4, y2: 4 })), words))),
+    h(
+      "ul",
+      { class: "rehearsal-key", "aria-label": t("How the lines are drawn") },
+      [
+        ["flown", t("flown in simulation")],
+        ["planned", t("planned")],
+        ["limit", t("reserve")],
+      ].map(([name, words]) =>
+        h(
+          "li",
+          {},
+          svg(
+            "svg",
+            { width: 22, height: 8, "aria-hidden": "true", class: `route-${routeNumber(place)}` },
+            svg("line", { class: name, x1: 0, x2: 22, y1: 4, y2: 4 }),
+          ),
+          words,
+        ),
+      ),
+    ),
   );
 }

@@ -12,7 +12,11 @@ export function createRunningJob({ user, storage = () => globalThis.sessionStora
     read(mission) {
       try {
         const kept = JSON.parse(storage().getItem(keyOf(user, mission)));
-        return typeof kept?.job === "string" && Array.isArray(kept.selection?.targets) && Array.isArray(kept.selection.uavs) ? kept : null;
+        return typeof kept?.job === "string" &&
+          Array.isArray(kept.selection?.targets) &&
+          Array.isArray(kept.selection.uavs)
+          ? kept
+          : null;
       } catch {
         return null;
       }

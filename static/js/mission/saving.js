@@ -21,7 +21,10 @@ const freshKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`
 
 /** The parts of a selection that differ from what is stored, as the API takes them. */
 export function changedParts(selection, stored) {
-  const [now, before] = [picks.requestOf(selection), stored ? picks.requestOf(stored) : {}].map((body) => ({ ...UNASKED, ...body }));
+  const [now, before] = [picks.requestOf(selection), stored ? picks.requestOf(stored) : {}].map((body) => ({
+    ...UNASKED,
+    ...body,
+  }));
   const changed = PARTS.filter((part) => JSON.stringify(now[part]) !== JSON.stringify(before[part]));
   const movesPlaces = changed.includes("targets") || changed.includes("uavs"); // locks name UAVs and places in the list of targets
   if (movesPlaces && now.locks.length && !changed.includes("locks")) changed.push("locks");
@@ -29,7 +32,11 @@ export function changedParts(selection, stored) {
 }
 
 /** context: see actions.js; waitForJob(job, words) and makeRoom(): of planning.js; conflicts: see conflicts.js. */
-export function createSaving({ store, history, selection, change, problem, failed, wordsOf, running, page, drafts }, { waitForJob, makeRoom }, conflicts) {
+export function createSaving(
+  { store, history, selection, change, problem, failed, wordsOf, running, page, drafts },
+  { waitForJob, makeRoom },
+  conflicts,
+) {
   let retry = 0;
   let rest = 0;
   let unsure = null; // { asked, body, key, isNew, asCopy } of a save whose answer never came
@@ -39,7 +46,8 @@ export function createSaving({ store, history, selection, change, problem, faile
   /** What is said of a plan stays over a save: it stands until something else is picked. */
   const unlessOfSaving = (standing) => (standing?.about && !standing.isOfSaving ? standing : null);
 
-  const whatIsThere = ({ selection: picked, name, plan }) => JSON.stringify([picks.storedBasisOf(picked), name, plan?.basis ?? null]);
+  const whatIsThere = ({ selection: picked, name, plan }) =>
+    JSON.stringify([picks.storedBasisOf(picked), name, plan?.basis ?? null]);
 
   function shownAs(mission, stored, plan) {
     refused = null; // what was refused may go on top of this revision
@@ -81,7 +89,10 @@ export function createSaving({ store, history, selection, change, problem, faile
     globalThis.history.replaceState(null, "", `/missions/${mission.id}${location.hash}`);
   }
 
-  const nameOf = (name) => name.trim() || store.state.mission?.name || t("Mission of {day}, {time}", { day: dayText(new Date()), time: clockText(new Date()) });
+  const nameOf = (name) =>
+    name.trim() ||
+    store.state.mission?.name ||
+    t("Mission of {day}, {time}", { day: dayText(new Date()), time: clockText(new Date()) });
 
   function bodyOf(asked, { isNew, asCopy }) {
     const { mission, plan, planIsStored, stored } = store.state;
@@ -90,7 +101,11 @@ export function createSaving({ store, history, selection, change, problem, faile
     const name = nameOf(asked.name);
     if (asCopy) body.name = t("{name} (copy)", { name });
     else if (isNew || name !== mission.name) body.name = name;
-    if (plan !== null && plan.basis === basis && (isNew || !planIsStored || basis !== picks.basisOf(stored.selection))) {
+    if (
+      plan !== null &&
+      plan.basis === basis &&
+      (isNew || !planIsStored || basis !== picks.basisOf(stored.selection))
+    ) {
       body.plan = true;
       if (plan.result.job) body.plan_of = plan.result.job;
     }
@@ -124,7 +139,9 @@ export function createSaving({ store, history, selection, change, problem, faile
     store.update({ saving: true, problem: unlessOfSaving(store.state.problem) });
     let draftId = null; // stored already, its plan not yet
     try {
-      const answer = isNew ? await post("/missions", body, { headers: { "Idempotency-Key": key } }) : await patch(`/missions/${mission.id}`, body, { headers: { "If-Match": `"${mission.revision}"` } });
+      const answer = isNew
+        ? await post("/missions", body, { headers: { "Idempotency-Key": key } })
+        : await patch(`/missions/${mission.id}`, body, { headers: { "If-Match": `"${mission.revision}"` } });
       let saved = answer.data;
       if (answer.status === 202) {
         draftId = answer.data.mission;
@@ -145,7 +162,11 @@ export function createSaving({ store, history, selection, change, problem, faile
     } catch (error) {
       const lost = unsure?.asked ?? null; // what an earlier try may have stored after all
       unsure = error.isAway ? { asked, body, key, isNew, asCopy } : null;
-      if (draftId) await get(`/missions/${draftId}`).then(({ data }) => keepOpen(data, asked), () => {});
+      if (draftId)
+        await get(`/missions/${draftId}`).then(
+          ({ data }) => keepOpen(data, asked),
+          () => {},
+        );
       refused = whatIsThere(store.state);
       await saveFailed(error, asCopy, lost);
     } finally {
@@ -170,20 +191,37 @@ export function createSaving({ store, history, selection, change, problem, faile
       conflicts.tellDeleted();
     } else if (error.isAway) {
       store.update({ isAway: true });
-      problem(t("Not saved: the server cannot be reached."), t("Your selection is kept in this browser. Next try in {seconds} s.", { seconds: RETRY_S }), [{ label: t("Try now"), act: again }], how);
+      problem(
+        t("Not saved: the server cannot be reached."),
+        t("Your selection is kept in this browser. Next try in {seconds} s.", { seconds: RETRY_S }),
+        [{ label: t("Try now"), act: again }],
+        how,
+      );
       retry = setTimeout(() => save({ asCopy, byItself: true }), RETRY_S * 1000);
     } else if (error.retryAfter_s !== null && error.retryAfter_s !== undefined) {
       const wait_s = Math.max(1, error.retryAfter_s);
       const next = t("Next try in {seconds} s.", { seconds: wait_s });
-      failed(t("Not saved yet."), new ApiError(`${error.message} ${next}`, error), [{ label: t("Try now"), act: again }], how);
+      failed(
+        t("Not saved yet."),
+        new ApiError(`${error.message} ${next}`, error),
+        [{ label: t("Try now"), act: again }],
+        how,
+      );
       retry = setTimeout(() => {
         refused = null; // where a plan is being made now, it is tried again after that
         void save({ asCopy, byItself: true });
       }, wait_s * 1000);
     } else {
       const standing = unlessOfSaving(store.state.problem);
-      if (standing && standing.text === wordsOf(error)) store.update({ problem: { ...standing, title: t("Neither planned nor saved."), ...how } });
-      else failed(t("Not saved."), error, [{ label: t("Try again"), act: again }, ...(error.status === 409 ? [KEEP_COPY] : [])], how);
+      if (standing && standing.text === wordsOf(error))
+        store.update({ problem: { ...standing, title: t("Neither planned nor saved."), ...how } });
+      else
+        failed(
+          t("Not saved."),
+          error,
+          [{ label: t("Try again"), act: again }, ...(error.status === 409 ? [KEEP_COPY] : [])],
+          how,
+        );
     }
   }
 
@@ -202,7 +240,10 @@ export function createSaving({ store, history, selection, change, problem, faile
     if (hasWaited) refused = null;
     store.update({ isAway: false });
     if (!hasWaited) return;
-    if (page.canPlan && (store.state.mission || unsure) && isUnsaved(store.state)) void save({ byItself: true }).then(() => !isUnsaved(store.state) && toast(t("Connected again. Everything is saved.")));
+    if (page.canPlan && (store.state.mission || unsure) && isUnsaved(store.state))
+      void save({ byItself: true }).then(
+        () => !isUnsaved(store.state) && toast(t("Connected again. Everything is saved.")),
+      );
     else toast(t("Connected again."));
   }
 
@@ -241,7 +282,8 @@ export function createSaving({ store, history, selection, change, problem, faile
     history.startFrom(draft.selection);
     store.update({ name: draft.name ?? "" });
     settleDraft();
-    if (draft.selection.targets.length || draft.name) toast(t("Your unsaved mission is back."), { label: t("Start empty"), act: startEmpty });
+    if (draft.selection.targets.length || draft.name)
+      toast(t("Your unsaved mission is back."), { label: t("Start empty"), act: startEmpty });
   }
 
   function startEmpty() {
@@ -257,7 +299,9 @@ export function createSaving({ store, history, selection, change, problem, faile
     const { mission, name, conflict, stored } = store.state;
     const isWorthKeeping = mission ? isUnsaved(store.state) : isStarted(store.state);
     if (isWorthKeeping) {
-      const since = conflict ? { revision: conflict.base, base: conflict.before } : { revision: mission?.revision ?? 0, base: stored };
+      const since = conflict
+        ? { revision: conflict.base, base: conflict.before }
+        : { revision: mission?.revision ?? 0, base: stored };
       return drafts.keep(mission?.id ?? null, { name, selection: selection(), ...since });
     }
     drafts.dropOwn(mission?.id ?? null);
@@ -275,7 +319,17 @@ export function createSaving({ store, history, selection, change, problem, faile
   }
 
   return {
-    save, open, openStored, openDraft, startEmpty, settleDraft, deleteMission, connectedAgain, shownAs, storedOf, keepOpen,
+    save,
+    open,
+    openStored,
+    openDraft,
+    startEmpty,
+    settleDraft,
+    deleteMission,
+    connectedAgain,
+    shownAs,
+    storedOf,
+    keepOpen,
     keepMineAsCopy: KEEP_COPY.act,
     rename: (name) => store.update({ name }),
   };

@@ -6,7 +6,14 @@ import { lengthText } from "../units.js";
 import { flightOptionsAsked, flightOptionsOf, UNSAID } from "./flight_options.js";
 
 /** Targets may be more or less urgent, tied to one UAV by its name, or need a sensor; locks: see locks.js, the last three: flight_options.js. */
-export const EMPTY = Object.freeze({ targets: [], uavs: [], objective: "makespan", return_to_start: true, locks: [], ...UNSAID });
+export const EMPTY = Object.freeze({
+  targets: [],
+  uavs: [],
+  objective: "makespan",
+  return_to_start: true,
+  locks: [],
+  ...UNSAID,
+});
 
 /** Two picks of the same place are one target: the asset whole, or one point of it. */
 export function keyOf({ asset, position, stretch }) {
@@ -16,7 +23,16 @@ export function keyOf({ asset, position, stretch }) {
 
 /** A target from an asset feature of the API or a tile. `position` makes it one point of a line or railway. */
 export function targetOf({ id, kind, properties, centre = null, position = null, stretch = null, task = null }) {
-  const target = { asset: id, kind, label: properties.label || kind, detail: detailOf(kind, properties, position, stretch), position, stretch, centre: position ?? centre, task };
+  const target = {
+    asset: id,
+    kind,
+    label: properties.label || kind,
+    detail: detailOf(kind, properties, position, stretch),
+    position,
+    stretch,
+    centre: position ?? centre,
+    task,
+  };
   return { key: keyOf(target), ...target };
 }
 
@@ -66,11 +82,15 @@ export const LONGEST_HOLD_S = 3600;
 export function usualTask(target) {
   if (target.asset === null) return { kind: "hold", hold_s: 10 };
   if (isWhole(target)) return { kind: "look", hold_s: 0 };
-  return target.kind === "tower" || target.kind === "bridge" ? { kind: "photo", hold_s: HOLD_S.photo } : { kind: "look", hold_s: HOLD_S.look };
+  return target.kind === "tower" || target.kind === "bridge"
+    ? { kind: "photo", hold_s: HOLD_S.photo }
+    : { kind: "look", hold_s: HOLD_S.look };
 }
 
 export function taskOf(target) {
-  return target.task ? { kind: target.task.kind, hold_s: target.task.hold_s ?? HOLD_S[target.task.kind] } : usualTask(target);
+  return target.task
+    ? { kind: target.task.kind, hold_s: target.task.hold_s ?? HOLD_S[target.task.kind] }
+    : usualTask(target);
 }
 
 const isSameTask = (a, b) => a.kind === b.kind && a.hold_s === b.hold_s;
@@ -87,7 +107,10 @@ export function withTask(selection, keys, { kind, hold_s = null }) {
     const next = { kind, hold_s: hold_s ?? (now.kind === kind ? now.hold_s : HOLD_S[kind]) };
     return isSameTask(now, next) ? target : { ...target, task: isSameTask(next, usualTask(target)) ? null : next };
   };
-  return { ...selection, targets: selection.targets.map((target) => (wanted.has(target.key) ? tasked(target) : target)) };
+  return {
+    ...selection,
+    targets: selection.targets.map((target) => (wanted.has(target.key) ? tasked(target) : target)),
+  };
 }
 
 /** What a target without wishes of its own has. */
@@ -101,27 +124,67 @@ export function wishesOf({ priority, uav, sensor }) {
 /** The same targets with another priority, UAV or sensor at some of them. */
 export function withWishes(selection, keys, wishes) {
   const wanted = new Set(keys);
-  return { ...selection, targets: selection.targets.map((target) => (wanted.has(target.key) ? { ...target, ...wishesOf({ ...target, ...wishes }) } : target)) };
+  return {
+    ...selection,
+    targets: selection.targets.map((target) =>
+      wanted.has(target.key) ? { ...target, ...wishesOf({ ...target, ...wishes }) } : target,
+    ),
+  };
 }
 
 /** Every sensor that somebody may need: those of the UAVs, and those that are asked for already. Upper and lower case are one. */
 export function sensorsKnown(selection, fleet) {
-  const names = [...fleet, ...selection.uavs].flatMap(({ sensors }) => sensors ?? []).concat(selection.targets.map((target) => wishesOf(target).sensor));
+  const names = [...fleet, ...selection.uavs]
+    .flatMap(({ sensors }) => sensors ?? [])
+    .concat(selection.targets.map((target) => wishesOf(target).sensor));
   const bySound = new Map(names.filter(Boolean).map((name) => [name.trim().toLowerCase(), name.trim()]));
   return [...bySound.values()].sort((a, b) => a.localeCompare(b));
 }
 
 export function uavOf(feature) {
-  const { name, base, base_name, max_range_m, cruise_speed_mps, end_action, state, type_name, sensors, battery_percent, heading_deg, is_simulated } = feature.properties;
+  const {
+    name,
+    base,
+    base_name,
+    max_range_m,
+    cruise_speed_mps,
+    end_action,
+    state,
+    type_name,
+    sensors,
+    battery_percent,
+    heading_deg,
+    is_simulated,
+  } = feature.properties;
   const usual = Object.fromEntries(OWN_FIGURES.map((figure) => [figure, feature.properties[figure] ?? null])); // a mission may say otherwise
   return {
-    id: feature.id, name, base: base ?? null, base_name: base_name ?? "", position: feature.geometry.coordinates.slice(0, 2), max_range_m, cruise_speed_mps, end_action,
-    state: state ?? "active", type_name: type_name ?? "", sensors: sensors ?? [], battery_percent: battery_percent ?? null, heading_deg: heading_deg ?? null, is_simulated: is_simulated ?? false, usual,
+    id: feature.id,
+    name,
+    base: base ?? null,
+    base_name: base_name ?? "",
+    position: feature.geometry.coordinates.slice(0, 2),
+    max_range_m,
+    cruise_speed_mps,
+    end_action,
+    state: state ?? "active",
+    type_name: type_name ?? "",
+    sensors: sensors ?? [],
+    battery_percent: battery_percent ?? null,
+    heading_deg: heading_deg ?? null,
+    is_simulated: is_simulated ?? false,
+    usual,
   };
 }
 
 /** What a UAV's flying takes: missions/flight_plan/performance.py. */
-export const PERFORMANCE = ["battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "rotor_disk_m2", "hover_power_w"];
+export const PERFORMANCE = [
+  "battery_wh",
+  "mass_kg",
+  "reserve_percent",
+  "max_airspeed_mps",
+  "rotor_disk_m2",
+  "hover_power_w",
+];
 /** What a mission may say of a UAV's flying; where it says nothing, the UAV's own or its type's counts. */
 const UAV_VALUES = ["max_range_m", "cruise_speed_mps", "end_action", "most_targets", ...PERFORMANCE];
 
@@ -131,7 +194,8 @@ const LONGEST_UAV_NAME = 100; // missions/serializers/limits.py
 function freeName({ uavs }, name) {
   const taken = new Set(uavs.map((uav) => uav.name));
   let free = name;
-  for (let number = 2; taken.has(free); number += 1) free = `${name.slice(0, LONGEST_UAV_NAME - ` ${number}`.length)} ${number}`;
+  for (let number = 2; taken.has(free); number += 1)
+    free = `${name.slice(0, LONGEST_UAV_NAME - ` ${number}`.length)} ${number}`;
   return free;
 }
 
@@ -217,7 +281,11 @@ export function requestOf(selection) {
 
 /** Equal selections ask for equal routes: what is done without a link does not change them, nor whose figures a UAV has. */
 export function basisOf(selection) {
-  return storedBasisOf({ ...selection, lost_link: null, uavs: selection.uavs.map((uav) => ({ ...uav, own_figures: [] })) });
+  return storedBasisOf({
+    ...selection,
+    lost_link: null,
+    uavs: selection.uavs.map((uav) => ({ ...uav, own_figures: [] })),
+  });
 }
 
 /** Equal selections are stored as the same mission. */
@@ -230,7 +298,16 @@ export function storedTarget(target) {
   const position = target.is_point || target.asset === null ? target.position : null;
   const stretch = target.stretch ?? null;
   const detail = detailOf(target.kind, stretch ? { ...target, length_m: null } : target, position, stretch);
-  const made = { asset: target.asset, kind: target.kind ?? "place", label: target.label, detail, position, stretch, centre: target.position, task: target.task ?? null };
+  const made = {
+    asset: target.asset,
+    kind: target.kind ?? "place",
+    label: target.label,
+    detail,
+    position,
+    stretch,
+    centre: target.position,
+    task: target.task ?? null,
+  };
   return { key: keyOf(made), ...made, ...wishesOf(target) };
 }
 
@@ -249,10 +326,18 @@ export function selectionOf(mission, fleet = []) {
   const targets = toldApart(mission.targets.map(storedTarget));
   return {
     targets,
-    uavs: mission.uavs.map((uav) => ({ ...uav, base_name: fleet.find((known) => known.id === uav.id)?.base_name ?? "" })),
+    uavs: mission.uavs.map((uav) => ({
+      ...uav,
+      base_name: fleet.find((known) => known.id === uav.id)?.base_name ?? "",
+    })),
     objective: mission.objective,
     return_to_start: mission.return_to_start,
     ...flightOptionsOf(mission),
-    locks: (mission.locks ?? []).map(({ uav, targets: places, at_start, at_end }) => ({ uav, targets: places.map((place) => targets[place].key), at_start: Boolean(at_start), at_end: Boolean(at_end) })),
+    locks: (mission.locks ?? []).map(({ uav, targets: places, at_start, at_end }) => ({
+      uav,
+      targets: places.map((place) => targets[place].key),
+      at_start: Boolean(at_start),
+      at_end: Boolean(at_end),
+    })),
   };
 }

@@ -3,7 +3,7 @@
 import { h, svg } from "../dom.js";
 import { staticAddress } from "../static_address.js";
 import { t } from "../text.js";
-import { lengthText, LONG_UNIT, numberText } from "../units.js";
+import { LONG_UNIT, lengthText, numberText } from "../units.js";
 import { zoneWords } from "./zones_passed.js";
 
 const EARTH_RADIUS_M = 6_371_008.8; // IUGG mean radius
@@ -19,13 +19,18 @@ const EDGE_PX = 10;
 export function distance_m([lon1, lat1], [lon2, lat2]) {
   const rad = Math.PI / 180;
   const half = (degrees) => Math.sin((degrees * rad) / 2) ** 2;
-  return 2 * EARTH_RADIUS_M * Math.asin(Math.sqrt(half(lat2 - lat1) + Math.cos(lat1 * rad) * Math.cos(lat2 * rad) * half(lon2 - lon1)));
+  return (
+    2 *
+    EARTH_RADIUS_M *
+    Math.asin(Math.sqrt(half(lat2 - lat1) + Math.cos(lat1 * rad) * Math.cos(lat2 * rad) * half(lon2 - lon1)))
+  );
 }
 
 /** Along a route's waypoints: where each stands, which legs leave the network, where targets are. All in metres flown. */
 export function profileOf(waypoints, length_m) {
   const along = waypoints.length ? [0] : [];
-  for (let index = 1; index < waypoints.length; index += 1) along.push(along[index - 1] + distance_m(waypoints[index - 1].position, waypoints[index].position));
+  for (let index = 1; index < waypoints.length; index += 1)
+    along.push(along[index - 1] + distance_m(waypoints[index - 1].position, waypoints[index].position));
   const scale = along.at(-1) > 0 ? length_m / along.at(-1) : 1; // the server's geodesic length is the true one
   const places = along.map((distance) => distance * scale);
   const isOff = (waypoint) => waypoint.kind === "start" || waypoint.kind === "end" || waypoint.asset === null;
@@ -41,7 +46,12 @@ export function profileOf(waypoints, length_m) {
   waypoints.forEach((waypoint, index) => {
     if (waypoint.kind === "target") targets.push({ target: waypoint.target, at: places[index] });
   });
-  return { places, legs, targets, ticks: places.filter((_, index) => waypoints[index].kind !== "start" && waypoints[index].kind !== "end") };
+  return {
+    places,
+    legs,
+    targets,
+    ticks: places.filter((_, index) => waypoints[index].kind !== "start" && waypoints[index].kind !== "end"),
+  };
 }
 
 /** The axis that strips and the profile share: distance flown [m] to px, and back. */
@@ -61,7 +71,12 @@ export function layOut(profile, longest_m, width_px) {
     if (!ticks.length || x(distance) - ticks.at(-1) >= TICK_SPACING_PX) ticks.push(x(distance));
   }
   const [start, end] = [x(0), x(profile.places.at(-1) ?? 0)];
-  const pills = placePills(profile.targets.map(({ at, ...stop }) => ({ ...stop, x: x(at) })), start, end, width_px);
+  const pills = placePills(
+    profile.targets.map(({ at, ...stop }) => ({ ...stop, x: x(at) })),
+    start,
+    end,
+    width_px,
+  );
   return { ticks, pills, legs: profile.legs.map((leg) => ({ ...leg, x1: x(leg.from), x2: x(leg.to) })), start, end };
 }
 
@@ -72,8 +87,14 @@ export function placePills(targets, start_px, end_px, width_px) {
   let pills = targets.map((stop, index) => pillOf([{ ...stop, number: index + 1 }]));
   for (;;) {
     keepApart(pills, start_px, end_px, width_px);
-    if (pills.length < 2 || pills.every((pill) => Math.abs(pill.x - pill.true_x) <= MOST_PUSHED_PX && isOnStrip(pill, start_px, end_px))) return pills;
-    const gaps = pills.slice(1).map((pill, index) => pill.true_x - pills[index].true_x - (pill.width + pills[index].width) / 2);
+    if (
+      pills.length < 2 ||
+      pills.every((pill) => Math.abs(pill.x - pill.true_x) <= MOST_PUSHED_PX && isOnStrip(pill, start_px, end_px))
+    )
+      return pills;
+    const gaps = pills
+      .slice(1)
+      .map((pill, index) => pill.true_x - pills[index].true_x - (pill.width + pills[index].width) / 2);
     const at = gaps.indexOf(Math.min(...gaps));
     pills = [...pills.slice(0, at), pillOf([...pills[at].members, ...pills[at + 1].members]), ...pills.slice(at + 2)];
   }
@@ -83,7 +104,16 @@ function pillOf(members) {
   const [first, last] = [members[0].number, members.at(-1).number];
   const label = first === last ? `${first}` : `${first}–${last}`;
   const true_x = (members[0].x + members.at(-1).x) / 2;
-  return { members, first, last, targets: members.map(({ target }) => target), label, true_x, x: true_x, width: widthOf(label) };
+  return {
+    members,
+    first,
+    last,
+    targets: members.map(({ target }) => target),
+    label,
+    true_x,
+    x: true_x,
+    width: widthOf(label),
+  };
 }
 
 const isOnStrip = (pill, start_px, end_px) => pill.x >= start_px - 1 && pill.x <= end_px + 1;
@@ -98,7 +128,9 @@ function keepApart(pills, start_px, end_px, width_px) {
   }
   for (let index = pills.length - 1; index >= 0; index -= 1) {
     const after = pills[index + 1];
-    const most = after ? after.x - spacing(pills[index], after) : Math.min(Math.max(end_px, start_px + pills[index].width / 2), width_px - pills[index].width / 2);
+    const most = after
+      ? after.x - spacing(pills[index], after)
+      : Math.min(Math.max(end_px, start_px + pills[index].width / 2), width_px - pills[index].width / 2);
     pills[index].x = Math.min(pills[index].x, most);
   }
 }
@@ -120,7 +152,9 @@ export function axisTicks(longest_m, unit_m = LONG_UNIT.metres) {
   const rough = longest / 5;
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10].map((factor) => factor * power).find((candidate) => candidate >= rough);
-  return Array.from({ length: Math.floor(longest / step + 1e-9) + 1 }, (_, index) => Number((index * step).toPrecision(6)));
+  return Array.from({ length: Math.floor(longest / step + 1e-9) + 1 }, (_, index) =>
+    Number((index * step).toPrecision(6)),
+  );
 }
 
 /** Draws the strip. onAlong(metres flown or null). `zones` are stretches beside zones: [{ from_m, to_m, name, kind }], `waits`
@@ -129,16 +163,38 @@ export function axisTicks(longest_m, unit_m = LONG_UNIT.metres) {
  * stopsOf(targets of the profile) are what is drawn as pills: [{ target, at, isLocked?, isMoved? }]; grab(event, targets, label): a pill is
  * pressed. Returns { element, point(metres or null), light(target or null), indexAt(clientX, without), showGap(index or null, without) }.
  */
-export function spanStrip({ waypoints, length_m, longest_m, width_px, label, zones = [], waits = [], stopsOf = (targets) => targets, onAlong, onTarget, grab }) {
+export function spanStrip({
+  waypoints,
+  length_m,
+  longest_m,
+  width_px,
+  label,
+  zones = [],
+  waits = [],
+  stopsOf = (targets) => targets,
+  onAlong,
+  onTarget,
+  grab,
+}) {
   const flown = profileOf(waypoints, length_m);
   const profile = { ...flown, targets: stopsOf(flown.targets) };
   const places = waits.map(({ index, ...wait }) => ({ ...wait, at: flown.places[index] }));
-  const { element, plan, x, pills } = drawing({ profile, longest_m, width_px, label, zones, waits: places, onTarget, grab });
+  const { element, plan, x, pills } = drawing({
+    profile,
+    longest_m,
+    width_px,
+    label,
+    zones,
+    waits: places,
+    onTarget,
+    grab,
+  });
   const { distanceAt } = scaleOf(longest_m, width_px);
   const cursor = svg("line", { y1: 0, y2: HEIGHT_PX, class: "strip-cursor", visibility: "hidden" });
   const gap = svg("line", { y1: 3, y2: HEIGHT_PX - 3, class: "strip-gap", visibility: "hidden" });
   element.append(cursor, gap);
-  const others = (without) => plan.pills.flatMap((pill) => pill.members.filter(({ target }) => !without.includes(target)).map(() => pill.x));
+  const others = (without) =>
+    plan.pills.flatMap((pill) => pill.members.filter(({ target }) => !without.includes(target)).map(() => pill.x));
   element.addEventListener("pointermove", (event) => {
     const at = Math.min(plan.end, Math.max(plan.start, event.clientX - element.getBoundingClientRect().left));
     onAlong?.(Math.min(length_m, Math.max(0, distanceAt(at))));
@@ -153,7 +209,8 @@ export function spanStrip({ waypoints, length_m, longest_m, width_px, label, zon
       cursor.setAttribute("x2", x(at_m));
     },
     light(target) {
-      for (const { element: pill, targets } of pills) pill.classList.toggle("lit", target !== null && targets.includes(target));
+      for (const { element: pill, targets } of pills)
+        pill.classList.toggle("lit", target !== null && targets.includes(target));
     },
     /** Before which of the other targets somebody points. */
     indexAt(clientX, without) {
@@ -191,7 +248,15 @@ function drawPill({ x: at, width, label, targets, members }, { onTarget, grab })
     svg("rect", { x: at - width / 2, y: MIDDLE_PX - 9, width, height: 18, rx: 9 }),
     svg("text", { x: at, y: MIDDLE_PX + 4 }, label),
     isLocked && svg("circle", { class: "strip-lock-ground", cx: shoulder, cy: 8, r: 7 }),
-    isLocked && svg("use", { class: "strip-lock", href: `${staticAddress("lib/icons.svg")}#lock`, x: shoulder - LOCK_PX / 2, y: 8 - LOCK_PX / 2, width: LOCK_PX, height: LOCK_PX }),
+    isLocked &&
+      svg("use", {
+        class: "strip-lock",
+        href: `${staticAddress("lib/icons.svg")}#lock`,
+        x: shoulder - LOCK_PX / 2,
+        y: 8 - LOCK_PX / 2,
+        width: LOCK_PX,
+        height: LOCK_PX,
+      }),
   );
   if (onTarget) {
     element.addEventListener("pointerenter", () => onTarget(targets[0]));
@@ -208,8 +273,13 @@ function drawPill({ x: at, width, label, targets, members }, { onTarget, grab })
 function zoneMark(zone, x) {
   const [left, right] = [x(zone.from_m), Math.max(x(zone.to_m), x(zone.from_m) + 3)];
   const title = svg("title", {}, zoneWords(zone));
-  if (zone.kind === "met") return svg("rect", { class: "strip-zone", x: left, y: MIDDLE_PX - 10, width: right - left, height: 20 }, title);
-  return svg("path", { class: "strip-zone-beside", d: `M${left} ${HEIGHT_PX - 5}V${HEIGHT_PX - 1}H${right}V${HEIGHT_PX - 5}` }, title);
+  if (zone.kind === "met")
+    return svg("rect", { class: "strip-zone", x: left, y: MIDDLE_PX - 10, width: right - left, height: 20 }, title);
+  return svg(
+    "path",
+    { class: "strip-zone-beside", d: `M${left} ${HEIGHT_PX - 5}V${HEIGHT_PX - 1}H${right}V${HEIGHT_PX - 5}` },
+    title,
+  );
 }
 
 function drawing({ profile, longest_m, width_px, label, zones, waits = [], onTarget, grab }) {
@@ -219,13 +289,37 @@ function drawing({ profile, longest_m, width_px, label, zones, waits = [], onTar
   const mark = (at) => svg("rect", { x: at - 4, y: MIDDLE_PX - 4, width: 8, height: 8, class: "strip-base" });
   const element = svg(
     "svg",
-    { class: "strip", role: "img", "aria-label": label, width: width_px, height: HEIGHT_PX, viewBox: `0 0 ${width_px} ${HEIGHT_PX}` },
+    {
+      class: "strip",
+      role: "img",
+      "aria-label": label,
+      width: width_px,
+      height: HEIGHT_PX,
+      viewBox: `0 0 ${width_px} ${HEIGHT_PX}`,
+    },
     zones.filter(({ kind }) => kind !== "asleep").map((zone) => zoneMark(zone, x)),
     plan.ticks.map((at) => svg("line", { x1: at, x2: at, y1: MIDDLE_PX - 6, y2: MIDDLE_PX - 1, class: "strip-tick" })),
-    plan.legs.map((leg) => svg("line", { x1: leg.x1, x2: leg.x2, y1: MIDDLE_PX, y2: MIDDLE_PX, class: leg.offNetwork ? "strip-leg off" : "strip-leg" })),
+    plan.legs.map((leg) =>
+      svg("line", {
+        x1: leg.x1,
+        x2: leg.x2,
+        y1: MIDDLE_PX,
+        y2: MIDDLE_PX,
+        class: leg.offNetwork ? "strip-leg off" : "strip-leg",
+      }),
+    ),
     mark(plan.start),
     mark(plan.end),
-    waits.map(({ at, kind, words }) => svg("g", { class: "strip-wait" }, svg("title", {}, words), kind === "base" ? mark(x(at)) : svg("path", { d: `M${x(at) + 1} 2L${x(at) - 4} 9H${x(at)}L${x(at) - 1} 15L${x(at) + 4} 7.5H${x(at)}Z` }))),
+    waits.map(({ at, kind, words }) =>
+      svg(
+        "g",
+        { class: "strip-wait" },
+        svg("title", {}, words),
+        kind === "base"
+          ? mark(x(at))
+          : svg("path", { d: `M${x(at) + 1} 2L${x(at) - 4} 9H${x(at)}L${x(at) - 1} 15L${x(at) + 4} 7.5H${x(at)}Z` }),
+      ),
+    ),
     pills.map((pill) => pill.element),
   );
   return { element, plan, x, pills };
@@ -242,7 +336,10 @@ export function stripAxis(longest_m, width_px) {
     ticks.map((tick, index) => {
       const at = x(tick * LONG_UNIT.metres);
       const figure = numberText(tick, Number.isInteger(tick) ? 0 : digits);
-      return [svg("line", { x1: at, x2: at, y1: 0, y2: 4 }), svg("text", { x: at, y: 16 }, index === ticks.length - 1 ? `${figure}\u00a0${LONG_UNIT.unit}` : figure)];
+      return [
+        svg("line", { x1: at, x2: at, y1: 0, y2: 4 }),
+        svg("text", { x: at, y: 16 }, index === ticks.length - 1 ? `${figure}\u00a0${LONG_UNIT.unit}` : figure),
+      ];
     }),
   );
 }
@@ -258,7 +355,9 @@ export function stripTable({ waypoints, length_m, targets, name }) {
     h(
       "tbody",
       {},
-      profile.targets.map(({ target, at }) => h("tr", {}, h("td", {}, targets[target]?.label ?? t("Target")), h("td", {}, lengthText(at)))),
+      profile.targets.map(({ target, at }) =>
+        h("tr", {}, h("td", {}, targets[target]?.label ?? t("Target")), h("td", {}, lengthText(at))),
+      ),
     ),
   );
 }

@@ -58,14 +58,29 @@ export function createPillDrag(rows, { strips, drop }) {
     end();
   }
 
-  const LISTENERS = [["pointermove", move], ["pointerup", release], ["pointercancel", end], ["keydown", escape]];
+  const LISTENERS = [
+    ["pointermove", move],
+    ["pointerup", release],
+    ["pointercancel", end],
+    ["keydown", escape],
+  ];
 
   return function grab(event, keys, label) {
     if (drag || event.button !== 0) return;
     const colour = [...event.currentTarget.closest(".route").classList].find((name) => /^route-\d/.test(name)) ?? "";
-    if (event.currentTarget.hasPointerCapture?.(event.pointerId)) event.currentTarget.releasePointerCapture(event.pointerId); // the row may be drawn anew meanwhile
+    if (event.currentTarget.hasPointerCapture?.(event.pointerId))
+      event.currentTarget.releasePointerCapture(event.pointerId); // the row may be drawn anew meanwhile
     event.preventDefault();
-    drag = { pointerId: event.pointerId, keys, label, colour, x: event.clientX, y: event.clientY, ghost: null, place: null };
+    drag = {
+      pointerId: event.pointerId,
+      keys,
+      label,
+      colour,
+      x: event.clientX,
+      y: event.clientY,
+      ghost: null,
+      place: null,
+    };
     for (const [type, listener] of LISTENERS) addEventListener(type, listener, true);
   };
 }

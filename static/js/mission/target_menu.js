@@ -31,12 +31,15 @@ export const PRIORITIES = [
   { value: "high", words: t("High"), mark: "chevrons-up", said: t("High priority") },
 ];
 
-export const priorityOf = (target) => PRIORITIES.find(({ value }) => value === wishesOf(target).priority) ?? PRIORITIES[1];
+export const priorityOf = (target) =>
+  PRIORITIES.find(({ value }) => value === wishesOf(target).priority) ?? PRIORITIES[1];
 
 /** "only Heron · needs LiDAR": who may fly a target. */
 export function whoMayFly(target) {
   const { uav, sensor } = wishesOf(target);
-  return [uav !== null && t("only {uav}", { uav }), sensor && t("needs {sensor}", { sensor })].filter(Boolean).join(" · ");
+  return [uav !== null && t("only {uav}", { uav }), sensor && t("needs {sensor}", { sensor })]
+    .filter(Boolean)
+    .join(" · ");
 }
 
 const MIXED = "\u0000"; // the choice of several targets that differ
@@ -61,10 +64,26 @@ function wishChoices(targets, actions, { selection, fleet }) {
   const sensors = sensorsKnown(selection, fleet);
   const uavs = uavsByName(selection);
   return [
-    choiceOf(t("Priority"), wishes.map(({ priority }) => priority), PRIORITIES.map(({ value, words }) => [value, words]), (priority) => actions.setWish(keys, { priority })),
-    uavs.length > 0 && choiceOf(t("Only UAV"), wishes.map(({ uav }) => uav ?? ""), [["", t("any")], ...uavs.map(({ name }) => [name, name])], (name) => actions.tieTargets(keys, name || null)),
+    choiceOf(
+      t("Priority"),
+      wishes.map(({ priority }) => priority),
+      PRIORITIES.map(({ value, words }) => [value, words]),
+      (priority) => actions.setWish(keys, { priority }),
+    ),
+    uavs.length > 0 &&
+      choiceOf(
+        t("Only UAV"),
+        wishes.map(({ uav }) => uav ?? ""),
+        [["", t("any")], ...uavs.map(({ name }) => [name, name])],
+        (name) => actions.tieTargets(keys, name || null),
+      ),
     sensors.length > 0 &&
-      choiceOf(t("Needs sensor"), wishes.map(({ sensor }) => sensors.find((name) => name.toLowerCase() === sensor.trim().toLowerCase()) ?? ""), [["", t("none|sensor")], ...sensors.map((name) => [name, name])], (sensor) => actions.setWish(keys, { sensor })),
+      choiceOf(
+        t("Needs sensor"),
+        wishes.map(({ sensor }) => sensors.find((name) => name.toLowerCase() === sensor.trim().toLowerCase()) ?? ""),
+        [["", t("none|sensor")], ...sensors.map((name) => [name, name])],
+        (sensor) => actions.setWish(keys, { sensor }),
+      ),
   ];
 }
 
@@ -73,9 +92,16 @@ function lockChoices({ key }, actions, { selection, orders }) {
   const lock = lockOf(selection, key);
   const place = wishedPlace(orders, selection, key);
   const uavs = uavsByName(selection);
-  const act = (image, words, run) => h("button", { type: "button", onclick: () => (closeMenu(), run(key)) }, icon(image), words);
+  const act = (image, words, run) =>
+    h("button", { type: "button", onclick: () => (closeMenu(), run(key)) }, icon(image), words);
   return [
-    uavs.length > 0 && choiceOf(t("Fly with UAV"), [lock?.uav ?? ""], [...(lock ? [] : [["", t("as planned")]]), ...uavs.map(({ name }) => [name, name])], (name) => actions.giveTarget(key, name)),
+    uavs.length > 0 &&
+      choiceOf(
+        t("Fly with UAV"),
+        [lock?.uav ?? ""],
+        [...(lock ? [] : [["", t("as planned")]]), ...uavs.map(({ name }) => [name, name])],
+        (name) => actions.giveTarget(key, name),
+      ),
     place?.index > 0 && act("chevron-up", t("Earlier"), () => actions.shiftTarget(key, -1)),
     place && place.index < place.last && act("chevron-down", t("Later"), () => actions.shiftTarget(key, 1)),
     place && act("lock", t("Lock here"), actions.lockTarget),
@@ -94,7 +120,16 @@ export function targetMenu(targets, actions, known, more = []) {
     closeMenu();
     actions.setTask(keys, task);
   };
-  const seconds = h("input", { class: "input", type: "number", min: "0", max: String(LONGEST_HOLD_S), step: "1", required: true, value: times.size === 1 ? String(tasks[0].hold_s) : "", id: "task-seconds" });
+  const seconds = h("input", {
+    class: "input",
+    type: "number",
+    min: "0",
+    max: String(LONGEST_HOLD_S),
+    step: "1",
+    required: true,
+    value: times.size === 1 ? String(tasks[0].hold_s) : "",
+    id: "task-seconds",
+  });
   seconds.addEventListener("keydown", (event) => {
     if (event.key === "ArrowUp" || event.key === "ArrowDown") event.stopPropagation(); // counts, and does not leave the field
   });
@@ -109,7 +144,13 @@ export function targetMenu(targets, actions, known, more = []) {
     { class: "menu float target-menu", role: "group", "aria-label": t("Task and wishes: {name}", { name: title }) },
     h("p", { class: "caption" }, title),
     TASKS.map(({ kind, icon: sign, words }) =>
-      h("button", { type: "button", "aria-pressed": String(only === kind), onclick: () => set({ kind }) }, icon(sign), words(), only === kind && h("span", { class: "end" }, icon("check", "small"))),
+      h(
+        "button",
+        { type: "button", "aria-pressed": String(only === kind), onclick: () => set({ kind }) },
+        icon(sign),
+        words(),
+        only === kind && h("span", { class: "end" }, icon("check", "small")),
+      ),
     ),
     h(
       "form",
@@ -123,6 +164,8 @@ export function targetMenu(targets, actions, known, more = []) {
     locking.length > 0 && h("hr", {}),
     locking,
     more.length > 0 && h("hr", {}),
-    more.map((item) => h("button", { type: "button", onclick: () => (closeMenu(), item.act()) }, icon(item.icon), item.words)),
+    more.map((item) =>
+      h("button", { type: "button", onclick: () => (closeMenu(), item.act()) }, icon(item.icon), item.words),
+    ),
   );
 }

@@ -12,7 +12,8 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
   let reportedAt = 0;
   let toldDeleted = null;
 
-  const presence = (here) => post(`/missions/${store.state.mission.id}/presence`, { editor, here }, { keepalive: !here });
+  const presence = (here) =>
+    post(`/missions/${store.state.mission.id}/presence`, { editor, here }, { keepalive: !here });
 
   function failed(error) {
     if (error.isAway) store.update({ isAway: true });
@@ -30,7 +31,8 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
       const answer = await get(`/missions/${mission.id}`, { headers: { "If-None-Match": `"${mission.revision}"` } });
       toldDeleted = null;
       const { mission: now, saving: isSaving, isAway: wasAway } = store.state;
-      if (answer.data && !isSaving && now.id === mission.id && answer.data.revision > now.revision) await take(answer.data);
+      if (answer.data && !isSaving && now.id === mission.id && answer.data.revision > now.revision)
+        await take(answer.data);
       if (wasAway) connectedAgain(wasAway); // after theirs came in: what waits is saved on top of it
       if (Date.now() - reportedAt > PRESENCE_MS) await report();
     } catch (error) {

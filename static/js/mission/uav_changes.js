@@ -18,23 +18,44 @@ export function openChanges(selection, changes) {
     .map((change) => {
       const uav = selection.uavs.find(({ id }) => id === change.id);
       const hasStill = (name, value) => uav && uav[name] !== undefined && isSame(uav[name], value);
-      const said = (change.said ?? []).filter((one) => uav?.own_figures?.includes(one.name) && hasStill(one.name, one.said));
-      return { ...change, isThere: Boolean(uav), figures: change.figures.filter(({ name, kept }) => hasStill(name, kept)), said };
+      const said = (change.said ?? []).filter(
+        (one) => uav?.own_figures?.includes(one.name) && hasStill(one.name, one.said),
+      );
+      return {
+        ...change,
+        isThere: Boolean(uav),
+        figures: change.figures.filter(({ name, kept }) => hasStill(name, kept)),
+        said,
+      };
     })
-    .filter(({ isThere, figures, state, said }) => isThere && (figures.length > 0 || state !== null || said.length > 0));
+    .filter(
+      ({ isThere, figures, state, said }) => isThere && (figures.length > 0 || state !== null || said.length > 0),
+    );
 }
 
 /** The same selection with the figures that the fleet has now. */
 export function withPresentFigures(selection, changes) {
-  const taken = new Map(changes.map(({ id, figures }) => [id, Object.fromEntries(figures.map(({ name, now }) => [name, now]))]));
-  return { ...selection, uavs: selection.uavs.map((uav) => (taken.has(uav.id) ? { ...uav, ...taken.get(uav.id) } : uav)) };
+  const taken = new Map(
+    changes.map(({ id, figures }) => [id, Object.fromEntries(figures.map(({ name, now }) => [name, now]))]),
+  );
+  return {
+    ...selection,
+    uavs: selection.uavs.map((uav) => (taken.has(uav.id) ? { ...uav, ...taken.get(uav.id) } : uav)),
+  };
 }
 
 /** The same selection with the figures of the fleet in place of those that were said for the mission alone. */
 export function withFleetFigures(selection, changes) {
   const taken = new Map(changes.map(({ id, said }) => [id, said]));
-  const ofFleet = (uav, said) => ({ ...uav, ...Object.fromEntries(said.map(({ name, now }) => [name, now])), own_figures: uav.own_figures.filter((own) => !said.some(({ name }) => name === own)) });
-  return { ...selection, uavs: selection.uavs.map((uav) => (taken.get(uav.id)?.length ? ofFleet(uav, taken.get(uav.id)) : uav)) };
+  const ofFleet = (uav, said) => ({
+    ...uav,
+    ...Object.fromEntries(said.map(({ name, now }) => [name, now])),
+    own_figures: uav.own_figures.filter((own) => !said.some(({ name }) => name === own)),
+  });
+  return {
+    ...selection,
+    uavs: selection.uavs.map((uav) => (taken.get(uav.id)?.length ? ofFleet(uav, taken.get(uav.id)) : uav)),
+  };
 }
 
 /** Values typed for a UAV in a mission. `known` is the UAV of the fleet: what is left empty is as there, what is typed otherwise is the mission's own. */
@@ -58,14 +79,23 @@ const FIGURE_WORDS = {
   battery_wh: { words: t("battery|figure"), unit: "Wh", none: t("not counted") },
   mass_kg: { words: t("mass|figure"), unit: "kg", digits: 3 },
   reserve_percent: { words: t("reserve|figure"), unit: "%" },
-  max_airspeed_mps: { words: t("highest airspeed|figure"), unit: SPEED_UNIT.unit, scale: SPEED_UNIT.mps, none: t("not stated|airspeed") },
+  max_airspeed_mps: {
+    words: t("highest airspeed|figure"),
+    unit: SPEED_UNIT.unit,
+    scale: SPEED_UNIT.mps,
+    none: t("not stated|airspeed"),
+  },
   rotor_disk_m2: { words: t("rotor area|figure"), unit: "m²", digits: 3 },
   hover_power_w: { words: t("power in the hover|figure"), unit: "W", none: t("worked out") },
 };
 
 /** "battery 56.6 → 40 Wh" */
 function figureWords({ name, kept, now }) {
-  if (name === "sensors") return t("sensors {kept} → {now}", { kept: kept.join(", ") || t("none|sensor"), now: now.join(", ") || t("none|sensor") });
+  if (name === "sensors")
+    return t("sensors {kept} → {now}", {
+      kept: kept.join(", ") || t("none|sensor"),
+      now: now.join(", ") || t("none|sensor"),
+    });
   const { words, unit, scale = 1, none = "", digits = 1 } = FIGURE_WORDS[name];
   const [before, after] = toldApart(...[kept, now].map((value) => (value === null ? null : value / scale)), digits);
   return `${words} ${before ?? none} → ${after === null ? none : `${after}${SPACE}${unit}`}`;
@@ -74,7 +104,9 @@ function figureWords({ name, kept, now }) {
 /** With as many decimals as it takes to tell one from the other. */
 function toldApart(kept, now, digits) {
   const [before, after] = [kept, now].map((value) => (value === null ? null : shortText(value, digits)));
-  return before === after && before !== null && digits < MOST_DIGITS ? toldApart(kept, now, digits + 1) : [before, after];
+  return before === after && before !== null && digits < MOST_DIGITS
+    ? toldApart(kept, now, digits + 1)
+    : [before, after];
 }
 
 function shortText(value, digits) {
@@ -90,7 +122,9 @@ const STATE_WORDS = {
 
 /** "Kite: battery 56.6 → 40 Wh, is in maintenance." */
 export function changeWords({ name, figures, state, message, said = [] }) {
-  const ofFleet = said.map(({ name: figure, then, now }) => t("{change} in the fleet, but not in this mission", { change: figureWords({ name: figure, kept: then, now }) }));
+  const ofFleet = said.map(({ name: figure, then, now }) =>
+    t("{change} in the fleet, but not in this mission", { change: figureWords({ name: figure, kept: then, now }) }),
+  );
   const told = [...figures.map(figureWords), ...(state ? [STATE_WORDS[state]] : []), ...ofFleet];
   return told.length ? `${name}: ${told.join(", ")}.` : message;
 }

@@ -21,7 +21,10 @@ function kindOf(zone, margins, route, places, departs_at) {
 
 /** The waypoints from the last one before a stretch to the first one after it. */
 function around({ from_m, to_m }, places) {
-  const first = Math.max(0, places.findLastIndex((place) => place <= from_m));
+  const first = Math.max(
+    0,
+    places.findLastIndex((place) => place <= from_m),
+  );
   const after = places.findIndex((place) => place >= to_m);
   return [first, after < 0 ? places.length - 1 : after];
 }
@@ -32,8 +35,12 @@ function isAsleep(zone, { time_s }, { arrival_s, waypoints }, places, departs_at
   const [from_s, to_s] = [arrival_s[first], arrival_s[last]];
   if (typeof from_s !== "number" || typeof to_s !== "number") return false;
   const begin = Date.parse(departs_at);
-  const [from, to] = [begin + (from_s - time_s) * 1000, begin + (to_s + (waypoints[last].task?.hold_s ?? 0) + time_s) * 1000];
-  for (let moment = from; moment < to + STEP_MS; moment += STEP_MS) if (isInForce(zone.schedule, Math.min(moment, to), waypoints[first].position) !== false) return false;
+  const [from, to] = [
+    begin + (from_s - time_s) * 1000,
+    begin + (to_s + (waypoints[last].task?.hold_s ?? 0) + time_s) * 1000,
+  ];
+  for (let moment = from; moment < to + STEP_MS; moment += STEP_MS)
+    if (isInForce(zone.schedule, Math.min(moment, to), waypoints[first].position) !== false) return false;
   return true;
 }
 
@@ -46,7 +53,10 @@ function isApart({ from_m, to_m, lower_limit, upper_limit }, { height_m, terrain
   };
   const [lower, upper] = [lower_limit && heights(lower_limit.reference), upper_limit && heights(upper_limit.reference)];
   const give_m = height_m + terrain_m;
-  return Boolean((lower && Math.max(...lower) + give_m < lower_limit.value_m) || (upper && Math.min(...upper) - give_m > upper_limit.value_m));
+  return Boolean(
+    (lower && Math.max(...lower) + give_m < lower_limit.value_m) ||
+      (upper && Math.min(...upper) - give_m > upper_limit.value_m),
+  );
 }
 
 /** "Airport, passed by". */
@@ -60,13 +70,24 @@ export const zoneWords = ({ name, kind }) =>
 
 /** What each kind means where it is drawn: [{ kind, words }], of the kinds that there are. */
 export function zoneLegend(zones) {
-  const words = { met: t("zone in the way"), apart: t("zone at another height"), near: t("zone passed by, not entered"), asleep: t("zone not in force when the UAV comes by") };
-  return Object.keys(words).filter((kind) => zones.some((zone) => zone.kind === kind)).map((kind) => ({ kind, words: words[kind] }));
+  const words = {
+    met: t("zone in the way"),
+    apart: t("zone at another height"),
+    near: t("zone passed by, not entered"),
+    asleep: t("zone not in force when the UAV comes by"),
+  };
+  return Object.keys(words)
+    .filter((kind) => zones.some((zone) => zone.kind === kind))
+    .map((kind) => ({ kind, words: words[kind] }));
 }
 
 /** By how much zones count beyond their times and heights; empty where nothing is added. */
 export function marginWords({ time_s, height_m } = NO_MARGINS) {
-  if (time_s > 0 && height_m > 0) return t("Zones count {time} before and after their times and {height} below and above their limits.", { time: durationText(time_s), height: heightText(height_m) });
+  if (time_s > 0 && height_m > 0)
+    return t("Zones count {time} before and after their times and {height} below and above their limits.", {
+      time: durationText(time_s),
+      height: heightText(height_m),
+    });
   if (time_s > 0) return t("Zones count {time} before and after their times.", { time: durationText(time_s) });
   return height_m > 0 ? t("Zones count {height} below and above their limits.", { height: heightText(height_m) }) : "";
 }

@@ -1,6 +1,17 @@
 /** What the list is asked for: from the page's address to a request and back. Values in, values out. */
 
-export const NOTHING = Object.freeze({ text: "", state: "", author: "", uav: "", changed: "", from: "", to: "", stale: false, deleted: false, order: "-changed" });
+export const NOTHING = Object.freeze({
+  text: "",
+  state: "",
+  author: "",
+  uav: "",
+  changed: "",
+  from: "",
+  to: "",
+  stale: false,
+  deleted: false,
+  order: "-changed",
+});
 export const PAGE_SIZE = 25;
 export const LAST_DAYS = { 1: 1, 7: 7, 30: 30 };
 const FLAGS = ["stale", "deleted"];
@@ -8,7 +19,9 @@ const FLAGS = ["stale", "deleted"];
 export function askedOf(search) {
   const parameters = new URLSearchParams(search);
   const asked = { ...NOTHING };
-  for (const name of Object.keys(NOTHING)) if (parameters.has(name)) asked[name] = FLAGS.includes(name) ? parameters.get(name) === "true" : parameters.get(name);
+  for (const name of Object.keys(NOTHING))
+    if (parameters.has(name))
+      asked[name] = FLAGS.includes(name) ? parameters.get(name) === "true" : parameters.get(name);
   return asked;
 }
 
@@ -32,7 +45,10 @@ export function requestOf(asked, now = new Date()) {
   if (asked.text.trim()) parameters.set("text", asked.text.trim());
   for (const name of FLAGS) if (asked[name]) parameters.set(name, "true");
   if (LAST_DAYS[asked.changed]) {
-    parameters.set("changed_from", new Date(now.getFullYear(), now.getMonth(), now.getDate() - LAST_DAYS[asked.changed] + 1).toISOString());
+    parameters.set(
+      "changed_from",
+      new Date(now.getFullYear(), now.getMonth(), now.getDate() - LAST_DAYS[asked.changed] + 1).toISOString(),
+    );
   } else if (asked.changed === "between") {
     if (asked.from) parameters.set("changed_from", startOf(asked.from));
     if (asked.to) parameters.set("changed_before", startOf(asked.to, 1));

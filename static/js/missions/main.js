@@ -7,7 +7,7 @@ import { toast } from "../page/toast.js";
 import { createStore } from "../store.js";
 import { t, tn } from "../text.js";
 import { numberText } from "../units.js";
-import { askedOf, countOfFields, isFiltered, nextOrder, NOTHING, PAGE_SIZE, requestOf, searchOf } from "./asked.js";
+import { askedOf, countOfFields, isFiltered, NOTHING, nextOrder, PAGE_SIZE, requestOf, searchOf } from "./asked.js";
 import { missionRow, STATES } from "./rows.js";
 
 const COLUMNS = [
@@ -22,17 +22,47 @@ const COLUMNS = [
   { name: "", words: t("More"), isUnseen: true },
 ];
 const ORDERS = {
-  "-changed": t("Last changed"), changed: t("First changed"), name: t("Name, A to Z"), "-name": t("Name, Z to A"), author: t("Author"), "-author": t("Author, Z to A"),
-  state: t("State"), "-state": t("State, last first"), "-targets": t("Most targets"), targets: t("Fewest targets"), "-uavs": t("Most UAVs"), uavs: t("Fewest UAVs"),
-  "-distance": t("Longest distance"), distance: t("Shortest distance"), "-time": t("Longest time"), time: t("Shortest time"),
+  "-changed": t("Last changed"),
+  changed: t("First changed"),
+  name: t("Name, A to Z"),
+  "-name": t("Name, Z to A"),
+  author: t("Author"),
+  "-author": t("Author, Z to A"),
+  state: t("State"),
+  "-state": t("State, last first"),
+  "-targets": t("Most targets"),
+  targets: t("Fewest targets"),
+  "-uavs": t("Most UAVs"),
+  uavs: t("Fewest UAVs"),
+  "-distance": t("Longest distance"),
+  distance: t("Shortest distance"),
+  "-time": t("Longest time"),
+  time: t("Shortest time"),
 };
-const CHANGED = { "": t("at any time"), 1: t("today"), 7: t("in the last 7 days"), 30: t("in the last 30 days"), between: t("between two days") };
+const CHANGED = {
+  "": t("at any time"),
+  1: t("today"),
+  7: t("in the last 7 days"),
+  30: t("in the last 30 days"),
+  between: t("between two days"),
+};
 const TYPING_MS = 250;
 
 const page = readPage();
 const parameters = new URLSearchParams(location.search);
 const justDeleted = parameters.get("gone");
-const store = createStore({ asked: askedOf(location.search), missions: null, next: null, total: 0, byState: {}, pages: [], chosen: new Set(), filters: { authors: [], uavs: [] }, problem: null, isBusy: false });
+const store = createStore({
+  asked: askedOf(location.search),
+  missions: null,
+  next: null,
+  total: 0,
+  byState: {},
+  pages: [],
+  chosen: new Set(),
+  filters: { authors: [], uavs: [] },
+  problem: null,
+  isBusy: false,
+});
 const filter = byId("filter");
 
 startChrome({ bindings: [{ keys: ["/"], words: t("Find a mission"), act: () => filter.focus() }] });
@@ -40,7 +70,11 @@ startChrome({ bindings: [{ keys: ["/"], words: t("Find a mission"), act: () => f
 function tell(error, title) {
   if (!(error instanceof ApiError)) throw error;
   const isOut = error.isSignedOut;
-  store.update({ problem: isOut ? { title: t("You are signed out."), text: t("Sign in to go on."), isOut } : { title, text: error.message } });
+  store.update({
+    problem: isOut
+      ? { title: t("You are signed out."), text: t("Sign in to go on."), isOut }
+      : { title, text: error.message },
+  });
 }
 
 // asking
@@ -58,7 +92,16 @@ async function load(address = requestOf(store.state.asked), pages = []) {
       await load(pages.at(-1), pages.slice(0, -1)); // the last one of the page is gone
       return;
     }
-    store.update({ missions: data.results, next: data.next, total: data.total, byState: data.by_state, pages, address, chosen: new Set(), problem: null });
+    store.update({
+      missions: data.results,
+      next: data.next,
+      total: data.total,
+      byState: data.by_state,
+      pages,
+      address,
+      chosen: new Set(),
+      problem: null,
+    });
   } catch (error) {
     if (error.name !== "AbortError") tell(error, t("Not loaded."));
   } finally {
@@ -92,7 +135,11 @@ async function loadFilters() {
 
 async function rename(mission, name) {
   try {
-    const { data } = await patch(`/missions/${mission.id}`, { name }, { headers: { "If-Match": `"${mission.revision}"` } });
+    const { data } = await patch(
+      `/missions/${mission.id}`,
+      { name },
+      { headers: { "If-Match": `"${mission.revision}"` } },
+    );
     await again();
     toast(t("“{before}” is now “{name}”.", { before: mission.name, name: data.name }), {
       label: t("Undo"),
@@ -107,9 +154,16 @@ async function rename(mission, name) {
 
 async function duplicate(mission) {
   try {
-    const { data } = await post(`/missions/${mission.id}/duplicate`, {}, { headers: { "Idempotency-Key": crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` } });
+    const { data } = await post(
+      `/missions/${mission.id}/duplicate`,
+      {},
+      { headers: { "Idempotency-Key": crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` } },
+    );
     await again();
-    toast(t("“{name}” is there.", { name: data.name }), { label: t("Open"), act: () => void (location.href = `/missions/${data.id}`) });
+    toast(t("“{name}” is there.", { name: data.name }), {
+      label: t("Open"),
+      act: () => void (location.href = `/missions/${data.id}`),
+    });
   } catch (error) {
     tell(error, t("Not duplicated."));
   }
@@ -121,19 +175,34 @@ async function doTo(missions, path, words, undo) {
     const { data } = await post(`/missions/${path}`, { missions: missions.map(({ id }) => id) });
     await again();
     const done = missions.filter(({ id }) => data.done.includes(id));
-    if (done.length) toast(done.length === 1 ? words.one(done[0].name) : words.many(done.length), undo && { label: t("Undo"), act: () => undo(done) });
+    if (done.length)
+      toast(
+        done.length === 1 ? words.one(done[0].name) : words.many(done.length),
+        undo && { label: t("Undo"), act: () => undo(done) },
+      );
     if (data.refused.length) {
       const [first] = data.refused;
       const name = missions.find(({ id }) => id === first.id)?.name ?? "";
-      tell(new ApiError(`“${name}”: ${first.message}`), tn(data.refused.length, "{count} mission stays as it is.", "{count} missions stay as they are."));
+      tell(
+        new ApiError(`“${name}”: ${first.message}`),
+        tn(data.refused.length, "{count} mission stays as it is.", "{count} missions stay as they are."),
+      );
     }
   } catch (error) {
     tell(error, words.failed);
   }
 }
 
-const DELETED = { one: (name) => t("“{name}” is deleted.", { name }), many: (count) => tn(count, "{count} mission is deleted.", "{count} missions are deleted."), failed: t("Not deleted.") };
-const BACK = { one: (name) => t("“{name}” is back.", { name }), many: (count) => tn(count, "{count} mission is back.", "{count} missions are back."), failed: t("Not brought back.") };
+const DELETED = {
+  one: (name) => t("“{name}” is deleted.", { name }),
+  many: (count) => tn(count, "{count} mission is deleted.", "{count} missions are deleted."),
+  failed: t("Not deleted."),
+};
+const BACK = {
+  one: (name) => t("“{name}” is back.", { name }),
+  many: (count) => tn(count, "{count} mission is back.", "{count} missions are back."),
+  failed: t("Not brought back."),
+};
 const removeAll = (missions) => doTo(missions, "delete", DELETED, bringBack);
 const bringBack = (missions) => doTo(missions, "restore", BACK, null);
 
@@ -157,14 +226,45 @@ function choose(ids, isChosen) {
 
 function drawHeads({ asked, missions, chosen }) {
   const all = missions?.length > 0 && missions.every(({ id }) => chosen.has(id));
-  const box = page.canPlan && h("th", { scope: "col", class: "choice" }, h("label", {}, h("input", { type: "checkbox", class: "check", checked: all, "aria-label": t("Choose all on this page"), onchange: (event) => choose(missions.map(({ id }) => id), event.target.checked) })));
+  const box =
+    page.canPlan &&
+    h(
+      "th",
+      { scope: "col", class: "choice" },
+      h(
+        "label",
+        {},
+        h("input", {
+          type: "checkbox",
+          class: "check",
+          checked: all,
+          "aria-label": t("Choose all on this page"),
+          onchange: (event) =>
+            choose(
+              missions.map(({ id }) => id),
+              event.target.checked,
+            ),
+        }),
+      ),
+    );
   const heads = COLUMNS.map(({ name, words, isUnseen, class: own }) => {
     if (isUnseen) return h("th", { scope: "col" }, h("span", { class: "unseen" }, words));
-    const direction = asked.order.replace("-", "") !== name ? "none" : asked.order.startsWith("-") ? "descending" : "ascending";
+    const direction =
+      asked.order.replace("-", "") !== name ? "none" : asked.order.startsWith("-") ? "descending" : "ascending";
     return h(
       "th",
       { scope: "col", class: own, "aria-sort": direction },
-      h("button", { type: "button", class: "sort", dataset: { column: name }, onclick: () => ask({ order: nextOrder(asked.order, name) }) }, words, direction !== "none" && icon(direction === "ascending" ? "chevron-up" : "chevron-down", "small")),
+      h(
+        "button",
+        {
+          type: "button",
+          class: "sort",
+          dataset: { column: name },
+          onclick: () => ask({ order: nextOrder(asked.order, name) }),
+        },
+        words,
+        direction !== "none" && icon(direction === "ascending" ? "chevron-up" : "chevron-down", "small"),
+      ),
     );
   });
   const focused = document.activeElement?.dataset?.column;
@@ -203,9 +303,35 @@ function drawChosen({ missions, chosen, asked }) {
   const bar = byId("chosen-bar");
   bar.hidden = picked.length === 0;
   const act = asked.deleted
-    ? h("button", { type: "button", class: "button", onclick: () => bringBack(picked) }, icon("archive-restore", "small"), t("Bring back"))
-    : h("button", { type: "button", class: "button danger", onclick: () => removeAll(picked) }, icon("trash-2", "small"), t("Delete"));
-  bar.replaceChildren(h("strong", { role: "status" }, tn(picked.length, "{count} mission chosen", "{count} missions chosen")), act, h("button", { type: "button", class: "button quiet", onclick: () => choose(picked.map(({ id }) => id), false) }, t("Choose none")));
+    ? h(
+        "button",
+        { type: "button", class: "button", onclick: () => bringBack(picked) },
+        icon("archive-restore", "small"),
+        t("Bring back"),
+      )
+    : h(
+        "button",
+        { type: "button", class: "button danger", onclick: () => removeAll(picked) },
+        icon("trash-2", "small"),
+        t("Delete"),
+      );
+  bar.replaceChildren(
+    h("strong", { role: "status" }, tn(picked.length, "{count} mission chosen", "{count} missions chosen")),
+    act,
+    h(
+      "button",
+      {
+        type: "button",
+        class: "button quiet",
+        onclick: () =>
+          choose(
+            picked.map(({ id }) => id),
+            false,
+          ),
+      },
+      t("Choose none"),
+    ),
+  );
 }
 
 function drawRest({ missions, next, total, pages, asked, problem, isBusy }) {
@@ -216,7 +342,16 @@ function drawRest({ missions, next, total, pages, asked, problem, isBusy }) {
             "div",
             { class: "notice critical", role: "alert" },
             icon("circle-alert"),
-            h("p", {}, h("strong", {}, problem.title), ` ${problem.text} `, problem.isOut ? h("a", { class: "text-button", href: signInAddress() }, t("Sign in")) : missions === null && h("button", { type: "button", class: "text-button", onclick: () => load() }, t("Load again"))),
+            h(
+              "p",
+              {},
+              h("strong", {}, problem.title),
+              ` ${problem.text} `,
+              problem.isOut
+                ? h("a", { class: "text-button", href: signInAddress() }, t("Sign in"))
+                : missions === null &&
+                    h("button", { type: "button", class: "text-button", onclick: () => load() }, t("Load again")),
+            ),
           ),
         ]
       : []),
@@ -227,16 +362,31 @@ function drawRest({ missions, next, total, pages, asked, problem, isBusy }) {
   byId("missions").hidden = missions.length === 0;
   byId("missions-empty").hidden = missions.length > 0;
   const isNone = !missions.length && !isFiltered(asked);
-  for (const part of document.querySelectorAll(".filters, .more-filters")) part.hidden = isNone && !store.state.filters.authors.length && !asked.deleted;
+  for (const part of document.querySelectorAll(".filters, .more-filters"))
+    part.hidden = isNone && !store.state.filters.authors.length && !asked.deleted;
   if (isNone) {
-    empty([h("strong", {}, t("No missions yet")), h("span", {}, t("Pick what to inspect and plan the first one."))], page.canPlan && h("a", { class: "button", href: "/missions/new" }, t("New mission")));
+    empty(
+      [h("strong", {}, t("No missions yet")), h("span", {}, t("Pick what to inspect and plan the first one."))],
+      page.canPlan && h("a", { class: "button", href: "/missions/new" }, t("New mission")),
+    );
   } else if (!missions.length) {
-    const what = asked.text.trim() ? t("No mission matches “{text}”", { text: asked.text.trim() }) : asked.deleted ? t("No mission is deleted") : t("No mission is like that");
-    empty([h("strong", {}, what)], h("button", { type: "button", class: "button", onclick: clearFilters }, t("Clear the filters")));
+    const what = asked.text.trim()
+      ? t("No mission matches “{text}”", { text: asked.text.trim() })
+      : asked.deleted
+        ? t("No mission is deleted")
+        : t("No mission is like that");
+    empty(
+      [h("strong", {}, what)],
+      h("button", { type: "button", class: "button", onclick: clearFilters }, t("Clear the filters")),
+    );
   }
   byId("pager").hidden = missions.length === 0;
   const first = pages.length * PAGE_SIZE + 1;
-  byId("how-many").textContent = t("{first} to {last} of {total}", { first: numberText(first), last: numberText(first + missions.length - 1), total: numberText(total) });
+  byId("how-many").textContent = t("{first} to {last} of {total}", {
+    first: numberText(first),
+    last: numberText(first + missions.length - 1),
+    total: numberText(total),
+  });
   byId("page-before").disabled = !pages.length;
   byId("page-after").disabled = next === null;
   document.querySelector(".pager-buttons").hidden = !pages.length && next === null;
@@ -249,7 +399,10 @@ function empty(words, action) {
 /** All, then each state that occurs, with how many. */
 function drawStates({ byState, asked }) {
   const total = Object.values(byState).reduce((sum, count) => sum + count, 0);
-  const choices = [["", t("All"), total], ...Object.entries(STATES).map(([value, words]) => [value, words, byState[value] ?? 0])];
+  const choices = [
+    ["", t("All"), total],
+    ...Object.entries(STATES).map(([value, words]) => [value, words, byState[value] ?? 0]),
+  ];
   const fieldset = byId("states");
   const hadFocus = fieldset.contains(document.activeElement);
   fieldset.replaceChildren(
@@ -257,7 +410,18 @@ function drawStates({ byState, asked }) {
     ...choices
       .filter(([value, , count]) => count > 0 || value === "" || value === asked.state)
       .map(([value, words, count]) =>
-        h("label", {}, h("input", { type: "radio", name: "state", value, checked: asked.state === value, onchange: () => ask({ state: value }) }), h("span", { class: "segment" }, words, h("span", { class: "count" }, numberText(count)))),
+        h(
+          "label",
+          {},
+          h("input", {
+            type: "radio",
+            name: "state",
+            value,
+            checked: asked.state === value,
+            onchange: () => ask({ state: value }),
+          }),
+          h("span", { class: "segment" }, words, h("span", { class: "count" }, numberText(count))),
+        ),
       ),
   );
   if (hadFocus) fieldset.querySelector("input:checked")?.focus();
@@ -272,9 +436,17 @@ function drawFields({ asked, filters }) {
   if (filter.value !== asked.text && document.activeElement !== filter) filter.value = asked.text;
   const counted = ({ name, missions }) => `${name} (${numberText(missions)})`;
   options(byId("order"), Object.entries(ORDERS), asked.order);
-  options(byId("author"), [["", t("anybody")], ...filters.authors.map((author) => [author.name, counted(author)])], asked.author);
+  options(
+    byId("author"),
+    [["", t("anybody")], ...filters.authors.map((author) => [author.name, counted(author)])],
+    asked.author,
+  );
   options(byId("uav"), [["", t("any")], ...filters.uavs.map((uav) => [String(uav.id), counted(uav)])], asked.uav);
-  options(byId("changed"), ["", "1", "7", "30", "between"].map((value) => [value, CHANGED[value]]), asked.changed);
+  options(
+    byId("changed"),
+    ["", "1", "7", "30", "between"].map((value) => [value, CHANGED[value]]),
+    asked.changed,
+  );
   byId("days").hidden = asked.changed !== "between";
   byId("from-day").value = asked.from;
   byId("to-day").value = asked.to;
@@ -298,8 +470,17 @@ filter.addEventListener("keydown", (event) => {
   clearTimeout(typing);
   ask({ text: "" });
 });
-for (const [id, name] of Object.entries({ order: "order", author: "author", uav: "uav", changed: "changed", "from-day": "from", "to-day": "to" })) byId(id).addEventListener("change", (event) => ask({ [name]: event.target.value }));
-for (const name of ["stale", "deleted"]) byId(name).addEventListener("change", (event) => ask({ [name]: event.target.checked }));
+for (const [id, name] of Object.entries({
+  order: "order",
+  author: "author",
+  uav: "uav",
+  changed: "changed",
+  "from-day": "from",
+  "to-day": "to",
+}))
+  byId(id).addEventListener("change", (event) => ask({ [name]: event.target.value }));
+for (const name of ["stale", "deleted"])
+  byId(name).addEventListener("change", (event) => ask({ [name]: event.target.checked }));
 byId("clear-filters").addEventListener("click", () => {
   filter.value = "";
   clearFilters();
@@ -317,6 +498,9 @@ store.listen(["asked", "filters"], drawFields);
 Promise.all([load(), loadFilters()]).then(() => {
   document.documentElement.dataset.loaded = "true";
   if (!justDeleted) return;
-  toast(t("“{name}” is deleted.", { name: parameters.get("was") ?? "" }), { label: t("Undo"), act: () => bringBack([{ id: justDeleted, name: parameters.get("was") ?? "" }]) });
+  toast(t("“{name}” is deleted.", { name: parameters.get("was") ?? "" }), {
+    label: t("Undo"),
+    act: () => bringBack([{ id: justDeleted, name: parameters.get("was") ?? "" }]),
+  });
   history.replaceState(null, "", "/");
 });

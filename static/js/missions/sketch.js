@@ -17,12 +17,23 @@ export function fitTo(places, width = WIDTH_PX, height = HEIGHT_PX, margin = MAR
   const xs = places.map(([lon]) => lon * shrink);
   const ys = places.map(([, lat]) => -lat);
   const [left, right, top, bottom] = [Math.min(...xs), Math.max(...xs), Math.min(...ys), Math.max(...ys)];
-  const scale = Math.min((width - 2 * margin) / Math.max(right - left, leastSpan), (height - 2 * margin) / Math.max(bottom - top, leastSpan));
+  const scale = Math.min(
+    (width - 2 * margin) / Math.max(right - left, leastSpan),
+    (height - 2 * margin) / Math.max(bottom - top, leastSpan),
+  );
   const [offX, offY] = [width / 2 - ((left + right) / 2) * scale, height / 2 - ((top + bottom) / 2) * scale];
   return ([lon, lat]) => [lon * shrink * scale + offX, -lat * scale + offY];
 }
 
-const pathOf = (line, place) => line.map((at, index) => `${index ? "L" : "M"}${place(at).map((px) => px.toFixed(1)).join(" ")}`).join("");
+const pathOf = (line, place) =>
+  line
+    .map(
+      (at, index) =>
+        `${index ? "L" : "M"}${place(at)
+          .map((px) => px.toFixed(1))
+          .join(" ")}`,
+    )
+    .join("");
 
 /** { sketch, places, lines } of a mission in the list. */
 export function sketch({ sketch: routes = [], places = [], lines = [] }) {
@@ -33,7 +44,10 @@ export function sketch({ sketch: routes = [], places = [], lines = [] }) {
     "svg",
     { class: "sketch", viewBox: `0 0 ${WIDTH_PX} ${HEIGHT_PX}`, "aria-hidden": "true" },
     svg("path", { class: "around", d: lines.map((line) => pathOf(line, place)).join("") }),
-    !isPlanned && places.map((at) => svg("circle", { class: "picked", cx: place(at)[0].toFixed(1), cy: place(at)[1].toFixed(1), r: 2 })),
+    !isPlanned &&
+      places.map((at) =>
+        svg("circle", { class: "picked", cx: place(at)[0].toFixed(1), cy: place(at)[1].toFixed(1), r: 2 }),
+      ),
     routes.map((route, sequence) =>
       route.length
         ? svg(

@@ -3,7 +3,15 @@
 import { t } from "../text.js";
 
 const KEY = "spanwise.alarm";
-const SOUNDS = { critical: [[880, 0, 0.16], [660, 0.2, 0.16], [880, 0.4, 0.16], [660, 0.6, 0.22]], warning: [[520, 0, 0.28]] }; // [Hz, after s, for s]
+const SOUNDS = {
+  critical: [
+    [880, 0, 0.16],
+    [660, 0.2, 0.16],
+    [880, 0.4, 0.16],
+    [660, 0.6, 0.22],
+  ],
+  warning: [[520, 0, 0.28]],
+}; // [Hz, after s, for s]
 const LOUDNESS = 0.18;
 
 function remembered() {
@@ -16,7 +24,8 @@ function remembered() {
 
 /** Those that have come since the last look and that somebody is to be told of: one cause once, and again where it has become worse. */
 export function newAlerts(alerts, told) {
-  const isNew = ({ id, level, closed_at, acknowledged_at }) => closed_at === null && acknowledged_at === null && told.get(id) !== level;
+  const isNew = ({ id, level, closed_at, acknowledged_at }) =>
+    closed_at === null && acknowledged_at === null && told.get(id) !== level;
   return alerts.filter(isNew);
 }
 
@@ -69,8 +78,18 @@ export function createAlarm() {
       else if (alerts.some(({ level }) => level === "warning")) play("warning");
     },
     notify(alerts) {
-      if (!choice.notify || !document.hidden || !("Notification" in globalThis) || Notification.permission !== "granted") return;
-      for (const { id, level, message } of alerts.filter((alert) => alert.level !== "advisory")) new Notification(level === "critical" ? t("Critical alert") : t("Warning"), { body: message, tag: `spanwise-alert-${id}` });
+      if (
+        !choice.notify ||
+        !document.hidden ||
+        !("Notification" in globalThis) ||
+        Notification.permission !== "granted"
+      )
+        return;
+      for (const { id, level, message } of alerts.filter((alert) => alert.level !== "advisory"))
+        new Notification(level === "critical" ? t("Critical alert") : t("Warning"), {
+          body: message,
+          tag: `spanwise-alert-${id}`,
+        });
     },
   };
 }

@@ -14,7 +14,11 @@ export const STATES = {
   complete: { words: t("Complete"), image: "circle-check", rank: 5 },
 };
 
-const REASONS = { "flight-failed": t("Its flight failed."), "not-reached": t("The UAV went past it at a distance."), "not-held": t("The UAV did not stay long enough.") };
+const REASONS = {
+  "flight-failed": t("Its flight failed."),
+  "not-reached": t("The UAV went past it at a distance."),
+  "not-held": t("The UAV did not stay long enough."),
+};
 
 /** Why a target was skipped or failed: a known code in words, anything else as it is. */
 export const reasonWords = (reason) => REASONS[reason] ?? reason ?? "";
@@ -22,12 +26,14 @@ export const reasonWords = (reason) => REASONS[reason] ?? reason ?? "";
 /** Number of each target on its route, by its place in the mission; from the mission as the REST API shows it. */
 export function numbersOf(detail) {
   const numbers = new Map();
-  for (const route of detail?.plan?.routes ?? []) route.targets.forEach((target, index) => numbers.set(target, index + 1));
+  for (const route of detail?.plan?.routes ?? [])
+    route.targets.forEach((target, index) => numbers.set(target, index + 1));
   return numbers;
 }
 
 /** "C3", or the bare number of a target that nobody flies to. */
-export const pillOf = (target, numbers) => (target.uav === null ? `${target.place + 1}` : `${routeLetter(target.uav)}${numbers.get(target.place) ?? ""}`);
+export const pillOf = (target, numbers) =>
+  target.uav === null ? `${target.place + 1}` : `${routeLetter(target.uav)}${numbers.get(target.place) ?? ""}`;
 
 /** Rows: [{ key, mission, place, uav, pill, label, state, at, isExpected, reason }], what goes on first, what is done last. */
 export function boardRows(missions, uavs, details) {
@@ -36,7 +42,12 @@ export function boardRows(missions, uavs, details) {
     const flying = new Map(uavs.filter((uav) => uav.mission === mission.id).map((uav) => [uav.place, uav]));
     return mission.targets.map((target) => rowOf(mission, target, flying.get(target.uav), numbers));
   });
-  return rows.sort((a, b) => STATES[a.state].rank - STATES[b.state].rank || later(a, b) || a.pill.localeCompare(b.pill, undefined, { numeric: true }));
+  return rows.sort(
+    (a, b) =>
+      STATES[a.state].rank - STATES[b.state].rank ||
+      later(a, b) ||
+      a.pill.localeCompare(b.pill, undefined, { numeric: true }),
+  );
 }
 
 /** What is to come by its time, what is over the newest first. */
@@ -51,7 +62,12 @@ function rowOf(mission, target, uav, numbers) {
   const arrival = arrivals.find((entry) => entry.target === target.place);
   const isToCome = ["pending", "in-progress"].includes(target.state);
   const isNext = arrivals.find((entry) => entry.target !== null)?.target === target.place;
-  const state = isToCome && isNext && isHeld(uav) ? "held" : target.state === "pending" && isNext && inAir(uav) ? "in-progress" : target.state;
+  const state =
+    isToCome && isNext && isHeld(uav)
+      ? "held"
+      : target.state === "pending" && isNext && inAir(uav)
+        ? "in-progress"
+        : target.state;
   return {
     key: `${mission.id} ${target.place}`,
     mission: mission.id,

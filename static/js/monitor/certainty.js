@@ -15,7 +15,8 @@ export function reportAge_s({ measured }, now_ms) {
 }
 
 /** Whether its next report should have come, by how often they come and by the limits that alerts keep to: not of one that has landed. */
-export const isLate = (uav, now_ms) => inAir(uav) !== false && (reportAge_s(uav, now_ms) ?? 0) >= uav.rhythm.late_after_s;
+export const isLate = (uav, now_ms) =>
+  inAir(uav) !== false && (reportAge_s(uav, now_ms) ?? 0) >= uav.rhythm.late_after_s;
 
 /** Whether so many have not come that it counts as silent. */
 export const isSilent = (uav, now_ms) => (reportAge_s(uav, now_ms) ?? Infinity) >= uav.rhythm.silent_after_s;

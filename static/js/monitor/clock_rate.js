@@ -12,4 +12,7 @@ export function rateOf({ link, is_simulated }) {
   return Math.abs(rate - whole) <= ALIKE * rate ? whole : Math.round(rate * 10) / 10;
 }
 
-export const rateWords = (rate) => t("It flies {rate} times as fast as the clock on the wall, by which all times here are told.", { rate: numberText(rate, Number.isInteger(rate) ? 0 : 1) });
+export const rateWords = (rate) =>
+  t("It flies {rate} times as fast as the clock on the wall, by which all times here are told.", {
+    rate: numberText(rate, Number.isInteger(rate) ? 0 : 1),
+  });

@@ -15,16 +15,30 @@ import { unheardLines } from "./unheard.js";
 
 const AGAIN = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 const ALL = {
-  pause: { title: (uavs) => tn(uavs, "Pause {count} UAV?", "Pause all {count} UAVs?"), lines: [t("Each stops on its route and waits for Resume, as long as its battery lasts.")], act: t("Pause all"), isBack: true },
-  return: { title: (uavs) => tn(uavs, "Return {count} UAV?", "Return all {count} UAVs?"), lines: [t("Each flies back to where it took off and lands there. Targets that are not reached stay undone.")], act: t("Return all"), isBack: true },
+  pause: {
+    title: (uavs) => tn(uavs, "Pause {count} UAV?", "Pause all {count} UAVs?"),
+    lines: [t("Each stops on its route and waits for Resume, as long as its battery lasts.")],
+    act: t("Pause all"),
+    isBack: true,
+  },
+  return: {
+    title: (uavs) => tn(uavs, "Return {count} UAV?", "Return all {count} UAVs?"),
+    lines: [t("Each flies back to where it took off and lands there. Targets that are not reached stay undone.")],
+    act: t("Return all"),
+    isBack: true,
+  },
 };
 
 /** Figures of now in a question: the battery, what is left, the targets that stay open. */
 export function figuresLine({ measured, estimated, place }, mission) {
-  const open = (mission?.targets ?? []).filter(({ uav, state }) => uav === place && ["pending", "in-progress"].includes(state)).length;
+  const open = (mission?.targets ?? []).filter(
+    ({ uav, state }) => uav === place && ["pending", "in-progress"].includes(state),
+  ).length;
   const said = [
-    typeof measured?.battery_percent === "number" && t("battery {figure}", { figure: percentText(measured.battery_percent) }),
-    typeof estimated?.to_go_m === "number" && t("{distance} of its route to go", { distance: lengthText(estimated.to_go_m) }),
+    typeof measured?.battery_percent === "number" &&
+      t("battery {figure}", { figure: percentText(measured.battery_percent) }),
+    typeof estimated?.to_go_m === "number" &&
+      t("{distance} of its route to go", { distance: lengthText(estimated.to_go_m) }),
     estimated?.ends_at && t("would land {time}", { time: clockText(estimated.ends_at) }),
     open > 0 && tn(open, "{count} target open", "{count} targets open"),
   ].filter(Boolean);
@@ -62,7 +76,12 @@ export function createCommanding(store) {
     if (!uav) return;
     const mission = store.state.missions.find((entry) => entry.id === uav.mission);
     const planned = store.state.details.get(uav.mission)?.uavs[uav.place];
-    const question = questionOf(kind, { name: uav.name, letter: uav.place === null ? "" : routeLetter(uav.place), speed_mps: planned?.cruise_speed_mps ?? uav.measured?.speed_mps ?? 5, returns: await wayHome(uav, kind) });
+    const question = questionOf(kind, {
+      name: uav.name,
+      letter: uav.place === null ? "" : routeLetter(uav.place),
+      speed_mps: planned?.cruise_speed_mps ?? uav.measured?.speed_mps ?? 5,
+      returns: await wayHome(uav, kind),
+    });
     const late = certainty(uav) === MEASURED ? null : unheardLines([uav], kind, store.state.now_ms)[0];
     const [first, ...rest] = question.lines;
     const asked = await confirmAct({ ...question, lines: [first, figuresLine(uav, mission), late, ...rest], opener });
@@ -75,7 +94,18 @@ export function createCommanding(store) {
     const { title, lines, ...rest } = ALL[kind];
     if (!uavs.length) return void toast(t("No UAV is in the air."));
     const silent = uavs.filter((uav) => certainty(uav) !== MEASURED);
-    const asked = await confirmAct({ ...rest, title: title(uavs.length), lines: [`${uavs.map(({ name }) => name).join(", ")}.`, ...lines, ...unheardLines(silent, kind, store.state.now_ms), LATE], keep: t("Keep flying"), opener });
+    const asked = await confirmAct({
+      ...rest,
+      title: title(uavs.length),
+      lines: [
+        `${uavs.map(({ name }) => name).join(", ")}.`,
+        ...lines,
+        ...unheardLines(silent, kind, store.state.now_ms),
+        LATE,
+      ],
+      keep: t("Keep flying"),
+      opener,
+    });
     if (!asked) return;
     const done = await Promise.all(uavs.map((uav) => told(uav, kind)));
     if (done.every(Boolean)) toast(tn(done.length, "{count} UAV is being told.", "{count} UAVs are being told."));

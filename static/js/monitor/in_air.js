@@ -5,7 +5,8 @@ import { isOnItsWay } from "../mission/flying.js";
 const HEARD_WITHIN_MS = 3_600_000;
 
 /** A flight that was told to be over is, though no report has said so. */
-export const inAir = ({ measured, link }) => (link?.is_in_air === false ? false : (measured?.is_in_air ?? link?.is_in_air ?? null));
+export const inAir = ({ measured, link }) =>
+  link?.is_in_air === false ? false : (measured?.is_in_air ?? link?.is_in_air ?? null);
 
 const wasHeard = ({ link }, now_ms) => Boolean(link?.heard_at) && now_ms - Date.parse(link.heard_at) < HEARD_WITHIN_MS;
 
@@ -15,5 +16,7 @@ const wasHeard = ({ link }, now_ms) => Boolean(link?.heard_at) && now_ms - Date.
  */
 export function flyingUavs({ uavs, missions, now_ms }) {
   const onItsWay = new Set(missions.filter(isOnItsWay).map(({ id }) => id));
-  return uavs.filter((uav) => (onItsWay.has(uav.mission) ? inAir(uav) !== false : inAir(uav) === true && wasHeard(uav, now_ms)));
+  return uavs.filter((uav) =>
+    onItsWay.has(uav.mission) ? inAir(uav) !== false : inAir(uav) === true && wasHeard(uav, now_ms),
+  );
 }

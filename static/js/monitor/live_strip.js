@@ -11,9 +11,12 @@ const LEAST_BRACKET_PX = 9;
 
 /** How far along its route a UAV is [m], and how far off that may be: { at_m, within_m }; null where nobody knows. */
 export function progressOf({ estimated, measured, link }, places) {
-  if (estimated && estimated.along_route_m !== null) return { at_m: estimated.along_route_m, within_m: estimated.bound.along_m };
+  if (estimated && estimated.along_route_m !== null)
+    return { at_m: estimated.along_route_m, within_m: estimated.bound.along_m };
   const next = measured?.waypoint_sequence ?? link?.waypoint_sequence ?? null;
-  return next === null || !places.length ? null : { at_m: places[Math.min(Math.max(0, next - 1), places.length - 1)], within_m: 0 };
+  return next === null || !places.length
+    ? null
+    : { at_m: places[Math.min(Math.max(0, next - 1), places.length - 1)], within_m: 0 };
 }
 
 /** states: of each target by its place, "complete" and so on. `progress` as progressOf says it. */
@@ -22,13 +25,26 @@ export function liveStrip({ route, width_px, label, states, progress, certainty 
   const plan = layOut(profile, route.length_m, width_px);
   const { x } = scaleOf(route.length_m, width_px);
   const at = progress ? x(Math.min(route.length_m, Math.max(0, progress.at_m))) : plan.start;
-  const leg = (x1, x2, off, kind) => x2 > x1 && svg("line", { x1, x2, y1: MIDDLE_PX, y2: MIDDLE_PX, class: `strip-leg ${kind}${off ? " off" : ""}` });
+  const leg = (x1, x2, off, kind) =>
+    x2 > x1 && svg("line", { x1, x2, y1: MIDDLE_PX, y2: MIDDLE_PX, class: `strip-leg ${kind}${off ? " off" : ""}` });
   const base = (place) => svg("rect", { x: place - 4, y: MIDDLE_PX - 4, width: 8, height: 8, class: "strip-base" });
   return svg(
     "svg",
-    { class: "strip live-strip", role: "img", "aria-label": label, width: width_px, height: HEIGHT_PX, viewBox: `0 0 ${width_px} ${HEIGHT_PX}` },
-    plan.ticks.map((tick) => svg("line", { x1: tick, x2: tick, y1: MIDDLE_PX - 6, y2: MIDDLE_PX - 1, class: "strip-tick" })),
-    plan.legs.map(({ x1, x2, offNetwork }) => [leg(x1, Math.min(x2, at), offNetwork, "flown"), leg(Math.max(x1, at), x2, offNetwork, "ahead")]),
+    {
+      class: "strip live-strip",
+      role: "img",
+      "aria-label": label,
+      width: width_px,
+      height: HEIGHT_PX,
+      viewBox: `0 0 ${width_px} ${HEIGHT_PX}`,
+    },
+    plan.ticks.map((tick) =>
+      svg("line", { x1: tick, x2: tick, y1: MIDDLE_PX - 6, y2: MIDDLE_PX - 1, class: "strip-tick" }),
+    ),
+    plan.legs.map(({ x1, x2, offNetwork }) => [
+      leg(x1, Math.min(x2, at), offNetwork, "flown"),
+      leg(Math.max(x1, at), x2, offNetwork, "ahead"),
+    ]),
     base(plan.start),
     base(plan.end),
     plan.pills.map((pill) => drawPill(pill, states)),
@@ -39,12 +55,26 @@ export function liveStrip({ route, width_px, label, states, progress, certainty 
 /** Filled once all of its targets are done, red where one failed. */
 function drawPill({ x, width, label, targets }, states) {
   const of = (state) => targets.some((target) => states.get(target) === state);
-  const look = of("failed") ? "failed" : targets.every((target) => states.get(target) === "complete") ? "complete" : of("skipped") ? "skipped" : "open";
-  return svg("g", { class: `strip-target ${look}` }, svg("rect", { x: x - width / 2, y: MIDDLE_PX - 9, width, height: 18, rx: 9 }), svg("text", { x, y: MIDDLE_PX + 4 }, label));
+  const look = of("failed")
+    ? "failed"
+    : targets.every((target) => states.get(target) === "complete")
+      ? "complete"
+      : of("skipped")
+        ? "skipped"
+        : "open";
+  return svg(
+    "g",
+    { class: `strip-target ${look}` },
+    svg("rect", { x: x - width / 2, y: MIDDLE_PX - 9, width, height: 18, rx: 9 }),
+    svg("text", { x, y: MIDDLE_PX + 4 }, label),
+  );
 }
 
 function drawUav(at, half_px, certainty) {
-  const dart = svg("path", { class: "strip-uav", d: `M${at + DART_PX} ${MIDDLE_PX}L${at - DART_PX} ${MIDDLE_PX - 6}L${at - DART_PX / 2} ${MIDDLE_PX}L${at - DART_PX} ${MIDDLE_PX + 6}Z` });
+  const dart = svg("path", {
+    class: "strip-uav",
+    d: `M${at + DART_PX} ${MIDDLE_PX}L${at - DART_PX} ${MIDDLE_PX - 6}L${at - DART_PX / 2} ${MIDDLE_PX}L${at - DART_PX} ${MIDDLE_PX + 6}Z`,
+  });
   if (certainty === MEASURED) return svg("g", { class: "strip-flyer measured" }, dart);
   const half = Math.max(half_px, DART_PX + 3);
   const [left, right, top, bottom] = [at - half, at + half, MIDDLE_PX - 11, MIDDLE_PX + 11];
@@ -52,7 +82,10 @@ function drawUav(at, half_px, certainty) {
     "g",
     { class: `strip-flyer ${certainty ?? "lost"}` },
     svg("rect", { class: "strip-within", x: left, y: top, width: right - left, height: bottom - top }),
-    svg("path", { class: "strip-bracket", d: `M${left + 4} ${top}H${left}V${bottom}H${left + 4}M${right - 4} ${top}H${right}V${bottom}H${right - 4}` }),
+    svg("path", {
+      class: "strip-bracket",
+      d: `M${left + 4} ${top}H${left}V${bottom}H${left + 4}M${right - 4} ${top}H${right}V${bottom}H${right - 4}`,
+    }),
     dart,
   );
 }

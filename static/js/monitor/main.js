@@ -14,7 +14,6 @@ import { mountMonitorMap } from "./map/monitor_map.js";
 import { createMissionDetails } from "./mission_details.js";
 import { mountNarrow } from "./narrow.js";
 import { inOrder } from "./order.js";
-import { placed } from "./placed.js";
 import { mountAlerts } from "./panels/alerts.js";
 import { mountBoard } from "./panels/board.js";
 import { mountCards } from "./panels/cards.js";
@@ -23,13 +22,28 @@ import { mountHead } from "./panels/head.js";
 import { mountOffers } from "./panels/offers.js";
 import { mountSimulation } from "./panels/simulation.js";
 import { mountUrgent } from "./panels/urgent.js";
+import { placed } from "./placed.js";
 
 const TICK_MS = 500;
 
 const page = readPage();
 const store = createStore({
-  uavs: [], missions: [], alerts: [], commands: [], offers: [], details: new Map(), flown: new Map(), offered: [], ground: null,
-  chosen: null, isFollowing: false, showsLog: false, link: null, since_ms: 0, isWhole: false, now_ms: Date.now(),
+  uavs: [],
+  missions: [],
+  alerts: [],
+  commands: [],
+  offers: [],
+  details: new Map(),
+  flown: new Map(),
+  offered: [],
+  ground: null,
+  chosen: null,
+  isFollowing: false,
+  showsLog: false,
+  link: null,
+  since_ms: 0,
+  isWhole: false,
+  now_ms: Date.now(),
 });
 
 const pick = (id) => store.update({ chosen: id, isFollowing: store.state.isFollowing && store.state.chosen === id });
@@ -43,7 +57,12 @@ const commanding = page.canFly ? createCommanding(store) : null;
 const narrow = mountNarrow();
 createMissionDetails(store);
 mountHead(store, page);
-mountCards(store, { isOfOne: page.mission !== null, pick, jumpTo: (id) => map.jumpTo(id), follow: () => store.update({ isFollowing: !store.state.isFollowing }) });
+mountCards(store, {
+  isOfOne: page.mission !== null,
+  pick,
+  jumpTo: (id) => map.jumpTo(id),
+  follow: () => store.update({ isFollowing: !store.state.isFollowing }),
+});
 mountOffers(store, page);
 const alertKeys = mountAlerts(store, page, { pick, commanding, showBoard: narrow.showBoard });
 mountBoard(store, {
@@ -57,7 +76,8 @@ mountUrgent(store, { open: narrow.showBoard });
 const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
 
 /** On the page of one mission that one, else the one of the chosen UAV, else the first. */
-const missionSeen = ({ uavs, chosen, missions }) => page.mission ?? uavs.find(({ id }) => id === chosen)?.mission ?? missions[0]?.id ?? null;
+const missionSeen = ({ uavs, chosen, missions }) =>
+  page.mission ?? uavs.find(({ id }) => id === chosen)?.mission ?? missions[0]?.id ?? null;
 store.listen(["missions"], (state) => scene.show(missionSeen(state) !== null));
 
 /** The 3D view is told what the page is told. */
@@ -97,7 +117,11 @@ startChrome({
     ...byNumber,
     { keys: ["j"], words: t("Next UAV"), act: () => step(1) },
     { keys: ["k"], words: t("Previous UAV"), act: () => step(-1) },
-    { keys: ["enter"], words: t("Show the chosen UAV on the map"), act: (event) => !event.target.closest("button, a, input, summary") && map.jumpTo(store.state.chosen) },
+    {
+      keys: ["enter"],
+      words: t("Show the chosen UAV on the map"),
+      act: (event) => !event.target.closest("button, a, input, summary") && map.jumpTo(store.state.chosen),
+    },
     ...alertKeys,
     ...commandKeys,
     ...map.bindings,
@@ -107,7 +131,11 @@ startChrome({
     { keys: ["-"], words: t("Zoom out"), act: () => map.zoom(-1) },
     { keys: ["["], words: t("Fold the side"), act: layout.foldSide },
     { keys: ["]"], words: t("Fold alerts and board"), act: layout.foldRight },
-    { keys: ["escape"], words: t("Close"), act: () => map.closeTop() || store.update({ chosen: null, isFollowing: false }) },
+    {
+      keys: ["escape"],
+      words: t("Close"),
+      act: () => map.closeTop() || store.update({ chosen: null, isFollowing: false }),
+    },
   ],
 });
 
@@ -132,7 +160,11 @@ function show() {
   store.update({ isWhole: true }); // from here on what comes is news
 }
 
-const feed = openFeed({ mission: page.mission, onChange: take, onState: ({ state, since_ms }) => store.update({ link: state, since_ms }) });
+const feed = openFeed({
+  mission: page.mission,
+  onChange: take,
+  onState: ({ state, since_ms }) => store.update({ link: state, since_ms }),
+});
 setInterval(() => store.update({ now_ms: feed.now_ms() }), TICK_MS);
 addEventListener("pagehide", () => feed.close());
 

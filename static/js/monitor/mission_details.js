@@ -10,7 +10,8 @@ const GAP_S = 45; // no line is drawn over a longer silence: nobody knows what w
 export function flownParts(features) {
   const flown = new Map();
   for (const { geometry, properties } of features) {
-    if (geometry && !properties.is_from_future) addReport(flown, properties.uav, geometry.coordinates, Date.parse(properties.measured_at));
+    if (geometry && !properties.is_from_future)
+      addReport(flown, properties.uav, geometry.coordinates, Date.parse(properties.measured_at));
   }
   return flown;
 }
@@ -65,7 +66,13 @@ export function createMissionDetails(store) {
 
   store.listen(["missions"], ({ missions }) => missions.forEach((mission) => void read(mission)));
   store.listen(["uavs"], ({ uavs }) => {
-    const isNew = uavs.map((uav) => uav.mission !== null && uav.measured?.position && inAir(uav) !== false && addReport(flown, uav.id, uav.measured.position, Date.parse(uav.measured.measured_at)));
+    const isNew = uavs.map(
+      (uav) =>
+        uav.mission !== null &&
+        uav.measured?.position &&
+        inAir(uav) !== false &&
+        addReport(flown, uav.id, uav.measured.position, Date.parse(uav.measured.measured_at)),
+    );
     if (isNew.some(Boolean)) tell();
   });
 }

@@ -4,10 +4,25 @@ import { routeLetter } from "../map/palette.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
 
-const CAUSES = { "uav-out": t("A UAV has dropped out"), "zone-active": t("A no-fly zone has come into force"), "battery-short": t("A battery will not do"), "asked-for": t("Asked for") };
-const CHANGES = { untouched: t("flies on as approved"), changed: t("gets another route"), recalled: t("is told to return"), out: t("has dropped out") };
+const CAUSES = {
+  "uav-out": t("A UAV has dropped out"),
+  "zone-active": t("A no-fly zone has come into force"),
+  "battery-short": t("A battery will not do"),
+  "asked-for": t("Asked for"),
+};
+const CHANGES = {
+  untouched: t("flies on as approved"),
+  changed: t("gets another route"),
+  recalled: t("is told to return"),
+  out: t("has dropped out"),
+};
 
-const OUTCOMES = { accepted: t("The other plan is flown."), declined: t("The other plan was declined: what was approved is flown."), outdated: t("The other plan is offered no more."), impossible: t("No other plan can be flown.") };
+const OUTCOMES = {
+  accepted: t("The other plan is flown."),
+  declined: t("The other plan was declined: what was approved is flown."),
+  outdated: t("The other plan is offered no more."),
+  impossible: t("No other plan can be flown."),
+};
 
 /** Of an offer that is over: { strong, rest }. */
 export const overWords = ({ state, outcome, decided_by, decided_at }) => ({
@@ -17,13 +32,19 @@ export const overWords = ({ state, outcome, decided_by, decided_at }) => ({
 
 export const isUndecided = ({ state }) => state === "computing" || state === "open";
 /** Of a zone: which one, and between which targets it lies across whose route. */
-export const causeWords = ({ code, cause }) => (cause?.leg ? t("{zone} lies across the route of {uav}, {way}", { zone: cause.zone_name, uav: cause.uav_name, way: wayWords(cause.leg) }) : (CAUSES[code] ?? code));
+export const causeWords = ({ code, cause }) =>
+  cause?.leg
+    ? t("{zone} lies across the route of {uav}, {way}", {
+        zone: cause.zone_name,
+        uav: cause.uav_name,
+        way: wayWords(cause.leg),
+      })
+    : (CAUSES[code] ?? code);
 
 function wayWords([start, end]) {
   if (start && end) return t("{start} to {end}|way", { start, end });
   return start ? t("after {start}", { start }) : end ? t("start to {end}|way", { end }) : t("on its way");
 }
-
 
 /** The sentence first: "2 UAVs get another route, 3 targets change hands, 1 stays undone." */
 export function sentenceOf({ difference: { uavs = [], targets = [], unreached = 0 } }) {
@@ -33,10 +54,19 @@ export function sentenceOf({ difference: { uavs = [], targets = [], unreached = 
     changed > 0 && tn(changed, "{count} UAV gets another route", "{count} UAVs get another route"),
     handed > 0 && tn(handed, "{count} target changes hands", "{count} targets change hands"),
     unreached > 0 && tn(unreached, "{count} target stays undone", "{count} targets stay undone"),
-  ].filter(Boolean).join(", ");
+  ]
+    .filter(Boolean)
+    .join(", ");
 }
 
-const figureWords = (figures) => [lengthText(figures.length_m), figures.ends_at && t("lands {time}", { time: clockText(figures.ends_at) }), typeof figures.battery_percent === "number" && t("with {figure}", { figure: percentText(figures.battery_percent) })].filter(Boolean).join(", ");
+const figureWords = (figures) =>
+  [
+    lengthText(figures.length_m),
+    figures.ends_at && t("lands {time}", { time: clockText(figures.ends_at) }),
+    typeof figures.battery_percent === "number" && t("with {figure}", { figure: percentText(figures.battery_percent) }),
+  ]
+    .filter(Boolean)
+    .join(", ");
 
 /** Per UAV: [{ place, letter, name, what, before, after, why }]. Of one that is out its reason names it and says all. */
 export const uavLines = ({ difference: { uavs = [] } }) =>
@@ -44,11 +74,19 @@ export const uavLines = ({ difference: { uavs = [] } }) =>
     const saysAll = change === "out" && Boolean(why);
     const counts = [gained.length > 0 && `+${gained.length}`, lost.length > 0 && `−${lost.length}`];
     return {
-      place, letter: routeLetter(place), name: saysAll ? why : name, what: [!saysAll && (CHANGES[change] ?? change), ...counts].filter(Boolean).join(" "),
-      before: change === "changed" && before ? figureWords(before) : "", after: after ? figureWords(after) : "", why: saysAll ? "" : why,
+      place,
+      letter: routeLetter(place),
+      name: saysAll ? why : name,
+      what: [!saysAll && (CHANGES[change] ?? change), ...counts].filter(Boolean).join(" "),
+      before: change === "changed" && before ? figureWords(before) : "",
+      after: after ? figureWords(after) : "",
+      why: saysAll ? "" : why,
     };
   });
 
 /** Per target that changes hands or is given up: ["Tower 31: B → C", …] */
 export const targetLines = ({ difference: { targets = [] } }) =>
-  targets.map(({ label, from, to, message }) => `${label}: ${from === null ? "—" : routeLetter(from)} → ${to === null ? message || t("not reached") : routeLetter(to)}`);
+  targets.map(
+    ({ label, from, to, message }) =>
+      `${label}: ${from === null ? "—" : routeLetter(from)} → ${to === null ? message || t("not reached") : routeLetter(to)}`,
+  );

@@ -9,20 +9,30 @@ export const isUnanswered = (alert) => isOpenAlert(alert) && alert.acknowledged_
 /** The worst open alert of each UAV: Map of uav → rank, 0 for critical. */
 function worstOf(alerts) {
   const worst = new Map();
-  for (const { uav, level } of alerts.filter(isOpenAlert)) worst.set(uav, Math.min(worst.get(uav) ?? CALM, RANKS[level]));
+  for (const { uav, level } of alerts.filter(isOpenAlert))
+    worst.set(uav, Math.min(worst.get(uav) ?? CALM, RANKS[level]));
   return worst;
 }
 
 /** The chosen one, then by alert level, then by landing time, then by place. */
 export function inOrder(uavs, alerts, chosen) {
   const worst = worstOf(alerts);
-  const keys = (uav) => [uav.id === chosen ? 0 : 1, worst.get(uav.id) ?? CALM, Date.parse(uav.estimated?.ends_at ?? "") || Infinity, uav.mission === null ? 1 : 0, uav.place ?? 0];
+  const keys = (uav) => [
+    uav.id === chosen ? 0 : 1,
+    worst.get(uav.id) ?? CALM,
+    Date.parse(uav.estimated?.ends_at ?? "") || Infinity,
+    uav.mission === null ? 1 : 0,
+    uav.place ?? 0,
+  ];
   return sorted(uavs, keys);
 }
 
 /** Unanswered ones of the highest level first, the newest first; then those somebody knows of, then what is over. */
 export function alertsInOrder(alerts) {
-  const keys = (alert) => [isOpenAlert(alert) ? (alert.acknowledged_at === null ? RANKS[alert.level] : CALM) : CALM + 1, -Date.parse(alert.opened_at)];
+  const keys = (alert) => [
+    isOpenAlert(alert) ? (alert.acknowledged_at === null ? RANKS[alert.level] : CALM) : CALM + 1,
+    -Date.parse(alert.opened_at),
+  ];
   return sorted(alerts, keys);
 }
 

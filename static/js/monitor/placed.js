@@ -10,9 +10,15 @@ export function placed(uavs, missions) {
     const last = newest.find((mission) => mission.uavs.some((entry) => entry.uav === uav.id));
     if (!last) return uav;
     const { place } = last.uavs.find((entry) => entry.uav === uav.id);
-    return { ...uav, mission: last.id, place, estimated: uav.mission === null ? uav.estimated : offRoute(uav.estimated) };
+    return {
+      ...uav,
+      mission: last.id,
+      place,
+      estimated: uav.mission === null ? uav.estimated : offRoute(uav.estimated),
+    };
   });
 }
 
 /** What is estimated of it along the route of a mission that is not on the page says nothing here. */
-const offRoute = (estimated) => estimated && { ...estimated, along_route_m: null, to_go_m: null, arrivals: [], waypoint_sequence: null };
+const offRoute = (estimated) =>
+  estimated && { ...estimated, along_route_m: null, to_go_m: null, arrivals: [], waypoint_sequence: null };

@@ -3,24 +3,56 @@
 import { t, tn } from "../text.js";
 import { heightText, numberText, percentText, speedText } from "../units.js";
 
-export const SPEEDS = [1, 2, 5, 10].map((speed) => [speed, speed === 1 ? t("Real time") : t("{speed}× real time", { speed })]);
-export const AIRS = [["as-planned", t("As planned")], ["calm", t("Calm")], ["strong-wind", t("Strong wind")]];
+export const SPEEDS = [1, 2, 5, 10].map((speed) => [
+  speed,
+  speed === 1 ? t("Real time") : t("{speed}× real time", { speed }),
+]);
+export const AIRS = [
+  ["as-planned", t("As planned")],
+  ["calm", t("Calm")],
+  ["strong-wind", t("Strong wind")],
+];
 const WEAK_SHARE = 0.2;
 const WIND_AGL_M = 10;
 const BEHIND_S = 2; // of real time that was lost, from which on it is told
 
 /** Faults by the name of their button: what is sent for a vehicle, for so many of its seconds. */
 export const FAULTS = [
-  { name: "link", image: "signal", words: t("Lose the link"), lasts: true, of: (_, flown_s) => ({ link_lost_for_s: flown_s }) },
-  { name: "gps", image: "locate-fixed", words: t("Lose GPS"), lasts: true, of: (_, flown_s) => ({ gps_lost_for_s: flown_s }) },
-  { name: "battery", image: "gauge", words: t("Weak battery"), of: ({ battery_wh }) => ({ battery_wh_left: Math.round(battery_wh * WEAK_SHARE * 10) / 10 }) },
+  {
+    name: "link",
+    image: "signal",
+    words: t("Lose the link"),
+    lasts: true,
+    of: (_, flown_s) => ({ link_lost_for_s: flown_s }),
+  },
+  {
+    name: "gps",
+    image: "locate-fixed",
+    words: t("Lose GPS"),
+    lasts: true,
+    of: (_, flown_s) => ({ gps_lost_for_s: flown_s }),
+  },
+  {
+    name: "battery",
+    image: "gauge",
+    words: t("Weak battery"),
+    of: ({ battery_wh }) => ({ battery_wh_left: Math.round(battery_wh * WEAK_SHARE * 10) / 10 }),
+  },
   { name: "motor", image: "octagon-alert", words: t("Motor failure"), of: () => ({ motor_failed: 0 }) },
 ];
 /** What can be mended; a battery stays as it is. */
-export const WELL = { name: "well", image: "circle-check", words: t("All well again"), of: () => ({ link_lost_for_s: 0, gps_lost_for_s: 0, motor_failed: null }) };
+export const WELL = {
+  name: "well",
+  image: "circle-check",
+  words: t("All well again"),
+  of: () => ({ link_lost_for_s: 0, gps_lost_for_s: 0, motor_failed: null }),
+};
 
 /** The same wind at all heights. */
-export const windOf = (speed_mps, from_deg, gusts_mps = 0) => ({ wind: [{ altitude_agl_m: WIND_AGL_M, speed_mps, from_deg: ((from_deg % 360) + 360) % 360 }], gusts_mps });
+export const windOf = (speed_mps, from_deg, gusts_mps = 0) => ({
+  wind: [{ altitude_agl_m: WIND_AGL_M, speed_mps, from_deg: ((from_deg % 360) + 360) % 360 }],
+  gusts_mps,
+});
 
 export const isPresent = (simulation) => simulation?.state === "wanted" || simulation?.state === "flying";
 export const isFlown = (vehicle) => vehicle.state === "flying";
@@ -33,7 +65,10 @@ export function lastsWords(seconds, speed) {
 
 function airWords({ wind: [layer], gusts_mps }) {
   if (!layer?.speed_mps) return t("calm");
-  const words = t("wind {speed} from {degrees}°", { speed: speedText(layer.speed_mps), degrees: Math.round(layer.from_deg) });
+  const words = t("wind {speed} from {degrees}°", {
+    speed: speedText(layer.speed_mps),
+    degrees: Math.round(layer.from_deg),
+  });
   return gusts_mps > 0 ? `${words}, ${t("gusts {speed}", { speed: speedText(gusts_mps) })}` : words;
 }
 
@@ -43,27 +78,54 @@ export function vehicleWords({ state, message, told, conditions }) {
   if (state === "ended") return { words: t("Ended"), isBad: false };
   if (state === "wanted" || !told) return { words: t("is being started"), isBad: false };
   if (told.is_crashed) return { words: t("crashed"), isBad: true };
-  const place = told.is_in_air ? t("in the air at {height}", { height: heightText(told.altitude_relative_m) }) : t("on the ground");
-  return { words: [place, t("battery {figure}", { figure: percentText(told.battery_percent) }), airWords(conditions), told.is_link_lost && t("its link is lost")].filter(Boolean).join(" · "), isBad: false };
+  const place = told.is_in_air
+    ? t("in the air at {height}", { height: heightText(told.altitude_relative_m) })
+    : t("on the ground");
+  return {
+    words: [
+      place,
+      t("battery {figure}", { figure: percentText(told.battery_percent) }),
+      airWords(conditions),
+      told.is_link_lost && t("its link is lost"),
+    ]
+      .filter(Boolean)
+      .join(" · "),
+    isBad: false,
+  };
 }
 
 /** One sentence about a simulation, and whether something is wrong with it. */
 export function stateWords(simulation, canFly) {
   if (!simulation) {
-    const words = canFly ? t("The UAVs of this mission are simulated: start them here, then send the mission and fly it with the usual buttons.") : t("The UAVs of this mission are simulated. An operator starts them.");
+    const words = canFly
+      ? t(
+          "The UAVs of this mission are simulated: start them here, then send the mission and fly it with the usual buttons.",
+        )
+      : t("The UAVs of this mission are simulated. An operator starts them.");
     return { words, isBad: false };
   }
   const flown = simulation.vehicles.filter(isPresent);
   const lost = simulation.vehicles.filter(({ state }) => state === "failed");
   if (simulation.state === "wanted") return { words: t("Waiting for a simulator."), isBad: false };
   if (simulation.state === "failed") return { words: simulation.message, isBad: true };
-  if (simulation.state === "ended") return { words: t("The simulation is over: {why}", { why: simulation.message }), isBad: false };
+  if (simulation.state === "ended")
+    return { words: t("The simulation is over: {why}", { why: simulation.message }), isBad: false };
   const crashed = flown.filter(({ told }) => told?.is_crashed);
   const said = [
-    simulation.speed === 1 ? tn(flown.length, "{count} simulated UAV in real time.", "{count} simulated UAVs in real time.") : tn(flown.length, "{count} simulated UAV at {speed} times real time.", "{count} simulated UAVs at {speed} times real time.", { speed: simulation.speed }),
+    simulation.speed === 1
+      ? tn(flown.length, "{count} simulated UAV in real time.", "{count} simulated UAVs in real time.")
+      : tn(
+          flown.length,
+          "{count} simulated UAV at {speed} times real time.",
+          "{count} simulated UAVs at {speed} times real time.",
+          { speed: simulation.speed },
+        ),
     crashed.length > 0 && t("Crashed: {names}.", { names: crashed.map(({ name }) => name).join(", ") }),
     lost.length > 0 && t("Lost with their simulator: {names}.", { names: lost.map(({ name }) => name).join(", ") }),
-    (simulation.pace?.slipped_s ?? 0) > BEHIND_S && t("This machine is too slow for that pace: {seconds} s behind.", { seconds: Math.round(simulation.pace.slipped_s) }),
+    (simulation.pace?.slipped_s ?? 0) > BEHIND_S &&
+      t("This machine is too slow for that pace: {seconds} s behind.", {
+        seconds: Math.round(simulation.pace.slipped_s),
+      }),
   ];
   return { words: said.filter(Boolean).join(" "), isBad: crashed.length + lost.length > 0 };
 }

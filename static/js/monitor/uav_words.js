@@ -1,7 +1,16 @@
 /** What a live page says of one UAV: its state, the age of its report, four figures, the estimate. Values in, words out. */
 
 import { t } from "../text.js";
-import { clockText, durationText, exactClockText, heightText, lengthText, numberText, percentText, speedText } from "../units.js";
+import {
+  clockText,
+  durationText,
+  exactClockText,
+  heightText,
+  lengthText,
+  numberText,
+  percentText,
+  speedText,
+} from "../units.js";
 import { ESTIMATED, isLate, isSilent, LOST, MEASURED, reportAge_s, withinOf_m } from "./certainty.js";
 import { inAir } from "./in_air.js";
 
@@ -19,7 +28,8 @@ export function stateOf({ measured, link }) {
   const mode = (measured?.mode || link?.mode || "").trim();
   const isInAir = inAir({ measured, link });
   if (!mode && isInAir === null) return { words: t("Not heard yet"), level: null };
-  if (isInAir === false) return { words: measured?.is_armed ? t("Armed, on the ground") : t("On the ground"), level: null };
+  if (isInAir === false)
+    return { words: measured?.is_armed ? t("Armed, on the ground") : t("On the ground"), level: null };
   const known = MODES.find(([pattern]) => pattern.test(mode.toUpperCase().replace(/^AUTO\./, "")));
   return known ? { words: known[1], level: known[2] } : { words: mode || t("In the air"), level: null };
 }
@@ -30,7 +40,8 @@ export const isHeld = (uav) => stateOf(uav).words === t("Holding");
 export function ageWords(uav, now_ms) {
   const age_s = reportAge_s(uav, now_ms);
   if (age_s === null) return { words: t("no report yet"), isLate: false };
-  if (!isSilent(uav, now_ms)) return { words: t("{age} s ago", { age: numberText(age_s, age_s < 10 ? 1 : 0) }), isLate: isLate(uav, now_ms) };
+  if (!isSilent(uav, now_ms))
+    return { words: t("{age} s ago", { age: numberText(age_s, age_s < 10 ? 1 : 0) }), isLate: isLate(uav, now_ms) };
   const age = age_s < 100 ? `${Math.floor(age_s)}\u00a0s` : durationText(age_s);
   return { words: t("no report for {age}", { age }), isLate: isLate(uav, now_ms) };
 }
@@ -66,8 +77,13 @@ export function estimateWords(uav, certainty, now_ms) {
   if (certainty === null || certainty === MEASURED || (certainty === ESTIMATED && !isLate(uav, now_ms))) return null;
   const seen = measured ? t("Last report {time}.", { time: exactClockText(measured.measured_at) }) : "";
   if (certainty === LOST) return { strong: t("Lost: nobody can say where it is now."), rest: seen };
-  const contact = estimated.contact_expected_at ? t("Contact expected by {time}.", { time: exactClockText(estimated.contact_expected_at) }) : seen;
-  return { strong: t("Estimated, within {distance}", { distance: lengthText(withinOf_m(estimated)) }), rest: `${t("(95 of 100 times).")} ${contact}`.trim() };
+  const contact = estimated.contact_expected_at
+    ? t("Contact expected by {time}.", { time: exactClockText(estimated.contact_expected_at) })
+    : seen;
+  return {
+    strong: t("Estimated, within {distance}", { distance: lengthText(withinOf_m(estimated)) }),
+    rest: `${t("(95 of 100 times).")} ${contact}`.trim(),
+  };
 }
 
 /** One fact beside its name on the map. */

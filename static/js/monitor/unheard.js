@@ -7,12 +7,20 @@ const HEARD_WITHIN_MS = 3_600_000;
 
 /** Sentences: of those that are told all the same, and of those whose command waits. */
 export function unheardLines(uavs, kind, now_ms) {
-  const isSent = ({ link }) => SENT.has(kind) && link?.kind === "mavlink" && now_ms - Date.parse(link.heard_at) < HEARD_WITHIN_MS;
+  const isSent = ({ link }) =>
+    SENT.has(kind) && link?.kind === "mavlink" && now_ms - Date.parse(link.heard_at) < HEARD_WITHIN_MS;
   const sent = uavs.filter(isSent);
   const waiting = uavs.filter((uav) => !isSent(uav));
   const names = (some) => some.map(({ name }) => name).join(", ");
   return [
-    sent.length > 0 && t("Nothing is heard from {names} now: this is sent all the same, again and again, and known to be done once it is heard.", { names: names(sent) }),
-    waiting.length > 0 && t("There is no link to {names} now: the command waits and is sent on contact, as long as it is wanted.", { names: names(waiting) }),
+    sent.length > 0 &&
+      t(
+        "Nothing is heard from {names} now: this is sent all the same, again and again, and known to be done once it is heard.",
+        { names: names(sent) },
+      ),
+    waiting.length > 0 &&
+      t("There is no link to {names} now: the command waits and is sent on contact, as long as it is wanted.", {
+        names: names(waiting),
+      }),
   ].filter(Boolean);
 }

@@ -2,10 +2,10 @@
 
 import { byId, h, icon } from "../dom.js";
 import { t } from "../text.js";
-import { chosenTheme, nextTheme, onTheme, THEME_ICONS } from "./theme.js";
 import { listenToKeys, showKeys } from "./keyboard.js";
 import { watchSessionEnd } from "./session_end.js";
 import { askBeforeSigningOut } from "./signing_out.js";
+import { chosenTheme, nextTheme, onTheme, THEME_ICONS } from "./theme.js";
 
 const THEME_WORDS = { system: t("as the system"), light: t("light"), dark: t("dark") };
 
@@ -106,6 +106,18 @@ export function menuOf(label, items) {
   return h(
     "div",
     { class: "menu float", role: "group", "aria-label": label },
-    items.map((item) => h("button", { type: "button", disabled: Boolean(item.reason), title: item.reason || null, onclick: () => (closeMenu(), item.act()) }, icon(item.icon), item.label)),
+    items.map((item) =>
+      h(
+        "button",
+        {
+          type: "button",
+          disabled: Boolean(item.reason),
+          title: item.reason || null,
+          onclick: () => (closeMenu(), item.act()),
+        },
+        icon(item.icon),
+        item.label,
+      ),
+    ),
   );
 }

@@ -3,10 +3,22 @@
 import { h } from "../dom.js";
 import { t } from "../text.js";
 
-const NAMES = { mod: "Ctrl", shift: t("Shift"), delete: t("Del"), escape: t("Esc"), alt: "Alt", arrowup: "↑", arrowdown: "↓" };
+const NAMES = {
+  mod: "Ctrl",
+  shift: t("Shift"),
+  delete: t("Del"),
+  escape: t("Esc"),
+  alt: "Alt",
+  arrowup: "↑",
+  arrowdown: "↓",
+};
 
 export function isTyping(target) {
-  return target instanceof HTMLElement && (target.isContentEditable || target.matches("input:not([type=checkbox], [type=radio], [type=range]), textarea, select"));
+  return (
+    target instanceof HTMLElement &&
+    (target.isContentEditable ||
+      target.matches("input:not([type=checkbox], [type=radio], [type=range]), textarea, select"))
+  );
 }
 
 /** "mod+shift+z", "/", "?" — a letter or sign names itself; Shift counts only with letters and with Ctrl. */
@@ -42,7 +54,10 @@ export function listenToKeys(bindings) {
     prefix = "";
     const binding = bindings.find((candidate) => candidate.keys.includes(whole));
     if (!binding) {
-      if (!isTyping(event.target) && bindings.some((candidate) => candidate.keys.some((keys) => keys.startsWith(`${name} `)))) {
+      if (
+        !isTyping(event.target) &&
+        bindings.some((candidate) => candidate.keys.some((keys) => keys.startsWith(`${name} `)))
+      ) {
         prefix = name;
         prefixAt = Date.now();
       }
@@ -54,7 +69,9 @@ export function listenToKeys(bindings) {
 }
 
 function caps(keys) {
-  return (keys.match(/[^+ ]+|\+$/g) ?? []).map((key) => h("kbd", {}, NAMES[key] ?? (key.length === 1 ? key.toUpperCase() : key)));
+  return (keys.match(/[^+ ]+|\+$/g) ?? []).map((key) =>
+    h("kbd", {}, NAMES[key] ?? (key.length === 1 ? key.toUpperCase() : key)),
+  );
 }
 
 export function showKeys(bindings) {
@@ -62,8 +79,18 @@ export function showKeys(bindings) {
     "dialog",
     { class: "keys", "aria-labelledby": "keys-title" },
     h("h2", { id: "keys-title" }, t("Keyboard")),
-    h("p", { class: "caption" }, singleKeysAreOff() ? t("Single keys are switched off in your account.") : t("Single keys rest while you type.")),
-    h("dl", { class: "key-list" }, bindings.filter((binding) => binding.words && !(singleKeysAreOff() && binding.keys.every(isSingleKey))).map((binding) => h("div", {}, h("dt", {}, caps(binding.keys[0])), h("dd", {}, binding.words)))),
+    h(
+      "p",
+      { class: "caption" },
+      singleKeysAreOff() ? t("Single keys are switched off in your account.") : t("Single keys rest while you type."),
+    ),
+    h(
+      "dl",
+      { class: "key-list" },
+      bindings
+        .filter((binding) => binding.words && !(singleKeysAreOff() && binding.keys.every(isSingleKey)))
+        .map((binding) => h("div", {}, h("dt", {}, caps(binding.keys[0])), h("dd", {}, binding.words))),
+    ),
     h("form", { method: "dialog", class: "acts" }, h("button", { class: "button" }, t("Close"))),
   );
   open(dialog);

@@ -17,12 +17,20 @@ function keysOf(storage) {
 
 /** How many drafts of the user are not saved on the server: pages drop a draft once it is. */
 export function draftsOf(user, storages = [globalThis.localStorage]) {
-  return storages.flatMap((storage) => keysOf(storage).filter(isOf(user)).filter((key) => DRAFT.test(key))).length;
+  return storages.flatMap((storage) =>
+    keysOf(storage)
+      .filter(isOf(user))
+      .filter((key) => DRAFT.test(key)),
+  ).length;
 }
 
 /** Everything of the user, but the drafts where they are to stay. */
-export function forget(user, { keepsDrafts = false, storages = [globalThis.localStorage, globalThis.sessionStorage] } = {}) {
+export function forget(
+  user,
+  { keepsDrafts = false, storages = [globalThis.localStorage, globalThis.sessionStorage] } = {},
+) {
   for (const storage of storages) {
-    for (const key of keysOf(storage).filter(isOf(user))) if (!(keepsDrafts && DRAFT.test(key))) storage.removeItem(key);
+    for (const key of keysOf(storage).filter(isOf(user)))
+      if (!(keepsDrafts && DRAFT.test(key))) storage.removeItem(key);
   }
 }

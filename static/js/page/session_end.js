@@ -13,7 +13,15 @@ const LONGEST_TIMER_S = 86_400;
  * Looks when the session is about to end, and no earlier. `ask()` and `stay()` answer in how many seconds it ends; `show` is told null,
  * { ends_at_ms } or { isOver: true }. Returns the functions of its two buttons: { look, keep }.
  */
-export function createSessionWatch({ endsIn_s, ask, stay, show, setTimer = setTimeout, clearTimer = clearTimeout, now_ms = Date.now }) {
+export function createSessionWatch({
+  endsIn_s,
+  ask,
+  stay,
+  show,
+  setTimer = setTimeout,
+  clearTimer = clearTimeout,
+  now_ms = Date.now,
+}) {
   let timer = 0;
   let shown = null;
 
@@ -60,10 +68,14 @@ export function watchSessionEnd(endsIn_s) {
   function show(state) {
     box?.remove();
     if (state === null) return (box = null);
-    const act = state.isOver ? h("a", { class: "button primary", href: signInAddress() }, t("Sign in")) : h("button", { type: "button", class: "button primary", onclick: () => watch.keep() }, t("Stay signed in"));
+    const act = state.isOver
+      ? h("a", { class: "button primary", href: signInAddress() }, t("Sign in"))
+      : h("button", { type: "button", class: "button primary", onclick: () => watch.keep() }, t("Stay signed in"));
     const why = state.isOver
       ? t("You are signed out, as nobody was here for a while. What is not saved is kept in this browser.")
-      : t("You will be signed out at {time}, as nothing was done here. What is not saved is kept in this browser.", { time: clockText(new Date(state.ends_at_ms).toISOString()) });
+      : t("You will be signed out at {time}, as nothing was done here. What is not saved is kept in this browser.", {
+          time: clockText(new Date(state.ends_at_ms).toISOString()),
+        });
     box = h("div", { class: "session-word", role: "alert" }, icon("calendar-clock"), h("p", {}, why), act);
     document.body.append(box);
   }

@@ -16,5 +16,11 @@ export function shownOnce({ title, secret, label, more = null }) {
     getSelection().selectAllChildren(code);
     say(t("It is selected. Copy it with Ctrl+C."));
   });
-  return h("div", { class: "once", role: "group", "aria-label": label }, h("strong", {}, title), h("div", { class: "secret" }, code, copy), more);
+  return h(
+    "div",
+    { class: "once", role: "group", "aria-label": label },
+    h("strong", {}, title),
+    h("div", { class: "secret" }, code, copy),
+    more,
+  );
 }

@@ -35,8 +35,18 @@ function ask(drafts, signOut) {
   const dialog = h(
     "dialog",
     { "aria-labelledby": "drafts-title" },
-    h("h2", { id: "drafts-title" }, tn(drafts, "{count} draft is not saved on the server", "{count} drafts are not saved on the server")),
-    h("p", {}, t("Drafts are in this browser alone. Whoever uses this computer after you could find them; what you keep comes back when you sign in here again.")),
+    h(
+      "h2",
+      { id: "drafts-title" },
+      tn(drafts, "{count} draft is not saved on the server", "{count} drafts are not saved on the server"),
+    ),
+    h(
+      "p",
+      {},
+      t(
+        "Drafts are in this browser alone. Whoever uses this computer after you could find them; what you keep comes back when you sign in here again.",
+      ),
+    ),
     h(
       "form",
       { method: "dialog", class: "acts" },

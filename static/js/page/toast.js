@@ -13,9 +13,7 @@ export function toast(sentence, action = null) {
     clearTimeout(timer);
     timer = setTimeout(close, STAYS_MS);
   };
-  const button =
-    action &&
-    h("button", { type: "button", onclick: () => (close(), action.act()) }, action.label);
+  const button = action && h("button", { type: "button", onclick: () => (close(), action.act()) }, action.label);
   const box = h("div", { class: "toast" }, h("span", {}, sentence), button);
   for (const stay of ["pointerenter", "focusin"]) box.addEventListener(stay, () => clearTimeout(timer));
   for (const go of ["pointerleave", "focusout"]) box.addEventListener(go, wait);

@@ -7,25 +7,50 @@ import { rulesOf } from "./timeline.js";
 const TOP_PX = 6;
 const BOTTOM_PX = 3;
 
-const points = (line, x, y) => line.map(({ at_ms, value }) => `${x(at_ms).toFixed(1)},${y(value).toFixed(1)}`).join(" ");
+const points = (line, x, y) =>
+  line.map(({ at_ms, value }) => `${x(at_ms).toFixed(1)},${y(value).toFixed(1)}`).join(" ");
 
 /**
  * series: [{ place, lines, planned }], lines as linesOf gives them; unit: how much of the value one of the reader's units is;
  * highest: of the scale, or null for the greatest value. Returns { element, point(at: Map of place → { at_ms, value }) }.
  */
 export function drawChart({ series, x, width_px, height_px, unit, highest = null, ruleText, label }) {
-  const values = series.flatMap(({ lines, planned }) => [...lines, planned].flatMap((line) => line.map(({ value }) => value)));
+  const values = series.flatMap(({ lines, planned }) =>
+    [...lines, planned].flatMap((line) => line.map(({ value }) => value)),
+  );
   const top = highest ?? Math.max(unit, ...values);
   const bottom = Math.min(0, ...values);
   const y = (value) => TOP_PX + ((top - value) / (top - bottom)) * (height_px - TOP_PX - BOTTOM_PX);
   const rules = rulesOf(top / unit).map((rule) => rule * unit);
-  const dots = new Map(series.map(({ place }) => [place, svg("circle", { class: `replay-dot route-${routeNumber(place)}`, r: 3.5, visibility: "hidden" })]));
+  const dots = new Map(
+    series.map(({ place }) => [
+      place,
+      svg("circle", { class: `replay-dot route-${routeNumber(place)}`, r: 3.5, visibility: "hidden" }),
+    ]),
+  );
   const element = svg(
     "svg",
-    { class: "replay-chart", role: "img", "aria-label": label, width: width_px, height: height_px, viewBox: `0 0 ${width_px} ${height_px}` },
+    {
+      class: "replay-chart",
+      role: "img",
+      "aria-label": label,
+      width: width_px,
+      height: height_px,
+      viewBox: `0 0 ${width_px} ${height_px}`,
+    },
     [0, ...rules].map((rule) => svg("line", { class: "replay-rule", x1: 0, x2: width_px, y1: y(rule), y2: y(rule) })),
-    series.map(({ place, planned }) => planned.length > 1 && svg("polyline", { class: "replay-planned", "data-place": place, points: points(planned, x, y) })),
-    series.map(({ place, lines }) => svg("g", { class: `replay-flown route-${routeNumber(place)}`, "data-place": place }, lines.map((line) => svg("polyline", { points: points(line.length > 1 ? line : [line[0], line[0]], x, y) })))),
+    series.map(
+      ({ place, planned }) =>
+        planned.length > 1 &&
+        svg("polyline", { class: "replay-planned", "data-place": place, points: points(planned, x, y) }),
+    ),
+    series.map(({ place, lines }) =>
+      svg(
+        "g",
+        { class: `replay-flown route-${routeNumber(place)}`, "data-place": place },
+        lines.map((line) => svg("polyline", { points: points(line.length > 1 ? line : [line[0], line[0]], x, y) })),
+      ),
+    ),
     rules.map((rule) => svg("text", { class: "replay-tick", x: 0, y: y(rule) - 2 }, ruleText(rule))),
     [...dots.values()],
   );

@@ -3,7 +3,19 @@
 import { byId, h, svg } from "../dom.js";
 import { routeLetter, routeNumber } from "../map/palette.js";
 import { t } from "../text.js";
-import { clockText, dateText, durationText, heightText, minutesAheadOfUtc, percentText, exactClockText, SHORT_UNIT, SPEED_UNIT, speedText, zoneText } from "../units.js";
+import {
+  clockText,
+  dateText,
+  durationText,
+  exactClockText,
+  heightText,
+  minutesAheadOfUtc,
+  percentText,
+  SHORT_UNIT,
+  SPEED_UNIT,
+  speedText,
+  zoneText,
+} from "../units.js";
 import { drawChart } from "./charts.js";
 import { drawStrip } from "./strip.js";
 import { hasLanded, plannedHeights, scaleOf, ticksOf } from "./timeline.js";
@@ -14,13 +26,38 @@ const MINUTE_MS = 60_000;
 const SHORT_S = 90;
 
 const CHARTS = [
-  { name: "height_m", words: t("Height"), said: t("Height above take-off by time"), unit: SHORT_UNIT.metres, height_px: 64, text: heightText, hasPlan: true },
-  { name: "speed_mps", words: t("Speed"), said: t("Speed over ground by time"), unit: SPEED_UNIT.mps, height_px: 44, text: speedText },
-  { name: "battery_percent", words: t("Battery"), said: t("Battery by time"), unit: 1, highest: 100, height_px: 44, text: percentText },
+  {
+    name: "height_m",
+    words: t("Height"),
+    said: t("Height above take-off by time"),
+    unit: SHORT_UNIT.metres,
+    height_px: 64,
+    text: heightText,
+    hasPlan: true,
+  },
+  {
+    name: "speed_mps",
+    words: t("Speed"),
+    said: t("Speed over ground by time"),
+    unit: SPEED_UNIT.mps,
+    height_px: 44,
+    text: speedText,
+  },
+  {
+    name: "battery_percent",
+    words: t("Battery"),
+    said: t("Battery by time"),
+    unit: 1,
+    highest: 100,
+    height_px: 44,
+    text: percentText,
+  },
 ];
 
-const letter = (place, size = "") => h("span", { class: `letter route-${routeNumber(place)} ${size}` }, routeLetter(place));
-const waitText = (ms) => (ms < SHORT_S * 1_000 ? t("{count} s", { count: Math.round(ms / 1_000) }) : durationText(ms / 1_000));
+const letter = (place, size = "") =>
+  h("span", { class: `letter route-${routeNumber(place)} ${size}` }, routeLetter(place));
+const waitText = (ms) =>
+  ms < SHORT_S * 1_000 ? t("{count} s", { count: Math.round(ms / 1_000) }) : durationText(ms / 1_000);
 
 /** What comes next for a UAV after a moment. */
 function nextWords({ track, targets, isOver }, at_ms) {
@@ -30,8 +67,11 @@ function nextWords({ track, targets, isOver }, at_ms) {
   const next = targets.find((target) => target.at_ms > at_ms);
   if (next) return t("{target} in {time}", { target: next.label, time: waitText(next.at_ms - at_ms) });
   const index = track.flights.findIndex(({ to_ms }) => to_ms > at_ms);
-  if (index >= 0 && hasLanded(track, index, isOver)) return t("lands in {time}", { time: waitText(track.flights[index].to_ms - at_ms) });
-  return hasLanded(track, track.flights.length - 1, isOver) ? t("landed") : t("last heard {time}", { time: clockText(track.samples.at(-1).at_ms) });
+  if (index >= 0 && hasLanded(track, index, isOver))
+    return t("lands in {time}", { time: waitText(track.flights[index].to_ms - at_ms) });
+  return hasLanded(track, track.flights.length - 1, isOver)
+    ? t("landed")
+    : t("last heard {time}", { time: clockText(track.samples.at(-1).at_ms) });
 }
 
 function unsureWords(moment) {
@@ -46,7 +86,7 @@ export function createDock({ onChoose }) {
   const slider = byId("replay-slider");
   let shown = null; // { routes, span }
   let scale = null;
-  let parts = { strips: [], charts: [] };
+  const parts = { strips: [], charts: [] };
   let width_px = 0;
 
   const columnWidth = () => Math.floor(slider.getBoundingClientRect().width);
@@ -65,11 +105,25 @@ export function createDock({ onChoose }) {
 
   function stripRow(route, x) {
     const flown = route.targets.filter(({ at_ms }) => at_ms !== null);
-    const label = t("{name}: {targets} targets reached, {alerts} alerts", { name: route.name, targets: flown.length, alerts: route.alerts.length });
+    const label = t("{name}: {targets} targets reached, {alerts} alerts", {
+      name: route.name,
+      targets: flown.length,
+      alerts: route.alerts.length,
+    });
     const strip = drawStrip({ ...route, targets: flown, x, width_px, label });
     const reading = h("span", { class: "replay-reading" });
-    const name = h("button", { type: "button", class: "replay-name", "aria-pressed": "false", onclick: () => onChoose(route.place) }, letter(route.place), h("strong", {}, route.name));
-    return { route, name, reading, row: h("div", { class: "replay-row", "data-place": route.place }, name, strip, reading) };
+    const name = h(
+      "button",
+      { type: "button", class: "replay-name", "aria-pressed": "false", onclick: () => onChoose(route.place) },
+      letter(route.place),
+      h("strong", {}, route.name),
+    );
+    return {
+      route,
+      name,
+      reading,
+      row: h("div", { class: "replay-row", "data-place": route.place }, name, strip, reading),
+    };
   }
 
   function chartRow(chart, x) {
@@ -81,7 +135,18 @@ export function createDock({ onChoose }) {
     if (!series.some(({ lines }) => lines.length)) return null;
     const drawing = drawChart({ ...chart, series, x, width_px, ruleText: chart.text, label: chart.said });
     const readings = h("span", { class: "replay-reading replay-figures" });
-    return { chart, drawing, readings, row: h("div", { class: "replay-row replay-chart-row" }, h("span", { class: "replay-what" }, chart.words), drawing.element, readings) };
+    return {
+      chart,
+      drawing,
+      readings,
+      row: h(
+        "div",
+        { class: "replay-row replay-chart-row" },
+        h("span", { class: "replay-what" }, chart.words),
+        drawing.element,
+        readings,
+      ),
+    };
   }
 
   function drawAxis(x) {
@@ -89,9 +154,20 @@ export function createDock({ onChoose }) {
     const text = step_ms < MINUTE_MS ? exactClockText : clockText;
     const tick = (at) => [
       svg("line", { x1: x(at), x2: x(at), y1: 0, y2: 4 }),
-      svg("text", { x: x(at), y: 15, "text-anchor": x(at) < 20 ? "start" : x(at) > width_px - 20 ? "end" : "middle" }, text(at)),
+      svg(
+        "text",
+        { x: x(at), y: 15, "text-anchor": x(at) < 20 ? "start" : x(at) > width_px - 20 ? "end" : "middle" },
+        text(at),
+      ),
     ];
-    byId("replay-axis").replaceChildren(svg("svg", { class: "replay-axis", width: width_px, height: 18, viewBox: `0 0 ${width_px} 18`, "aria-hidden": "true" }, svg("line", { x1: 0, x2: width_px, y1: 0.5, y2: 0.5 }), moments.map(tick)));
+    byId("replay-axis").replaceChildren(
+      svg(
+        "svg",
+        { class: "replay-axis", width: width_px, height: 18, viewBox: `0 0 ${width_px} 18`, "aria-hidden": "true" },
+        svg("line", { x1: 0, x2: width_px, y1: 0.5, y2: 0.5 }),
+        moments.map(tick),
+      ),
+    );
   }
 
   new ResizeObserver(() => {
@@ -119,12 +195,17 @@ export function createDock({ onChoose }) {
       row.classList.toggle("looked", looked === route.place);
     }
     byId("dock").classList.toggle("with-looked", looked !== null);
-    for (const element of body.querySelectorAll("svg [data-place]")) element.classList.toggle("looked", Number(element.dataset.place) === looked);
+    for (const element of body.querySelectorAll("svg [data-place]"))
+      element.classList.toggle("looked", Number(element.dataset.place) === looked);
     for (const part of parts.charts) {
       const values = readingsOf(part.chart, moments);
       part.drawing.point(values);
-      const said = shown.routes.filter(({ place }) => values.has(place) && (looked === null ? shown.routes.length <= MOST_READINGS : place === looked));
-      part.readings.replaceChildren(...said.map(({ place }) => h("span", {}, letter(place, "small"), part.chart.text(values.get(place).value))));
+      const said = shown.routes.filter(
+        ({ place }) => values.has(place) && (looked === null ? shown.routes.length <= MOST_READINGS : place === looked),
+      );
+      part.readings.replaceChildren(
+        ...said.map(({ place }) => h("span", {}, letter(place, "small"), part.chart.text(values.get(place).value))),
+      );
     }
   }
 

@@ -9,7 +9,11 @@ import { clockText, exactClockText, exactHeightText, exactText, lengthText } fro
 import { waypointName } from "./labels.js";
 import { fold } from "./side.js";
 
-const LEVELS = { critical: { words: t("Critical"), image: "octagon-alert" }, warning: { words: t("Warning"), image: "triangle-alert" }, advisory: { words: t("Advisory"), image: "info" } };
+const LEVELS = {
+  critical: { words: t("Critical"), image: "octagon-alert" },
+  warning: { words: t("Warning"), image: "triangle-alert" },
+  advisory: { words: t("Advisory"), image: "info" },
+};
 const ENDS = { start: t("take-off"), end: t("end"), base: t("base") };
 const pointName = (sequence) => t("point {number}", { number: sequence });
 const letter = (place) => h("span", { class: `letter route-${routeNumber(place)}` }, routeLetter(place));
@@ -18,30 +22,61 @@ const letter = (place) => h("span", { class: `letter route-${routeNumber(place)}
 export function drawLegs(record, labels, onLook) {
   const routes = record.routes.filter(({ stages }) => stages.length);
   const count = routes.reduce((sum, { stages }) => sum + stages.length, 0);
-  fold("legs", count, h("div", {}, routes.map((route) => legTable(route, labels, onLook))));
+  fold(
+    "legs",
+    count,
+    h(
+      "div",
+      {},
+      routes.map((route) => legTable(route, labels, onLook)),
+    ),
+  );
 }
 
 const metres = (value) => (value === null ? "—" : exactHeightText(value));
-const errors = (rms, max) => h("td", { class: "number", title: t("RMS {rms}, greatest {max}", { rms: metres(rms), max: metres(max) }) }, rms === null ? "—" : [metres(rms), h("small", {}, metres(max))]);
+const errors = (rms, max) =>
+  h(
+    "td",
+    { class: "number", title: t("RMS {rms}, greatest {max}", { rms: metres(rms), max: metres(max) }) },
+    rms === null ? "—" : [metres(rms), h("small", {}, metres(max))],
+  );
 
 function legTable(route, labels, onLook) {
   const heads = [t("Leg"), t("Length"), t("Off route"), t("Height error")];
   const several = route.stages.some(({ flight }) => flight > 1);
   const row = (leg, { button, words = "", isWithin = false }) => {
     const look = () => onLook({ place: route.place, from: leg.from_sequence, to: leg.to_sequence });
-    const name = [leg.from_sequence, leg.to_sequence].map((sequence) => waypointName(route, sequence, labels, ENDS, pointName)).join(" – ");
+    const name = [leg.from_sequence, leg.to_sequence]
+      .map((sequence) => waypointName(route, sequence, labels, ENDS, pointName))
+      .join(" – ");
     const small = [words, leg.reports === 0 && t("no report")].filter(Boolean).join(", ");
     return h(
       "tr",
-      { class: [isWithin && "report-within", !leg.reports && "unflown"].filter(Boolean).join(" "), hidden: isWithin, onpointerenter: look, onpointerleave: () => onLook(null) },
-      h("th", { scope: "row" }, h("button", { type: "button", class: "report-leg", onfocus: look, onblur: () => onLook(null), ...button }, name), small && h("small", {}, small)),
+      {
+        class: [isWithin && "report-within", !leg.reports && "unflown"].filter(Boolean).join(" "),
+        hidden: isWithin,
+        onpointerenter: look,
+        onpointerleave: () => onLook(null),
+      },
+      h(
+        "th",
+        { scope: "row" },
+        h(
+          "button",
+          { type: "button", class: "report-leg", onfocus: look, onblur: () => onLook(null), ...button },
+          name,
+        ),
+        small && h("small", {}, small),
+      ),
       h("td", { class: "number" }, lengthText(leg.length_m)),
       errors(leg.across_rms_m, leg.across_max_m),
       errors(leg.height_rms_m, leg.height_max_m),
     );
   };
   const stageRows = (stage) => {
-    const legs = route.legs.filter((leg) => leg.length_m >= 1 && leg.from_sequence >= stage.from_sequence && leg.to_sequence <= stage.to_sequence);
+    const legs = route.legs.filter(
+      (leg) => leg.length_m >= 1 && leg.from_sequence >= stage.from_sequence && leg.to_sequence <= stage.to_sequence,
+    );
     const words = several ? t("flight {number}", { number: stage.flight }) : "";
     if (legs.length < 2) return h("tbody", {}, row(stage, { words }));
     const rows = legs.map((leg) => row(leg, { isWithin: true }));
@@ -50,48 +85,131 @@ function legTable(route, labels, onLook) {
       currentTarget.setAttribute("aria-expanded", isOpen);
       for (const one of rows) one.hidden = !isOpen;
     };
-    return h("tbody", {}, row(stage, { words: [words, t("{count} legs", { count: legs.length })].filter(Boolean).join(", "), button: { "aria-expanded": "false", onclick: unfold } }), rows);
+    return h(
+      "tbody",
+      {},
+      row(stage, {
+        words: [words, t("{count} legs", { count: legs.length })].filter(Boolean).join(", "),
+        button: { "aria-expanded": "false", onclick: unfold },
+      }),
+      rows,
+    );
   };
   const table = h(
     "table",
     { class: "report-table report-legs" },
     h("caption", {}, t("RMS, and below it the greatest")),
-    h("thead", {}, h("tr", {}, heads.map((words, index) => h("th", { scope: "col", class: index ? "number" : "" }, words)))),
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        heads.map((words, index) => h("th", { scope: "col", class: index ? "number" : "" }, words)),
+      ),
+    ),
     route.stages.map(stageRows),
   );
-  return h("details", { class: "report-route" }, h("summary", {}, icon("chevron-down", "small"), letter(route.place), h("strong", {}, route.name), route.is_simulated && simulatedMark(), h("span", { class: "count" }, route.stages.length)), table);
+  return h(
+    "details",
+    { class: "report-route" },
+    h(
+      "summary",
+      {},
+      icon("chevron-down", "small"),
+      letter(route.place),
+      h("strong", {}, route.name),
+      route.is_simulated && simulatedMark(),
+      h("span", { class: "count" }, route.stages.length),
+    ),
+    table,
+  );
 }
 
 /** onSeek(iso): the time of an alert was clicked. */
 export function drawAlerts(alerts, nameOf, onSeek) {
-  const rows = [...alerts].sort((a, b) => Date.parse(a.opened_at) - Date.parse(b.opened_at)).map((alert) => {
-    const level = LEVELS[alert.level];
-    const until = alert.closed_at ? t("until {time}", { time: exactClockText(alert.closed_at) }) : t("still open");
-    const known = alert.acknowledged_at && t("acknowledged by {who}", { who: alert.acknowledged_by ?? t("somebody who has left") });
-    return h(
-      "li",
-      { class: `report-alert ${alert.level}` },
-      icon(level.image, "small"),
-      h("span", {}, h("strong", {}, h("span", { class: "unseen" }, `${level.words}: `), [nameOf(alert.uav), alert.message].filter(Boolean).join(": ")), alert.is_simulated && [" ", simulatedMark()], h("small", {}, h("button", { type: "button", class: "text-button", title: exactText(alert.opened_at), onclick: () => onSeek(alert.opened_at) }, exactClockText(alert.opened_at)), ` ${[until, known].filter(Boolean).join(", ")}`)),
-    );
-  });
+  const rows = [...alerts]
+    .sort((a, b) => Date.parse(a.opened_at) - Date.parse(b.opened_at))
+    .map((alert) => {
+      const level = LEVELS[alert.level];
+      const until = alert.closed_at ? t("until {time}", { time: exactClockText(alert.closed_at) }) : t("still open");
+      const known =
+        alert.acknowledged_at &&
+        t("acknowledged by {who}", { who: alert.acknowledged_by ?? t("somebody who has left") });
+      return h(
+        "li",
+        { class: `report-alert ${alert.level}` },
+        icon(level.image, "small"),
+        h(
+          "span",
+          {},
+          h(
+            "strong",
+            {},
+            h("span", { class: "unseen" }, `${level.words}: `),
+            [nameOf(alert.uav), alert.message].filter(Boolean).join(": "),
+          ),
+          alert.is_simulated && [" ", simulatedMark()],
+          h(
+            "small",
+            {},
+            h(
+              "button",
+              {
+                type: "button",
+                class: "text-button",
+                title: exactText(alert.opened_at),
+                onclick: () => onSeek(alert.opened_at),
+              },
+              exactClockText(alert.opened_at),
+            ),
+            ` ${[until, known].filter(Boolean).join(", ")}`,
+          ),
+        ),
+      );
+    });
   fold("alerts", rows.length, h("ul", { class: "report-list" }, rows));
 }
 
 export function drawCommands(commands) {
-  const rows = [...commands].sort((a, b) => Date.parse(a.created_at) - Date.parse(b.created_at)).map((command) => {
-    const { words, image, level } = commandWords(command);
-    const by = command.created_by ?? t("the program");
-    return h("li", { class: `report-command ${level ?? ""}` }, icon(image, "small"), h("span", {}, h("strong", {}, `${command.uav.name}: ${words}`), command.uav.is_simulated && [" ", simulatedMark()], h("small", {}, [by, timesOf(command, exactClockText), command.why].filter(Boolean).join(" · "))));
-  });
+  const rows = [...commands]
+    .sort((a, b) => Date.parse(a.created_at) - Date.parse(b.created_at))
+    .map((command) => {
+      const { words, image, level } = commandWords(command);
+      const by = command.created_by ?? t("the program");
+      return h(
+        "li",
+        { class: `report-command ${level ?? ""}` },
+        icon(image, "small"),
+        h(
+          "span",
+          {},
+          h("strong", {}, `${command.uav.name}: ${words}`),
+          command.uav.is_simulated && [" ", simulatedMark()],
+          h("small", {}, [by, timesOf(command, exactClockText), command.why].filter(Boolean).join(" · ")),
+        ),
+      );
+    });
   fold("commands", rows.length, h("ul", { class: "report-list" }, rows));
 }
 
 export function drawResults(record, labels) {
   const rows = record.results.map(({ place, uav_name, outcome, note, values, measured_at }) => {
     const target = labels.get(place)?.label ?? `${place + 1}`;
-    const figures = Object.entries(values ?? {}).map(([name, value]) => `${name} ${typeof value === "object" ? JSON.stringify(value) : value}`);
-    return h("li", {}, icon("clipboard-list", "small"), h("span", {}, h("strong", {}, `${target}: ${outcome}`), h("small", {}, [`${uav_name}, ${clockText(measured_at)}`, note, ...figures].filter(Boolean).join(" · "))));
+    const figures = Object.entries(values ?? {}).map(
+      ([name, value]) => `${name} ${typeof value === "object" ? JSON.stringify(value) : value}`,
+    );
+    return h(
+      "li",
+      {},
+      icon("clipboard-list", "small"),
+      h(
+        "span",
+        {},
+        h("strong", {}, `${target}: ${outcome}`),
+        h("small", {}, [`${uav_name}, ${clockText(measured_at)}`, note, ...figures].filter(Boolean).join(" · ")),
+      ),
+    );
   });
   fold("results", rows.length, h("ul", { class: "report-list" }, rows));
 }

@@ -18,7 +18,12 @@ async function featuresAt(address) {
 
 async function rowsAt(address) {
   const rows = [];
-  for (let page = (await get(address)).data; page; page = page.next && rows.length < MOST_ROWS ? (await get(page.next)).data : null) rows.push(...page.results);
+  for (
+    let page = (await get(address)).data;
+    page;
+    page = page.next && rows.length < MOST_ROWS ? (await get(page.next)).data : null
+  )
+    rows.push(...page.results);
   return rows;
 }
 

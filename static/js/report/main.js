@@ -13,8 +13,8 @@ import { mountLayout } from "./layout.js";
 import { drawAlerts, drawCommands, drawLegs, drawResults } from "./lists.js";
 import { loadMission } from "./load.js";
 import { createPlayer, SPEEDS } from "./player.js";
-import { createReportMap } from "./report_map.js";
 import { replayTables } from "./replay_tables.js";
+import { createReportMap } from "./report_map.js";
 import { isOver, isUnderWay } from "./sentence.js";
 import { drawHead, drawTargets } from "./side.js";
 import { eventFrom, eventsOf, spanOf } from "./timeline.js";
@@ -29,7 +29,10 @@ const layout = mountLayout();
 const map = createReportMap(page, { onPick: choose });
 const dock = createDock({ onChoose: choose });
 const player = createPlayer({ onMove: show });
-const scene = mountSceneOpener(() => loaded && { mission: page.mission, ...(player.span() ? { record: loaded, player } : { wanted: { kind: "plan" } }) });
+const scene = mountSceneOpener(
+  () =>
+    loaded && { mission: page.mission, ...(player.span() ? { record: loaded, player } : { wanted: { kind: "plan" } }) },
+);
 let loaded = null; // of the API
 let record = null;
 let routes = []; // of the record, each with its track, targets, alerts
@@ -58,8 +61,20 @@ async function read() {
 function tellFault(error) {
   const fault = byId("report-fault");
   fault.hidden = error === null;
-  if (error?.isSignedOut) fault.replaceChildren(icon("cloud-off"), h("span", {}, `${t("You have been signed out.")} `, h("a", { href: signInAddress() }, t("Sign in"))));
-  else if (error) fault.replaceChildren(icon("cloud-off"), h("span", {}, `${t("The record could not be read.")} ${error.message} ${t("It is tried again every half minute.")}`));
+  if (error?.isSignedOut)
+    fault.replaceChildren(
+      icon("cloud-off"),
+      h("span", {}, `${t("You have been signed out.")} `, h("a", { href: signInAddress() }, t("Sign in"))),
+    );
+  else if (error)
+    fault.replaceChildren(
+      icon("cloud-off"),
+      h(
+        "span",
+        {},
+        `${t("The record could not be read.")} ${error.message} ${t("It is tried again every half minute.")}`,
+      ),
+    );
 }
 
 function take(answer) {
@@ -72,15 +87,24 @@ function take(answer) {
     ...route,
     isOver: isOver(record),
     track: trackOf(measured.get(route.uav) ?? [], estimated.get(route.uav) ?? [], silence_ms),
-    targets: record.targets.filter(({ uav }) => uav === route.place).map(targetOnStrip).sort((a, b) => (a.at_ms ?? Infinity) - (b.at_ms ?? Infinity)),
-    alerts: loaded.alerts.filter(({ uav }) => uav === route.uav).map(({ opened_at, level, message }) => ({ at_ms: Date.parse(opened_at), level, title: message })),
+    targets: record.targets
+      .filter(({ uav }) => uav === route.place)
+      .map(targetOnStrip)
+      .sort((a, b) => (a.at_ms ?? Infinity) - (b.at_ms ?? Infinity)),
+    alerts: loaded.alerts
+      .filter(({ uav }) => uav === route.uav)
+      .map(({ opened_at, level, message }) => ({ at_ms: Date.parse(opened_at), level, title: message })),
   }));
   events = eventsOf({ routes, targets: record.targets, alerts: loaded.alerts, isOver: isOver(record) });
   drawHead(record);
   drawTargets(record, labels, (place) => map.showPlace(labels.get(place).position));
   offerFollowUp(record, { canPlan: page.canFly });
   drawLegs(record, labels, lookAtLeg);
-  drawAlerts(loaded.alerts, (uav) => routes.find((route) => route.uav === uav)?.name ?? "", (iso) => player.seek(Date.parse(iso)));
+  drawAlerts(
+    loaded.alerts,
+    (uav) => routes.find((route) => route.uav === uav)?.name ?? "",
+    (iso) => player.seek(Date.parse(iso)),
+  );
   drawCommands(loaded.commands);
   drawResults(record, labels);
   map.show({ routes, targets: record.targets, labels });
@@ -90,7 +114,9 @@ function take(answer) {
   byId("replay-empty").hidden = span !== null;
   if (!span) return tellNothing();
   byId("replay-tables").replaceChildren(...replayTables(routes));
-  routes.forEach((route) => (route.alerts = route.alerts.filter(({ at_ms }) => at_ms >= span.from_ms && at_ms <= span.to_ms)));
+  routes.forEach(
+    (route) => (route.alerts = route.alerts.filter(({ at_ms }) => at_ms >= span.from_ms && at_ms <= span.to_ms)),
+  );
   dock.draw({ routes, span });
   renewScene();
   show();
@@ -113,12 +139,16 @@ const targetOnStrip = ({ place, label: name, state, reached_at }) => {
 function tellNothing() {
   const [title, words] = byId("replay-empty").children;
   title.textContent = isOver(record) ? t("Nothing to replay.") : t("Nothing to replay yet.");
-  words.textContent = isOver(record) ? t("None of its UAVs reported anything while it was flown.") : t("What its UAVs report is drawn here as soon as they fly.");
+  words.textContent = isOver(record)
+    ? t("None of its UAVs reported anything while it was flown.")
+    : t("What its UAVs report is drawn here as soon as they fly.");
 }
 
 function lookAtLeg(leg) {
   const route = leg && routes.find(({ place }) => place === leg.place);
-  const positions = route?.waypoints.filter(({ sequence }) => sequence >= leg.from && sequence <= leg.to).map(({ position }) => position);
+  const positions = route?.waypoints
+    .filter(({ sequence }) => sequence >= leg.from && sequence <= leg.to)
+    .map(({ position }) => position);
   map.lightLeg(positions?.length > 1 ? positions : null);
 }
 
@@ -157,12 +187,25 @@ function show() {
 function step(direction) {
   if (!player.span()) return false;
   player.stop();
-  const event = eventFrom(events.filter(({ at_ms }) => at_ms >= player.span().from_ms && at_ms <= player.span().to_ms), player.at_ms, direction);
+  const event = eventFrom(
+    events.filter(({ at_ms }) => at_ms >= player.span().from_ms && at_ms <= player.span().to_ms),
+    player.at_ms,
+    direction,
+  );
   player.seek(event?.at_ms ?? (direction > 0 ? player.span().to_ms : player.span().from_ms));
   return true;
 }
 
-byId("replay-speeds").append(...SPEEDS.map((speed) => h("label", {}, h("input", { type: "radio", name: "speed", id: `speed-${speed}`, onchange: () => player.setSpeed(speed) }), h("span", { class: "segment" }, `${numberText(speed, Number.isInteger(speed) ? 0 : 1)}×`))));
+byId("replay-speeds").append(
+  ...SPEEDS.map((speed) =>
+    h(
+      "label",
+      {},
+      h("input", { type: "radio", name: "speed", id: `speed-${speed}`, onchange: () => player.setSpeed(speed) }),
+      h("span", { class: "segment" }, `${numberText(speed, Number.isInteger(speed) ? 0 : 1)}×`),
+    ),
+  ),
+);
 byId("replay-play").addEventListener("click", player.toggle);
 byId("replay-previous").addEventListener("click", () => step(-1));
 byId("replay-next").addEventListener("click", () => step(1));
@@ -183,7 +226,16 @@ slider.addEventListener("keydown", (event) => {
   const span = player.span();
   if (!span || event.ctrlKey || event.metaKey || event.altKey) return;
   const step_ms = Math.max(1_000, (span.to_ms - span.from_ms) / KEY_STEPS);
-  const moments = { ArrowRight: player.at_ms + step_ms, ArrowUp: player.at_ms + step_ms, ArrowLeft: player.at_ms - step_ms, ArrowDown: player.at_ms - step_ms, PageUp: player.at_ms + 10 * step_ms, PageDown: player.at_ms - 10 * step_ms, Home: span.from_ms, End: span.to_ms };
+  const moments = {
+    ArrowRight: player.at_ms + step_ms,
+    ArrowUp: player.at_ms + step_ms,
+    ArrowLeft: player.at_ms - step_ms,
+    ArrowDown: player.at_ms - step_ms,
+    PageUp: player.at_ms + 10 * step_ms,
+    PageDown: player.at_ms - 10 * step_ms,
+    Home: span.from_ms,
+    End: span.to_ms,
+  };
   if (!(event.key in moments)) return;
   event.preventDefault();
   player.stop();
@@ -194,12 +246,20 @@ const isOnControl = ({ target }) => target instanceof Element && target.closest(
 
 startChrome({
   bindings: [
-    { keys: [" "], words: t("Play, stop"), act: (event) => (isOnControl(event) || !player.span() ? false : (player.toggle(), true)) },
+    {
+      keys: [" "],
+      words: t("Play, stop"),
+      act: (event) => (isOnControl(event) || !player.span() ? false : (player.toggle(), true)),
+    },
     { keys: [","], words: t("Previous event"), act: () => step(-1) },
     { keys: ["."], words: t("Next event"), act: () => step(1) },
     { keys: ["<"], words: t("Slower"), act: () => player.changeSpeed(-1) },
     { keys: [">"], words: t("Faster"), act: () => player.changeSpeed(1) },
-    ...Array.from({ length: 8 }, (_, index) => ({ keys: [`${index + 1}`], words: index ? undefined : t("Choose UAV A to H (1 to 8)"), act: () => (routes[index] ? (choose(routes[index].place), true) : false) })),
+    ...Array.from({ length: 8 }, (_, index) => ({
+      keys: [`${index + 1}`],
+      words: index ? undefined : t("Choose UAV A to H (1 to 8)"),
+      act: () => (routes[index] ? (choose(routes[index].place), true) : false),
+    })),
     { keys: ["f"], words: t("Fit what was flown"), act: () => map.fit() },
     { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },
     { keys: ["-"], words: t("Zoom out"), act: () => map.zoom(-1) },

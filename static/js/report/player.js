@@ -3,7 +3,11 @@
 export const SPEEDS = [0.5, 1, 5, 20, 60];
 
 /** onMove() is told of each change. now_ms, nextFrame: for tests. */
-export function createPlayer({ onMove, now_ms = () => performance.now(), nextFrame = (act) => requestAnimationFrame(act) }) {
+export function createPlayer({
+  onMove,
+  now_ms = () => performance.now(),
+  nextFrame = (act) => requestAnimationFrame(act),
+}) {
   let span = null;
   let last_ms = 0;
   const player = { at_ms: null, speed: 20, isPlaying: false };

@@ -2,30 +2,57 @@
 
 import { h } from "../dom.js";
 import { t } from "../text.js";
-import { heightText, percentText, exactClockText, speedText } from "../units.js";
+import { exactClockText, heightText, percentText, speedText } from "../units.js";
 import { MEASURED, momentOf } from "./track.js";
 
 const ROWS = 12;
 
 /** A table of each UAV: its figures at moments that lie evenly in its flights. */
 export function replayTables(routes) {
-  return routes.filter(({ track }) => track.samples.length).map(({ name, track }) => {
-    const [from_ms, to_ms] = [track.samples[0].at_ms, track.samples.at(-1).at_ms];
-    const moments = Array.from({ length: ROWS }, (_, index) => from_ms + ((to_ms - from_ms) * index) / (ROWS - 1));
-    const head = [t("Time"), t("Height above take-off"), t("Speed"), t("Battery")];
-    return h(
-      "table",
-      {},
-      h("caption", {}, t("{name}, by time", { name })),
-      h("thead", {}, h("tr", {}, head.map((words) => h("th", { scope: "col" }, words)))),
-      h("tbody", {}, moments.map((at_ms) => row(at_ms, momentOf(track, at_ms)))),
-    );
-  });
+  return routes
+    .filter(({ track }) => track.samples.length)
+    .map(({ name, track }) => {
+      const [from_ms, to_ms] = [track.samples[0].at_ms, track.samples.at(-1).at_ms];
+      const moments = Array.from({ length: ROWS }, (_, index) => from_ms + ((to_ms - from_ms) * index) / (ROWS - 1));
+      const head = [t("Time"), t("Height above take-off"), t("Speed"), t("Battery")];
+      return h(
+        "table",
+        {},
+        h("caption", {}, t("{name}, by time", { name })),
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            head.map((words) => h("th", { scope: "col" }, words)),
+          ),
+        ),
+        h(
+          "tbody",
+          {},
+          moments.map((at_ms) => row(at_ms, momentOf(track, at_ms))),
+        ),
+      );
+    });
 }
 
 function row(at_ms, moment) {
-  if (moment?.kind !== MEASURED) return h("tr", {}, h("th", { scope: "row" }, exactClockText(at_ms)), h("td", { colspan: 3 }, t("nothing measured")));
+  if (moment?.kind !== MEASURED)
+    return h(
+      "tr",
+      {},
+      h("th", { scope: "row" }, exactClockText(at_ms)),
+      h("td", { colspan: 3 }, t("nothing measured")),
+    );
   const { height_m, speed_mps, battery_percent } = moment.sample;
   const said = (value, text) => h("td", {}, value === null ? "—" : text(value));
-  return h("tr", {}, h("th", { scope: "row" }, exactClockText(at_ms)), said(height_m, heightText), said(speed_mps, speedText), said(battery_percent, percentText));
+  return h(
+    "tr",
+    {},
+    h("th", { scope: "row" }, exactClockText(at_ms)),
+    said(height_m, heightText),
+    said(speed_mps, speedText),
+    said(battery_percent, percentText),
+  );
 }

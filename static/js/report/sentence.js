@@ -16,7 +16,8 @@ export const wasFlown = ({ routes }) => routes.some(({ flown }) => flown.reports
 export function sentenceOf(record) {
   const { targets } = record.summary;
   if (!wasFlown(record) && NOT_BEGUN.includes(record.mission.state)) return t("Not flown yet.");
-  if (isUnderWay(record)) return t("{done} of {all} targets complete so far", { done: targets.complete, all: targets.all });
+  if (isUnderWay(record))
+    return t("{done} of {all} targets complete so far", { done: targets.complete, all: targets.all });
   return t("{done} of {all} targets complete", { done: targets.complete, all: targets.all });
 }
 
@@ -26,12 +27,36 @@ export function factsOf(record) {
   const all = alerts.critical + alerts.warning + alerts.advisory;
   const facts = [];
   const simulated = record.routes.filter(({ is_simulated }) => is_simulated);
-  if (simulated.length) facts.push(simulated.length === record.routes.length ? t("Flown in simulation, by no real aircraft.") : t("Simulated, no real aircraft: {names}.", { names: simulated.map(({ name }) => name).join(", ") }));
-  if (simulated.length && wasFlown(record) && record.summary.flown.duration_s < HURRIED * record.summary.planned.duration_s) facts.push(t("Times are of the clock on the wall: it was flown faster than real time."));
-  if (isUnderWay(record) && record.mission.started_at) facts.push(t("Under way since {time}.", { time: clockText(record.mission.started_at) }));
-  if (!wasFlown(record)) facts.push(isOver(record) ? t("Nothing that its UAVs reported is in the log.") : t("Its record is written while it is flown."));
-  else if (lowest !== null) facts.push(t("No battery was below {percent}.", { percent: percentText(Math.floor(lowest)) }));
-  if (all) facts.push(alerts.critical ? tn(all, "{count} alert, {critical} critical.", "{count} alerts, {critical} critical.", { critical: alerts.critical }) : tn(all, "{count} alert, none critical.", "{count} alerts, none critical."));
+  if (simulated.length)
+    facts.push(
+      simulated.length === record.routes.length
+        ? t("Flown in simulation, by no real aircraft.")
+        : t("Simulated, no real aircraft: {names}.", { names: simulated.map(({ name }) => name).join(", ") }),
+    );
+  if (
+    simulated.length &&
+    wasFlown(record) &&
+    record.summary.flown.duration_s < HURRIED * record.summary.planned.duration_s
+  )
+    facts.push(t("Times are of the clock on the wall: it was flown faster than real time."));
+  if (isUnderWay(record) && record.mission.started_at)
+    facts.push(t("Under way since {time}.", { time: clockText(record.mission.started_at) }));
+  if (!wasFlown(record))
+    facts.push(
+      isOver(record)
+        ? t("Nothing that its UAVs reported is in the log.")
+        : t("Its record is written while it is flown."),
+    );
+  else if (lowest !== null)
+    facts.push(t("No battery was below {percent}.", { percent: percentText(Math.floor(lowest)) }));
+  if (all)
+    facts.push(
+      alerts.critical
+        ? tn(all, "{count} alert, {critical} critical.", "{count} alerts, {critical} critical.", {
+            critical: alerts.critical,
+          })
+        : tn(all, "{count} alert, none critical.", "{count} alerts, none critical."),
+    );
   else if (wasFlown(record)) facts.push(t("No alerts."));
   return facts.join(" ");
 }
@@ -46,7 +71,10 @@ export function figuresOf(record) {
     words,
     planned: text(planned[name]),
     flown: hasFlown ? text(flown[name]) : "—",
-    more: hasFlown && !isUnderWay(record) && planned[name] !== null && flown[name] !== null ? signed(flown[name] - planned[name], text) : "",
+    more:
+      hasFlown && !isUnderWay(record) && planned[name] !== null && flown[name] !== null
+        ? signed(flown[name] - planned[name], text)
+        : "",
   });
   const metres = (value) => (value === null ? "—" : exactHeightText(value));
   return [
@@ -57,7 +85,12 @@ export function figuresOf(record) {
     { words: t("Height error, RMS"), planned: "", flown: metres(height_rms_m), more: "" },
     ...(estimates.compared >= ENOUGH_TO_SHARE
       ? [
-          { words: t("Estimates inside bound"), planned: percentText(95), flown: percentText(estimates.share_inside * 100), more: "" },
+          {
+            words: t("Estimates inside bound"),
+            planned: percentText(95),
+            flown: percentText(estimates.share_inside * 100),
+            more: "",
+          },
           { words: t("Estimates off, RMS"), planned: "", flown: metres(estimates.rms_m), more: "" },
         ]
       : []),

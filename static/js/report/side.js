@@ -2,8 +2,8 @@
 
 import { byId, h, icon } from "../dom.js";
 import { routeNumber } from "../map/palette.js";
-import { reasonWords, STATES } from "../monitor/board.js";
 import { STATES as MISSION_STATES } from "../missions/rows.js";
+import { reasonWords, STATES } from "../monitor/board.js";
 import { t } from "../text.js";
 import { clockText, dateText, durationText, exactText, lengthText } from "../units.js";
 import { factsOf, figuresOf, isOver, isUnderWay, sentenceOf, wasFlown } from "./sentence.js";
@@ -23,23 +23,48 @@ export function drawHead(record) {
   const chip = byId("report-state");
   chip.hidden = false;
   chip.className = `chip ${mission.state}`;
-  chip.replaceChildren(...[mission.state === "completed" && icon("check", "small"), MISSION_STATES[mission.state]].filter(Boolean));
+  chip.replaceChildren(
+    ...[mission.state === "completed" && icon("check", "small"), MISSION_STATES[mission.state]].filter(Boolean),
+  );
   const { approval } = mission;
-  const facts = [whenWords(mission), approval?.approved_by, approval && t("plan hash {hash}", { hash: approval.content_sha256.slice(0, HASH_LETTERS) })];
+  const facts = [
+    whenWords(mission),
+    approval?.approved_by,
+    approval && t("plan hash {hash}", { hash: approval.content_sha256.slice(0, HASH_LETTERS) }),
+  ];
   byId("report-facts").textContent = facts.filter(Boolean).join(" · ");
   const sentence = sentenceOf(record);
   if (byId("report-sentence").textContent !== sentence) byId("report-sentence").textContent = sentence;
   byId("report-said").textContent = factsOf(record);
-  const others = [[mission.continues, t("Flies the rest of an earlier mission: its report")], [mission.continued_by, t("Its rest is flown by another mission: that one's report")]].filter(([id]) => id);
+  const others = [
+    [mission.continues, t("Flies the rest of an earlier mission: its report")],
+    [mission.continued_by, t("Its rest is flown by another mission: that one's report")],
+  ].filter(([id]) => id);
   const continues = byId("report-continues");
   continues.hidden = !others.length;
-  continues.replaceChildren(...others.map(([id, words]) => h("a", { class: "report-link", href: `/missions/${id}/report` }, icon("link", "small"), words)));
+  continues.replaceChildren(
+    ...others.map(([id, words]) =>
+      h("a", { class: "report-link", href: `/missions/${id}/report` }, icon("link", "small"), words),
+    ),
+  );
   const table = byId("report-figures");
   table.hidden = !record.routes.length;
-  table.tBodies[0].replaceChildren(...figuresOf(record).map(({ words, planned, flown, more }) => h("tr", {}, h("th", { scope: "row" }, words), h("td", { class: "number quiet-text" }, planned), h("td", { class: "number flown" }, flown), h("td", { class: "number quiet-text" }, more))));
+  table.tBodies[0].replaceChildren(
+    ...figuresOf(record).map(({ words, planned, flown, more }) =>
+      h(
+        "tr",
+        {},
+        h("th", { scope: "row" }, words),
+        h("td", { class: "number quiet-text" }, planned),
+        h("td", { class: "number flown" }, flown),
+        h("td", { class: "number quiet-text" }, more),
+      ),
+    ),
+  );
 }
 
-const isMissed = (record, { state }) => state === "skipped" || state === "failed" || (state === "pending" && isOver(record));
+const isMissed = (record, { state }) =>
+  state === "skipped" || state === "failed" || (state === "pending" && isOver(record));
 
 /** onLook(place of a target) when its pill is clicked. */
 export function drawTargets(record, labels, onLook) {
@@ -56,30 +81,98 @@ function pill(target, labels, onLook) {
   const known = labels.get(target.place);
   const look = target.uav === null ? "" : `route-${routeNumber(target.uav)}`;
   if (!known) return h("span", { class: "pill" }, `${target.place + 1}`);
-  return h("button", { type: "button", class: `report-pill ${look} ${target.state}`, "aria-label": t("Show target {label}", { label: known.label }), onclick: () => onLook(target.place) }, h("span", { class: "pill" }, known.label));
+  return h(
+    "button",
+    {
+      type: "button",
+      class: `report-pill ${look} ${target.state}`,
+      "aria-label": t("Show target {label}", { label: known.label }),
+      onclick: () => onLook(target.place),
+    },
+    h("span", { class: "pill" }, known.label),
+  );
 }
 
 function missedRow(target, labels, onLook) {
   const state = STATES[target.state];
   const why = reasonWords(target.state_reason);
-  const nearest = target.closest_m === null ? "" : t("It came within {distance}.", { distance: lengthText(target.closest_m) });
-  const words = [target.state === "pending" ? t("Not reached before the mission ended.") : `${state.words}.`, why, nearest].filter(Boolean).join(" ");
-  return h("li", {}, pill(target, labels, onLook), h("span", {}, h("strong", {}, target.label), h("small", {}, words, target.state_at && h("time", { datetime: target.state_at, title: exactText(target.state_at) }, ` ${clockText(target.state_at)}`))));
+  const nearest =
+    target.closest_m === null ? "" : t("It came within {distance}.", { distance: lengthText(target.closest_m) });
+  const words = [
+    target.state === "pending" ? t("Not reached before the mission ended.") : `${state.words}.`,
+    why,
+    nearest,
+  ]
+    .filter(Boolean)
+    .join(" ");
+  return h(
+    "li",
+    {},
+    pill(target, labels, onLook),
+    h(
+      "span",
+      {},
+      h("strong", {}, target.label),
+      h(
+        "small",
+        {},
+        words,
+        target.state_at &&
+          h("time", { datetime: target.state_at, title: exactText(target.state_at) }, ` ${clockText(target.state_at)}`),
+      ),
+    ),
+  );
 }
 
 const time = (iso) => (iso ? h("time", { datetime: iso, title: exactText(iso) }, clockText(iso)) : "—");
-const seconds = (value) => (value === null ? "—" : value < 100 ? t("{count} s", { count: Math.round(value) }) : durationText(value));
+const seconds = (value) =>
+  value === null ? "—" : value < 100 ? t("{count} s", { count: Math.round(value) }) : durationText(value);
 
 function targetTable(targets, labels, onLook, isClose) {
   const head = [t("Target"), t("Planned"), t("Reached"), t("Closest"), t("Held")];
   const rows = targets.map((target) => {
     const state = STATES[target.state];
     return [
-      h("tr", { class: "report-named" }, h("td", { rowspan: isClose ? 2 : 1 }, pill(target, labels, onLook)), h("th", { scope: "row", colspan: 4 }, h("div", {}, h("span", { class: "report-name" }, target.label), h("span", { class: `report-target-state ${target.state}` }, icon(state.image, "small"), state.words)))),
-      isClose && h("tr", {}, h("td", { class: "number" }, time(target.planned_at)), h("td", { class: "number" }, time(target.reached_at)), h("td", { class: "number" }, target.closest_m === null ? "—" : lengthText(target.closest_m)), h("td", { class: "number" }, seconds(target.held_s))),
+      h(
+        "tr",
+        { class: "report-named" },
+        h("td", { rowspan: isClose ? 2 : 1 }, pill(target, labels, onLook)),
+        h(
+          "th",
+          { scope: "row", colspan: 4 },
+          h(
+            "div",
+            {},
+            h("span", { class: "report-name" }, target.label),
+            h("span", { class: `report-target-state ${target.state}` }, icon(state.image, "small"), state.words),
+          ),
+        ),
+      ),
+      isClose &&
+        h(
+          "tr",
+          {},
+          h("td", { class: "number" }, time(target.planned_at)),
+          h("td", { class: "number" }, time(target.reached_at)),
+          h("td", { class: "number" }, target.closest_m === null ? "—" : lengthText(target.closest_m)),
+          h("td", { class: "number" }, seconds(target.held_s)),
+        ),
     ];
   });
-  return h("table", { class: "report-table report-targets" }, h("thead", {}, h("tr", {}, head.map((words, index) => h("th", { scope: "col", class: index ? "number" : "" }, words)))), h("tbody", {}, rows));
+  return h(
+    "table",
+    { class: "report-table report-targets" },
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        head.map((words, index) => h("th", { scope: "col", class: index ? "number" : "" }, words)),
+      ),
+    ),
+    h("tbody", {}, rows),
+  );
 }
 
 /** Fills a part of the side that can be unfolded; without content it is not there. */

@@ -6,7 +6,11 @@ import { routeNumber } from "../map/palette.js";
 const HEIGHT_PX = 34;
 const MIDDLE_PX = 20;
 const APART_PX = 19; // of two targets
-const MARKS = { critical: "M-3 -5H3L5 -3V3L3 5H-3L-5 3V-3Z", warning: "M0 -5L5.5 4.5H-5.5Z", advisory: "M0 -4A4 4 0 1 1 0 4A4 4 0 1 1 0 -4Z" };
+const MARKS = {
+  critical: "M-3 -5H3L5 -3V3L3 5H-3L-5 3V-3Z",
+  warning: "M0 -5L5.5 4.5H-5.5Z",
+  advisory: "M0 -4A4 4 0 1 1 0 4A4 4 0 1 1 0 -4Z",
+};
 
 /** Pushes places apart to the right, then back from the right edge: as near to where they belong as there is room. */
 export function spread(places, width_px, apart_px = APART_PX) {
@@ -25,15 +29,42 @@ export function drawStrip({ place, track, targets, alerts, x, width_px, label })
     return svg("line", { class: name, x1: from, x2: Math.max(to, from + 1), y1: MIDDLE_PX, y2: MIDDLE_PX });
   };
   const flown = track.measured.flatMap((run) => piecesOf(run, isAirborne));
-  const places = spread(targets.map(({ at_ms }) => x(at_ms)), width_px);
+  const places = spread(
+    targets.map(({ at_ms }) => x(at_ms)),
+    width_px,
+  );
   return svg(
     "svg",
-    { class: `replay-strip route-${routeNumber(place)}`, role: "img", "aria-label": label, width: width_px, height: HEIGHT_PX, viewBox: `0 0 ${width_px} ${HEIGHT_PX}` },
+    {
+      class: `replay-strip route-${routeNumber(place)}`,
+      role: "img",
+      "aria-label": label,
+      width: width_px,
+      height: HEIGHT_PX,
+      viewBox: `0 0 ${width_px} ${HEIGHT_PX}`,
+    },
     flown.map(({ run, isUp }) => line(run, isUp ? "flown" : "grounded")),
     track.estimated.map((run) => line(run, "estimated")),
-    track.flights.flatMap(({ from_ms, to_ms }) => [from_ms, to_ms]).map((at) => svg("rect", { class: "replay-base", x: x(at) - 4, y: MIDDLE_PX - 4, width: 8, height: 8 })),
-    targets.map(({ number, state, title }, index) => svg("g", { class: `replay-target ${state}`, transform: `translate(${places[index]} ${MIDDLE_PX})` }, svg("title", {}, title), svg("circle", { r: 9 }), svg("text", { y: 4 }, number))),
-    alerts.map(({ at_ms, level, title }) => svg("g", { class: `replay-alert ${level}`, transform: `translate(${x(at_ms)} 6)` }, svg("title", {}, title), svg("path", { d: MARKS[level] }))),
+    track.flights
+      .flatMap(({ from_ms, to_ms }) => [from_ms, to_ms])
+      .map((at) => svg("rect", { class: "replay-base", x: x(at) - 4, y: MIDDLE_PX - 4, width: 8, height: 8 })),
+    targets.map(({ number, state, title }, index) =>
+      svg(
+        "g",
+        { class: `replay-target ${state}`, transform: `translate(${places[index]} ${MIDDLE_PX})` },
+        svg("title", {}, title),
+        svg("circle", { r: 9 }),
+        svg("text", { y: 4 }, number),
+      ),
+    ),
+    alerts.map(({ at_ms, level, title }) =>
+      svg(
+        "g",
+        { class: `replay-alert ${level}`, transform: `translate(${x(at_ms)} 6)` },
+        svg("title", {}, title),
+        svg("path", { d: MARKS[level] }),
+      ),
+    ),
   );
 }
 

@@ -3,7 +3,26 @@
 const SECOND = 1_000;
 const MINUTE = 60 * SECOND;
 const HOUR = 60 * MINUTE;
-const STEPS_MS = [SECOND, 2 * SECOND, 5 * SECOND, 10 * SECOND, 15 * SECOND, 30 * SECOND, MINUTE, 2 * MINUTE, 5 * MINUTE, 10 * MINUTE, 15 * MINUTE, 30 * MINUTE, HOUR, 2 * HOUR, 3 * HOUR, 6 * HOUR, 12 * HOUR, 24 * HOUR];
+const STEPS_MS = [
+  SECOND,
+  2 * SECOND,
+  5 * SECOND,
+  10 * SECOND,
+  15 * SECOND,
+  30 * SECOND,
+  MINUTE,
+  2 * MINUTE,
+  5 * MINUTE,
+  10 * MINUTE,
+  15 * MINUTE,
+  30 * MINUTE,
+  HOUR,
+  2 * HOUR,
+  3 * HOUR,
+  6 * HOUR,
+  12 * HOUR,
+  24 * HOUR,
+];
 const TICK_PX = 84;
 const SAME_MS = 500; // an event that the cursor stands on
 
@@ -30,10 +49,13 @@ export function scaleOf({ from_ms, to_ms }, width_px) {
 /** Round moments by the reader's clock: { step_ms, moments }. ahead_min: of UTC. */
 export function ticksOf({ from_ms, to_ms }, width_px, ahead_min) {
   const most = Math.max(1, Math.floor(width_px / TICK_PX));
-  const step_ms = STEPS_MS.find((step) => (to_ms - from_ms) / step <= most) ?? STEPS_MS.at(-1) * Math.ceil((to_ms - from_ms) / STEPS_MS.at(-1) / most);
+  const step_ms =
+    STEPS_MS.find((step) => (to_ms - from_ms) / step <= most) ??
+    STEPS_MS.at(-1) * Math.ceil((to_ms - from_ms) / STEPS_MS.at(-1) / most);
   const ahead_ms = ahead_min * MINUTE;
   const moments = [];
-  for (let at = Math.ceil((from_ms + ahead_ms) / step_ms) * step_ms - ahead_ms; at <= to_ms; at += step_ms) moments.push(at);
+  for (let at = Math.ceil((from_ms + ahead_ms) / step_ms) * step_ms - ahead_ms; at <= to_ms; at += step_ms)
+    moments.push(at);
   return { step_ms, moments };
 }
 
@@ -46,7 +68,8 @@ export function rulesOf(highest) {
 }
 
 /** Whether a UAV's flight of this index has ended, as far as anybody heard. */
-export const hasLanded = (track, index, isOver) => isOver || index < track.flights.length - 1 || track.samples.at(-1).isInAir === false;
+export const hasLanded = (track, index, isOver) =>
+  isOver || index < track.flights.length - 1 || track.samples.at(-1).isInAir === false;
 
 /**
  * What happened, in the order of time: [{ at_ms, kind, place?, target?, alert? }], kind one of take-off, target, alert, landing.
@@ -60,8 +83,16 @@ export function eventsOf({ routes, targets, alerts, isOver }) {
       if (hasLanded(track, index, isOver)) events.push({ at_ms: to_ms, kind: "landing", place });
     });
   }
-  for (const target of targets) if (target.reached_at) events.push({ at_ms: Date.parse(target.reached_at), kind: "target", place: target.uav, target: target.place });
-  for (const alert of alerts) events.push({ at_ms: Date.parse(alert.opened_at), kind: "alert", place: routes.find(({ uav }) => uav === alert.uav)?.place ?? null, alert });
+  for (const target of targets)
+    if (target.reached_at)
+      events.push({ at_ms: Date.parse(target.reached_at), kind: "target", place: target.uav, target: target.place });
+  for (const alert of alerts)
+    events.push({
+      at_ms: Date.parse(alert.opened_at),
+      kind: "alert",
+      place: routes.find(({ uav }) => uav === alert.uav)?.place ?? null,
+      alert,
+    });
   return events.sort((a, b) => a.at_ms - b.at_ms);
 }
 
@@ -76,5 +107,8 @@ export function plannedHeights({ waypoints, flown }) {
   const [first] = waypoints;
   if (!flown.began_at || !first || waypoints.some(({ arrival_s }) => arrival_s === null)) return [];
   const began_ms = Date.parse(flown.began_at);
-  return waypoints.map(({ arrival_s, altitude_relative_m }) => ({ at_ms: began_ms + (arrival_s - first.arrival_s) * SECOND, value: altitude_relative_m }));
+  return waypoints.map(({ arrival_s, altitude_relative_m }) => ({
+    at_ms: began_ms + (arrival_s - first.arrival_s) * SECOND,
+    value: altitude_relative_m,
+  }));
 }

@@ -51,7 +51,12 @@ export function estimatesOf(features) {
     speed_mps: properties.speed_mps ?? null,
     heading_deg: properties.heading_deg ?? null,
     bound_m: Math.max(properties.bound_along_m, properties.bound_across_m),
-    bound: { along_m: properties.bound_along_m, across_m: properties.bound_across_m, bearing_deg: properties.bound_bearing_deg ?? 0, height_m: properties.bound_height_m ?? null },
+    bound: {
+      along_m: properties.bound_along_m,
+      across_m: properties.bound_across_m,
+      bearing_deg: properties.bound_bearing_deg ?? 0,
+      height_m: properties.bound_height_m ?? null,
+    },
     isLost: properties.is_lost,
   }));
 }
@@ -85,7 +90,8 @@ export function nearestTo(samples, at_ms) {
     if (samples[middle].at_ms < at_ms) low = middle + 1;
     else high = middle;
   }
-  if (low > 0 && (low === samples.length || at_ms - samples[low - 1].at_ms <= samples[low].at_ms - at_ms)) return low - 1;
+  if (low > 0 && (low === samples.length || at_ms - samples[low - 1].at_ms <= samples[low].at_ms - at_ms))
+    return low - 1;
   return low < samples.length ? low : -1;
 }
 
@@ -139,6 +145,8 @@ export function momentOf(track, at_ms) {
 
 /** Lines of one value over time, each broken where nothing was heard: [[{ at_ms, value }]]. */
 export function linesOf(samples, name, silence_ms) {
-  const known = samples.filter((sample) => sample[name] !== null).map((sample) => ({ at_ms: sample.at_ms, value: sample[name] }));
+  const known = samples
+    .filter((sample) => sample[name] !== null)
+    .map((sample) => ({ at_ms: sample.at_ms, value: sample[name] }));
   return runsOf(known, silence_ms);
 }

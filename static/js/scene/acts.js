@@ -1,8 +1,8 @@
 /** What can be done with the 3D view: cameras, UAVs, targets, time, a picture to keep and a link. Each says whether it was done. */
 
+import { routeLetter } from "../map/palette.js";
 import { copyText } from "../page/clipboard.js";
 import { toast } from "../page/toast.js";
-import { routeLetter } from "../map/palette.js";
 import { t } from "../text.js";
 import { dateText, exactClockText, sinceText } from "../units.js";
 import { CAMERA_LONG } from "./camera_bar.js";
@@ -13,7 +13,23 @@ import { download, fileName, stillOf } from "./still.js";
 const WHOLE_M = 150; // round a flight of one place
 
 /** See stage.js for what it is given; showBar(): cameras and UAVs have changed. */
-export function createActs({ stage, rig, hands, picture, player, hasOwnTime, targets, labels, atNow, frames, palette, onChange, onClose, step, showBar }) {
+export function createActs({
+  stage,
+  rig,
+  hands,
+  picture,
+  player,
+  hasOwnTime,
+  targets,
+  labels,
+  atNow,
+  frames,
+  palette,
+  onChange,
+  onClose,
+  step,
+  showBar,
+}) {
   const { source } = stage;
   const places = source.routes.map(({ place }) => place);
 
@@ -54,15 +70,27 @@ export function createActs({ stage, rig, hands, picture, player, hasOwnTime, tar
   function whatFlies() {
     const simulated = source.routes.filter(({ isSimulated }) => isSimulated);
     if (source.isSimulated) return t("Simulated");
-    if (simulated.length) return t("Simulated, no real aircraft: {names}.", { names: simulated.map(({ name }) => name).join(", ") });
+    if (simulated.length)
+      return t("Simulated, no real aircraft: {names}.", { names: simulated.map(({ name }) => name).join(", ") });
     return source.kind === "plan" ? t("Planned, not flown") : "Spanwise";
   }
 
   function link() {
     const state = rig.state();
     const place = state.mode === "free" ? picture.frame.toGeographic(state.eye) : null;
-    const time = source.kind === "live" ? {} : source.hasDate ? { at_ms: Math.round(atNow()) } : { since_s: (atNow() - source.departs_ms) / 1_000 };
-    return linkText({ source: { kind: source.kind, rehearsal: source.rehearsal ?? null, run: source.run ?? null }, ...time, uav: stage.chosen, target: stage.target, camera: { ...state, place } });
+    const time =
+      source.kind === "live"
+        ? {}
+        : source.hasDate
+          ? { at_ms: Math.round(atNow()) }
+          : { since_s: (atNow() - source.departs_ms) / 1_000 };
+    return linkText({
+      source: { kind: source.kind, rehearsal: source.rehearsal ?? null, run: source.run ?? null },
+      ...time,
+      uav: stage.chosen,
+      target: stage.target,
+      camera: { ...state, place },
+    });
   }
 
   const acts = {
@@ -75,7 +103,16 @@ export function createActs({ stage, rig, hands, picture, player, hasOwnTime, tar
     nextTarget(by) {
       const order = targets.map(({ place }) => place);
       if (!order.length) return false;
-      const seen = stage.target ?? targetToSee(source, null, frames()?.drawn().find(({ route }) => route === stage.chosen)?.task, stage.chosen)?.place;
+      const seen =
+        stage.target ??
+        targetToSee(
+          source,
+          null,
+          frames()
+            ?.drawn()
+            .find(({ route }) => route === stage.chosen)?.task,
+          stage.chosen,
+        )?.place;
       return seeTarget(rig.mode === "orbit" ? nextOf(order, seen, by) : seen);
     },
     zoom(factor) {
@@ -84,15 +121,28 @@ export function createActs({ stage, rig, hands, picture, player, hasOwnTime, tar
     },
     /** All that was planned, in the picture. */
     fit() {
-      const [xs, zs] = [0, 2].map((axis) => targets.map(({ place3d }) => place3d[axis]).concat(frames().drawn().map(({ place }) => place[axis])));
+      const [xs, zs] = [0, 2].map((axis) =>
+        targets
+          .map(({ place3d }) => place3d[axis])
+          .concat(
+            frames()
+              .drawn()
+              .map(({ place }) => place[axis]),
+          ),
+      );
       if (!xs.length) return false;
       const middle = [xs, zs].map((values) => (Math.min(...values) + Math.max(...values)) / 2);
       const radius_m = Math.max(WHOLE_M, ...xs.map((x, index) => Math.hypot(x - middle[0], zs[index] - middle[1])));
       if (rig.mode !== "top" && !stage.isFlat) rig.setMode("orbit");
       rig.fit(radius_m);
-      const subject = frames().drawn().find(({ route }) => route === stage.chosen);
+      const subject = frames()
+        .drawn()
+        .find(({ route }) => route === stage.chosen);
       const target = targetToSee(source, stage.target, subject?.task, stage.chosen);
-      const from = rig.mode === "top" ? (subject?.place ?? [0, 0, 0]) : (targets.find(({ place }) => place === target?.place)?.place3d ?? subject?.place ?? [0, 0, 0]);
+      const from =
+        rig.mode === "top"
+          ? (subject?.place ?? [0, 0, 0])
+          : (targets.find(({ place }) => place === target?.place)?.place3d ?? subject?.place ?? [0, 0, 0]);
       rig.offset = [middle[0] - from[0], 0, middle[1] - from[2]];
       return changed();
     },
@@ -106,9 +156,20 @@ export function createActs({ stage, rig, hands, picture, player, hasOwnTime, tar
     changeSpeed: (direction) => (player?.changeSpeed(direction), Boolean(player)),
     async keepPicture() {
       const uav = source.routes.find(({ place }) => place === stage.chosen);
-      const words = [stage.mission.name, [timeWords(), uav && `${routeLetter(uav.place)} ${uav.name}`, CAMERA_LONG[rig.mode]].filter(Boolean).join(" · "), whatFlies()];
-      const at = source.hasDate ? new Date(atNow()).toISOString().slice(0, 19).replaceAll(":", "").replace("T", "-") : `${Math.round((atNow() - source.departs_ms) / 1_000)}s`;
-      await download(stillOf(picture.copy(), labels.shown(), words, palette()), fileName(stage.mission.name, at, rig.mode));
+      const words = [
+        stage.mission.name,
+        [timeWords(), uav && `${routeLetter(uav.place)} ${uav.name}`, CAMERA_LONG[rig.mode]]
+          .filter(Boolean)
+          .join(" · "),
+        whatFlies(),
+      ];
+      const at = source.hasDate
+        ? new Date(atNow()).toISOString().slice(0, 19).replaceAll(":", "").replace("T", "-")
+        : `${Math.round((atNow() - source.departs_ms) / 1_000)}s`;
+      await download(
+        stillOf(picture.copy(), labels.shown(), words, palette()),
+        fileName(stage.mission.name, at, rig.mode),
+      );
     },
     async copyLink() {
       await copyText(new URL(acts.address(), location.href).href);
@@ -123,9 +184,16 @@ export function createActs({ stage, rig, hands, picture, player, hasOwnTime, tar
       const { camera = null, at_ms = null, since_s = null } = wanted ?? {};
       if (camera) {
         const eye = camera.place && picture.frame.toLocal(...camera.place);
-        rig.restore({ ...camera, mode: stage.isFlat ? "top" : camera.mode, eye, offset: camera.offset, view: stage.isFlat && camera.mode !== "top" ? null : camera.view });
+        rig.restore({
+          ...camera,
+          mode: stage.isFlat ? "top" : camera.mode,
+          eye,
+          offset: camera.offset,
+          view: stage.isFlat && camera.mode !== "top" ? null : camera.view,
+        });
       } else if (stage.isFlat) rig.restore({ mode: "top" });
-      if (player && hasOwnTime && (at_ms !== null || since_s !== null)) player.seek(at_ms ?? source.departs_ms + since_s * 1_000);
+      if (player && hasOwnTime && (at_ms !== null || since_s !== null))
+        player.seek(at_ms ?? source.departs_ms + since_s * 1_000);
       showBar();
     },
   };

@@ -19,14 +19,18 @@ export function makeFrame(origin) {
   return {
     origin,
     metresPerDegree: [east_m, north_m],
-    toLocal: (lon, lat, altitude_amsl_m) => [(lon - lon0) * east_m, altitude_amsl_m - altitude0_m, (lat0 - lat) * north_m],
+    toLocal: (lon, lat, altitude_amsl_m) => [
+      (lon - lon0) * east_m,
+      altitude_amsl_m - altitude0_m,
+      (lat0 - lat) * north_m,
+    ],
     toGeographic: ([x, y, z]) => [lon0 + x / east_m, lat0 - z / north_m, altitude0_m + y],
   };
 }
 
 /** Clockwise from north, of a direction on the ground; 0 to 360. */
 export function bearing_deg(x, z) {
-  return ((Math.atan2(x, -z) / RADIANS) % 360 + 360) % 360;
+  return (((Math.atan2(x, -z) / RADIANS) % 360) + 360) % 360;
 }
 
 /** The direction [x, z], of length 1, of a bearing. */

@@ -23,7 +23,26 @@ const TOGETHER_M = 90;
 const TOGETHER_SHARE = 0.4;
 
 /** See stage.js for what it is given; overlays(): elements that stand over the picture. → { draw({ dt_s }), pick({ x, y }), drawn(), describe() }. */
-export function createFrames({ stage, scene, picture, canvas, rig, hands, player, flight, targets, labels, instruments, palette, atNow, isCalm, surroundings, overlays, choose, seeTarget }) {
+export function createFrames({
+  stage,
+  scene,
+  picture,
+  canvas,
+  rig,
+  hands,
+  player,
+  flight,
+  targets,
+  labels,
+  instruments,
+  palette,
+  atNow,
+  isCalm,
+  surroundings,
+  overlays,
+  choose,
+  seeTarget,
+}) {
   const { source } = stage;
   const names = new Map(targets.map(({ place, label, name }) => [place, { label, name }]));
   const where = new Map(targets.map((target) => [target.place, target.place3d]));
@@ -67,25 +86,49 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
     const target = targetToSee(source, stage.target, subject?.task, stage.chosen);
     const focus = target ? focusOf(where.get(target.place), subject) : null;
     const pose = rig.pose({ subject, focus, dt_s, groundAt: picture.groundAt });
-    const away_m = rig.mode === "free" && subject ? lengthOf(minus(pose.eye, subject.place)) : lengthOf(minus(pose.eye, pose.look));
+    const away_m =
+      rig.mode === "free" && subject ? lengthOf(minus(pose.eye, subject.place)) : lengthOf(minus(pose.eye, pose.look));
     const sun = sunTime(source, at_ms, longitude_deg);
     const wind = source.windAt(at_ms, subject?.height_agl_m ?? 0);
     const isPlaying = player ? player.isPlaying : source.kind === "live";
     picture.setDate(sun);
     const hidden = rig.mode === "onboard" ? stage.chosen : null;
-    const room_m = stage.isFlat ? 0 : roomRound(surroundings, pose.eye, drawn.filter(({ route }) => route !== hidden).map(({ place }) => place));
+    const room_m = stage.isFlat
+      ? 0
+      : roomRound(
+          surroundings,
+          pose.eye,
+          drawn.filter(({ route }) => route !== hidden).map(({ place }) => place),
+        );
     const goesOn = picture.show({
-      pose, distance_m: Math.max(2, away_m), room_m, drawn, chosen: stage.chosen, looked: null, hidden,
-      at_ms: source.kind === "live" ? null : at_ms, wind, dt_s: isPlaying && !isCalm() ? dt_s : 0,
+      pose,
+      distance_m: Math.max(2, away_m),
+      room_m,
+      drawn,
+      chosen: stage.chosen,
+      looked: null,
+      hidden,
+      at_ms: source.kind === "live" ? null : at_ms,
+      wind,
+      dt_s: isPlaying && !isCalm() ? dt_s : 0,
     });
     write({ at_ms, subject, pose, sun, wind, isPlaying, now_ms, target });
     const isFlying = source.kind === "live" && !isCalm() && drawn.some(({ isInAir }) => isInAir);
-    return goesOn || (player?.isPlaying ?? false) || isFlying || hands.isHeld() || rig.isMoving(subject) || (source.isGliding?.(at_ms) ?? false);
+    return (
+      goesOn ||
+      (player?.isPlaying ?? false) ||
+      isFlying ||
+      hands.isHeld() ||
+      rig.isMoving(subject) ||
+      (source.isGliding?.(at_ms) ?? false)
+    );
   }
 
   /** What is orbited: the target, with the UAV in the picture while it is at it. */
   function focusOf(place, subject) {
-    return subject && lengthOf(minus(subject.place, place)) < TOGETHER_M ? between(place, subject.place, TOGETHER_SHARE) : place;
+    return subject && lengthOf(minus(subject.place, place)) < TOGETHER_M
+      ? between(place, subject.place, TOGETHER_SHARE)
+      : place;
   }
 
   function write({ subject, pose, sun, wind, isPlaying, now_ms, target }) {
@@ -93,9 +136,19 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
     if (isDue) {
       read_ms = now_ms;
       covered = boxesOf(overlays());
-      ground = groundLabels(picture.labels().filter(({ kind, id }) => kind === "zone" || !assets.has(id)), pose.eye);
+      ground = groundLabels(
+        picture.labels().filter(({ kind, id }) => kind === "zone" || !assets.has(id)),
+        pose.eye,
+      );
       const route = source.routes.find(({ place }) => place === stage.chosen) ?? null;
-      instruments.show(route, subject, subject ? readingsOf(subject, { nearest: nearestOf(subject, sun), task: subject.task, wind, labels: names }) : [], Boolean(route?.isSimulated) && !source.isSimulated);
+      instruments.show(
+        route,
+        subject,
+        subject
+          ? readingsOf(subject, { nearest: nearestOf(subject, sun), task: subject.task, wind, labels: names })
+          : [],
+        Boolean(route?.isSimulated) && !source.isSimulated,
+      );
     }
     if (!isPlaying || now_ms - described_ms >= DESCRIBE_EVERY_MS) {
       described_ms = now_ms;
@@ -103,34 +156,71 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
       if (canvas.getAttribute("aria-label") !== words) canvas.setAttribute("aria-label", words);
     }
     labels.setNight(picture.isNight());
-    labels.show([...drawn.filter(({ route }) => (rig.mode !== "onboard" && rig.mode !== "chase") || route !== stage.chosen).map(labelOf), ...targets.map((one) => targetLabel(one, pose.eye)), ...ground], picture.project, picture.size, covered);
+    labels.show(
+      [
+        ...drawn
+          .filter(({ route }) => (rig.mode !== "onboard" && rig.mode !== "chase") || route !== stage.chosen)
+          .map(labelOf),
+        ...targets.map((one) => targetLabel(one, pose.eye)),
+        ...ground,
+      ],
+      picture.project,
+      picture.size,
+      covered,
+    );
   }
 
   function boxesOf(elements) {
     const corner = canvas.getBoundingClientRect();
-    return elements.map((element) => element.getBoundingClientRect()).filter(({ width, height }) => width > 0 && height > 0).map(({ left, top, right, bottom }) => ({ left: left - corner.left, top: top - corner.top, right: right - corner.left, bottom: bottom - corner.top }));
+    return elements
+      .map((element) => element.getBoundingClientRect())
+      .filter(({ width, height }) => width > 0 && height > 0)
+      .map(({ left, top, right, bottom }) => ({
+        left: left - corner.left,
+        top: top - corner.top,
+        right: right - corner.left,
+        bottom: bottom - corner.top,
+      }));
   }
 
   function nearestOf(uav, date) {
     const keep = ({ schedule }) => isInForce(schedule, date.getTime(), scene.origin.position) !== false;
-    return { wire: nearestWire(surroundings, uav.place, REACH_M), tower: nearestTower(surroundings, uav.place, REACH_M), zone: nearestZone(surroundings, uav.place, keep) };
+    return {
+      wire: nearestWire(surroundings, uav.place, REACH_M),
+      tower: nearestTower(surroundings, uav.place, REACH_M),
+      zone: nearestZone(surroundings, uav.place, keep),
+    };
   }
 
   function labelOf(uav) {
     const { kind } = uav.moment;
     const fact = kind === MEASURED || source.kind === "plan" ? heightText(uav.height_agl_m) : certaintyText(uav.moment);
-    return { key: `uav ${uav.route}`, place: [uav.place[0], uav.place[1] + 0.5, uav.place[2]], parts: [`${routeLetter(uav.route)} ${uav.name}`, fact], className: `uav route-${(uav.route % ROUTES) + 1}${uav.route === stage.chosen ? " chosen" : ""}${kind === LOST ? " lost" : ""}`, weight: uav.route === stage.chosen ? 200 : 150 };
+    return {
+      key: `uav ${uav.route}`,
+      place: [uav.place[0], uav.place[1] + 0.5, uav.place[2]],
+      parts: [`${routeLetter(uav.route)} ${uav.name}`, fact],
+      className: `uav route-${(uav.route % ROUTES) + 1}${uav.route === stage.chosen ? " chosen" : ""}${kind === LOST ? " lost" : ""}`,
+      weight: uav.route === stage.chosen ? 200 : 150,
+    };
   }
 
   function targetLabel({ place, label, name, route, place3d }, eye) {
     const away_m = lengthOf(minus(place3d, eye));
-    return { key: `target ${place}`, place: place3d, parts: [label, away_m < TARGET_NAMES_M ? name : ""], className: `target route-${(route % ROUTES) + 1}`, weight: 100 - Math.min(60, away_m / 100) };
+    return {
+      key: `target ${place}`,
+      place: place3d,
+      parts: [label, away_m < TARGET_NAMES_M ? name : ""],
+      className: `target route-${(route % ROUTES) + 1}`,
+      weight: 100 - Math.min(60, away_m / 100),
+    };
   }
 
   /** What the picture shows, as a sentence. */
   function describe(subject, target) {
     const camera = rig.mode === "orbit" && target ? `${CAMERA_LONG.orbit} ${target.label}` : CAMERA_LONG[rig.mode];
-    const uav = subject ? `${routeLetter(subject.route)} ${subject.name}, ${t("{height} above ground", { height: heightText(subject.height_agl_m) })}, ${certaintyText(subject.moment)}` : "";
+    const uav = subject
+      ? `${routeLetter(subject.route)} ${subject.name}, ${t("{height} above ground", { height: heightText(subject.height_agl_m) })}, ${certaintyText(subject.moment)}`
+      : "";
     const shown = tn(drawn.length, "{count} UAV", "{count} UAVs");
     const view = stage.isFlat ? t("View from above, without WebGL") : t("3D view");
     return [`${view}: ${shown}`, camera, uav].filter(Boolean).join("; ");
@@ -140,10 +230,20 @@ export function createFrames({ stage, scene, picture, canvas, rig, hands, player
     draw,
     drawn: () => drawn,
     pick({ x, y }) {
-      const nearest = (items, reach_px) => items.map(({ place, ...item }) => ({ ...item, at: picture.project(place) })).filter(({ at }) => at && Math.hypot(at.x - x, at.y - y) < reach_px).sort((a, b) => a.at.away_m - b.at.away_m)[0];
-      const uav = nearest(drawn.map(({ place, route }) => ({ place, route })), PICK_PX.uav);
+      const nearest = (items, reach_px) =>
+        items
+          .map(({ place, ...item }) => ({ ...item, at: picture.project(place) }))
+          .filter(({ at }) => at && Math.hypot(at.x - x, at.y - y) < reach_px)
+          .sort((a, b) => a.at.away_m - b.at.away_m)[0];
+      const uav = nearest(
+        drawn.map(({ place, route }) => ({ place, route })),
+        PICK_PX.uav,
+      );
       if (uav) return choose(uav.route);
-      const target = nearest(targets.map(({ place3d, place }) => ({ place: place3d, number: place })), PICK_PX.target);
+      const target = nearest(
+        targets.map(({ place3d, place }) => ({ place: place3d, number: place })),
+        PICK_PX.target,
+      );
       return target ? seeTarget(target.number) : false;
     },
   };

@@ -5,11 +5,16 @@ import { CAMERA_KEYS, CAMERA_LONG } from "./camera_bar.js";
 
 const HELD = ["arrowleft", "arrowright", "arrowup", "arrowdown", "w", "a", "s", "d", "q", "e"];
 const held = (acts) => (event) => acts.press(event);
-const isOnControl = ({ target }) => target instanceof Element && target.closest("button, a, summary, select, input, [role=menu]") !== null;
+const isOnControl = ({ target }) =>
+  target instanceof Element && target.closest("button, a, summary, select, input, [role=menu]") !== null;
 
 /** acts: of stage.js. Those that a page has by itself (time, UAVs) are left out where `hasOwnTime` is false. */
 export function sceneKeys(acts, { hasOwnTime = true } = {}) {
-  const cameras = Object.entries(CAMERA_KEYS).map(([mode, key]) => ({ keys: [key], words: CAMERA_LONG[mode], act: () => acts.setCamera(mode) }));
+  const cameras = Object.entries(CAMERA_KEYS).map(([mode, key]) => ({
+    keys: [key],
+    words: CAMERA_LONG[mode],
+    act: () => acts.setCamera(mode),
+  }));
   const time = [
     { keys: [" "], words: t("Play, stop"), act: (event) => (isOnControl(event) || !acts.toggle() ? false : true) },
     { keys: [","], words: t("Previous event"), act: () => acts.step(-1) },
@@ -21,11 +26,23 @@ export function sceneKeys(acts, { hasOwnTime = true } = {}) {
     ...cameras,
     { keys: ["j"], words: t("Next UAV"), act: () => acts.next(1) },
     { keys: ["k"], words: t("Previous UAV"), act: () => acts.next(-1) },
-    ...Array.from({ length: 8 }, (_, index) => ({ keys: [`${index + 1}`], words: index ? undefined : t("Follow UAV A to H (1 to 8)"), act: () => acts.chooseNumber(index) })),
+    ...Array.from({ length: 8 }, (_, index) => ({
+      keys: [`${index + 1}`],
+      words: index ? undefined : t("Follow UAV A to H (1 to 8)"),
+      act: () => acts.chooseNumber(index),
+    })),
     { keys: ["b"], words: t("Next target"), act: () => acts.nextTarget(1) },
     ...(hasOwnTime ? time : []),
-    { keys: ["arrowleft", "arrowright", "arrowup", "arrowdown"], words: t("Turn the camera, with the other arrows too"), act: (event) => (isOnControl(event) ? false : acts.press(event)) },
-    { keys: ["w", ...HELD.slice(5)], words: t("Free camera: W A S D, E up, Q down, with Shift faster"), act: held(acts) },
+    {
+      keys: ["arrowleft", "arrowright", "arrowup", "arrowdown"],
+      words: t("Turn the camera, with the other arrows too"),
+      act: (event) => (isOnControl(event) ? false : acts.press(event)),
+    },
+    {
+      keys: ["w", ...HELD.slice(5)],
+      words: t("Free camera: W A S D, E up, Q down, with Shift faster"),
+      act: held(acts),
+    },
     { keys: ["shift+w", "shift+a", "shift+s", "shift+d", "shift+q", "shift+e"], act: held(acts) },
     { keys: ["+", "="], words: t("Nearer"), act: () => acts.zoom(0.8) },
     { keys: ["-"], words: t("Farther"), act: () => acts.zoom(1.25) },

@@ -4,7 +4,11 @@ const GAP_PX = 3;
 
 /** Round a point: above, right, left, below, then higher up. As shares of the label's size from its top left corner, and pixels besides. */
 const TRIES = [
-  [-0.5, -1, 0, -10], [0, -0.5, 14, 0], [-1, -0.5, -14, 0], [-0.5, 0, 0, 12], [-0.5, -1, 0, -36],
+  [-0.5, -1, 0, -10],
+  [0, -0.5, 14, 0],
+  [-1, -0.5, -14, 0],
+  [-0.5, 0, 0, 12],
+  [-0.5, -1, 0, -36],
 ];
 
 /**
@@ -17,13 +21,23 @@ export function placeLabels(items, { width, height }, before = new Map(), covere
   const taken = [...covered];
   for (const item of [...items].sort((a, b) => b.weight - a.weight)) {
     const last = before.get(item.key)?.tried;
-    const order = last === undefined ? [...TRIES.keys()] : [last, ...[...TRIES.keys()].filter((number) => number !== last)];
+    const order =
+      last === undefined ? [...TRIES.keys()] : [last, ...[...TRIES.keys()].filter((number) => number !== last)];
     for (const number of order) {
       const [across, down, right_px, down_px] = TRIES[number];
       const left = item.x + across * item.width + right_px;
       const top = item.y + down * item.height + down_px;
       if (left < 2 || top < 2 || left + item.width > width - 2 || top + item.height > height - 2) continue;
-      if (taken.some((box) => left < box.right + GAP_PX && left + item.width > box.left - GAP_PX && top < box.bottom + GAP_PX && top + item.height > box.top - GAP_PX)) continue;
+      if (
+        taken.some(
+          (box) =>
+            left < box.right + GAP_PX &&
+            left + item.width > box.left - GAP_PX &&
+            top < box.bottom + GAP_PX &&
+            top + item.height > box.top - GAP_PX,
+        )
+      )
+        continue;
       taken.push({ left, top, right: left + item.width, bottom: top + item.height });
       placed.set(item.key, { left, top, tried: number });
       break;

@@ -30,7 +30,9 @@ export function createLabels(container) {
       known.text = text;
       known.className = className;
       known.element.className = `scene-label ${className}`;
-      known.element.replaceChildren(...parts.filter(Boolean).map((part, index) => h(index === 0 ? "b" : "span", {}, part)));
+      known.element.replaceChildren(
+        ...parts.filter(Boolean).map((part, index) => h(index === 0 ? "b" : "span", {}, part)),
+      );
       known.element.style.visibility = "hidden";
       known.element.style.display = "";
       [known.width, known.height] = [known.element.offsetWidth, known.element.offsetHeight];
@@ -47,7 +49,14 @@ export function createLabels(container) {
       const seen = [];
       for (const item of items) {
         const at = project(item.place);
-        if (!at || at.x < -TOUCHES_PX || at.y < -TOUCHES_PX || at.x > size.width + TOUCHES_PX || at.y > size.height + TOUCHES_PX) continue;
+        if (
+          !at ||
+          at.x < -TOUCHES_PX ||
+          at.y < -TOUCHES_PX ||
+          at.x > size.width + TOUCHES_PX ||
+          at.y > size.height + TOUCHES_PX
+        )
+          continue;
         const { width, height } = elementOf(item);
         seen.push({ ...item, x: at.x, y: at.y, width, height });
       }
@@ -88,10 +97,19 @@ function isFirstOfItsName() {
 /** Of the world's labels those that are near enough, the nearest and heaviest first. eye: the camera's place. */
 export function groundLabels(labels, eye, most = MOST_OF_GROUND) {
   return labels
-    .map((label) => ({ ...label, away_m: Math.hypot(label.position[0] - eye[0], label.position[1] - eye[1], label.position[2] - eye[2]) }))
+    .map((label) => ({
+      ...label,
+      away_m: Math.hypot(label.position[0] - eye[0], label.position[1] - eye[1], label.position[2] - eye[2]),
+    }))
     .filter(({ kind, away_m }) => away_m < (GROUND_REACH_M[kind] ?? USUAL_REACH_M))
     .sort((a, b) => b.weight / (200 + b.away_m) - a.weight / (200 + a.away_m))
     .filter(isFirstOfItsName())
     .slice(0, most)
-    .map(({ kind, id, text, position, weight, away_m, counted_m }) => ({ key: `${kind} ${id}`, place: position, parts: [text, counted_m ? t("counted as {height}", { height: heightText(counted_m) }) : ""], className: `ground ${kind}`, weight: Math.min(1, weight / 100) * 20 - away_m / 1_000 }));
+    .map(({ kind, id, text, position, weight, away_m, counted_m }) => ({
+      key: `${kind} ${id}`,
+      place: position,
+      parts: [text, counted_m ? t("counted as {height}", { height: heightText(counted_m) }) : ""],
+      className: `ground ${kind}`,
+      weight: Math.min(1, weight / 100) * 20 - away_m / 1_000,
+    }));
 }

@@ -13,7 +13,11 @@ export function readSource(text) {
   return { kind, rehearsal: KEY.test(rehearsal) ? rehearsal : null, run: /^\d{1,3}$/.test(run) ? Number(run) : null };
 }
 
-export const sourceText = ({ kind, rehearsal, run }) => [kind, ...(kind === "rehearsal" && rehearsal ? [rehearsal, ...(run === null || run === undefined ? [] : [run])] : [])].join(":");
+export const sourceText = ({ kind, rehearsal, run }) =>
+  [
+    kind,
+    ...(kind === "rehearsal" && rehearsal ? [rehearsal, ...(run === null || run === undefined ? [] : [run])] : []),
+  ].join(":");
 
 const figures = (text, count) => {
   const found = (text ?? "").split(",").map(Number);
@@ -53,9 +57,14 @@ export function linkText({ source, at_ms = null, since_s = null, uav = null, tar
   if (target !== null) said.set("target", target);
   if (camera) {
     said.set("camera", camera.mode);
-    said.set("view", [round(camera.bearing_deg, 1), round(camera.elevation_deg, 1), round(camera.distance_m, 1)].join(","));
-    if (camera.place) said.set("from", [round(camera.place[0], 6), round(camera.place[1], 6), round(camera.place[2], 1)].join(","));
-    if (camera.offset?.some((metres) => Math.abs(metres) > 0.05)) said.set("offset", camera.offset.map((metres) => round(metres, 1)).join(","));
+    said.set(
+      "view",
+      [round(camera.bearing_deg, 1), round(camera.elevation_deg, 1), round(camera.distance_m, 1)].join(","),
+    );
+    if (camera.place)
+      said.set("from", [round(camera.place[0], 6), round(camera.place[1], 6), round(camera.place[2], 1)].join(","));
+    if (camera.offset?.some((metres) => Math.abs(metres) > 0.05))
+      said.set("offset", camera.offset.map((metres) => round(metres, 1)).join(","));
   }
   return `?${`${said}`.replaceAll("%2C", ",").replaceAll("%3A", ":")}`;
 }

@@ -27,7 +27,15 @@ let following = 0; // the interval of what grows
 let opened = 0; // the last one wins
 
 /** What the stage of the moment can do; nothing while there is none. */
-const acts = new Proxy({}, { get: (_target, name) => (...given) => stage?.[name]?.(...given) ?? false });
+const acts = new Proxy(
+  {},
+  {
+    get:
+      (_target, name) =>
+      (...given) =>
+        stage?.[name]?.(...given) ?? false,
+  },
+);
 
 function keepAddress() {
   clearTimeout(timer);
@@ -35,7 +43,15 @@ function keepAddress() {
 }
 
 function tell(words, again = null) {
-  root.replaceChildren(h("p", { class: "scene-waiting", role: again ? "alert" : "status" }, again && icon("cloud-off"), ` ${words} `, again && h("button", { class: "button small", type: "button", onclick: again }, t("Try again"))));
+  root.replaceChildren(
+    h(
+      "p",
+      { class: "scene-waiting", role: again ? "alert" : "status" },
+      again && icon("cloud-off"),
+      ` ${words} `,
+      again && h("button", { class: "button small", type: "button", onclick: again }, t("Try again")),
+    ),
+  );
 }
 
 /** What went wrong in words, with a way on. */
@@ -60,7 +76,14 @@ async function open(wanted, link = null) {
     if (!source.routes.length) return tell(t("There is nothing to see yet: plan the mission first."));
     if (source.kind === "live") follow(source);
     if (source.isGrowing) following = setInterval(() => void readAgain(wanted), AGAIN_MS);
-    const made = await openStage(root, { isWanted: () => turn === opened, mission: { id: page.mission, name: mission.name }, source, link, now_ms: () => feed?.now_ms() ?? Date.now(), onChange: keepAddress });
+    const made = await openStage(root, {
+      isWanted: () => turn === opened,
+      mission: { id: page.mission, name: mission.name },
+      source,
+      link,
+      now_ms: () => feed?.now_ms() ?? Date.now(),
+      onChange: keepAddress,
+    });
     if (!made) return;
     stage = made;
     root.dataset.kind = stage.kind;
@@ -101,13 +124,27 @@ async function readAgain(wanted) {
 function drawSources(source, choices) {
   byId("scene-sources").replaceChildren(
     h("legend", { class: "unseen" }, t("What is shown")),
-    ...choices.map((kind) => h("label", {}, h("input", { type: "radio", name: "source", value: kind, checked: kind === source.kind, onchange: () => void open({ kind, rehearsal: null, run: null }).then(keepAddress) }), h("span", { class: "segment" }, SOURCE_WORDS[kind]))),
+    ...choices.map((kind) =>
+      h(
+        "label",
+        {},
+        h("input", {
+          type: "radio",
+          name: "source",
+          value: kind,
+          checked: kind === source.kind,
+          onchange: () => void open({ kind, rehearsal: null, run: null }).then(keepAddress),
+        }),
+        h("span", { class: "segment" }, SOURCE_WORDS[kind]),
+      ),
+    ),
   );
   const runs = byId("scene-runs");
   runs.hidden = (source.runs?.length ?? 0) < 2;
   runs.replaceChildren(...(source.runs ?? []).map(({ sequence, words }) => h("option", { value: sequence }, words)));
   if (source.runs) runs.value = source.run;
-  runs.onchange = () => void open({ kind: "rehearsal", rehearsal: source.rehearsal, run: Number(runs.value) }).then(keepAddress);
+  runs.onchange = () =>
+    void open({ kind: "rehearsal", rehearsal: source.rehearsal, run: Number(runs.value) }).then(keepAddress);
 }
 
 startChrome({ bindings: sceneKeys(acts) });

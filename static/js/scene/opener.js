@@ -7,7 +7,18 @@ import { t } from "../text.js";
 /** options() → what openPanel of panel.js takes, or null where there is nothing to see. → { toggle, open, close, isOpen, stage, show(isThere), binding }. */
 export function mountSceneOpener(options) {
   const frame = document.querySelector(".map-frame");
-  const button = h("button", { class: "icon-button scene-open", type: "button", "aria-pressed": "false", "aria-label": t("3D view"), title: `${t("3D view")} (D)`, onclick: () => void toggle() }, h("b", {}, "3D"));
+  const button = h(
+    "button",
+    {
+      class: "icon-button scene-open",
+      type: "button",
+      "aria-pressed": "false",
+      "aria-label": t("3D view"),
+      title: `${t("3D view")} (D)`,
+      onclick: () => void toggle(),
+    },
+    h("b", {}, "3D"),
+  );
   const group = h("div", { class: "control-group" }, button);
   frame.querySelector(".map-controls").append(group);
   let panel = null; // a promise
@@ -49,7 +60,10 @@ export function mountSceneOpener(options) {
   function close() {
     const open_ = panel;
     panel = stage = null;
-    void open_?.then(({ close: end }) => end(), () => {});
+    void open_?.then(
+      ({ close: end }) => end(),
+      () => {},
+    );
     return open_ !== null;
   }
 

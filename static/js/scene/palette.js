@@ -2,8 +2,20 @@
 
 import { readPalette } from "../map/palette.js";
 
-const MORE = { water: "--map-water", road: "--map-road", pressed: "--pressed", panel: "--panel", hairline: "--hairline", accent: "--accent" };
+const MORE = {
+  water: "--map-water",
+  road: "--map-road",
+  pressed: "--pressed",
+  panel: "--panel",
+  hairline: "--hairline",
+  accent: "--accent",
+};
 
-export function readScenePalette(read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim()) {
-  return { ...readPalette(read), ...Object.fromEntries(Object.entries(MORE).map(([name, token]) => [name, read(token)])) };
+export function readScenePalette(
+  read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim(),
+) {
+  return {
+    ...readPalette(read),
+    ...Object.fromEntries(Object.entries(MORE).map(([name, token]) => [name, read(token)])),
+  };
 }

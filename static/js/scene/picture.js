@@ -50,7 +50,11 @@ export function createPicture(container, canvas, { palette, draw, onLost, onFoun
     },
     /** flight: of drawFlight; count: of routes. */
     showFlight(flight, count, begins_ms) {
-      parts = { ways: createWays(picture.groundAt), uavs: createUavs(Math.max(1, count)), marks: createMarks(Math.max(1, count)) };
+      parts = {
+        ways: createWays(picture.groundAt),
+        uavs: createUavs(Math.max(1, count)),
+        marks: createMarks(Math.max(1, count)),
+      };
       for (const { group } of Object.values(parts)) view.scene.add(group);
       parts.ways.setPalette(colours);
       parts.ways.showPlanned(flight.plannedLines());
@@ -75,9 +79,28 @@ export function createPicture(container, canvas, { palette, draw, onLost, onFoun
     /** pose: of the rig; distance_m: to what is looked at; room_m: round the camera; drawn: moments with { colour, report }; chosen, looked: places of routes; hidden: the one that looks. */
     show({ pose, distance_m, room_m, drawn, chosen, looked, hidden, at_ms, wind, dt_s }) {
       view.aim(pose, room_m);
-      parts.uavs.show(drawn, { palette: colours, metresPerPixel: view.metresPerPixel, isDark: colours.isDark || picture.isNight(), dt_s, hidden });
-      parts.marks.show(drawn.filter(({ route }) => route !== hidden), { wind: hidden === null ? wind : null, chosen, palette: colours, isNight: picture.isNight(), metresPerPixel: view.metresPerPixel });
-      const heads = drawn.map(({ route, place }) => ({ route, place, radius_m: Math.max(HEAD_M, HEAD_PX * view.metresPerPixel(place)) }));
+      parts.uavs.show(drawn, {
+        palette: colours,
+        metresPerPixel: view.metresPerPixel,
+        isDark: colours.isDark || picture.isNight(),
+        dt_s,
+        hidden,
+      });
+      parts.marks.show(
+        drawn.filter(({ route }) => route !== hidden),
+        {
+          wind: hidden === null ? wind : null,
+          chosen,
+          palette: colours,
+          isNight: picture.isNight(),
+          metresPerPixel: view.metresPerPixel,
+        },
+      );
+      const heads = drawn.map(({ route, place }) => ({
+        route,
+        place,
+        radius_m: Math.max(HEAD_M, HEAD_PX * view.metresPerPixel(place)),
+      }));
       parts.ways.frame({ at_ms, heads, looked, viewport: view.viewport() });
       return world.update(view.camera, distance_m) === true;
     },

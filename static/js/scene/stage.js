@@ -4,8 +4,8 @@ import { get, signInAddress } from "../api.js";
 import { h, icon } from "../dom.js";
 import { routeLetter } from "../map/palette.js";
 import { onTheme } from "../page/theme.js";
-import { simulatedMark } from "../simulated.js";
 import { createPlayer } from "../report/player.js";
+import { simulatedMark } from "../simulated.js";
 import { t } from "../text.js";
 import { createActs } from "./acts.js";
 import { createCameraBar } from "./camera_bar.js";
@@ -26,7 +26,10 @@ import { NoWebGL } from "./view.js";
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 const USUAL_SPEED = 5;
 
-const NO_WEBGL = () => ({ title: t("This browser draws no 3D."), words: t("WebGL is missing or switched off. You see the flight from above instead.") });
+const NO_WEBGL = () => ({
+  title: t("This browser draws no 3D."),
+  words: t("WebGL is missing or switched off. You see the flight from above instead."),
+});
 
 /** How the flight is seen: in space, or from above where there is no WebGL. */
 function pictureIn(holder, options) {
@@ -49,7 +52,21 @@ function pictureIn(holder, options) {
  * onChange(): what a link would say is another. onClose(). isWanted(): whether it still is once the ground is read; else null is given.
  * → acts and point(); throws ApiError.
  */
-export async function openStage(root, { mission, source, link = null, isPanel = false, player: hostPlayer = null, now_ms = () => Date.now(), onChange = () => {}, onClose = () => {}, openAddress = () => "", isWanted = () => true }) {
+export async function openStage(
+  root,
+  {
+    mission,
+    source,
+    link = null,
+    isPanel = false,
+    player: hostPlayer = null,
+    now_ms = () => Date.now(),
+    onChange = () => {},
+    onClose = () => {},
+    openAddress = () => "",
+    isWanted = () => true,
+  },
+) {
   const scene = await readScene(source);
   if (!isWanted()) return null;
   let palette = readScenePalette();
@@ -74,10 +91,17 @@ export async function openStage(root, { mission, source, link = null, isPanel = 
   holder.append(h("div", { class: "scene-notices" }, notice, stale));
 
   picture.showGround(scene);
-  const flight = drawFlight(source, { frame: picture.frame, groundAt: picture.groundAt, groundKind: scene.ground.kind });
+  const flight = drawFlight(source, {
+    frame: picture.frame,
+    groundAt: picture.groundAt,
+    groundKind: scene.ground.kind,
+  });
   picture.showFlight(flight, source.routes.length, source.span?.from_ms ?? 0);
   const heights = new Map(scene.supports.map(({ id, likely_m }) => [id, likely_m]));
-  const targets = source.targets.map((target) => ({ ...target, place3d: flight.targetPlace({ position: target.position, height_m: heights.get(target.asset) ?? null }) }));
+  const targets = source.targets.map((target) => ({
+    ...target,
+    place3d: flight.targetPlace({ position: target.position, height_m: heights.get(target.asset) ?? null }),
+  }));
 
   let lastMove_ms = null;
   const player = hostPlayer ?? (source.span ? createPlayer({ onMove: () => (moved(), bar?.show()) }) : null);
@@ -93,21 +117,70 @@ export async function openStage(root, { mission, source, link = null, isPanel = 
     if (!player.isPlaying) onChange();
   }
 
-  const hands = listenToHands(canvas, rig, { onChange: () => (picture.request(), onChange()), onPick: (at) => frames.pick(at) });
+  const hands = listenToHands(canvas, rig, {
+    onChange: () => (picture.request(), onChange()),
+    onPick: (at) => frames.pick(at),
+  });
   const atNow = () => (player ? player.at_ms : now_ms());
-  const acts = createActs({ stage, rig, hands, picture, player, hasOwnTime: !hostPlayer, targets, labels, atNow, frames: () => frames, palette: () => palette, onChange, onClose, step: (direction) => bar?.step(direction), showBar: () => cameraBar.show({ mode: rig.mode, chosen: stage.chosen, isFlat: stage.isFlat }) });
+  const acts = createActs({
+    stage,
+    rig,
+    hands,
+    picture,
+    player,
+    hasOwnTime: !hostPlayer,
+    targets,
+    labels,
+    atNow,
+    frames: () => frames,
+    palette: () => palette,
+    onChange,
+    onClose,
+    step: (direction) => bar?.step(direction),
+    showBar: () => cameraBar.show({ mode: rig.mode, chosen: stage.chosen, isFlat: stage.isFlat }),
+  });
   const cameraBar = createCameraBar({ routes: source.routes, acts, isPanel, openAddress });
-  const bar = !hostPlayer && player ? createTimeBar({ player, source, eventWords: (event) => eventWords(event, source) }) : null;
-  frames = createFrames({ stage, scene, picture, canvas, rig, hands, player, flight, targets, labels, instruments, palette: () => palette, atNow, isCalm: () => calm.matches, surroundings: surroundingsOf(scene, picture.frame, picture.wires(), picture.groundAt), overlays: () => [...cameraBar.element.children, ...chips.children, instruments.element, notice, stale], choose: acts.choose, seeTarget: acts.seeTarget });
+  const bar =
+    !hostPlayer && player ? createTimeBar({ player, source, eventWords: (event) => eventWords(event, source) }) : null;
+  frames = createFrames({
+    stage,
+    scene,
+    picture,
+    canvas,
+    rig,
+    hands,
+    player,
+    flight,
+    targets,
+    labels,
+    instruments,
+    palette: () => palette,
+    atNow,
+    isCalm: () => calm.matches,
+    surroundings: surroundingsOf(scene, picture.frame, picture.wires(), picture.groundAt),
+    overlays: () => [...cameraBar.element.children, ...chips.children, instruments.element, notice, stale],
+    choose: acts.choose,
+    seeTarget: acts.seeTarget,
+  });
 
-  const chips = h("div", { class: "scene-chips" }, source.isSimulated && simulatedMark(), source.kind === "plan" && h("span", { class: "chip draft" }, t("Planned, not flown")), source.kind === "live" && h("span", { class: "chip active" }, t("Live")), scene.ground.kind === "flat" && h("span", { class: "chip draft" }, t("Flat ground assumed")));
+  const chips = h(
+    "div",
+    { class: "scene-chips" },
+    source.isSimulated && simulatedMark(),
+    source.kind === "plan" && h("span", { class: "chip draft" }, t("Planned, not flown")),
+    source.kind === "live" && h("span", { class: "chip active" }, t("Live")),
+    scene.ground.kind === "flat" && h("span", { class: "chip draft" }, t("Flat ground assumed")),
+  );
   holder.append(h("div", { class: "scene-over" }, cameraBar.element, chips), instruments.element);
   if (bar) root.append(bar.element);
   if (stage.isFlat) {
     const { title, words } = NO_WEBGL();
     tell(title, words);
   }
-  if (bar) new ResizeObserver(() => root.style.setProperty("--scene-time", `${bar.element.offsetHeight}px`)).observe(bar.element);
+  if (bar)
+    new ResizeObserver(() => root.style.setProperty("--scene-time", `${bar.element.offsetHeight}px`)).observe(
+      bar.element,
+    );
 
   function tell(title, words) {
     notice.hidden = false;
@@ -143,7 +216,17 @@ export async function openStage(root, { mission, source, link = null, isPanel = 
       if (stale.dataset.words === words) return;
       stale.dataset.words = words;
       stale.hidden = !said;
-      if (said) stale.replaceChildren(icon("cloud-off"), h("span", {}, h("strong", {}, said.words), said.rest && ` ${said.rest}`, said.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))]));
+      if (said)
+        stale.replaceChildren(
+          icon("cloud-off"),
+          h(
+            "span",
+            {},
+            h("strong", {}, said.words),
+            said.rest && ` ${said.rest}`,
+            said.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))],
+          ),
+        );
     },
     /** A record has grown: of report/load.js. */
     renew(loaded) {
@@ -171,7 +254,8 @@ export async function openStage(root, { mission, source, link = null, isPanel = 
 
 function towersIn({ project, size, frame }, { supports }) {
   return supports.filter(({ kind, position, ground_amsl_m, height_m }) => {
-    const at = kind === "vertex" ? null : project(frame.toLocal(position[0], position[1], ground_amsl_m + height_m / 2));
+    const at =
+      kind === "vertex" ? null : project(frame.toLocal(position[0], position[1], ground_amsl_m + height_m / 2));
     return at && at.x >= 0 && at.y >= 0 && at.x <= size.width && at.y <= size.height;
   }).length;
 }
@@ -186,7 +270,8 @@ function eventWords({ kind, place, target, alert }, source) {
   const words = {
     "take-off": () => t("{name} takes off", { name }),
     landing: () => t("{name} lands", { name }),
-    target: () => t("{target} reached", { target: source.targets.find((one) => one.place === target)?.label ?? target + 1 }),
+    target: () =>
+      t("{target} reached", { target: source.targets.find((one) => one.place === target)?.label ?? target + 1 }),
     alert: () => [name, alert.message].filter(Boolean).join(": "),
   };
   return words[kind]();

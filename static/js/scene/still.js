@@ -10,7 +10,8 @@ export function stillOf({ picture, scale }, labels, words, palette) {
   [canvas.width, canvas.height] = [picture.width, picture.height + line];
   const context = canvas.getContext("2d");
   context.drawImage(picture, 0, 0);
-  for (const { element, left, top, width, height } of labels) drawLabel(context, element, { left, top, width, height }, scale, palette);
+  for (const { element, left, top, width, height } of labels)
+    drawLabel(context, element, { left, top, width, height }, scale, palette);
   context.fillStyle = palette.panel;
   context.fillRect(0, picture.height, canvas.width, line);
   context.textBaseline = "middle";
@@ -72,6 +73,10 @@ export async function download(canvas, name) {
 
 /** "north-belt-2026-09-10-091204-chase.png": of letters, digits and hyphens in any language. */
 export function fileName(mission, at, camera) {
-  const plain = mission.toLowerCase().normalize("NFC").replace(/[^\p{Letter}\p{Number}]+/gu, "-").replace(/^-+|-+$/g, "");
+  const plain = mission
+    .toLowerCase()
+    .normalize("NFC")
+    .replace(/[^\p{Letter}\p{Number}]+/gu, "-")
+    .replace(/^-+|-+$/g, "");
   return `${[plain || "mission", at, camera].filter(Boolean).join("-")}.png`;
 }

@@ -17,7 +17,12 @@ export class NoWebGL extends Error {}
 function rendererOn(canvas) {
   let context = null;
   try {
-    context = canvas.getContext("webgl2", { antialias: true, alpha: false, powerPreference: "high-performance", stencil: false });
+    context = canvas.getContext("webgl2", {
+      antialias: true,
+      alpha: false,
+      powerPreference: "high-performance",
+      stencil: false,
+    });
   } catch {
     /* as without it */
   }
@@ -138,7 +143,14 @@ export function createView(container, canvas, { draw, onLost = () => {}, onFound
     /** For measurements: draw calls and what the graphics hold, frames and their script since the last asking. */
     figures() {
       const { render, memory } = renderer.info;
-      const told = { calls: render.calls, triangles: render.triangles, geometries: memory.geometries, textures: memory.textures, programs: renderer.info.programs?.length ?? 0, ...figures };
+      const told = {
+        calls: render.calls,
+        triangles: render.triangles,
+        geometries: memory.geometries,
+        textures: memory.textures,
+        programs: renderer.info.programs?.length ?? 0,
+        ...figures,
+      };
       Object.assign(figures, { frames: 0, script_ms: 0, longest_ms: 0 });
       return told;
     },

@@ -13,7 +13,18 @@ export function mountGroundPanel(on) {
   const panel = byId("terrain-panel");
   let shown = null; // { profile, towers, chart, figures, frame }
 
-  const closer = () => h("button", { class: "icon-button tight terrain-close", type: "button", "aria-label": t("Close"), title: t("Close (Esc)"), onclick: on.close }, icon("x"));
+  const closer = () =>
+    h(
+      "button",
+      {
+        class: "icon-button tight terrain-close",
+        type: "button",
+        "aria-label": t("Close"),
+        title: t("Close (Esc)"),
+        onclick: on.close,
+      },
+      icon("x"),
+    );
 
   function put(...content) {
     shown = null;
@@ -47,8 +58,18 @@ export function mountGroundPanel(on) {
     height(position, { ground_amsl_m, vertical_datum, source }) {
       const isKnown = ground_amsl_m !== null;
       put(
-        h("h2", { class: "terrain-sentence" }, isKnown ? t("{height} above sea level", { height: heightText(ground_amsl_m) }) : t("No terrain model knows the ground here.")),
-        h("p", { class: "caption" }, [coordinateText(position), isKnown && vertical_datum, isKnown && source].filter(Boolean).join(" · ")),
+        h(
+          "h2",
+          { class: "terrain-sentence" },
+          isKnown
+            ? t("{height} above sea level", { height: heightText(ground_amsl_m) })
+            : t("No terrain model knows the ground here."),
+        ),
+        h(
+          "p",
+          { class: "caption" },
+          [coordinateText(position), isKnown && vertical_datum, isKnown && source].filter(Boolean).join(" · "),
+        ),
       );
     },
     /** `title` names what the line is; `canStepBack` offers to take the last point away. */
@@ -61,7 +82,13 @@ export function mountGroundPanel(on) {
           { class: "profile-head" },
           h("h2", { class: "terrain-sentence" }, title),
           h("p", { class: "caption" }, profileSentence(profile, towers)),
-          canStepBack && h("button", { class: "button quiet", type: "button", onclick: on.back }, icon("undo-2"), t("Take the last point back")),
+          canStepBack &&
+            h(
+              "button",
+              { class: "button quiet", type: "button", onclick: on.back },
+              icon("undo-2"),
+              t("Take the last point back"),
+            ),
         ),
         h("div", { class: "profile-body" }, figures, frame),
         tableOf(profile, towers),
@@ -86,7 +113,15 @@ function figuresAt({ profile, towers }, index) {
   const place = (term, words) => h("div", {}, h("dt", {}, term), h("dd", {}, words));
   if (index === null) {
     if (profile.lowest_m === null) return [];
-    return [h("dl", {}, place(t("Highest"), heightText(profile.highest_m)), place(t("Lowest"), heightText(profile.lowest_m)), place(t("Length"), lengthText(profile.length_m)))];
+    return [
+      h(
+        "dl",
+        {},
+        place(t("Highest"), heightText(profile.highest_m)),
+        place(t("Lowest"), heightText(profile.lowest_m)),
+        place(t("Length"), lengthText(profile.length_m)),
+      ),
+    ];
   }
   const ground = profile.ground_amsl_m[index];
   const tower = towers.find((candidate) => candidate.index === index);
@@ -101,10 +136,15 @@ function figuresAt({ profile, towers }, index) {
   ];
 }
 
-const towerText = ({ label, height_m }) => `${label}, ${height_m === null ? t("height not stated") : heightText(height_m)}`;
+const towerText = ({ label, height_m }) =>
+  `${label}, ${height_m === null ? t("height not stated") : heightText(height_m)}`;
 
 function tableOf(profile, towers) {
-  const cells = ({ distance_m, ground_amsl_m, tower }) => [lengthText(distance_m), ground_amsl_m === null ? t("not known") : heightText(ground_amsl_m), tower ? towerText(tower) : ""];
+  const cells = ({ distance_m, ground_amsl_m, tower }) => [
+    lengthText(distance_m),
+    ground_amsl_m === null ? t("not known") : heightText(ground_amsl_m),
+    tower ? towerText(tower) : "",
+  ];
   return h(
     "details",
     { class: "profile-table" },
@@ -112,8 +152,26 @@ function tableOf(profile, towers) {
     h(
       "table",
       {},
-      h("thead", {}, h("tr", {}, [t("Along"), t("Ground above sea level"), t("Tower")].map((name) => h("th", { scope: "col" }, name)))),
-      h("tbody", {}, rowsOf(profile, towers).map((row) => h("tr", {}, cells(row).map((words) => h("td", {}, words))))),
+      h(
+        "thead",
+        {},
+        h(
+          "tr",
+          {},
+          [t("Along"), t("Ground above sea level"), t("Tower")].map((name) => h("th", { scope: "col" }, name)),
+        ),
+      ),
+      h(
+        "tbody",
+        {},
+        rowsOf(profile, towers).map((row) =>
+          h(
+            "tr",
+            {},
+            cells(row).map((words) => h("td", {}, words)),
+          ),
+        ),
+      ),
     ),
   );
 }

@@ -35,7 +35,8 @@ const { page, map, open } = mountGroundPage({
   kinds: () => (tool === "profile" ? (points.length ? [] : ["line"]) : null),
 });
 const showList = mountModelList(page.canCurate, {
-  show: ({ geometry }) => map.fit(boxAround(geometry.type === "Polygon" ? geometry.coordinates.flat() : geometry.coordinates.flat(2))),
+  show: ({ geometry }) =>
+    map.fit(boxAround(geometry.type === "Polygon" ? geometry.coordinates.flat() : geometry.coordinates.flat(2))),
   point: (model) => layer.showModels(map.map, models, model?.id),
   remove: takeAway,
 });
@@ -46,7 +47,9 @@ async function load() {
     models = (await get("/terrain")).data.features;
     showList(models);
     layer.showModels(map.map, models);
-    byId("page-facts").textContent = models.length ? tn(models.length, "{count} model, newest on top", "{count} models, newest on top") : t("No models");
+    byId("page-facts").textContent = models.length
+      ? tn(models.length, "{count} model, newest on top", "{count} models, newest on top")
+      : t("No models");
   } catch (error) {
     toast(error.message, { label: t("Try again"), act: load });
   }
@@ -56,7 +59,10 @@ function choose(next) {
   end();
   tool = next;
   document.querySelector(`#terrain-tools input[value=${tool}]`).checked = true;
-  byId("terrain-hint").replaceChildren(HINTS[tool], ...(tool === "profile" ? [h("span", { class: "with-keys" }, KEYS_OF_PROFILE)] : []));
+  byId("terrain-hint").replaceChildren(
+    HINTS[tool],
+    ...(tool === "profile" ? [h("span", { class: "with-keys" }, KEYS_OF_PROFILE)] : []),
+  );
   map.map.getCanvas().style.cursor = tool === "profile" ? "crosshair" : "";
 }
 
@@ -113,7 +119,8 @@ async function profileOfPoints() {
 async function profileOfLine(id) {
   const found = await ask(async () => {
     const { data: line } = await get(`/assets/${id}`);
-    const positions = line.geometry.type === "MultiLineString" ? line.geometry.coordinates[0] : line.geometry.coordinates;
+    const positions =
+      line.geometry.type === "MultiLineString" ? line.geometry.coordinates[0] : line.geometry.coordinates;
     const [profile, towers] = await Promise.all([askProfile(positions), towersIn(boxAround(positions))]);
     return { line, positions, profile, towers: towersAlong(profile, towers) };
   });
@@ -157,7 +164,8 @@ function takePointBack() {
 function showCursor(index) {
   cursor = index;
   panel.point(index);
-  if (map.map.getSource("terrain-cursor")) layer.showCursor(map.map, index === null || !along ? null : along.profile.positions[index]);
+  if (map.map.getSource("terrain-cursor"))
+    layer.showCursor(map.map, index === null || !along ? null : along.profile.positions[index]);
 }
 
 /** The pointer on the map near the profile's line moves the cursor of the chart. */
@@ -197,7 +205,8 @@ async function takeAway(model) {
   byId("terrain-list").querySelector("button")?.focus();
 }
 
-for (const input of document.querySelectorAll("#terrain-tools input")) input.addEventListener("change", () => choose(input.value));
+for (const input of document.querySelectorAll("#terrain-tools input"))
+  input.addEventListener("change", () => choose(input.value));
 
 open({
   bindings: [
@@ -206,7 +215,11 @@ open({
     { keys: ["."], words: t("On along the profile"), act: step(1) },
     { keys: [","], words: t("Back along the profile"), act: step(-1) },
     { keys: ["backspace", "delete"], words: t("Take the last point back"), act: takePointBack },
-    { keys: ["escape"], words: t("End"), act: () => (!byId("dock").hidden || points.length ? end() : tool === "profile" ? choose("height") : false) },
+    {
+      keys: ["escape"],
+      words: t("End"),
+      act: () => (!byId("dock").hidden || points.length ? end() : tool === "profile" ? choose("height") : false),
+    },
   ],
   async load() {
     layer.addTo(map.map);

@@ -9,15 +9,24 @@ export function voidsText({ posts, voids }) {
   if (posts === null || voids === null || !posts) return t("not counted");
   if (!voids) return t("none");
   const percent = (100 * voids) / posts;
-  const share = percent < 0.1 ? t("under {share}", { share: numberText(0.1, 1) }) : percent.toLocaleString(localeOf(language), { maximumFractionDigits: 1 });
+  const share =
+    percent < 0.1
+      ? t("under {share}", { share: numberText(0.1, 1) })
+      : percent.toLocaleString(localeOf(language), { maximumFractionDigits: 1 });
   return `${countText(voids, "post")}, ${share}\u00a0%`;
 }
 
 /** [term, words] of one model. */
 export function factsOf(properties) {
-  const { lowest_m, highest_m, vertical_datum, resolution_m, attribution, licence, is_synthetic, imported_at } = properties;
+  const { lowest_m, highest_m, vertical_datum, resolution_m, attribution, licence, is_synthetic, imported_at } =
+    properties;
   const facts = [
-    [t("Heights"), lowest_m === null || highest_m === null ? t("not counted") : t("{low} to {high}", { low: heightText(lowest_m), high: heightText(highest_m) })],
+    [
+      t("Heights"),
+      lowest_m === null || highest_m === null
+        ? t("not counted")
+        : t("{low} to {high}", { low: heightText(lowest_m), high: heightText(highest_m) }),
+    ],
     [t("Vertical datum"), vertical_datum],
     [t("Posts every"), lengthText(resolution_m)],
     [t("Voids"), voidsText(properties)],
@@ -36,7 +45,12 @@ export function mountModelList(canCurate, on) {
   function row(model, index, count) {
     const { file_name } = model.properties;
     const words = count > 1 ? (index === 0 ? t("Counts on top") : t("Fills what those above leave void")) : "";
-    const opener = h("button", { class: "terrain-name", type: "button", title: t("Show it on the map"), onclick: () => on.show(model) }, icon("mountain"), h("strong", {}, file_name));
+    const opener = h(
+      "button",
+      { class: "terrain-name", type: "button", title: t("Show it on the map"), onclick: () => on.show(model) },
+      icon("mountain"),
+      h("strong", {}, file_name),
+    );
     for (const come of ["pointerenter", "focus"]) opener.addEventListener(come, () => on.point(model));
     for (const go of ["pointerleave", "blur"]) opener.addEventListener(go, () => on.point(null));
     return h(
@@ -46,10 +60,25 @@ export function mountModelList(canCurate, on) {
         "div",
         { class: "terrain-head" },
         opener,
-        canCurate && h("button", { class: "icon-button tight", type: "button", "aria-label": t("Remove {name}", { name: file_name }), title: t("Remove"), onclick: () => on.remove(model) }, icon("trash-2")),
+        canCurate &&
+          h(
+            "button",
+            {
+              class: "icon-button tight",
+              type: "button",
+              "aria-label": t("Remove {name}", { name: file_name }),
+              title: t("Remove"),
+              onclick: () => on.remove(model),
+            },
+            icon("trash-2"),
+          ),
       ),
       words && h("p", { class: "caption" }, words),
-      h("dl", { class: "terrain-facts" }, factsOf(model.properties).map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value)))),
+      h(
+        "dl",
+        { class: "terrain-facts" },
+        factsOf(model.properties).map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value))),
+      ),
     );
   }
 
@@ -60,7 +89,9 @@ export function mountModelList(canCurate, on) {
       icon("mountain"),
       h("strong", {}, t("No terrain here yet.")),
       h("p", {}, t("Heights above sea level need a terrain model: a GeoTIFF or an HGT file.")),
-      canCurate ? h("a", { class: "button", href: "/imports" }, t("Import a file")) : h("p", {}, t("A curator can import one.")),
+      canCurate
+        ? h("a", { class: "button", href: "/imports" }, t("Import a file"))
+        : h("p", {}, t("A curator can import one.")),
     );
 
   return (models) => {
@@ -77,7 +108,13 @@ export function askToRemove({ file_name }) {
       "dialog",
       { "aria-labelledby": "remove-title" },
       h("h2", { id: "remove-title" }, t("Remove {name}?", { name: file_name })),
-      h("p", {}, t("Heights then come from older models where they reach, and from none elsewhere. Planned missions say that the ground has changed. The file can be imported again.")),
+      h(
+        "p",
+        {},
+        t(
+          "Heights then come from older models where they reach, and from none elsewhere. Planned missions say that the ground has changed. The file can be imported again.",
+        ),
+      ),
       h(
         "form",
         { method: "dialog", class: "acts" },

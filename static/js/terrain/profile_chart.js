@@ -25,7 +25,9 @@ export function stretchesOf(heights_m) {
 export function rulesOf(low_m, high_m) {
   const rough = (high_m - low_m) / RULES;
   const power = 10 ** Math.floor(Math.log10(rough));
-  const step = [1, 2, 5, 10].map((factor) => factor * power).find((candidate) => Math.floor(high_m / candidate) - Math.ceil(low_m / candidate) < RULES);
+  const step = [1, 2, 5, 10]
+    .map((factor) => factor * power)
+    .find((candidate) => Math.floor(high_m / candidate) - Math.ceil(low_m / candidate) < RULES);
   const rules = [];
   for (let height = Math.ceil(low_m / step) * step; height <= high_m; height += step) rules.push(height);
   return rules;
@@ -71,7 +73,16 @@ export function towersAlong(profile, features) {
     if (!feature) return [];
     const ground = profile.ground_amsl_m[index];
     const height = feature.properties.height_m ?? null;
-    return [{ index, label: feature.properties.label, distance_m: profile.distance_m[index], ground_amsl_m: ground, height_m: height, top_amsl_m: ground === null || height === null ? null : ground + height }];
+    return [
+      {
+        index,
+        label: feature.properties.label,
+        distance_m: profile.distance_m[index],
+        ground_amsl_m: ground,
+        height_m: height,
+        top_amsl_m: ground === null || height === null ? null : ground + height,
+      },
+    ];
   });
 }
 
@@ -81,9 +92,20 @@ export function profileSentence(profile, towers = []) {
   const long = lengthText(profile.length_m);
   if (!known) return t("{length}; no terrain model knows the ground here.", { length: long });
   const unknown = profile.ground_amsl_m.length - known;
-  const parts = [t("{length}, ground from {low} to {high} above sea level", { length: long, low: heightText(profile.lowest_m), high: heightText(profile.highest_m) })];
+  const parts = [
+    t("{length}, ground from {low} to {high} above sea level", {
+      length: long,
+      low: heightText(profile.lowest_m),
+      high: heightText(profile.highest_m),
+    }),
+  ];
   if (towers.length) parts.push(countText(towers.length, "tower"));
-  if (unknown) parts.push(tn(unknown, "unknown at {count} place of {all}", "unknown at {count} places of {all}", { all: numberText(profile.ground_amsl_m.length) }));
+  if (unknown)
+    parts.push(
+      tn(unknown, "unknown at {count} place of {all}", "unknown at {count} places of {all}", {
+        all: numberText(profile.ground_amsl_m.length),
+      }),
+    );
   return `${parts.join(", ")}.`;
 }
 
@@ -94,18 +116,35 @@ export function rowsOf(profile, towers, most = 40) {
   const byIndex = new Map(towers.map((tower) => [tower.index, tower]));
   const wanted = new Set([last, ...byIndex.keys()]);
   for (let index = 0; index < last; index += step) wanted.add(index);
-  return [...wanted].sort((a, b) => a - b).map((index) => ({ index, distance_m: profile.distance_m[index], ground_amsl_m: profile.ground_amsl_m[index], tower: byIndex.get(index) ?? null }));
+  return [...wanted]
+    .sort((a, b) => a - b)
+    .map((index) => ({
+      index,
+      distance_m: profile.distance_m[index],
+      ground_amsl_m: profile.ground_amsl_m[index],
+      tower: byIndex.get(index) ?? null,
+    }));
 }
 
 /** Draws it. Returns { element, point(index or null) }. */
 export function drawProfile(profile, towers, width, height) {
   const scales = scalesOf(profile, towers, width, height);
   const floor = height - EDGES.bottom;
-  const element = svg("svg", { class: "profile-chart", width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": profileSentence(profile, towers) });
+  const element = svg("svg", {
+    class: "profile-chart",
+    width,
+    height,
+    viewBox: `0 0 ${width} ${height}`,
+    role: "img",
+    "aria-label": profileSentence(profile, towers),
+  });
   if (!scales) return { element, point: () => {} };
   const { x, y } = scales;
   for (const rule of rulesOf(scales.low, scales.high)) {
-    element.append(svg("line", { class: "rule", x1: EDGES.left, x2: width - EDGES.right, y1: y(rule), y2: y(rule) }), svg("text", { class: "tick", x: EDGES.left - 8, y: y(rule) + 4, "text-anchor": "end" }, heightText(rule)));
+    element.append(
+      svg("line", { class: "rule", x1: EDGES.left, x2: width - EDGES.right, y1: y(rule), y2: y(rule) }),
+      svg("text", { class: "tick", x: EDGES.left - 8, y: y(rule) + 4, "text-anchor": "end" }, heightText(rule)),
+    );
   }
   for (const { isKnown, from, to } of stretchesOf(profile.ground_amsl_m)) {
     if (isKnown) drawGround(element, profile, from, to, scales, floor);
@@ -115,11 +154,23 @@ export function drawProfile(profile, towers, width, height) {
     if (tower.ground_amsl_m === null) continue;
     const foot = y(tower.ground_amsl_m);
     const top = tower.top_amsl_m === null ? foot - UNTOLD_TOWER_PX : y(tower.top_amsl_m);
-    element.append(svg("line", { class: tower.top_amsl_m === null ? "tower untold" : "tower", x1: x(tower.distance_m), x2: x(tower.distance_m), y1: foot, y2: top }));
+    element.append(
+      svg("line", {
+        class: tower.top_amsl_m === null ? "tower untold" : "tower",
+        x1: x(tower.distance_m),
+        x2: x(tower.distance_m),
+        y1: foot,
+        y2: top,
+      }),
+    );
   }
   element.append(
     svg("text", { class: "tick", x: EDGES.left, y: height - 5 }, heightText(0)),
-    svg("text", { class: "tick", x: width - EDGES.right, y: height - 5, "text-anchor": "end" }, lengthText(profile.length_m)),
+    svg(
+      "text",
+      { class: "tick", x: width - EDGES.right, y: height - 5, "text-anchor": "end" },
+      lengthText(profile.length_m),
+    ),
   );
   const line = svg("line", { class: "cursor", y1: EDGES.top, y2: floor });
   const dot = svg("circle", { class: "cursor-dot", r: 4 });
@@ -143,15 +194,34 @@ export function drawProfile(profile, towers, width, height) {
 
 function drawGround(element, profile, from, to, { x, y }, floor) {
   const points = [];
-  for (let index = from; index <= to; index += 1) points.push(`${x(profile.distance_m[index]).toFixed(1)} ${y(profile.ground_amsl_m[index]).toFixed(1)}`);
+  for (let index = from; index <= to; index += 1)
+    points.push(`${x(profile.distance_m[index]).toFixed(1)} ${y(profile.ground_amsl_m[index]).toFixed(1)}`);
   const [start, end] = [x(profile.distance_m[from]), x(profile.distance_m[to])];
-  element.append(svg("path", { class: "ground", d: `M${start} ${floor}L${points.join("L")}L${end} ${floor}Z` }), svg("path", { class: "ground-edge", d: `M${points.join("L")}` }));
+  element.append(
+    svg("path", { class: "ground", d: `M${start} ${floor}L${points.join("L")}L${end} ${floor}Z` }),
+    svg("path", { class: "ground-edge", d: `M${points.join("L")}` }),
+  );
 }
 
 /** From the last place that is known to the next one. */
 function drawUnknown(element, profile, from, to, { x }, floor) {
   const start = x(profile.distance_m[Math.max(0, from - 1)]);
   const end = x(profile.distance_m[Math.min(profile.distance_m.length - 1, to + 1)]);
-  element.append(svg("rect", { class: "unknown", x: start, y: EDGES.top, width: Math.max(1, end - start), height: floor - EDGES.top }));
-  if (end - start > 80) element.append(svg("text", { class: "unknown-words", x: (start + end) / 2, y: EDGES.top + 16, "text-anchor": "middle" }, t("No terrain")));
+  element.append(
+    svg("rect", {
+      class: "unknown",
+      x: start,
+      y: EDGES.top,
+      width: Math.max(1, end - start),
+      height: floor - EDGES.top,
+    }),
+  );
+  if (end - start > 80)
+    element.append(
+      svg(
+        "text",
+        { class: "unknown-words", x: (start + end) / 2, y: EDGES.top + 16, "text-anchor": "middle" },
+        t("No terrain"),
+      ),
+    );
 }

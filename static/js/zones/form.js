@@ -10,9 +10,32 @@ const field = (id, words, input) => h("div", { class: "field" }, h("label", { fo
 
 export function zoneForm(feature, choice, kept) {
   const facts = { ...(feature?.properties ?? {}), ...kept };
-  const name = h("input", { class: "input", id: "zone-name", type: "text", maxlength: 255, required: true, value: facts.name ?? "", autocomplete: "off" });
-  const restriction = h("input", { class: "input", id: "zone-restriction", type: "text", maxlength: 100, list: "restrictions", value: facts.restriction ?? "", autocomplete: "off" });
-  const reason = h("input", { class: "input", id: "zone-reason", type: "text", maxlength: 255, value: facts.reason ?? "", autocomplete: "off" });
+  const name = h("input", {
+    class: "input",
+    id: "zone-name",
+    type: "text",
+    maxlength: 255,
+    required: true,
+    value: facts.name ?? "",
+    autocomplete: "off",
+  });
+  const restriction = h("input", {
+    class: "input",
+    id: "zone-restriction",
+    type: "text",
+    maxlength: 100,
+    list: "restrictions",
+    value: facts.restriction ?? "",
+    autocomplete: "off",
+  });
+  const reason = h("input", {
+    class: "input",
+    id: "zone-reason",
+    type: "text",
+    maxlength: 255,
+    value: facts.reason ?? "",
+    autocomplete: "off",
+  });
   const lower = limitField("lower", t("Lower limit"), facts.lower_limit);
   const upper = limitField("upper", t("Upper limit"), facts.upper_limit);
   const times = scheduleEditor(facts.schedule);
@@ -21,12 +44,28 @@ export function zoneForm(feature, choice, kept) {
       "form",
       { class: "record-form", onsubmit: (event) => event.preventDefault() },
       field("zone-name", t("Name"), name),
-      h("div", { class: "pair" }, field("zone-restriction", t("Restriction"), restriction), field("zone-reason", t("Reason"), reason)),
-      h("datalist", { id: "restrictions" }, RESTRICTIONS.map((value) => h("option", { value }))),
+      h(
+        "div",
+        { class: "pair" },
+        field("zone-restriction", t("Restriction"), restriction),
+        field("zone-reason", t("Reason"), reason),
+      ),
+      h(
+        "datalist",
+        { id: "restrictions" },
+        RESTRICTIONS.map((value) => h("option", { value })),
+      ),
       upper.element,
       lower.element,
       times.element,
     ),
-    read: () => ({ name: name.value.trim(), restriction: restriction.value.trim(), reason: reason.value.trim(), lower_limit: lower.read(), upper_limit: upper.read(), schedule: times.read() }),
+    read: () => ({
+      name: name.value.trim(),
+      restriction: restriction.value.trim(),
+      reason: reason.value.trim(),
+      lower_limit: lower.read(),
+      upper_limit: upper.read(),
+      schedule: times.read(),
+    }),
   };
 }

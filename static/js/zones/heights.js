@@ -4,7 +4,12 @@ import { h, svg } from "../dom.js";
 import { t } from "../text.js";
 import { heightText } from "../units.js";
 
-export const REFERENCES = [["AGL", t("above ground")], ["AMSL", t("above sea level")], ["STD", t("flight level")], ["WGS84", t("above the ellipsoid")]];
+export const REFERENCES = [
+  ["AGL", t("above ground")],
+  ["AMSL", t("above sea level")],
+  ["STD", t("flight level")],
+  ["WGS84", t("above the ellipsoid")],
+];
 const WORDS = Object.fromEntries(REFERENCES);
 const FOOT_M = 0.3048;
 const FLIGHT_LEVEL_M = 100 * FOOT_M;
@@ -18,7 +23,8 @@ export function limitText(limit, side) {
 
 /** What is known of both limits, in one sentence. */
 export function heightsText({ lower_limit: lower, upper_limit: upper }) {
-  if (lower && upper) return t("From {low} to {high}", { low: limitText(lower, "lower"), high: limitText(upper, "upper") });
+  if (lower && upper)
+    return t("From {low} to {high}", { low: limitText(lower, "lower"), high: limitText(upper, "upper") });
   if (upper) return t("Up to {high}, lower limit not stated", { high: limitText(upper, "upper") });
   return lower ? t("From {low}, upper limit not stated", { low: limitText(lower, "lower") }) : t("Heights not stated");
 }
@@ -32,9 +38,27 @@ export function bandDrawing({ lower_limit: lower, upper_limit: upper }) {
     "svg",
     { width, height, viewBox: `0 0 ${width} ${height}`, "aria-hidden": "true" },
     svg("rect", { x: 8, y: top, width: 18, height: bottom - top, fill: "var(--zone-fill)", stroke: "none" }),
-    ...[0, 6, 12, 18].map((step) => svg("path", { d: `M8 ${Math.min(bottom, top + step + 12)}L26 ${Math.max(top, top + step - 2)}`, stroke: "var(--zone)", "stroke-width": 0.8, "clip-path": "none", opacity: 0.6 })),
-    svg("path", { d: `M6 ${top}H28`, stroke: "var(--zone)", "stroke-width": 1.75, "stroke-dasharray": upper ? "none" : "3 3" }),
-    svg("path", { d: `M6 ${bottom}H28`, stroke: "var(--zone)", "stroke-width": 1.75, "stroke-dasharray": lower ? "none" : "3 3" }),
+    ...[0, 6, 12, 18].map((step) =>
+      svg("path", {
+        d: `M8 ${Math.min(bottom, top + step + 12)}L26 ${Math.max(top, top + step - 2)}`,
+        stroke: "var(--zone)",
+        "stroke-width": 0.8,
+        "clip-path": "none",
+        opacity: 0.6,
+      }),
+    ),
+    svg("path", {
+      d: `M6 ${top}H28`,
+      stroke: "var(--zone)",
+      "stroke-width": 1.75,
+      "stroke-dasharray": upper ? "none" : "3 3",
+    }),
+    svg("path", {
+      d: `M6 ${bottom}H28`,
+      stroke: "var(--zone)",
+      "stroke-width": 1.75,
+      "stroke-dasharray": lower ? "none" : "3 3",
+    }),
     svg("path", { d: `M2 ${ground}H32`, stroke: "var(--ink-2)", "stroke-width": 1.5 }),
   );
 }
@@ -42,12 +66,30 @@ export function bandDrawing({ lower_limit: lower, upper_limit: upper }) {
 /** { element, read() } for one limit; read gives { value_m, reference } or null for "not stated". */
 export function limitField(side, words, limit) {
   const isLevel = limit?.reference === "STD";
-  const value = h("input", { class: "input", id: `${side}-value`, type: "number", step: "any", min: -1000, max: 100_000, value: limit ? String(Math.round((isLevel ? limit.value_m / FLIGHT_LEVEL_M : limit.value_m) * 10) / 10) : "", "aria-label": t("{limit}, value", { limit: words }) });
-  const unit = h("select", { class: "input", "aria-label": t("{limit}, unit", { limit: words }) }, [["m", "m"], ["ft", "ft"]].map(([key, text]) => h("option", { value: key }, text)));
+  const value = h("input", {
+    class: "input",
+    id: `${side}-value`,
+    type: "number",
+    step: "any",
+    min: -1000,
+    max: 100_000,
+    value: limit ? String(Math.round((isLevel ? limit.value_m / FLIGHT_LEVEL_M : limit.value_m) * 10) / 10) : "",
+    "aria-label": t("{limit}, value", { limit: words }),
+  });
+  const unit = h(
+    "select",
+    { class: "input", "aria-label": t("{limit}, unit", { limit: words }) },
+    [
+      ["m", "m"],
+      ["ft", "ft"],
+    ].map(([key, text]) => h("option", { value: key }, text)),
+  );
   const reference = h(
     "select",
     { class: "input", "aria-label": t("{limit}, counted from", { limit: words }) },
-    [["", t("not stated")], ...REFERENCES].map(([key, text]) => h("option", { value: key, selected: key === (limit?.reference ?? "") }, text)),
+    [["", t("not stated")], ...REFERENCES].map(([key, text]) =>
+      h("option", { value: key, selected: key === (limit?.reference ?? "") }, text),
+    ),
   );
   const metres = h("p", { class: "caption", hidden: true });
   const factor = () => (reference.value === "STD" ? FLIGHT_LEVEL_M : unit.value === "ft" ? FOOT_M : 1);
@@ -61,7 +103,13 @@ export function limitField(side, words, limit) {
   for (const part of [value, unit, reference]) part.addEventListener("input", adapt);
   adapt();
   return {
-    element: h("fieldset", {}, h("legend", {}, words), h("div", { class: "limit-row" }, value, unit, reference), metres),
+    element: h(
+      "fieldset",
+      {},
+      h("legend", {}, words),
+      h("div", { class: "limit-row" }, value, unit, reference),
+      metres,
+    ),
     read() {
       if (!reference.value || value.value === "") return null;
       return { value_m: Math.round(Number(value.value) * factor() * 100) / 100, reference: reference.value };

@@ -4,7 +4,12 @@ const DAY_MS = 86_400_000;
 const RADIANS = Math.PI / 180;
 const DAYS = ["SUN", "MON", "TUE", "WED", "THU", "FRI", "SAT"];
 // Height of the sun's middle above the horizon: at sunrise and sunset with refraction and half a disc, at civil twilight.
-const EVENTS = { BMCT: { height_deg: -6, side: -1 }, SR: { height_deg: -0.833, side: -1 }, SS: { height_deg: -0.833, side: 1 }, EECT: { height_deg: -6, side: 1 } };
+const EVENTS = {
+  BMCT: { height_deg: -6, side: -1 },
+  SR: { height_deg: -0.833, side: -1 },
+  SS: { height_deg: -0.833, side: 1 },
+  EECT: { height_deg: -6, side: 1 },
+};
 
 /**
  * The moment of an event on the day that begins at `day` (ms, UTC) as people at [lon, lat] count it, within some two minutes; null where
@@ -18,7 +23,9 @@ export function sunEvent(name, day, [longitude, latitude]) {
   const ecliptic = anomaly + (centre + 282.9372) * RADIANS;
   const transit = noon + 0.0053 * Math.sin(anomaly) - 0.0069 * Math.sin(2 * ecliptic);
   const declination = Math.asin(Math.sin(ecliptic) * Math.sin(23.44 * RADIANS));
-  const cosine = (Math.sin(height_deg * RADIANS) - Math.sin(latitude * RADIANS) * Math.sin(declination)) / (Math.cos(latitude * RADIANS) * Math.cos(declination));
+  const cosine =
+    (Math.sin(height_deg * RADIANS) - Math.sin(latitude * RADIANS) * Math.sin(declination)) /
+    (Math.cos(latitude * RADIANS) * Math.cos(declination));
   if (!(Math.abs(cosine) <= 1)) return null;
   const half = Math.acos(cosine) / (2 * Math.PI);
   return Date.UTC(2000, 0, 1, 12) + (transit + side * half) * DAY_MS;
@@ -52,7 +59,11 @@ export function isInForce(schedule, now, place) {
   try {
     let answer = false;
     for (const period of schedule) {
-      if ((period.startDateTime && now < Date.parse(period.startDateTime)) || (period.endDateTime && now >= Date.parse(period.endDateTime))) continue;
+      if (
+        (period.startDateTime && now < Date.parse(period.startDateTime)) ||
+        (period.endDateTime && now >= Date.parse(period.endDateTime))
+      )
+        continue;
       if (!period.schedule.length) return true;
       for (const entry of period.schedule) {
         const holds = entryHolds(entry, now, place);

@@ -14,34 +14,87 @@ import { mountSetsPanel, validityText } from "./sets_panel.js";
 const PAGE = 60;
 const TYPING_MS = 250;
 const filter = { text: "", set: null, inView: false };
-const term = (name, value) => (value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)]);
+const term = (name, value) =>
+  value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)];
 
 function factsOf({ properties, geometry }) {
   const { name, restriction, reason, schedule, circle, lower_limit: lower, upper_limit: upper } = properties;
-  return { name, restriction, reason, schedule, circle, ...limitFacts("lower", lower), ...limitFacts("upper", upper), geometry };
+  return {
+    name,
+    restriction,
+    reason,
+    schedule,
+    circle,
+    ...limitFacts("lower", lower),
+    ...limitFacts("upper", upper),
+    geometry,
+  };
 }
 
-const limitFacts = (side, limit) => ({ [`${side}_limit_m`]: limit?.value_m ?? null, [`${side}_reference`]: limit?.reference ?? "" });
+const limitFacts = (side, limit) => ({
+  [`${side}_limit_m`]: limit?.value_m ?? null,
+  [`${side}_reference`]: limit?.reference ?? "",
+});
 
 /** What is sent, under the names that facts have. */
 function factsOfBody({ lower_limit: lower, upper_limit: upper, ...rest }) {
-  return { ...rest, ...(lower === undefined ? {} : limitFacts("lower", lower)), ...(upper === undefined ? {} : limitFacts("upper", upper)) };
+  return {
+    ...rest,
+    ...(lower === undefined ? {} : limitFacts("lower", lower)),
+    ...(upper === undefined ? {} : limitFacts("upper", upper)),
+  };
 }
 
 function details({ properties }) {
   const { source } = properties;
   const isTimed = Boolean(properties.schedule?.length);
   return [
-    h("p", { class: "caption" }, [properties.restriction && plainWords(properties.restriction), properties.reason && plainWords(properties.reason)].filter(Boolean).join(" · ") || t("Restriction not stated")),
-    h("div", { class: "band" }, bandDrawing(properties), h("div", {}, h("p", {}, heightsText(properties)), h("p", {}, scheduleText(properties.schedule, { otherwise: properties.schedule_words })), isTimed && h("p", { class: "caption" }, t("By the clock of {zone}.", { zone: zoneText(new Date().toISOString()) })))),
-    ...(properties.schedule ?? []).filter((period) => period.schedule?.length).slice(0, 3).map((period) => weekDrawing(period, minutesAheadOfUtc(Date.now()) / 60)),
+    h(
+      "p",
+      { class: "caption" },
+      [properties.restriction && plainWords(properties.restriction), properties.reason && plainWords(properties.reason)]
+        .filter(Boolean)
+        .join(" · ") || t("Restriction not stated"),
+    ),
+    h(
+      "div",
+      { class: "band" },
+      bandDrawing(properties),
+      h(
+        "div",
+        {},
+        h("p", {}, heightsText(properties)),
+        h("p", {}, scheduleText(properties.schedule, { otherwise: properties.schedule_words })),
+        isTimed &&
+          h("p", { class: "caption" }, t("By the clock of {zone}.", { zone: zoneText(new Date().toISOString()) })),
+      ),
+    ),
+    ...(properties.schedule ?? [])
+      .filter((period) => period.schedule?.length)
+      .slice(0, 3)
+      .map((period) => weekDrawing(period, minutesAheadOfUtc(Date.now()) / 60)),
     properties.is_edited && h("p", { class: "caption" }, t("Edited by hand: imports leave it alone.")),
     h(
       "dl",
       { class: "facts" },
-      term(t("Circle"), properties.circle && t("{radius} round {place}", { radius: lengthText(properties.circle.radius_m), place: coordinateText(properties.circle.centre) })), term(t("Identifier"), properties.identifier.startsWith("drawn-") ? "" : properties.identifier),
-      term(t("Zone set"), properties.zone_set ?? t("Drawn here")), term(t("File"), source?.file_name), term(t("Licence"), source ? source.licence || t("not stated") : ""), term(t("Attribution"), source?.attribution),
-      term(t("Valid"), source ? validityText(source) || t("not stated") : ""), term(t("Address"), source?.source_address), term(t("Fetched"), source?.fetched_at && whenText(source.fetched_at)), term(t("Imported"), source?.imported_at && whenText(source.imported_at)), term(t("Changed"), whenText(properties.updated_at)),
+      term(
+        t("Circle"),
+        properties.circle &&
+          t("{radius} round {place}", {
+            radius: lengthText(properties.circle.radius_m),
+            place: coordinateText(properties.circle.centre),
+          }),
+      ),
+      term(t("Identifier"), properties.identifier.startsWith("drawn-") ? "" : properties.identifier),
+      term(t("Zone set"), properties.zone_set ?? t("Drawn here")),
+      term(t("File"), source?.file_name),
+      term(t("Licence"), source ? source.licence || t("not stated") : ""),
+      term(t("Attribution"), source?.attribution),
+      term(t("Valid"), source ? validityText(source) || t("not stated") : ""),
+      term(t("Address"), source?.source_address),
+      term(t("Fetched"), source?.fetched_at && whenText(source.fetched_at)),
+      term(t("Imported"), source?.imported_at && whenText(source.imported_at)),
+      term(t("Changed"), whenText(properties.updated_at)),
     ),
     h("p", { class: "caption" }, t("Facts as the source states them; whether you may fly is for you to judge.")),
   ].filter(Boolean);
@@ -53,7 +106,10 @@ const records = mountRecordPage({
   findWords: t("Find a zone"),
   backWords: t("All zones"),
   pickKinds: ["zone"],
-  newChoices: [{ value: "area", icon: "pentagon", words: t("Area") }, { value: "circle", icon: "circle", words: t("Circle") }],
+  newChoices: [
+    { value: "area", icon: "pentagon", words: t("Area") },
+    { value: "circle", icon: "circle", words: t("Circle") },
+  ],
   newTitle: () => t("New no-fly zone"),
   choiceOf: (feature) => (feature.properties.circle ? "circle" : "area"),
   shapeKind: (choice) => choice,
@@ -65,18 +121,37 @@ const records = mountRecordPage({
   details,
   form: zoneForm,
   followsView: () => filter.inView,
-  row: ({ properties }) => ({ icon: "zone", name: properties.name, detail: heightsText(properties), chip: properties.schedule ? t("at times") : "" }),
+  row: ({ properties }) => ({
+    icon: "zone",
+    name: properties.name,
+    detail: heightsText(properties),
+    chip: properties.schedule ? t("at times") : "",
+  }),
   listQuery(map) {
     const query = new URLSearchParams({ limit: PAGE });
     if (filter.text) query.set("text", filter.text);
     if (filter.set) query.set("zone_set", filter.set.id);
-    if (filter.inView) query.set("bbox", map.box().map((degrees) => degrees.toFixed(6)).join(","));
+    if (filter.inView)
+      query.set(
+        "bbox",
+        map
+          .box()
+          .map((degrees) => degrees.toFixed(6))
+          .join(","),
+      );
     return `/zones?${query}`;
   },
   nothing: () =>
     filter.text || filter.set || filter.inView
-      ? [h("strong", {}, t("Nothing found.")), h("span", {}, t("Other words, or a larger part of the map may have it."))]
-      : [h("strong", {}, t("No zones yet.")), h("span", {}, t("Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file.")), h("a", { class: "button", href: "/imports" }, t("Import a file"))],
+      ? [
+          h("strong", {}, t("Nothing found.")),
+          h("span", {}, t("Other words, or a larger part of the map may have it.")),
+        ]
+      : [
+          h("strong", {}, t("No zones yet.")),
+          h("span", {}, t("Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file.")),
+          h("a", { class: "button", href: "/imports" }, t("Import a file")),
+        ],
 });
 
 let timer = 0;
@@ -92,7 +167,25 @@ byId("record-in-view").addEventListener("change", (event) => {
 
 function showSet() {
   byId("zone-set-filter").replaceChildren(
-    ...(filter.set ? [h("span", { class: "chip" }, filter.set.name, h("button", { type: "button", class: "icon-button tight", "aria-label": t("No longer only {name}", { name: filter.set.name }), onclick: () => ((filter.set = null), showSet(), records.load()) }, icon("x", "small")))] : []),
+    ...(filter.set
+      ? [
+          h(
+            "span",
+            { class: "chip" },
+            filter.set.name,
+            h(
+              "button",
+              {
+                type: "button",
+                class: "icon-button tight",
+                "aria-label": t("No longer only {name}", { name: filter.set.name }),
+                onclick: () => ((filter.set = null), showSet(), records.load()),
+              },
+              icon("x", "small"),
+            ),
+          ),
+        ]
+      : []),
   );
 }
 
@@ -106,7 +199,10 @@ const sets = mountSetsPanel({
   },
 });
 
-const TABS = [["zones", t("Zones")], ["sets", t("Sets and sources")]];
+const TABS = [
+  ["zones", t("Zones")],
+  ["sets", t("Sets and sources")],
+];
 function turnTo(tab) {
   byId("zone-sets").hidden = tab !== "sets";
   if (tab === "sets") {
@@ -116,6 +212,13 @@ function turnTo(tab) {
   document.querySelector(`input[name=zone-tab][value=${tab}]`).checked = true;
 }
 byId("zone-tabs").append(
-  ...TABS.map(([value, words]) => h("label", {}, h("input", { type: "radio", name: "zone-tab", value, checked: value === "zones", onchange: () => turnTo(value) }), h("span", { class: "segment" }, words))),
+  ...TABS.map(([value, words]) =>
+    h(
+      "label",
+      {},
+      h("input", { type: "radio", name: "zone-tab", value, checked: value === "zones", onchange: () => turnTo(value) }),
+      h("span", { class: "segment" }, words),
+    ),
+  ),
 );
 records.start();

@@ -3,12 +3,31 @@
 import { t } from "../text.js";
 import { momentTyped, typedMoment } from "../units.js";
 
-export const DAYS = [["MON", t("Mon")], ["TUE", t("Tue")], ["WED", t("Wed")], ["THU", t("Thu")], ["FRI", t("Fri")], ["SAT", t("Sat")], ["SUN", t("Sun")]];
-export const EVENTS = [["BMCT", t("morning twilight")], ["SR", t("sunrise")], ["SS", t("sunset")], ["EECT", t("end of evening twilight")]];
+export const DAYS = [
+  ["MON", t("Mon")],
+  ["TUE", t("Tue")],
+  ["WED", t("Wed")],
+  ["THU", t("Thu")],
+  ["FRI", t("Fri")],
+  ["SAT", t("Sat")],
+  ["SUN", t("Sun")],
+];
+export const EVENTS = [
+  ["BMCT", t("morning twilight")],
+  ["SR", t("sunrise")],
+  ["SS", t("sunset")],
+  ["EECT", t("end of evening twilight")],
+];
 // Where an event is drawn on the week bar: it moves with place and season, so its edge is drawn soft.
 const USUAL_H = { BMCT: 5.5, SR: 6, SS: 18, EECT: 18.5 };
 
-export const newEntry = () => ({ day: ["MON", "TUE", "WED", "THU", "FRI"], startTime: "08:00:00Z", startEvent: null, endTime: "18:00:00Z", endEvent: null });
+export const newEntry = () => ({
+  day: ["MON", "TUE", "WED", "THU", "FRI"],
+  startTime: "08:00:00Z",
+  startEvent: null,
+  endTime: "18:00:00Z",
+  endEvent: null,
+});
 export const newPeriod = () => ({ startDateTime: null, endDateTime: null, schedule: [newEntry()] });
 
 const hour = (time) => Number(time.slice(0, 2)) + Number(time.slice(3, 5)) / 60;
@@ -26,21 +45,33 @@ function movedOn({ day, from_h, to_h, softStart, softEnd }, ahead_h) {
   const [on, length_h] = [Math.floor(start_h / 24), to_h - from_h];
   const end_h = start_h - on * 24 + length_h;
   if (end_h <= 24) return [{ day: on, from_h: start_h - on * 24, to_h: end_h, softStart, softEnd }];
-  return [{ day: on, from_h: start_h - on * 24, to_h: 24, softStart, softEnd: false }, { day: (on + 1) % 7, from_h: 0, to_h: end_h - 24, softStart: false, softEnd }];
+  return [
+    { day: on, from_h: start_h - on * 24, to_h: 24, softStart, softEnd: false },
+    { day: (on + 1) % 7, from_h: 0, to_h: end_h - 24, softStart: false, softEnd },
+  ];
 }
 
 function weekInUtc(period) {
-  const entries = period.schedule.length ? period.schedule : [{ day: ["ANY"], startTime: null, startEvent: null, endTime: null, endEvent: null }];
+  const entries = period.schedule.length
+    ? period.schedule
+    : [{ day: ["ANY"], startTime: null, startEvent: null, endTime: null, endEvent: null }];
   return entries.flatMap((entry) => {
-    const days = entry.day.includes("ANY") ? [0, 1, 2, 3, 4, 5, 6] : entry.day.map((day) => DAYS.findIndex(([key]) => key === day));
+    const days = entry.day.includes("ANY")
+      ? [0, 1, 2, 3, 4, 5, 6]
+      : entry.day.map((day) => DAYS.findIndex(([key]) => key === day));
     const from_h = entry.startEvent ? USUAL_H[entry.startEvent] : entry.startTime ? hour(entry.startTime) : 0;
     const to_h = entry.endEvent ? USUAL_H[entry.endEvent] : entry.endTime ? hour(entry.endTime) : 24;
     const soft = { softStart: Boolean(entry.startEvent), softEnd: Boolean(entry.endEvent) };
-    return days.flatMap((day) =>
-      to_h > from_h
-        ? [{ day, from_h, to_h, ...soft }]
-        : [{ day, from_h, to_h: 24, softStart: soft.softStart, softEnd: false }, { day: (day + 1) % 7, from_h: 0, to_h, softStart: false, softEnd: soft.softEnd }],
-    ).filter((stretch) => stretch.to_h > stretch.from_h);
+    return days
+      .flatMap((day) =>
+        to_h > from_h
+          ? [{ day, from_h, to_h, ...soft }]
+          : [
+              { day, from_h, to_h: 24, softStart: soft.softStart, softEnd: false },
+              { day: (day + 1) % 7, from_h: 0, to_h, softStart: false, softEnd: soft.softEnd },
+            ],
+      )
+      .filter((stretch) => stretch.to_h > stretch.from_h);
   });
 }
 

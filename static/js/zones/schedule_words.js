@@ -20,7 +20,8 @@ export function scheduleText(schedule, { now = Date.now(), otherwise = "" } = {}
 
 function periodText({ startDateTime: start, endDateTime: end, schedule }, ahead_min) {
   const hours = schedule.map((entry) => entryText(entry, ahead_min)).join(", ");
-  if (start && end && !hours && dayOf(start) === dayOf(end)) return t("{day}, {from} to {to}", { day: longDayText(start), from: clockText(start), to: clockText(end) });
+  if (start && end && !hours && dayOf(start) === dayOf(end))
+    return t("{day}, {from} to {to}", { day: longDayText(start), from: clockText(start), to: clockText(end) });
   const values = { hours, from: start && momentText(start), to: end && momentText(end) };
   if (start && end) return hours ? t("{hours}, from {from} to {to}", values) : t("from {from} to {to}", values);
   if (start) return hours ? t("{hours}, from {from} on", values) : t("from {from} on", values);
@@ -31,19 +32,29 @@ function periodText({ startDateTime: start, endDateTime: end, schedule }, ahead_
 const dayOf = (iso) => typedMoment(iso).slice(0, 10);
 
 /** Whole days have no clock. */
-const momentText = (iso) => (["00:00", "23:59"].includes(typedMoment(iso).slice(11)) ? longDayText(iso) : `${longDayText(iso)}, ${clockText(iso)}`);
+const momentText = (iso) =>
+  ["00:00", "23:59"].includes(typedMoment(iso).slice(11)) ? longDayText(iso) : `${longDayText(iso)}, ${clockText(iso)}`;
 
 function entryText(entry, ahead_min) {
   const { startTime, startEvent, endTime, endEvent } = entry;
   const isAllDay = !startTime && !startEvent && !endTime && !endEvent;
-  if (isAllDay && (ahead_min === 0 || entry.day.includes("ANY"))) return t("{days} all day", { days: daysText(entry.day, 0) });
+  if (isAllDay && (ahead_min === 0 || entry.day.includes("ANY")))
+    return t("{days} all day", { days: daysText(entry.day, 0) });
   const start_min = startEvent ? null : minutesOf(startTime ?? "00:00");
   const end_min = endEvent ? null : minutesOf(endTime ?? "24:00");
   const moved = start_min === null ? 0 : Math.floor((start_min + ahead_min) / DAY_MIN);
   const side = (minutes, event, by_min) => (minutes === null ? EVENT_WORDS[event] : timeText(minutes + by_min));
-  const words = t("{days} {from} to {to}", { days: daysText(entry.day, moved), from: side(start_min, startEvent, ahead_min), to: side(end_min, endEvent, ahead_min) });
+  const words = t("{days} {from} to {to}", {
+    days: daysText(entry.day, moved),
+    from: side(start_min, startEvent, ahead_min),
+    to: side(end_min, endEvent, ahead_min),
+  });
   if (ahead_min === 0 || (startEvent && endEvent)) return words;
-  return t("{words} ({from} to {to} UTC)", { words, from: side(start_min, startEvent, 0), to: side(end_min, endEvent, 0) });
+  return t("{words} ({from} to {to} UTC)", {
+    words,
+    from: side(start_min, startEvent, 0),
+    to: side(end_min, endEvent, 0),
+  });
 }
 
 const minutesOf = (time) => Number(time.slice(0, 2)) * 60 + Number(time.slice(3, 5));

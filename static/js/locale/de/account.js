@@ -26,7 +26,8 @@ export default {
   "Signed out": "Abgemeldet",
   "Signed out in all other browsers.": "In allen anderen Browsern abgemeldet.",
   "Such as {length}, {height} above ground, {speed}.": "Zum Beispiel {length}, {height} über Grund, {speed}.",
-  "The password is changed. Other browsers are signed out.": "Das Passwort ist geändert. Andere Browser sind abgemeldet.",
+  "The password is changed. Other browsers are signed out.":
+    "Das Passwort ist geändert. Andere Browser sind abgemeldet.",
   "The password is not changed.": "Das Passwort ist nicht geändert.",
   "The token is not revoked.": "Das Token ist nicht widerrufen.",
   "The two are not the same.": "Die beiden stimmen nicht überein.",
@@ -38,8 +39,10 @@ export default {
   "works until {day}": "gilt bis {day}",
   "Wrong code": "Falscher Code",
   "Wrong name or password": "Name oder Passwort falsch",
-  "You signed in a while ago, and this could outlive the session.": "Sie haben sich vor einer Weile angemeldet, und dies könnte die Sitzung überdauern.",
+  "You signed in a while ago, and this could outlive the session.":
+    "Sie haben sich vor einer Weile angemeldet, und dies könnte die Sitzung überdauern.",
   "Your password, please": "Bitte Ihr Passwort",
-  "“{name}” is made. Copy it now: it is not shown again.": "„{name}“ ist erstellt. Jetzt kopieren: Es wird nicht wieder gezeigt.",
+  "“{name}” is made. Copy it now: it is not shown again.":
+    "„{name}“ ist erstellt. Jetzt kopieren: Es wird nicht wieder gezeigt.",
   "“{name}” works no more.": "„{name}“ gilt nicht mehr.",
 };

@@ -2,7 +2,8 @@
 
 export default {
   "1 day": "1 Tag",
-  "A link for one account with the role {role}. Copy it now: it is not shown again.": "Ein Link für ein Konto mit der Rolle {role}. Jetzt kopieren: Er wird nicht wieder gezeigt.",
+  "A link for one account with the role {role}. Copy it now: it is not shown again.":
+    "Ein Link für ein Konto mit der Rolle {role}. Jetzt kopieren: Er wird nicht wieder gezeigt.",
   "a name that nobody has": "ein Name, den niemand hat",
   "Accepted": "Angenommen",
   "accepted by {name}": "angenommen von {name}",
@@ -20,7 +21,8 @@ export default {
   "E-mail address, if you like": "E-Mail-Adresse, wenn Sie möchten",
   "Each sign-in and each try will stand here.": "Jede Anmeldung und jeder Versuch steht dann hier.",
   "First name": "Vorname",
-  "For somebody who has lost the telephone and the recovery codes. Be sure that it is really they who ask. They are signed out everywhere, and the password alone lets them in until they set up another one.": "Für jemanden, der das Telefon und die Ersatzcodes verloren hat. Vergewissern Sie sich, dass es wirklich diese Person ist, die darum bittet. Sie wird überall abgemeldet, und das Passwort allein lässt sie ein, bis sie einen anderen einrichtet.",
+  "For somebody who has lost the telephone and the recovery codes. Be sure that it is really they who ask. They are signed out everywhere, and the password alone lets them in until they set up another one.":
+    "Für jemanden, der das Telefon und die Ersatzcodes verloren hat. Vergewissern Sie sich, dass es wirklich diese Person ist, die darum bittet. Sie wird überall abgemeldet, und das Passwort allein lässt sie ein, bis sie einen anderen einrichtet.",
   "Here now": "Jetzt hier",
   "Invitations could not be loaded.": "Einladungen konnten nicht geladen werden.",
   "Invite somebody": "Jemanden einladen",
@@ -47,7 +49,8 @@ export default {
   "{name} may sign in.": "{name} darf sich anmelden.",
   "never": "nie",
   "No invitations": "Keine Einladungen",
-  "No mail leaves this server: you hand the link over yourself.": "Dieser Server sendet keine E-Mail: Sie übergeben den Link selbst.",
+  "No mail leaves this server: you hand the link over yourself.":
+    "Dieser Server sendet keine E-Mail: Sie übergeben den Link selbst.",
   "Nobody has signed in yet": "Noch niemand hat sich angemeldet",
   "Nobody is here": "Niemand ist hier",
   "Nothing matches": "Nichts passt",
@@ -56,7 +59,8 @@ export default {
   "Operator|role": "Operator",
   "People could not be loaded.": "Personen konnten nicht geladen werden.",
   "plans and flies missions": "plant und fliegt Missionen",
-  "Programs that use them stop working at once. This cannot be taken back; new tokens can be made.": "Programme, die sie benutzen, hören sofort auf zu arbeiten. Das lässt sich nicht zurücknehmen; neue Tokens können erstellt werden.",
+  "Programs that use them stop working at once. This cannot be taken back; new tokens can be made.":
+    "Programme, die sie benutzen, hören sofort auf zu arbeiten. Das lässt sich nicht zurücknehmen; neue Tokens können erstellt werden.",
   "Reset": "Zurücksetzen",
   "Reset the second factor": "Zweiten Faktor zurücksetzen",
   "Reset the second factor of {name}?": "Zweiten Faktor von {name} zurücksetzen?",

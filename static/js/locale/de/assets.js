@@ -2,7 +2,8 @@
 
 export default {
   "All assets": "Alle Objekte",
-  "Bring in an OpenStreetMap file, or take the visible area from Overpass.": "Eine OpenStreetMap-Datei einlesen oder den sichtbaren Bereich von Overpass holen.",
+  "Bring in an OpenStreetMap file, or take the visible area from Overpass.":
+    "Eine OpenStreetMap-Datei einlesen oder den sichtbaren Bereich von Overpass holen.",
   "Height above ground": "Höhe über Grund",
   "Light rail": "Stadtbahn",
   "Minor line": "Kleine Leitung",
@@ -14,7 +15,8 @@ export default {
   "No assets yet.": "Noch keine Objekte.",
   "not flown": "nicht beflogen",
   "Off the ground.": "Nicht mehr im Bestand.",
-  "Other words, another kind, or a larger part of the map may have it.": "Andere Wörter, eine andere Art oder ein größerer Kartenausschnitt helfen vielleicht.",
+  "Other words, another kind, or a larger part of the map may have it.":
+    "Andere Wörter, eine andere Art oder ein größerer Kartenausschnitt helfen vielleicht.",
   "Part of the flying network": "Teil des Flugnetzes",
   "Since {when}; missions still know it.": "Seit {when}; Missionen kennen das Objekt noch.",
   "Voltages, highest first": "Spannungen, höchste zuerst",

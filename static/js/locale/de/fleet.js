@@ -3,7 +3,8 @@
 export default {
   "A base is where UAVs stand and take off.": "An einer Basis stehen UAVs und starten.",
   "A number is wanted here.": "Hier ist eine Zahl gefragt.",
-  "A type gives its range, speed and sensors to all its UAVs.": "Ein Typ gibt Reichweite, Geschwindigkeit und Sensoren an alle seine UAVs weiter.",
+  "A type gives its range, speed and sensors to all its UAVs.":
+    "Ein Typ gibt Reichweite, Geschwindigkeit und Sensoren an alle seine UAVs weiter.",
   "A whole number is wanted here.": "Hier ist eine ganze Zahl gefragt.",
   "Add one": "Neu anlegen",
   "Add the first one, then plan a mission with it.": "Das erste anlegen, dann eine Mission damit planen.",
@@ -12,26 +13,30 @@ export default {
   "All of them": "Alle",
   "Any base": "Jede Basis",
   "Any type": "Jeder Typ",
-  "As measured in still air, with this mass; empty: worked out from mass and rotors.": "Gemessen in ruhiger Luft, mit dieser Masse; leer: aus Masse und Rotoren errechnet.",
+  "As measured in still air, with this mass; empty: worked out from mass and rotors.":
+    "Gemessen in ruhiger Luft, mit dieser Masse; leer: aus Masse und Rotoren errechnet.",
   "At least {least}.": "Mindestens {least}.",
   "At most {most}.": "Höchstens {most}.",
   "At take-off; needed with a battery.": "Beim Start; mit einem Akku nötig.",
   "At the end": "Am Ende",
-  "At the end, where a mission does not say “Return to start”": "Am Ende, wenn eine Mission nicht „Zum Start zurück“ sagt",
+  "At the end, where a mission does not say “Return to start”":
+    "Am Ende, wenn eine Mission nicht „Zum Start zurück“ sagt",
   "Back in service": "Wieder in Betrieb",
   "Base {name}": "Basis {name}",
   "Bases": "Basen",
   "Battery": "Akku",
   "Changed by {who} in the meantime.": "Inzwischen von {who} geändert.",
   "Charged to": "Geladen auf",
-  "Circles of all rotors together; empty: those of a PX4 Iris, in grey.": "Kreise aller Rotoren zusammen; leer: die einer PX4 Iris, in Grau.",
+  "Circles of all rotors together; empty: those of a PX4 Iris, in grey.":
+    "Kreise aller Rotoren zusammen; leer: die einer PX4 Iris, in Grau.",
   "Delete {name}": "{name} löschen",
   "Divided by commas.": "Durch Kommas getrennt.",
   "Drag it, or click into the map": "Ziehen oder in die Karte klicken",
   "Earlier missions": "Frühere Missionen",
   "Edit {name}": "{name} bearbeiten",
   "Empty: as its type, in grey.": "Leer: wie sein Typ, in Grau.",
-  "Empty: the range is not limited, the speed is the usual one.": "Leer: Die Reichweite ist nicht begrenzt, die Geschwindigkeit ist die übliche.",
+  "Empty: the range is not limited, the speed is the usual one.":
+    "Leer: Die Reichweite ist nicht begrenzt, die Geschwindigkeit ist die übliche.",
   "Empty: {range} and {speed}, as its type.": "Leer: {range} und {speed}, wie der Typ.",
   "Empty: the usual, in grey.": "Leer: das Übliche, in Grau.",
   "Find in the fleet": "In der Flotte suchen",
@@ -39,7 +44,8 @@ export default {
   "How to get there, whom to call.": "Anfahrt, Ansprechpartner.",
   "In service": "In Betrieb",
   "It is no longer there.": "Es ist nicht mehr da.",
-  "It is not offered for new missions and does not connect.": "Es wird für neue Missionen nicht angeboten und verbindet sich nicht.",
+  "It is not offered for new missions and does not connect.":
+    "Es wird für neue Missionen nicht angeboten und verbindet sich nicht.",
   "its speed": "seine Geschwindigkeit",
   "Link": "Verbindung",
   "Made {when} by {who}": "Erstellt {when} von {who}",
@@ -83,7 +89,8 @@ export default {
   "Retire": "Ausmustern",
   "Retired": "Ausgemustert",
   "Revoke it": "Widerrufen",
-  "Revoke it? {name} is cut off at once and needs a new one to connect again.": "Widerrufen? {name} wird sofort getrennt und braucht für eine neue Verbindung einen neuen.",
+  "Revoke it? {name} is cut off at once and needs a new one to connect again.":
+    "Widerrufen? {name} wird sofort getrennt und braucht für eine neue Verbindung einen neuen.",
   "Revoked. {name} cannot connect with it any more.": "Widerrufen. {name} kann sich damit nicht mehr verbinden.",
   "Rotor area": "Rotorfläche",
   "Sensor besides those of its type": "Sensor außer denen des Typs",
@@ -93,11 +100,15 @@ export default {
   "Something is wanted here.": "Hier fehlt eine Angabe.",
   "The base {name} is deleted.": "Die Basis {name} ist gelöscht.",
   "the first {count}": "die ersten {count}",
-  "The server cannot be reached. What you typed stays here.": "Der Server ist nicht erreichbar. Was Sie eingegeben haben, bleibt hier.",
+  "The server cannot be reached. What you typed stays here.":
+    "Der Server ist nicht erreichbar. Was Sie eingegeben haben, bleibt hier.",
   "The type {name} is deleted.": "Der Typ {name} ist gelöscht.",
-  "This browser does not allow copying: mark the text and copy it.": "Dieser Browser erlaubt kein Kopieren: den Text markieren und kopieren.",
-  "This is the key, 32 bytes in hexadecimal. It is shown only now: put it into the autopilot over a cable.": "Das ist der Schlüssel, 32 Bytes hexadezimal. Er wird nur jetzt gezeigt: über ein Kabel in den Autopiloten eintragen.",
-  "This is the token. It is shown only now: put it into the UAV's program.": "Das ist das Token. Es wird nur jetzt gezeigt: in das Programm des UAV eintragen.",
+  "This browser does not allow copying: mark the text and copy it.":
+    "Dieser Browser erlaubt kein Kopieren: den Text markieren und kopieren.",
+  "This is the key, 32 bytes in hexadecimal. It is shown only now: put it into the autopilot over a cable.":
+    "Das ist der Schlüssel, 32 Bytes hexadezimal. Er wird nur jetzt gezeigt: über ein Kabel in den Autopiloten eintragen.",
+  "This is the token. It is shown only now: put it into the UAV's program.":
+    "Das ist das Token. Es wird nur jetzt gezeigt: in das Programm des UAV eintragen.",
   "Token of the HTTP link": "Token der HTTP-Verbindung",
   "Types": "Typen",
   "UAV {name}": "UAV {name}",
@@ -122,7 +133,8 @@ export default {
   "disarmed": "gesichert",
   "Told by": "Angewiesen über",
   "not known since it has booted": "seit seinem Neustart nicht bekannt",
-  "not known since another ground station has changed its lists": "nicht bekannt, seit eine andere Bodenstation seine Listen geändert hat",
+  "not known since another ground station has changed its lists":
+    "nicht bekannt, seit eine andere Bodenstation seine Listen geändert hat",
   "not known since its list has another length": "nicht bekannt, seit seine Liste anders lang ist",
   "{what}, read back {ago}": "{what}, zurückgelesen {ago}",
   "Mode": "Modus",
@@ -138,18 +150,23 @@ export default {
   "The nearest by mass and endurance": "Das nach Masse und Flugdauer nächste",
   "hovers {time}": "schwebt {time}",
   "up to {speed}": "bis {speed}",
-  "In simulation {airframe} flies for {name}. Rehearsals of its missions are out of date if another one flew.": "In der Simulation fliegt {airframe} für {name}. Proben seiner Missionen sind veraltet, wenn ein anderes flog.",
-  "It flies with the battery of the UAV where that is stated.": "Es fliegt mit dem Akku des UAVs, wo der angegeben ist.",
-  "No real aircraft: it may fly where there is no terrain data.": "Kein echtes Luftfahrzeug: Es darf fliegen, wo es keine Geländedaten gibt.",
+  "In simulation {airframe} flies for {name}. Rehearsals of its missions are out of date if another one flew.":
+    "In der Simulation fliegt {airframe} für {name}. Proben seiner Missionen sind veraltet, wenn ein anderes flog.",
+  "It flies with the battery of the UAV where that is stated.":
+    "Es fliegt mit dem Akku des UAVs, wo der angegeben ist.",
+  "No real aircraft: it may fly where there is no terrain data.":
+    "Kein echtes Luftfahrzeug: Es darf fliegen, wo es keine Geländedaten gibt.",
   "MAVLink without a signature": "MAVLink ohne Signatur",
-  "Whoever reaches the gateway can then fly it: only on a closed network.": "Wer das Gateway erreicht, kann es dann fliegen: nur in einem geschlossenen Netz.",
+  "Whoever reaches the gateway can then fly it: only on a closed network.":
+    "Wer das Gateway erreicht, kann es dann fliegen: nur in einem geschlossenen Netz.",
   "is taken for its word": "wird ihm geglaubt",
   "signed": "signiert",
   "not signed": "nicht signiert",
   "heard {ago}": "{ago} gehört",
   "Charge now": "Ladung jetzt",
   "Unknown vehicles": "Unbekannte Fahrzeuge",
-  "None. A vehicle that speaks to a gateway with a system id of no UAV is listed here.": "Keine. Hier steht ein Fahrzeug, das sich mit einer System-ID, die kein UAV hat, bei einem Gateway meldet.",
+  "None. A vehicle that speaks to a gateway with a system id of no UAV is listed here.":
+    "Keine. Hier steht ein Fahrzeug, das sich mit einer System-ID, die kein UAV hat, bei einem Gateway meldet.",
   "System {id} is ignored.": "System {id} wird übergangen.",
   "System {id} is {name} now.": "System {id} ist jetzt {name}.",
   "A new UAV": "Ein neues UAV",

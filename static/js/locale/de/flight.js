@@ -4,36 +4,48 @@ export default {
   "The zone may be over later.": "Die Zone gilt später vielleicht nicht mehr.",
   "Look for a better departure": "Besseren Abflug suchen",
   "Depart then": "Dann abfliegen",
-  "Zones bar a part of this plan. After one of them ends, another departure may do better.": "Zonen versperren einen Teil dieses Plans. Nach dem Ende einer von ihnen kann ein anderer Abflug besser sein.",
+  "Zones bar a part of this plan. After one of them ends, another departure may do better.":
+    "Zonen versperren einen Teil dieses Plans. Nach dem Ende einer von ihnen kann ein anderer Abflug besser sein.",
   "Plans for other departures are being made.": "Pläne für andere Abflüge werden gemacht.",
   "No zone near ends in the next 48 hours.": "In den nächsten 48 Stunden endet keine Zone in der Nähe.",
-  "No departure until {when} does better: one was looked at after each end of a zone near.": "Bis {when} ist kein Abflug besser: Nach jedem Ende einer Zone in der Nähe wurde einer angesehen.",
-  "Departing {when} reaches {count} target more.": ["Abflug {when}: {count} Ziel mehr.", "Abflug {when}: {count} Ziele mehr."],
+  "No departure until {when} does better: one was looked at after each end of a zone near.":
+    "Bis {when} ist kein Abflug besser: Nach jedem Ende einer Zone in der Nähe wurde einer angesehen.",
+  "Departing {when} reaches {count} target more.": [
+    "Abflug {when}: {count} Ziel mehr.",
+    "Abflug {when}: {count} Ziele mehr.",
+  ],
   "Departing {when} does better: {gains}.": "Abflug {when} ist besser: {gains}.",
   "{length} less": "{length} weniger",
   "{energy} less": "{energy} weniger",
   "done {time} sooner after it": "danach {time} früher fertig",
   "by what the plan is best at": "um das, worauf es beim Plan ankommt",
-  "a mast or wires are in the way: over them it would be {height} above the greatest allowed height": "ein Mast oder Leiterseile sind im Weg: darüber läge der Rückweg {height} über der größten erlaubten Höhe",
+  "a mast or wires are in the way: over them it would be {height} above the greatest allowed height":
+    "ein Mast oder Leiterseile sind im Weg: darüber läge der Rückweg {height} über der größten erlaubten Höhe",
   "A mission has at most {most} rally points.": "Eine Mission hat höchstens {most} Sammelpunkte.",
-  "A plan with a departure counts it at its times, any other plan at all times.": "Ein Plan mit Abflugzeit beachtet sie zu ihren Zeiten, jeder andere Plan immer.",
-  "A route is changed by hand once its plan is saved.": "Eine Route lässt sich von Hand ändern, sobald ihr Plan gespeichert ist.",
-  "A route with stops to charge cannot be changed by hand.": "Eine Route mit Ladehalten lässt sich nicht von Hand ändern.",
+  "A plan with a departure counts it at its times, any other plan at all times.":
+    "Ein Plan mit Abflugzeit beachtet sie zu ihren Zeiten, jeder andere Plan immer.",
+  "A route is changed by hand once its plan is saved.":
+    "Eine Route lässt sich von Hand ändern, sobald ihr Plan gespeichert ist.",
+  "A route with stops to charge cannot be changed by hand.":
+    "Eine Route mit Ladehalten lässt sich nicht von Hand ändern.",
   "a zone": "eine Zone",
   "Add a height": "Höhe hinzufügen",
   "Add by coordinates": "Nach Koordinaten setzen",
   "Add on the map": "Auf der Karte setzen",
   "after {start}": "nach {start}",
   "Against the wind; empty: its speed.": "Gegen den Wind; leer: seine Geschwindigkeit.",
-  "All UAVs together as few minutes in the air as possible": "Alle UAVs zusammen so wenige Minuten wie möglich in der Luft",
-  "All UAVs together with as little of their batteries as possible": "Alle UAVs zusammen mit so wenig Akkuladung wie möglich",
+  "All UAVs together as few minutes in the air as possible":
+    "Alle UAVs zusammen so wenige Minuten wie möglich in der Luft",
+  "All UAVs together with as little of their batteries as possible":
+    "Alle UAVs zusammen mit so wenig Akkuladung wie möglich",
   "and more": "und weitere",
   "another UAV’s route is the longest": "die Route eines anderen UAV ist die längste",
   "Any time": "Jederzeit",
   "any time": "jederzeit",
   "Any time: the plan keeps clear of all zones at all times.": "Jederzeit: Der Plan meidet alle Zonen zu allen Zeiten.",
   "Arrival": "Ankunft",
-  "As drawn, over the ground and what stands tall, a route with it takes {missing} Wh more than the battery of {name} may give.": "Wie gezeichnet, über das Gelände und was hoch aufragt, braucht eine Route dorthin {missing} Wh mehr, als der Akku von {name} geben darf.",
+  "As drawn, over the ground and what stands tall, a route with it takes {missing} Wh more than the battery of {name} may give.":
+    "Wie gezeichnet, über das Gelände und was hoch aufragt, braucht eine Route dorthin {missing} Wh mehr, als der Akku von {name} geben darf.",
   "as many targets as it may have": "so viele Ziele, wie es haben darf",
   "As planned.": "Wie geplant.",
   "at landing": "bei der Landung",
@@ -70,15 +82,20 @@ export default {
   "Change the route of {name} by hand": "Route von {name} von Hand ändern",
   "Changed by hand": "Von Hand geändert",
   "changed by hand": "von Hand geändert",
-  "Changes that were kept can be taken back once these are kept or dropped.": "Behaltene Änderungen lassen sich zurücknehmen, sobald diese behalten oder verworfen sind.",
+  "Changes that were kept can be taken back once these are kept or dropped.":
+    "Behaltene Änderungen lassen sich zurücknehmen, sobald diese behalten oder verworfen sind.",
   "charges {count} time": ["lädt {count}-mal", "lädt {count}-mal"],
   "charges {time}, +{energy}": "lädt {time}, +{energy}",
   "Charging on towers": "Laden auf Masten",
   "charging on towers with {power}": "lädt auf Masten mit {power}",
   "Charging stop": "Ladehalt",
-  "Click where UAVs may land without a link, or press Enter for the middle of the map.": "Klicken, wo UAVs ohne Verbindung landen dürfen, oder Eingabetaste für die Kartenmitte.",
+  "Click where UAVs may land without a link, or press Enter for the middle of the map.":
+    "Klicken, wo UAVs ohne Verbindung landen dürfen, oder Eingabetaste für die Kartenmitte.",
   "Conditions": "Bedingungen",
-  "{count} change by hand is kept and can be taken back.": ["{count} Änderung von Hand ist behalten und lässt sich zurücknehmen.", "{count} Änderungen von Hand sind behalten und lassen sich zurücknehmen, die letzte zuerst."],
+  "{count} change by hand is kept and can be taken back.": [
+    "{count} Änderung von Hand ist behalten und lässt sich zurücknehmen.",
+    "{count} Änderungen von Hand sind behalten und lassen sich zurücknehmen, die letzte zuerst.",
+  ],
   "{count} flight": ["{count} Flug", "bis zu {count} Flüge"],
   "{count} rally point": ["{count} Sammelpunkt", "{count} Sammelpunkte"],
   "{count} waypoint": ["{count} Wegpunkt", "{count} Wegpunkte"],
@@ -89,27 +106,39 @@ export default {
   "Departure {moment} ({zone})": "Abflug {moment} ({zone})",
   "done at {time}": "fertig um {time}",
   "Done in": "Fertig in",
-  "Drag a waypoint on the map, or pull a new one out of the middle of a leg. Start, end and targets stay.": "Einen Wegpunkt auf der Karte ziehen oder einen neuen aus der Mitte einer Teilstrecke. Start, Ende und Ziele bleiben.",
-  "Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it.": "Gezeichnet über das Gelände und was hoch aufragt, brauchen Routen mehr, als auf dem Netz gezählt wird; mit dieser Rücklage reicht kein Akku dafür.",
+  "Drag a waypoint on the map, or pull a new one out of the middle of a leg. Start, end and targets stay.":
+    "Einen Wegpunkt auf der Karte ziehen oder einen neuen aus der Mitte einer Teilstrecke. Start, Ende und Ziele bleiben.",
+  "Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it.":
+    "Gezeichnet über das Gelände und was hoch aufragt, brauchen Routen mehr, als auf dem Netz gezählt wird; mit dieser Rücklage reicht kein Akku dafür.",
   "Drop the changes": "Änderungen verwerfen",
-  "Each UAV flies its route to the end, as it was checked.": "Jedes UAV fliegt seine Route zu Ende, wie sie geprüft wurde.",
-  "Each UAV flies straight to the nearest of its start and the rally points, and lands.": "Jedes UAV fliegt geradeaus zum nächsten von Start und Sammelpunkten und landet.",
-  "Each UAV stays where it is for a while, then flies straight to the nearest of its start and the rally points, and lands.": "Jedes UAV bleibt eine Weile, wo es ist, fliegt dann geradeaus zum nächsten von Start und Sammelpunkten und landet.",
+  "Each UAV flies its route to the end, as it was checked.":
+    "Jedes UAV fliegt seine Route zu Ende, wie sie geprüft wurde.",
+  "Each UAV flies straight to the nearest of its start and the rally points, and lands.":
+    "Jedes UAV fliegt geradeaus zum nächsten von Start und Sammelpunkten und landet.",
+  "Each UAV stays where it is for a while, then flies straight to the nearest of its start and the rally points, and lands.":
+    "Jedes UAV bleibt eine Weile, wo es ist, fliegt dann geradeaus zum nächsten von Start und Sammelpunkten und landet.",
   "east": "Osten",
-  "Empty: as in the fleet, in grey. Without a battery its energy is not planned.": "Leer: wie in der Flotte, in Grau. Ohne Akku wird seine Energie nicht geplant.",
-  "Empty: as its type, in grey. Without a battery its energy is not planned.": "Leer: wie sein Typ, in Grau. Ohne Akku wird seine Energie nicht geplant.",
+  "Empty: as in the fleet, in grey. Without a battery its energy is not planned.":
+    "Leer: wie in der Flotte, in Grau. Ohne Akku wird seine Energie nicht geplant.",
+  "Empty: as its type, in grey. Without a battery its energy is not planned.":
+    "Leer: wie sein Typ, in Grau. Ohne Akku wird seine Energie nicht geplant.",
   "end": "Ende",
   "Energy": "Energie",
   "{energy} are missing with the reserve kept": "es fehlen {energy}, wenn die Reserve bleibt",
-  "Energy is not checked for {uavs}: no battery is stated.": "Für {uavs} wird die Energie nicht geprüft: Es ist kein Akku angegeben.",
+  "Energy is not checked for {uavs}: no battery is stated.":
+    "Für {uavs} wird die Energie nicht geprüft: Es ist kein Akku angegeben.",
   "Finish soonest": "Am frühesten fertig",
   "flies on": "fliegt weiter",
   "Fly on": "Weiterfliegen",
   "From 0 to {most} s.": "Von 0 bis {most} s.",
-  "From every waypoint each UAV gets home with its reserve, and meets no zone.": "Von jedem Wegpunkt kommt jedes UAV mit seiner Reserve heim und trifft auf keine Zone.",
+  "From every waypoint each UAV gets home with its reserve, and meets no zone.":
+    "Von jedem Wegpunkt kommt jedes UAV mit seiner Reserve heim und trifft auf keine Zone.",
   "From every waypoint the way back meets no zone.": "Von jedem Wegpunkt trifft der Rückweg auf keine Zone.",
   "From where a UAV would not get home": "Von wo ein UAV nicht heimkäme",
-  "From {count} of {total} waypoints a UAV would not get home.": ["Von {count} von {total} Wegpunkten käme ein UAV nicht heim.", "Von {count} von {total} Wegpunkten käme ein UAV nicht heim."],
+  "From {count} of {total} waypoints a UAV would not get home.": [
+    "Von {count} von {total} Wegpunkten käme ein UAV nicht heim.",
+    "Von {count} von {total} Wegpunkten käme ein UAV nicht heim.",
+  ],
   "Hold, then return": "Halten, zurück",
   "Holds for": "Hält für",
   "holds {time}, then returns": "hält {time} und kehrt dann zurück",
@@ -118,14 +147,20 @@ export default {
   "If the link is lost:": "Wenn die Verbindung abreißt:",
   "Highest way back, above the start: {heights}.": "Höchster Rückweg, über dem Start: {heights}.",
   "It is being checked for energy and zones.": "Energie und Zonen werden gerade geprüft.",
-  "It is checked for energy and zones once there is a plan.": "Energie und Zonen werden geprüft, sobald es einen Plan gibt.",
-  "Its rally point is kept, and not used.": ["Der Sammelpunkt bleibt und wird nicht genutzt.", "Die {count} Sammelpunkte bleiben und werden nicht genutzt."],
+  "It is checked for energy and zones once there is a plan.":
+    "Energie und Zonen werden geprüft, sobald es einen Plan gibt.",
+  "Its rally point is kept, and not used.": [
+    "Der Sammelpunkt bleibt und wird nicht genutzt.",
+    "Die {count} Sammelpunkte bleiben und werden nicht genutzt.",
+  ],
   "its start": "seinem Start",
   "Keep|route": "Behalten",
-  "Latitude and longitude are wanted, such as 39.9612, −82.9988.": "Gefragt sind Breite und Länge, etwa 39.9612, −82.9988.",
+  "Latitude and longitude are wanted, such as 39.9612, −82.9988.":
+    "Gefragt sind Breite und Länge, etwa 39.9612, −82.9988.",
   "Latitude and longitude of {name}": "Breite und Länge von {name}",
   "Latitude, longitude": "Breite, Länge",
-  "None yet: each UAV returns to its own start. A rally point nearer to the routes saves way and can avoid zones.": "Noch keine: Jedes UAV kehrt zu seinem Start zurück. Ein Sammelpunkt näher an den Routen spart Weg und kann Zonen vermeiden.",
+  "None yet: each UAV returns to its own start. A rally point nearer to the routes saves way and can avoid zones.":
+    "Noch keine: Jedes UAV kehrt zu seinem Start zurück. Ein Sammelpunkt näher an den Routen spart Weg und kann Zonen vermeiden.",
   "Plan|noun": "Plan",
   "Rally point {name} is placed.": "Sammelpunkt {name} ist gesetzt.",
   "Rally point {name}": "Sammelpunkt {name}",
@@ -139,11 +174,13 @@ export default {
   "the route of {name}": "die Route von {name}",
   "the way back meets a no-fly zone": "der Rückweg trifft auf eine Flugverbotszone",
   "the way back meets {zone}": "der Rückweg trifft auf {zone}",
-  "the way back would be {height} above the greatest allowed height": "der Rückweg läge {height} über der größten erlaubten Höhe",
+  "the way back would be {height} above the greatest allowed height":
+    "der Rückweg läge {height} über der größten erlaubten Höhe",
   "Way back without a link": "Rückweg ohne Verbindung",
   "Way back without a link that fails": "Rückweg ohne Verbindung, der nicht gelingt",
   "the wind is too strong for the way back": "der Wind ist zu stark für den Rückweg",
-  "This plan was made before this was checked. Plan again to check it.": "Dieser Plan entstand, bevor dies geprüft wurde. Zum Prüfen neu planen.",
+  "This plan was made before this was checked. Plan again to check it.":
+    "Dieser Plan entstand, bevor dies geprüft wurde. Zum Prüfen neu planen.",
   "up to {energy} are missing with the reserve kept": "es fehlen bis zu {energy}, wenn die Reserve bleibt",
   "waypoint {places}, back to {haven}": "Wegpunkt {places}, zurück zu {haven}",
   "waypoints {places}, back to {haven}": "Wegpunkte {places}, zurück zu {haven}",
@@ -164,19 +201,29 @@ export default {
   "Least energy": "Wenigste Energie",
   "Least flying time": "Kürzeste Flugzeit",
   "Leg {from} to {to}": "Teilstrecke {from} bis {to}",
-  "Legal at any time of the next hour.": ["Jederzeit in der nächsten Stunde erlaubt.", "Jederzeit in den nächsten {count} Stunden erlaubt."],
-  "Legal at no time of the next hour.": ["Zu keiner Zeit in der nächsten Stunde erlaubt.", "Zu keiner Zeit in den nächsten {count} Stunden erlaubt."],
+  "Legal at any time of the next hour.": [
+    "Jederzeit in der nächsten Stunde erlaubt.",
+    "Jederzeit in den nächsten {count} Stunden erlaubt.",
+  ],
+  "Legal at no time of the next hour.": [
+    "Zu keiner Zeit in der nächsten Stunde erlaubt.",
+    "Zu keiner Zeit in den nächsten {count} Stunden erlaubt.",
+  ],
   "Legal for {free} of the next {hours} hours.": "{free} der nächsten {hours} Stunden lang erlaubt.",
   "Legal times to depart": "Erlaubte Abflugzeiten",
   "Mass at take-off": "Startmasse",
-  "More than one flight only where it returns to its start; each on a full battery.": "Mehr als ein Flug nur, wo es zum Start zurückkehrt; jeder mit vollem Akku.",
+  "More than one flight only where it returns to its start; each on a full battery.":
+    "Mehr als ein Flug nur, wo es zum Start zurückkehrt; jeder mit vollem Akku.",
   "{name} flies {height} higher": "{name} fliegt {height} höher",
   "{name} takes off {time} later": "{name} startet {time} später",
-  "Nearest: {one} and {other}, {distance} apart, {height} one above the other, {time} one after the other.": "Am nächsten: {one} und {other}, {distance} Abstand, {height} übereinander, {time} nacheinander.",
-  "Nearest: {one} and {other}, {distance} apart, {time} one after the other.": "Am nächsten: {one} und {other}, {distance} Abstand, {time} nacheinander.",
+  "Nearest: {one} and {other}, {distance} apart, {height} one above the other, {time} one after the other.":
+    "Am nächsten: {one} und {other}, {distance} Abstand, {height} übereinander, {time} nacheinander.",
+  "Nearest: {one} and {other}, {distance} apart, {time} one after the other.":
+    "Am nächsten: {one} und {other}, {distance} Abstand, {time} nacheinander.",
   "Next waypoint": "Nächster Wegpunkt",
   "No battery lasts for the way there and back.": "Kein Akku reicht für Hin- und Rückweg.",
-  "No departure is chosen: the plan keeps clear of all zones at all times.": "Kein Abflug ist gewählt: Der Plan meidet alle Zonen zu allen Zeiten.",
+  "No departure is chosen: the plan keeps clear of all zones at all times.":
+    "Kein Abflug ist gewählt: Der Plan meidet alle Zonen zu allen Zeiten.",
   "No leg leads here.": "Hierher führt keine Teilstrecke.",
   "No plan can be in the air for less than {time}.": "Kein Plan kann weniger als {time} in der Luft sein.",
   "No plan can use less than {energy}.": "Kein Plan kann weniger als {energy} verbrauchen.",
@@ -197,25 +244,34 @@ export default {
   "on its way": "unterwegs",
   "{one} and {other} come within {distance} of each other.": "{one} und {other} kommen einander auf {distance} nahe.",
   "{one} and {other}: one hovers in the way of the other.": "{one} und {other}: Eines schwebt dem anderen im Weg.",
-  "All are planned with the figures that this mission has of its UAVs.": "Alle sind mit den Werten geplant, die diese Mission von ihren UAVs hat.",
+  "All are planned with the figures that this mission has of its UAVs.":
+    "Alle sind mit den Werten geplant, die diese Mission von ihren UAVs hat.",
   "Plans that reach fewer targets do not count for it.": "Pläne, die weniger Ziele erreichen, zählen dabei nicht.",
-  "One plan of the same targets for each. The best figure of a column is bold.": "Je ein Plan derselben Ziele. Der beste Wert einer Spalte ist fett.",
+  "One plan of the same targets for each. The best figure of a column is bold.":
+    "Je ein Plan derselben Ziele. Der beste Wert einer Spalte ist fett.",
   "Out of range: {length} are missing at best.": "Außer Reichweite: Im besten Fall fehlen {length}.",
   "{percent} left, {energy} used": "{percent} übrig, {energy} verbraucht",
-  "Plan the mission first: which zones it meets, and when, comes from its routes.": "Zuerst die Mission planen: Welche Zonen sie wann trifft, ergibt sich aus ihren Routen.",
+  "Plan the mission first: which zones it meets, and when, comes from its routes.":
+    "Zuerst die Mission planen: Welche Zonen sie wann trifft, ergibt sich aus ihren Routen.",
   "Plan the others": "Die anderen planen",
-  "Point at an asset for its reason. Not all together: a plan says which ones fit.": "Auf ein Objekt zeigen, um seinen Grund zu sehen. Nicht alle zusammen: Welche zusammen gehen, sagt ein Plan.",
+  "Point at an asset for its reason. Not all together: a plan says which ones fit.":
+    "Auf ein Objekt zeigen, um seinen Grund zu sehen. Nicht alle zusammen: Welche zusammen gehen, sagt ein Plan.",
   "Power while charging": "Leistung beim Laden",
   "Proven least energy.": "Bewiesen wenigste Energie.",
-  "Proven least energy of plans that reach as many targets.": "Bewiesen wenigste Energie unter den Plänen, die so viele Ziele erreichen.",
+  "Proven least energy of plans that reach as many targets.":
+    "Bewiesen wenigste Energie unter den Plänen, die so viele Ziele erreichen.",
   "Proven least energy with what is locked.": "Bewiesen wenigste Energie mit dem, was festgelegt ist.",
-  "Proven least energy with what is locked, of plans that reach as many targets.": "Bewiesen wenigste Energie mit dem Festgelegten, unter den Plänen, die so viele Ziele erreichen.",
+  "Proven least energy with what is locked, of plans that reach as many targets.":
+    "Bewiesen wenigste Energie mit dem Festgelegten, unter den Plänen, die so viele Ziele erreichen.",
   "Proven least flying time.": "Bewiesen kürzeste Flugzeit.",
-  "Proven least flying time of plans that reach as many targets.": "Bewiesen kürzeste Flugzeit unter den Plänen, die so viele Ziele erreichen.",
+  "Proven least flying time of plans that reach as many targets.":
+    "Bewiesen kürzeste Flugzeit unter den Plänen, die so viele Ziele erreichen.",
   "Proven least flying time with what is locked.": "Bewiesen kürzeste Flugzeit mit dem, was festgelegt ist.",
-  "Proven least flying time with what is locked, of plans that reach as many targets.": "Bewiesen kürzeste Flugzeit mit dem Festgelegten, unter den Plänen, die so viele Ziele erreichen.",
+  "Proven least flying time with what is locked, of plans that reach as many targets.":
+    "Bewiesen kürzeste Flugzeit mit dem Festgelegten, unter den Plänen, die so viele Ziele erreichen.",
   "Put one in after it": "Einen dahinter einfügen",
-  "{reachable} of {all} assets can be inspected, each in a flight of its own.": "{reachable} von {all} Objekten können inspiziert werden, jedes in einem eigenen Flug.",
+  "{reachable} of {all} assets can be inspected, each in a flight of its own.":
+    "{reachable} von {all} Objekten können inspiziert werden, jedes in einem eigenen Flug.",
   "Reached at {time}": "Erreicht um {time}",
   "Reasons": "Gründe",
   "Remove this height": "Diese Höhe entfernen",
@@ -228,8 +284,10 @@ export default {
   "Speed on the way here": "Geschwindigkeit hierher",
   "{percent} at landing": "{percent} bei der Landung",
   "{speed} over ground, as planned.": "{speed} über Grund, wie geplant.",
-  "{speed} over ground: the wind carries it, {own} are planned.": "{speed} über Grund: Der Wind trägt es, geplant sind {own}.",
-  "{speed} over ground: the wind leaves no more of {own}.": "{speed} über Grund: Mehr lässt der Wind von {own} nicht übrig.",
+  "{speed} over ground: the wind carries it, {own} are planned.":
+    "{speed} über Grund: Der Wind trägt es, geplant sind {own}.",
+  "{speed} over ground: the wind leaves no more of {own}.":
+    "{speed} über Grund: Mehr lässt der Wind von {own} nicht übrig.",
   "start": "Start",
   "Start, range, speed, battery, end, targets": "Start, Reichweite, Geschwindigkeit, Akku, Ende, Ziele",
   "start to {end}|way": "Start bis {end}",
@@ -249,15 +307,18 @@ export default {
   "The mission": "Die Mission",
   "The next legal one is {when}.": "Der nächste erlaubte ist {when}.",
   "The route is kept as changed by hand.": "Die Route bleibt, wie sie von Hand geändert ist.",
-  "The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach.": "Die Routen nehmen kürzere Wege als bevorzugt, weiter weg von den Leitungen: Entlang der Leitungen sind nicht alle Ziele in Reichweite.",
+  "The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach.":
+    "Die Routen nehmen kürzere Wege als bevorzugt, weiter weg von den Leitungen: Entlang der Leitungen sind nicht alle Ziele in Reichweite.",
   "The UAVs keep apart.": "Die UAVs halten Abstand.",
   "The wind is too strong on every way to it, or back.": "Der Wind ist auf jedem Weg dorthin oder zurück zu stark.",
   "the wind": "der Wind",
   "the wind, {time} more than in calm air": "der Wind, {time} mehr als bei Windstille",
   "There is no asset to inspect.": "Es gibt kein Objekt zu inspizieren.",
-  "Tick one in the list: what can be inspected is worked out from where it starts.": "In der Liste eines anhaken: Ermittelt wird von seinem Start aus.",
+  "Tick one in the list: what can be inspected is worked out from where it starts.":
+    "In der Liste eines anhaken: Ermittelt wird von seinem Start aus.",
   "Two rows have the same height.": "Zwei Zeilen haben dieselbe Höhe.",
-  "UAVs that fly once may stop on a tower to charge": "UAVs, die einmal fliegen, dürfen zum Laden auf einem Mast landen",
+  "UAVs that fly once may stop on a tower to charge":
+    "UAVs, die einmal fliegen, dürfen zum Laden auf einem Mast landen",
   "UAVs that cannot take off": "UAVs, die nicht starten können",
   "until {time}": "bis {time}",
   "Use these": "Übernehmen",
@@ -273,7 +334,8 @@ export default {
   "{when}, not legal": "{when}, nicht erlaubt",
   "Wind": "Wind",
   "Wind at a height": "Wind in einer Höhe",
-  "Wind between two heights is in between; below the lowest and above the highest it is as there. Arrows show where it blows.": "Zwischen zwei Höhen liegt der Wind dazwischen; darunter und darüber ist er wie dort. Pfeile zeigen, wohin er weht.",
+  "Wind between two heights is in between; below the lowest and above the highest it is as there. Arrows show where it blows.":
+    "Zwischen zwei Höhen liegt der Wind dazwischen; darunter und darüber ist er wie dort. Pfeile zeigen, wohin er weht.",
   "Wind from, degrees clockwise from north": "Wind aus, Grad im Uhrzeigersinn von Norden",
   "Wind speed": "Windgeschwindigkeit",
   "Working out what can be inspected": "Wird ermittelt: was inspiziert werden kann",
@@ -285,13 +347,17 @@ export default {
   "zone not in force when the UAV comes by": "Zone, die beim Vorbeiflug nicht in Kraft ist",
   "{zone}, passed by": "{zone}, daran vorbei",
   "zone passed by, not entered": "Zone, an der vorbeigeflogen wird",
-  "{zone}. This moment has passed; zones count at it all the same.": "{zone}. Dieser Zeitpunkt ist vorbei; Zonen gelten trotzdem wie zu dieser Zeit.",
-  "{zone}. Zones count at the times when the UAVs pass.": "{zone}. Zonen gelten zu den Zeiten, zu denen die UAVs vorbeifliegen.",
+  "{zone}. This moment has passed; zones count at it all the same.":
+    "{zone}. Dieser Zeitpunkt ist vorbei; Zonen gelten trotzdem wie zu dieser Zeit.",
+  "{zone}. Zones count at the times when the UAVs pass.":
+    "{zone}. Zonen gelten zu den Zeiten, zu denen die UAVs vorbeifliegen.",
   "Zones count {height} below and above their limits.": "Zonen zählen {height} unter und über ihren Grenzen.",
   "Zones count {time} before and after their times.": "Zonen zählen {time} vor und nach ihren Zeiten.",
-  "Zones count {time} before and after their times and {height} below and above their limits.": "Zonen zählen {time} vor und nach ihren Zeiten und {height} unter und über ihren Grenzen.",
+  "Zones count {time} before and after their times and {height} below and above their limits.":
+    "Zonen zählen {time} vor und nach ihren Zeiten und {height} unter und über ihren Grenzen.",
   "Zones that force a detour": "Zonen, die zu einem Umweg zwingen",
   "Zones: {zones}.": "Zonen: {zones}.",
   "{name} lies inside {zone}: nothing may land there.": "{name} liegt in {zone}: Dort darf nichts landen.",
-  "{name} states no top airspeed: it is taken to fly no faster than its speed, through the air.": "{name} nennt keine höchste Fluggeschwindigkeit: Es wird angenommen, dass es durch die Luft nicht schneller als seine Geschwindigkeit fliegt.",
+  "{name} states no top airspeed: it is taken to fly no faster than its speed, through the air.":
+    "{name} nennt keine höchste Fluggeschwindigkeit: Es wird angenommen, dass es durch die Luft nicht schneller als seine Geschwindigkeit fliegt.",
 };

@@ -32,92 +32,121 @@ export default {
   "The approval is being taken back.": "Die Freigabe wird gerade zurückgenommen.",
   "{name} does not have its mission yet.": "{name} hat seine Mission noch nicht.",
   "{name} has no mission.": "{name} hat keine Mission.",
-  "A flight of {name} has failed: it does not fly on in this mission.": "Ein Flug von {name} ist gescheitert: Es fliegt in dieser Mission nicht weiter.",
-  "{name} has not started its mission: there is nothing to go on with.": "{name} hat seine Mission nicht begonnen: Es gibt nichts fortzusetzen.",
-  "Its way home has not been checked: it flies straight, at a height of its own.": "Sein Heimweg ist nicht geprüft: Es fliegt geradeaus, auf einer eigenen Höhe.",
-  "Return and Abort: nothing in the way home, {height} above its take-off (read {time}).": "„Zurück“ und „Abbrechen“: Der Heimweg ist frei, {height} über seinem Startplatz (gelesen {time}).",
+  "A flight of {name} has failed: it does not fly on in this mission.":
+    "Ein Flug von {name} ist gescheitert: Es fliegt in dieser Mission nicht weiter.",
+  "{name} has not started its mission: there is nothing to go on with.":
+    "{name} hat seine Mission nicht begonnen: Es gibt nichts fortzusetzen.",
+  "Its way home has not been checked: it flies straight, at a height of its own.":
+    "Sein Heimweg ist nicht geprüft: Es fliegt geradeaus, auf einer eigenen Höhe.",
+  "Return and Abort: nothing in the way home, {height} above its take-off (read {time}).":
+    "„Zurück“ und „Abbrechen“: Der Heimweg ist frei, {height} über seinem Startplatz (gelesen {time}).",
   "it has booted since": "es ist seither neu gestartet",
   "another ground station has changed its lists since": "eine andere Bodenstation hat seither seine Listen geändert",
   "its list has another length since": "seine Liste ist seither anders lang",
   "read back {ago}; not known now: {why}": "zurückgelesen {ago}; jetzt nicht bekannt: {why}",
   "read back {ago}": "zurückgelesen {ago}",
-  "It is not known what is on the UAV: send it again.": "Es ist nicht bekannt, was auf dem UAV ist: Senden Sie es noch einmal.",
+  "It is not known what is on the UAV: send it again.":
+    "Es ist nicht bekannt, was auf dem UAV ist: Senden Sie es noch einmal.",
   "{what}, {read}": "{what}, {read}",
-  "{kind}: reading back what is on board, {done} of {total} items": "{kind}: liest zurück, was an Bord ist, {done} von {total} Punkten",
+  "{kind}: reading back what is on board, {done} of {total} items":
+    "{kind}: liest zurück, was an Bord ist, {done} von {total} Punkten",
   "{name} has flown this flight.": "{name} hat diesen Flug schon geflogen.",
   "{name} is flying.": "{name} fliegt.",
-  "Flown to its end. Save a copy to fly it again.": "Zu Ende geflogen. Sichern Sie eine Kopie, um sie wieder zu fliegen.",
+  "Flown to its end. Save a copy to fly it again.":
+    "Zu Ende geflogen. Sichern Sie eine Kopie, um sie wieder zu fliegen.",
   "Aborted. Save a copy to fly it again.": "Abgebrochen. Sichern Sie eine Kopie, um sie wieder zu fliegen.",
-  "A flight failed. Save a copy to fly it again.": "Ein Flug ist gescheitert. Sichern Sie eine Kopie, um sie wieder zu fliegen.",
-  "The approval is being taken back: {reason}. It ends once every UAV was seen without the mission.": "Die Freigabe wird zurückgenommen: {reason}. Sie endet, sobald jedes UAV ohne die Mission gesehen wurde.",
+  "A flight failed. Save a copy to fly it again.":
+    "Ein Flug ist gescheitert. Sichern Sie eine Kopie, um sie wieder zu fliegen.",
+  "The approval is being taken back: {reason}. It ends once every UAV was seen without the mission.":
+    "Die Freigabe wird zurückgenommen: {reason}. Sie endet, sobald jedes UAV ohne die Mission gesehen wurde.",
   "Approved by {name} {time}.": "Freigegeben von {name} {time}.",
   "It is being flown: nothing of it can be changed.": "Sie wird geflogen: Nichts daran kann geändert werden.",
   "Nothing of it can be changed until that is revoked.": "Bis das widerrufen wird, kann nichts daran geändert werden.",
-  "The ground has changed since it was approved. Revoke it, and plan again.": "Der Boden hat sich seit der Freigabe geändert. Widerrufen Sie sie, und planen Sie neu.",
-  "If it cannot be reached in time, the command expires and is not carried out later.": "Ist es nicht rechtzeitig zu erreichen, verfällt der Befehl und wird auch später nicht ausgeführt.",
+  "The ground has changed since it was approved. Revoke it, and plan again.":
+    "Der Boden hat sich seit der Freigabe geändert. Widerrufen Sie sie, und planen Sie neu.",
+  "If it cannot be reached in time, the command expires and is not carried out later.":
+    "Ist es nicht rechtzeitig zu erreichen, verfällt der Befehl und wird auch später nicht ausgeführt.",
   "Why (kept in the history)": "Warum (steht im Verlauf)",
   "Start {name}?": "{name} starten?",
-  "It takes off and flies its approved route: {length}, {time}.": "Es hebt ab und fliegt seine freigegebene Route: {length}, {time}.",
+  "It takes off and flies its approved route: {length}, {time}.":
+    "Es hebt ab und fliegt seine freigegebene Route: {length}, {time}.",
   "Start {name}": "{name} starten",
   "Arm {name}?": "{name} scharf schalten?",
-  "Its rotors may turn from then on. Make sure that nobody stands beside it.": "Von da an können sich die Rotoren drehen. Vergewissern Sie sich, dass niemand daneben steht.",
+  "Its rotors may turn from then on. Make sure that nobody stands beside it.":
+    "Von da an können sich die Rotoren drehen. Vergewissern Sie sich, dass niemand daneben steht.",
   "Arm {name}": "{name} scharf schalten",
   "Let {name} take off?": "{name} abheben lassen?",
-  "It rises straight up from where it stands, and stays there until it is told otherwise.": "Es steigt senkrecht auf und bleibt dort, bis es etwas anderes hört.",
+  "It rises straight up from where it stands, and stays there until it is told otherwise.":
+    "Es steigt senkrecht auf und bleibt dort, bis es etwas anderes hört.",
   "Let {name} take off": "{name} abheben lassen",
   "Height above the place of take-off [m]": "Höhe über dem Startplatz [m]",
   "Pause {name}?": "{name} pausieren?",
-  "It stops on its route and waits for Resume, as long as its battery lasts.": "Es bleibt auf seiner Route stehen und wartet auf Fortsetzen, solange der Akku reicht.",
+  "It stops on its route and waits for Resume, as long as its battery lasts.":
+    "Es bleibt auf seiner Route stehen und wartet auf Fortsetzen, solange der Akku reicht.",
   "Keep flying": "Weiterfliegen",
   "Pause {name}": "{name} pausieren",
   "Resume the flight of {name}?": "Den Flug von {name} fortsetzen?",
   "It flies on along its route from where it is.": "Es fliegt seine Route weiter, von da, wo es ist.",
   "Resume {name}": "{name} fortsetzen",
   "Hold {name}?": "{name} anhalten?",
-  "It stops where it is and stays there until it is told otherwise, as long as its battery lasts.": "Es bleibt stehen, wo es ist, bis es etwas anderes hört, solange der Akku reicht.",
+  "It stops where it is and stays there until it is told otherwise, as long as its battery lasts.":
+    "Es bleibt stehen, wo es ist, bis es etwas anderes hört, solange der Akku reicht.",
   "Hold {name}": "{name} anhalten",
   "Return {name}?": "{name} zurückholen?",
-  "It flies back to where it took off and lands there. Targets that it has not reached stay undone.": "Es fliegt dahin zurück, wo es abgehoben hat, und landet dort. Ziele, die es nicht erreicht hat, bleiben offen.",
+  "It flies back to where it took off and lands there. Targets that it has not reached stay undone.":
+    "Es fliegt dahin zurück, wo es abgehoben hat, und landet dort. Ziele, die es nicht erreicht hat, bleiben offen.",
   "Return {name}": "{name} zurückholen",
   "Land {name} here?": "{name} hier landen?",
-  "It comes straight down where it is now, whatever is below. Targets that it has not reached stay undone.": "Es kommt senkrecht herunter, wo es gerade ist, gleich was darunter ist. Ziele, die es nicht erreicht hat, bleiben offen.",
+  "It comes straight down where it is now, whatever is below. Targets that it has not reached stay undone.":
+    "Es kommt senkrecht herunter, wo es gerade ist, gleich was darunter ist. Ziele, die es nicht erreicht hat, bleiben offen.",
   "Land {name} here": "{name} hier landen",
   "Abort the flight of {name}?": "Den Flug von {name} abbrechen?",
-  "Whatever else it was told no longer counts. Targets that it has not reached stay undone; the other UAVs go on.": "Was ihm sonst gesagt wurde, gilt nicht mehr. Ziele, die es nicht erreicht hat, bleiben offen; die anderen UAVs fliegen weiter.",
+  "Whatever else it was told no longer counts. Targets that it has not reached stay undone; the other UAVs go on.":
+    "Was ihm sonst gesagt wurde, gilt nicht mehr. Ziele, die es nicht erreicht hat, bleiben offen; die anderen UAVs fliegen weiter.",
   "Abort {name}": "{name} abbrechen",
   "Change the speed of {name}?": "Das Tempo von {name} ändern?",
-  "Over ground, until its route says otherwise. Planned times no longer hold.": "Über Grund, bis die Route etwas anderes sagt. Geplante Zeiten gelten dann nicht mehr.",
+  "Over ground, until its route says otherwise. Planned times no longer hold.":
+    "Über Grund, bis die Route etwas anderes sagt. Geplante Zeiten gelten dann nicht mehr.",
   "Change the speed of {name}": "Tempo von {name} ändern",
   "Speed [m/s]; now planned with {speed}": "Tempo [m/s]; geplant sind {speed}",
-  "Somebody else has changed the mission. Look at it again.": "Jemand anderes hat die Mission geändert. Sehen Sie sie noch einmal an.",
+  "Somebody else has changed the mission. Look at it again.":
+    "Jemand anderes hat die Mission geändert. Sehen Sie sie noch einmal an.",
   "Approve “{name}”?": "„{name}“ freigeben?",
-  "From then on nothing of the mission can be changed, and only what is approved is sent to UAVs. The approval can be revoked.": "Von da an kann nichts an der Mission geändert werden, und nur was freigegeben ist, wird an UAVs gesendet. Die Freigabe kann widerrufen werden.",
+  "From then on nothing of the mission can be changed, and only what is approved is sent to UAVs. The approval can be revoked.":
+    "Von da an kann nichts an der Mission geändert werden, und nur was freigegeben ist, wird an UAVs gesendet. Die Freigabe kann widerrufen werden.",
   "Approve": "Freigeben",
-  "Put points in on legs longer than [m]; empty: as planned": "Punkte auf Strecken einfügen, die länger sind als [m]; leer: wie geplant",
+  "Put points in on legs longer than [m]; empty: as planned":
+    "Punkte auf Strecken einfügen, die länger sind als [m]; leer: wie geplant",
   "Not approved.": "Nicht freigegeben.",
   "Revoke the approval of “{name}”?": "Die Freigabe von „{name}“ widerrufen?",
-  "Every UAV that may have the mission is told to drop it. The approval ends once all of them were seen without it; then the mission can be changed again.": "Jedem UAV, das die Mission haben kann, wird gesagt, sie zu löschen. Die Freigabe endet, sobald alle ohne sie gesehen wurden; dann kann die Mission wieder geändert werden.",
+  "Every UAV that may have the mission is told to drop it. The approval ends once all of them were seen without it; then the mission can be changed again.":
+    "Jedem UAV, das die Mission haben kann, wird gesagt, sie zu löschen. Die Freigabe endet, sobald alle ohne sie gesehen wurden; dann kann die Mission wieder geändert werden.",
   "Until then it can be neither sent nor started.": "Bis dahin kann sie weder gesendet noch gestartet werden.",
-  "The mission can be changed again, and has to be approved anew before it is sent.": "Die Mission kann wieder geändert werden und muss neu freigegeben werden, bevor sie gesendet wird.",
+  "The mission can be changed again, and has to be approved anew before it is sent.":
+    "Die Mission kann wieder geändert werden und muss neu freigegeben werden, bevor sie gesendet wird.",
   "Keep it approved": "Freigegeben lassen",
   "Revoke": "Widerrufen",
   "Not revoked.": "Nicht widerrufen.",
   "Send flight {flight} to {name}?": "Flug {flight} an {name} senden?",
   "Send its route to {name}?": "{name} seine Route senden?",
-  "{names}: what each one then has on board is read back and compared with what was approved. Nothing takes off by this.": "{names}: Was jedes dann an Bord hat, wird zurückgelesen und mit dem Freigegebenen verglichen. Davon hebt nichts ab.",
-  "A UAV that is not connected gets its route when it is, within the hour.": "Ein UAV, das nicht verbunden ist, bekommt seine Route, sobald es das ist, innerhalb einer Stunde.",
+  "{names}: what each one then has on board is read back and compared with what was approved. Nothing takes off by this.":
+    "{names}: Was jedes dann an Bord hat, wird zurückgelesen und mit dem Freigegebenen verglichen. Davon hebt nichts ab.",
+  "A UAV that is not connected gets its route when it is, within the hour.":
+    "Ein UAV, das nicht verbunden ist, bekommt seine Route, sobald es das ist, innerhalb einer Stunde.",
   "Send to {name}": "An {name} senden",
   "Send to UAVs": "An UAVs senden",
   "Not sent.": "Nicht gesendet.",
   "Abort “{name}”?": "„{name}“ abbrechen?",
-  "{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.": "{names} hören das vor allem anderen, was wartet. Ziele, die nicht erreicht sind, bleiben offen, und die Mission kann nicht wieder aufgenommen werden.",
+  "{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.":
+    "{names} hören das vor allem anderen, was wartet. Ziele, die nicht erreicht sind, bleiben offen, und die Mission kann nicht wieder aufgenommen werden.",
   "Abort the mission": "Mission abbrechen",
   "Not aborted.": "Nicht abgebrochen.",
   "{name} was not told: {act}.": "{name} wurde es nicht gesagt: {act}.",
   "{act}: {name} is being told.": "{act}: {name} wird es gesagt.",
   "{act}: {name} has done it.": "{act}: {name} hat es ausgeführt.",
   "{act}: {name} has not done it. {outcome}": "{act}: {name} hat es nicht ausgeführt. {outcome}",
-  "It has changed since it was planned. Plan again first.": "Sie hat sich seit der Planung geändert. Planen Sie zuerst neu.",
+  "It has changed since it was planned. Plan again first.":
+    "Sie hat sich seit der Planung geändert. Planen Sie zuerst neu.",
   "It is not saved yet.": "Sie ist noch nicht gesichert.",
   "Not yet": "Noch nicht",
   "Sending to {name}": "Senden an {name}",
@@ -134,6 +163,9 @@ export default {
   "Approval is being revoked": "Freigabe wird widerrufen",
   "Sent to UAVs": "An UAVs gesendet",
   "Started": "Gestartet",
-  "{count} UAV flies {length} in all: {names}.": ["{count} UAV fliegt insgesamt {length}: {names}.", "{count} UAVs fliegen insgesamt {length}: {names}."],
+  "{count} UAV flies {length} in all: {names}.": [
+    "{count} UAV fliegt insgesamt {length}: {names}.",
+    "{count} UAVs fliegen insgesamt {length}: {names}.",
+  ],
   "Send the mission to {count} UAV?": ["Die Mission an {count} UAV senden?", "Die Mission an {count} UAVs senden?"],
 };

@@ -43,7 +43,8 @@ export default {
   "searching the changed ground…": "der geänderte Bestand wird durchsucht…",
   "Searching the ground…": "Der Bestand wird durchsucht…",
   "Should join": "Sollten sich treffen",
-  "Spanwise keeps no substations: if one stands here, leave the end as it is.": "Spanwise kennt keine Umspannwerke: Steht hier eines, das Ende belassen.",
+  "Spanwise keeps no substations: if one stands here, leave the end as it is.":
+    "Spanwise kennt keine Umspannwerke: Steht hier eines, das Ende belassen.",
   "Take one back": "Einen zurücknehmen",
   "Taken back.": "Zurückgenommen.",
   "The ground is being searched.": "Der Bestand wird durchsucht.",
@@ -52,7 +53,8 @@ export default {
   "This gap is gone: its asset was taken away.": "Diese Lücke ist weg: Ihr Objekt wurde entfernt.",
   "Towers missing": "Masten fehlen",
   "Towers on no line": "Masten ohne Leitung",
-  "Vertices inside a substation may hang on its portals.": "Stützpunkte in einem Umspannwerk können an dessen Portalen hängen.",
+  "Vertices inside a substation may hang on its portals.":
+    "Stützpunkte in einem Umspannwerk können an dessen Portalen hängen.",
   "Voltage": "Spannung",
   "Why it is right": "Warum es stimmt",
   "Without a tower": "Ohne Mast",

@@ -2,7 +2,8 @@
 
 export default {
   "A step back": "Einen Schritt zurück",
-  "A UAV can get there, but not on one route with its other targets. Add a UAV.": "Ein UAV kann dorthin, aber nicht auf einer Route mit seinen anderen Zielen. Ein weiteres UAV hilft.",
+  "A UAV can get there, but not on one route with its other targets. Add a UAV.":
+    "Ein UAV kann dorthin, aber nicht auf einer Route mit seinen anderen Zielen. Ein weiteres UAV hilft.",
   "Aborted": "Abgebrochen",
   "Active": "Im Flug",
   "Address": "Adresse",
@@ -30,7 +31,10 @@ export default {
   "Completed": "Abgeschlossen",
   "Copied.": "Kopiert.",
   "Copy": "Kopieren",
-  "{count} draft is not saved on the server": ["{count} Entwurf ist nicht auf dem Server gespeichert", "{count} Entwürfe sind nicht auf dem Server gespeichert"],
+  "{count} draft is not saved on the server": [
+    "{count} Entwurf ist nicht auf dem Server gespeichert",
+    "{count} Entwürfe sind nicht auf dem Server gespeichert",
+  ],
   "{count} entry": ["{count} Eintrag", "{count} Einträge"],
   "{count} found": ["{count} gefunden", "{count} gefunden"],
   "{count} point": ["{count} Punkt", "{count} Punkte"],
@@ -54,7 +58,8 @@ export default {
   "Find": "Suchen",
   "Find an asset": "Ein Objekt suchen",
   "Fold the side": "Seite einklappen",
-  "From its other targets {name} would have to pass a mast or wires that cannot be flown over.": "Von seinen anderen Zielen aus müsste {name} an einem Mast oder an Leiterseilen vorbei, die nicht zu überfliegen sind.",
+  "From its other targets {name} would have to pass a mast or wires that cannot be flown over.":
+    "Von seinen anderen Zielen aus müsste {name} an einem Mast oder an Leiterseilen vorbei, die nicht zu überfliegen sind.",
   "Go to the assets": "Zu den Objekten",
   "Go to the map": "Zur Karte",
   "Go to the missions": "Zu den Missionen",
@@ -93,7 +98,8 @@ export default {
   "More for {name}": "Mehr für {name}",
   "Name": "Name",
   "Name of the set": "Name des Satzes",
-  "{name} would have to pass a mast or wires that cannot be flown over.": "{name} müsste an einem Mast oder an Leiterseilen vorbei, die nicht zu überfliegen sind.",
+  "{name} would have to pass a mast or wires that cannot be flown over.":
+    "{name} müsste an einem Mast oder an Leiterseilen vorbei, die nicht zu überfliegen sind.",
   "New": "Neu",
   "New mission": "Neue Mission",
   "New name of {name}": "Neuer Name von {name}",
@@ -176,9 +182,11 @@ export default {
   "The server answered with {status}.": "Der Server hat mit {status} geantwortet.",
   "The server cannot be reached.": "Der Server ist nicht erreichbar.",
   "The server did not answer in time.": "Der Server hat nicht rechtzeitig geantwortet.",
-  "the surroundings of a mast or wires that cannot be flown over": "der Umgebung eines Mastes oder von Leiterseilen, die nicht zu überfliegen sind",
+  "the surroundings of a mast or wires that cannot be flown over":
+    "der Umgebung eines Mastes oder von Leiterseilen, die nicht zu überfliegen sind",
   "Theme: {theme}": "Farben: {theme}",
-  "Drafts are in this browser alone. Whoever uses this computer after you could find them; what you keep comes back when you sign in here again.": "Entwürfe sind nur in diesem Browser. Wer diesen Rechner nach Ihnen benutzt, könnte sie finden; was Sie behalten, kommt wieder, wenn Sie sich hier wieder anmelden.",
+  "Drafts are in this browser alone. Whoever uses this computer after you could find them; what you keep comes back when you sign in here again.":
+    "Entwürfe sind nur in diesem Browser. Wer diesen Rechner nach Ihnen benutzt, könnte sie finden; was Sie behalten, kommt wieder, wenn Sie sich hier wieder anmelden.",
   "today, {time}": "heute, {time}",
   "Too many requests. Wait a moment, then try again.": "Zu viele Anfragen. Kurz warten, dann noch einmal versuchen.",
   "Tower": "Mast",
@@ -195,10 +203,13 @@ export default {
   "Voltages": "Spannungen",
   "yes": "ja",
   "yesterday, {time}": "gestern, {time}",
-  "You are signed out, as nobody was here for a while. What is not saved is kept in this browser.": "Sie sind abgemeldet, weil eine Weile niemand da war. Was nicht gespeichert ist, bleibt in diesem Browser.",
+  "You are signed out, as nobody was here for a while. What is not saved is kept in this browser.":
+    "Sie sind abgemeldet, weil eine Weile niemand da war. Was nicht gespeichert ist, bleibt in diesem Browser.",
   "You are signed out.": "Sie sind abgemeldet.",
-  "You are signed out. Your selection is kept in this browser.": "Sie sind abgemeldet. Ihre Auswahl bleibt in diesem Browser erhalten.",
-  "You will be signed out at {time}, as nothing was done here. What is not saved is kept in this browser.": "Um {time} werden Sie abgemeldet, weil hier nichts getan wurde. Was nicht gespeichert ist, bleibt in diesem Browser.",
+  "You are signed out. Your selection is kept in this browser.":
+    "Sie sind abgemeldet. Ihre Auswahl bleibt in diesem Browser erhalten.",
+  "You will be signed out at {time}, as nothing was done here. What is not saved is kept in this browser.":
+    "Um {time} werden Sie abgemeldet, weil hier nichts getan wurde. Was nicht gespeichert ist, bleibt in diesem Browser.",
   "Zoom in": "Vergrößern",
   "Zoom out": "Verkleinern",
   "“{name}” is deleted.": "„{name}“ ist gelöscht.",

@@ -21,7 +21,8 @@ export default {
   "It follows its source again.": "Es folgt wieder seiner Quelle.",
   "It is back.": "Es ist zurück.",
   "It is from {when}.": "Sie ist von {when}.",
-  "It was taken off the ground. Nothing of yours is stored.": "Es wurde aus dem Bestand genommen. Von Ihnen ist nichts gespeichert.",
+  "It was taken off the ground. Nothing of yours is stored.":
+    "Es wurde aus dem Bestand genommen. Von Ihnen ist nichts gespeichert.",
   "Kind": "Art",
   "Lower limit counted": "Untergrenze gezählt",
   "moved": "verschoben",

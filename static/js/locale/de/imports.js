@@ -2,10 +2,12 @@
 
 export default {
   ", after": ", nachher",
-  "A code such as EPSG:25832. Ask whoever made the file.": "Ein Code wie EPSG:25832. Wer die Datei erstellt hat, weiß ihn.",
+  "A code such as EPSG:25832. Ask whoever made the file.":
+    "Ein Code wie EPSG:25832. Wer die Datei erstellt hat, weiß ihn.",
   "address": "Adresse",
   "All imports": "Alle Importe",
-  "Also what another file brought in vanishes where this one covers the ground and does not have it": "Auch was eine andere Datei gebracht hat, verschwindet, wo diese das Gebiet abdeckt und es nicht enthält",
+  "Also what another file brought in vanishes where this one covers the ground and does not have it":
+    "Auch was eine andere Datei gebracht hat, verschwindet, wo diese das Gebiet abdeckt und es nicht enthält",
   "always empty": "immer leer",
   "Applied": "Übernommen",
   "Applied by {name}, {when}": "Übernommen von {name}, {when}",
@@ -39,10 +41,12 @@ export default {
   "Height in feet": "Höhe in Fuß",
   "Height in m": "Höhe in m",
   "Heights count from": "Höhen zählen ab",
-  "Heights from {low} to {high} above {datum}, in place of the earlier model of this name.": "Höhen von {low} bis {high} über {datum}, anstelle des früheren Modells dieses Namens.",
+  "Heights from {low} to {high} above {datum}, in place of the earlier model of this name.":
+    "Höhen von {low} bis {high} über {datum}, anstelle des früheren Modells dieses Namens.",
   "Heights from {low} to {high} above {datum}.": "Höhen von {low} bis {high} über {datum}.",
   "Imports": "Importe",
-  "is there already. Choose the same file again, and it goes on from there.": "ist schon da. Dieselbe Datei noch einmal wählen, dann geht es dort weiter.",
+  "is there already. Choose the same file again, and it goes on from there.":
+    "ist schon da. Dieselbe Datei noch einmal wählen, dann geht es dort weiter.",
   "is there and stays. Next try in": "ist da und bleibt. Nächster Versuch in",
   "Keep the edits": "Bearbeitungen behalten",
   "Kept": "Behalten",
@@ -71,7 +75,10 @@ export default {
   "Only where the file does not say it.": "Nur, wenn die Datei es nicht sagt.",
   "Overwrite and apply": "Überschreiben und übernehmen",
   "Overwrite what was edited by hand ({count})": "Von Hand Bearbeitetes überschreiben ({count})",
-  "Overwrite {count} edit by hand?": ["{count} Bearbeitung von Hand überschreiben?", "{count} Bearbeitungen von Hand überschreiben?"],
+  "Overwrite {count} edit by hand?": [
+    "{count} Bearbeitung von Hand überschreiben?",
+    "{count} Bearbeitungen von Hand überschreiben?",
+  ],
   "Points towers, lines power lines, areas bridges": "Punkte Masten, Linien Freileitungen, Flächen Brücken",
   "Read again in this system": "In diesem System neu lesen",
   "Read again without the faulty rows": "Ohne die fehlerhaften Zeilen neu lesen",
@@ -96,10 +103,12 @@ export default {
   "Take {name} off": "{name} von der Liste nehmen",
   "Terrain": "Gelände",
   "The connection was cut.": "Die Verbindung ist abgerissen.",
-  "The edits stay in the history, and can be brought back one by one.": "Die Bearbeitungen bleiben im Verlauf und können einzeln zurückgeholt werden.",
+  "The edits stay in the history, and can be brought back one by one.":
+    "Die Bearbeitungen bleiben im Verlauf und können einzeln zurückgeholt werden.",
   "The file could not be read.": "Die Datei konnte nicht gelesen werden.",
   "The map shows {area}, of at most {most}.": "Die Karte zeigt {area} von höchstens {most}.",
-  "The map shows {area}; at most {most} are taken at once. Zoom in.": "Die Karte zeigt {area}; höchstens {most} werden auf einmal geholt. Näher heranzoomen.",
+  "The map shows {area}; at most {most} are taken at once. Zoom in.":
+    "Die Karte zeigt {area}; höchstens {most} werden auf einmal geholt. Näher heranzoomen.",
   "The set that this file is the newest state of": "Der Satz, dessen neuester Stand diese Datei ist",
   "There is no earlier version.": "Es gibt keine frühere Fassung.",
   "These are": "Das sind",
@@ -124,7 +133,10 @@ export default {
   "{count} import to be decided": ["{count} Import zu entscheiden", "{count} Importe zu entscheiden"],
   "{count} is as it was.": ["{count} ist wie zuvor.", "{count} sind wie zuvor."],
   "{count} row": ["{count} Zeile", "{count} Zeilen"],
-  "{count} row that was edited by hand is set to what the file says.": ["{count} von Hand bearbeitete Zeile wird auf den Stand der Datei gesetzt.", "{count} von Hand bearbeitete Zeilen werden auf den Stand der Datei gesetzt."],
+  "{count} row that was edited by hand is set to what the file says.": [
+    "{count} von Hand bearbeitete Zeile wird auf den Stand der Datei gesetzt.",
+    "{count} von Hand bearbeitete Zeilen werden auf den Stand der Datei gesetzt.",
+  ],
   "{name} is being read.": "{name} wird gelesen.",
   "© OpenStreetMap contributors, ODbL.": "© OpenStreetMap-Mitwirkende, ODbL.",
   "“{name}” is discarded. Nothing of it counts.": "„{name}“ ist verworfen. Nichts davon zählt.",

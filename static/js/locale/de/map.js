@@ -18,11 +18,13 @@ export default {
   "carries a road and a railway": "trägt Straße und Bahn",
   "carries water": "trägt Wasser",
   "Click the next point.": "Den nächsten Punkt anklicken.",
-  "Click where to measure from, or press Enter for the middle of the map.": "Anklicken, ab wo gemessen wird, oder Eingabetaste für die Kartenmitte.",
+  "Click where to measure from, or press Enter for the middle of the map.":
+    "Anklicken, ab wo gemessen wird, oder Eingabetaste für die Kartenmitte.",
   "conditional": "unter Bedingungen",
   "Coordinates": "Koordinaten",
   "Coordinates, latitude first": "Koordinaten, Breite zuerst",
-  "Coordinates, longitude first: the first figure can be no latitude": "Koordinaten, Länge zuerst: Die erste Zahl kann keine Breite sein",
+  "Coordinates, longitude first: the first figure can be no latitude":
+    "Koordinaten, Länge zuerst: Die erste Zahl kann keine Breite sein",
   "Copied: {coordinates}": "Kopiert: {coordinates}",
   "Copy the coordinates": "Koordinaten kopieren",
   "Copy the coordinates at the pointer, or of the middle": "Koordinaten am Zeiger oder der Mitte kopieren",
@@ -67,7 +69,8 @@ export default {
   "under 50 kV": "unter 50 kV",
   "voltage not stated": "Spannung nicht angegeben",
   "Voltage not stated": "Spannung nicht angegeben",
-  "What you see may be incomplete. It is tried again every few seconds.": "Was Sie sehen, ist vielleicht unvollständig. Alle paar Sekunden wird es neu versucht.",
+  "What you see may be incomplete. It is tried again every few seconds.":
+    "Was Sie sehen, ist vielleicht unvollständig. Alle paar Sekunden wird es neu versucht.",
   "Whether it is in force now is not known": "Ob sie jetzt gilt, ist nicht bekannt",
   "{kind} {place} of {places}": "{kind} {place} von {places}",
   "{name} starts here": "{name} startet hier",

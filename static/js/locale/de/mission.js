@@ -2,7 +2,8 @@
 
 export default {
   "A mission takes {most} targets.": "Eine Mission fasst {most} Ziele.",
-  "A mission takes {most}. Take a smaller area, or pick whole lines.": "Eine Mission fasst {most}. Eine kleinere Fläche nehmen oder ganze Leitungen wählen.",
+  "A mission takes {most}. Take a smaller area, or pick whole lines.":
+    "Eine Mission fasst {most}. Eine kleinere Fläche nehmen oder ganze Leitungen wählen.",
   "All back in {time}": "Alle zurück in {time}",
   "All routes together as short as possible": "Alle Routen zusammen so kurz wie möglich",
   "all {count} target": ["das {count} Ziel", "alle {count} Ziele"],
@@ -12,10 +13,13 @@ export default {
   "Back to mine": "Zurück zu meiner",
   "Begin again with the first tower.": "Neu mit dem ersten Mast beginnen.",
   "Bring it back": "Zurückholen",
-  "Click a line, or a section of a railway: it is flown end to end.": "Eine Leitung oder einen Bahnabschnitt anklicken: Sie werden von Ende zu Ende beflogen.",
-  "Click a tower, bridge or track on the map, then plan.": "Einen Mast, eine Brücke oder ein Gleis auf der Karte anklicken, dann planen.",
+  "Click a line, or a section of a railway: it is flown end to end.":
+    "Eine Leitung oder einen Bahnabschnitt anklicken: Sie werden von Ende zu Ende beflogen.",
+  "Click a tower, bridge or track on the map, then plan.":
+    "Einen Mast, eine Brücke oder ein Gleis auf der Karte anklicken, dann planen.",
   "Click the first tower of the stretch.": "Den ersten Mast der Strecke anklicken.",
-  "Click where the UAV takes off, or press Enter for the middle of the map.": "Anklicken, wo das UAV startet, oder Eingabetaste für die Kartenmitte.",
+  "Click where the UAV takes off, or press Enter for the middle of the map.":
+    "Anklicken, wo das UAV startet, oder Eingabetaste für die Kartenmitte.",
   "Close, back to points": "Schließen, zurück zu Punkten",
   "Connected again.": "Wieder verbunden.",
   "Connected again. Everything is saved.": "Wieder verbunden. Alles ist gespeichert.",
@@ -31,7 +35,8 @@ export default {
   "Each UAV ends hovering at its last target": "Jedes UAV endet schwebend am letzten Ziel",
   "Each UAV flies back to where it took off": "Jedes UAV fliegt zum Startplatz zurück",
   "Each UAV lands at its last target": "Jedes UAV landet am letzten Ziel",
-  "Each UAV of this mission is set to fly back all the same": "Jedes UAV dieser Mission ist ohnehin auf Rückflug eingestellt",
+  "Each UAV of this mission is set to fly back all the same":
+    "Jedes UAV dieser Mission ist ohnehin auf Rückflug eingestellt",
   "ends hovering at {target}": "endet schwebend bei {target}",
   "Every bridge of it instead": "Stattdessen jede Brücke davon",
   "Every bridge of the railway": "Jede Brücke der Bahnstrecke",
@@ -60,7 +65,10 @@ export default {
   "Look in passing": "Im Vorbeiflug ansehen",
   "Map, {targets}, {routes}": "Karte, {targets}, {routes}",
   "Mission of {day}, {time}": "Mission vom {day}, {time}",
-  "No bridge carries this section of the railway.": ["Keine Brücke trägt diesen Abschnitt der Bahnstrecke.", "Keine Brücke trägt diese Abschnitte der Bahnstrecke."],
+  "No bridge carries this section of the railway.": [
+    "Keine Brücke trägt diesen Abschnitt der Bahnstrecke.",
+    "Keine Brücke trägt diese Abschnitte der Bahnstrecke.",
+  ],
   "No route visits it.": "Keine Route besucht es.",
   "No target added": "Kein Ziel hinzugefügt",
   "No target can be reached": "Kein Ziel ist erreichbar",
@@ -97,7 +105,8 @@ export default {
   "Route of {name}": "Route von {name}",
   "Saved as a draft.": "Als Entwurf gespeichert.",
   "section": "Abschnitt",
-  "Something failed on this page. Reload it; your selection is kept in this browser.": "Auf dieser Seite ist etwas fehlgeschlagen. Neu laden; Ihre Auswahl bleibt in diesem Browser erhalten.",
+  "Something failed on this page. Reload it; your selection is kept in this browser.":
+    "Auf dieser Seite ist etwas fehlgeschlagen. Neu laden; Ihre Auswahl bleibt in diesem Browser erhalten.",
   "Start empty": "Leer beginnen",
   "Stays": "Verweilt",
   "Stopped. The best plan so far is kept.": "Angehalten. Der bisher beste Plan bleibt.",
@@ -110,7 +119,10 @@ export default {
   "The mission has been deleted.": "Die Mission wurde gelöscht.",
   "The other way of planning has no figures: {reason}": "Die andere Planung hat keine Zahlen: {reason}",
   "The same is saved already.": "Dasselbe ist schon gespeichert.",
-  "The task of {count} target is set.": ["Die Aufgabe von {count} Ziel ist gesetzt.", "Die Aufgabe von {count} Zielen ist gesetzt."],
+  "The task of {count} target is set.": [
+    "Die Aufgabe von {count} Ziel ist gesetzt.",
+    "Die Aufgabe von {count} Zielen ist gesetzt.",
+  ],
   "The towers could not be read.": "Die Masten konnten nicht gelesen werden.",
   "There is no stretch between the two.": "Zwischen den beiden gibt es keine Strecke.",
   "This is {whose} save of {time}.": "Das ist der Stand von {time}, gespeichert von {whose}.",
@@ -123,7 +135,8 @@ export default {
   "Your changes are dropped.": "Ihre Änderungen sind verworfen.",
   "your own": "Ihnen",
   "Your selection is kept in this browser.": "Ihre Auswahl bleibt in diesem Browser erhalten.",
-  "Your selection is kept in this browser. Next try in {seconds} s.": "Ihre Auswahl bleibt in diesem Browser erhalten. Nächster Versuch in {seconds} s.",
+  "Your selection is kept in this browser. Next try in {seconds} s.":
+    "Ihre Auswahl bleibt in diesem Browser erhalten. Nächster Versuch in {seconds} s.",
   "Your unsaved changes are back.": "Ihre ungespeicherten Änderungen sind zurück.",
   "Your unsaved mission is back.": "Ihre ungespeicherte Mission ist zurück.",
   "{added} along the line.": "{added} entlang der Leitung.",
@@ -144,11 +157,15 @@ export default {
   "{count} UAV changed": ["{count} UAV geändert", "{count} UAVs geändert"],
   "{count} UAV is chosen.": ["{count} UAV ist gewählt.", "{count} UAVs sind gewählt."],
   "{count} UAV removed": ["{count} UAV entfernt", "{count} UAVs entfernt"],
-  "{count} would come to {now} that are picked. Take fewer, or plan several missions.": "{count} kämen zu {now} gewählten. Weniger nehmen oder mehrere Missionen planen.",
+  "{count} would come to {now} that are picked. Take fewer, or plan several missions.":
+    "{count} kämen zu {now} gewählten. Weniger nehmen oder mehrere Missionen planen.",
   "{name} (copy)": "{name} (Kopie)",
-  "{name} cannot be flown to: it is underground, out of use or a siding or busbar.": "{name} kann nicht angeflogen werden: unterirdisch, außer Betrieb oder Nebengleis oder Sammelschiene.",
-  "{name} flies {length} in {time} and {ending}: {targets}.": "{name} fliegt {length} in {time} und {ending}: {targets}.",
-  "{name} flies {low} to {high} above its take-off; flat ground is assumed.": "{name} fliegt {low} bis {high} über dem Start; flaches Gelände ist angenommen.",
+  "{name} cannot be flown to: it is underground, out of use or a siding or busbar.":
+    "{name} kann nicht angeflogen werden: unterirdisch, außer Betrieb oder Nebengleis oder Sammelschiene.",
+  "{name} flies {length} in {time} and {ending}: {targets}.":
+    "{name} fliegt {length} in {time} und {ending}: {targets}.",
+  "{name} flies {low} to {high} above its take-off; flat ground is assumed.":
+    "{name} fliegt {low} bis {high} über dem Start; flaches Gelände ist angenommen.",
   "{name} flies {low} to {high} above sea level.": "{name} fliegt {low} bis {high} über dem Meer.",
   "{name} is added and chosen.": "{name} ist angelegt und gewählt.",
   "{name} is in maintenance and does not fly.": "{name} ist in Wartung und fliegt nicht.",

@@ -57,23 +57,29 @@ export default {
   "has": "hat",
   "History of “{name}”": "Verlauf von „{name}“",
   "In the last plan {name} flew {length} in {time}.": "Im letzten Plan flog {name} {length} in {time}.",
-  "In this mission only; the fleet stays as it is. Its start can be dragged on the map as well.": "Nur in dieser Mission; die Flotte bleibt, wie sie ist. Der Start lässt sich auch auf der Karte ziehen.",
+  "In this mission only; the fleet stays as it is. Its start can be dragged on the map as well.":
+    "Nur in dieser Mission; die Flotte bleibt, wie sie ist. Der Start lässt sich auch auf der Karte ziehen.",
   "In view": "Im Bild",
   "Instead": "Stattdessen",
   "It could not be added.": "Es konnte nicht angelegt werden.",
   "It is out of range of every UAV of this mission.": "Es ist für jedes UAV dieser Mission außer Reichweite.",
-  "It is {height} high. A UAV would have to fly at {needed}; the limit is {limit}.": "Es ist {height} hoch. Ein UAV müsste auf {needed} fliegen; die Grenze ist {limit}.",
+  "It is {height} high. A UAV would have to fly at {needed}; the limit is {limit}.":
+    "Es ist {height} hoch. Ein UAV müsste auf {needed} fliegen; die Grenze ist {limit}.",
   "It stays in the fleet for other missions.": "Es bleibt für andere Missionen in der Flotte.",
   "Keep": "Speichern",
   "Keep the present targets in it": "Die gegenwärtigen Ziele darin speichern",
-  "Keep the {count} picked target as": ["Das {count} gewählte Ziel speichern als", "Die {count} gewählten Ziele speichern als"],
+  "Keep the {count} picked target as": [
+    "Das {count} gewählte Ziel speichern als",
+    "Die {count} gewählten Ziele speichern als",
+  ],
   "Kept in this browser until it is planned or saved": "In diesem Browser behalten, bis geplant oder gespeichert wird",
   "Kept to the lines": "Den Leitungen folgend",
   "Leave out": "Weglassen",
   "Loading…": "Wird geladen…",
   "Look them up": "Nachschlagen",
   "Looking…": "Wird gesucht…",
-  "Mine is from an earlier visit: only one of the two can be kept under this name.": "Meine ist von einem früheren Besuch: Nur eine der beiden kann unter diesem Namen bleiben.",
+  "Mine is from an earlier visit: only one of the two can be kept under this name.":
+    "Meine ist von einem früheren Besuch: Nur eine der beiden kann unter diesem Namen bleiben.",
   "Mine, not saved": "Meine, nicht gespeichert",
   "needs": "braucht",
   "No asset matches “{text}” with these filters.": "Kein Objekt passt mit diesen Filtern zu „{text}“.",
@@ -100,15 +106,21 @@ export default {
   "Not saved: see below": "Nicht gespeichert: siehe unten",
   "Not saved: the server cannot be reached": "Nicht gespeichert: Der Server ist nicht erreichbar",
   "Not saved: {whose} save came in between": "Nicht gespeichert: Speichern von {whose} kam dazwischen",
-  "Not this route: {name} is the last to be done, after {time}.": "Nicht diese Route: {name} ist als Letztes fertig, nach {time}.",
-  "Nothing is in view. Type a reference, a name, an operator or a voltage.": "Nichts ist im Bild. Eine Nummer, einen Namen, einen Betreiber oder eine Spannung eingeben.",
-  "Nothing is kept yet. Pick targets, then keep them under a name: everybody here can load them.": "Noch nichts gespeichert. Ziele wählen und unter einem Namen speichern: Alle hier können sie laden.",
+  "Not this route: {name} is the last to be done, after {time}.":
+    "Nicht diese Route: {name} ist als Letztes fertig, nach {time}.",
+  "Nothing is in view. Type a reference, a name, an operator or a voltage.":
+    "Nichts ist im Bild. Eine Nummer, einen Namen, einen Betreiber oder eine Spannung eingeben.",
+  "Nothing is kept yet. Pick targets, then keep them under a name: everybody here can load them.":
+    "Noch nichts gespeichert. Ziele wählen und unter einem Namen speichern: Alle hier können sie laden.",
   "nothing picked yet": "noch nichts gewählt",
   "Nothing to add": "Nichts hinzuzufügen",
   "Nothing to save yet": "Noch nichts zu speichern",
-  "One a line, or parted by commas, semicolons or tabs.": "Eine je Zeile oder durch Komma, Semikolon oder Tabulator getrennt.",
-  "No other UAV has the range left after its other targets.": "Kein anderes UAV hat nach seinen anderen Zielen noch die Reichweite.",
-  "One UAV alone could fly there, but none has range or battery left after its other targets.": "Ein UAV allein könnte hinfliegen, aber keines hat nach seinen anderen Zielen noch Reichweite oder Akku.",
+  "One a line, or parted by commas, semicolons or tabs.":
+    "Eine je Zeile oder durch Komma, Semikolon oder Tabulator getrennt.",
+  "No other UAV has the range left after its other targets.":
+    "Kein anderes UAV hat nach seinen anderen Zielen noch die Reichweite.",
+  "One UAV alone could fly there, but none has range or battery left after its other targets.":
+    "Ein UAV allein könnte hinfliegen, aber keines hat nach seinen anderen Zielen noch Reichweite oder Akku.",
   "Paste at least one reference.": "Mindestens eine Nummer einfügen.",
   "places or tasks changed": "Orte oder Aufgaben geändert",
   "Plan": "Planen",
@@ -117,7 +129,8 @@ export default {
   "planning": "wird geplant",
   "Put mine on top": "Meine darüberlegen",
   "Put together": "Zusammenführen",
-  "Put together: what each added and removed, and mine where both changed the same.": "Zusammengeführt: was beide hinzugefügt und entfernt haben, und meines, wo beide dasselbe geändert haben.",
+  "Put together: what each added and removed, and mine where both changed the same.":
+    "Zusammengeführt: was beide hinzugefügt und entfernt haben, und meines, wo beide dasselbe geändert haben.",
   "Range not stated: it is planned as unlimited.": "Reichweite nicht angegeben: als unbegrenzt geplant.",
   "References, names or OSM ids": "Nummern, Namen oder OSM-IDs",
   "Remove (Del)": "Entfernen (Entf)",
@@ -156,7 +169,8 @@ export default {
   "The ground has changed since this was planned.": "Die Datengrundlage hat sich geändert, seit dies geplant wurde.",
   "The list below says which.": "Die Liste unten sagt, welche.",
   "The list could not be looked up.": "Die Liste konnte nicht nachgeschlagen werden.",
-  "The nearest line, railway or bridge is {distance} away; up to {reach} is flown off the network.": "Die nächste Leitung, Bahnstrecke oder Brücke ist {distance} entfernt; abseits des Netzes wird bis {reach} geflogen.",
+  "The nearest line, railway or bridge is {distance} away; up to {reach} is flown off the network.":
+    "Die nächste Leitung, Bahnstrecke oder Brücke ist {distance} entfernt; abseits des Netzes wird bis {reach} geflogen.",
   "The parts outside can be flown.": "Die Teile außerhalb können beflogen werden.",
   "The plan goes without it.": "Der Plan kommt ohne es aus.",
   "the same": "dasselbe",
@@ -180,14 +194,19 @@ export default {
   "Why {name} flies this way": "Warum {name} so fliegt",
   "Why {target} is not reached": "Warum {target} nicht erreicht wird",
   "Why?": "Warum?",
-  "With {target} as well, {other} would fly {length}, and all together {change} less.": "Mit {target} dazu flöge {other} {length}, und alle zusammen {change} weniger.",
-  "With {target} as well, {other} would fly {length}, and all together {change} more.": "Mit {target} dazu flöge {other} {length}, und alle zusammen {change} mehr.",
-  "With {target} as well, {other} would fly {length}; its range is {range}.": "Mit {target} dazu flöge {other} {length}; die Reichweite ist {range}.",
+  "With {target} as well, {other} would fly {length}, and all together {change} less.":
+    "Mit {target} dazu flöge {other} {length}, und alle zusammen {change} weniger.",
+  "With {target} as well, {other} would fly {length}, and all together {change} more.":
+    "Mit {target} dazu flöge {other} {length}, und alle zusammen {change} mehr.",
+  "With {target} as well, {other} would fly {length}; its range is {range}.":
+    "Mit {target} dazu flöge {other} {length}; die Reichweite ist {range}.",
   "Without {target} {name} flies {length} less.": "Ohne {target} fliegt {name} {length} weniger.",
   "Worth trying.": "Einen Versuch wert.",
-  "You can go on: what you change is kept in this browser and saved when the server is back.": "Sie können weitermachen: Änderungen bleiben in diesem Browser und werden gespeichert, wenn der Server wieder da ist.",
+  "You can go on: what you change is kept in this browser and saved when the server is back.":
+    "Sie können weitermachen: Änderungen bleiben in diesem Browser und werden gespeichert, wenn der Server wieder da ist.",
   "you, in another window": "Sie, in einem anderen Fenster",
-  "Your changes are from before {whose} save at {time}.": "Ihre Änderungen sind älter als das Speichern von {whose} um {time}.",
+  "Your changes are from before {whose} save at {time}.":
+    "Ihre Änderungen sind älter als das Speichern von {whose} um {time}.",
   "{act}: {name}": "{act}: {name}",
   "{added} from the list.": "{added} aus der Liste.",
   "{added} from “{name}”.": "{added} aus „{name}“.",
@@ -197,13 +216,20 @@ export default {
   "{count} chosen": ["{count} gewählt", "{count} gewählt"],
   "{count} in view": "{count} im Bild",
   "{count} is not known": ["{count} ist nicht bekannt", "{count} sind nicht bekannt"],
-  "{count} match; a mission takes {most}. Narrow the search to add all.": "{count} passen; eine Mission fasst {most}. Die Suche einengen, um alle hinzuzufügen.",
+  "{count} match; a mission takes {most}. Narrow the search to add all.":
+    "{count} passen; eine Mission fasst {most}. Die Suche einengen, um alle hinzuzufügen.",
   "{count} means several things": ["{count} ist mehrdeutig", "{count} sind mehrdeutig"],
   "{count} more place": ["{count} weitere Stelle", "{count} weitere Stellen"],
-  "{count} more target is not reached.": ["{count} weiteres Ziel wird nicht erreicht.", "{count} weitere Ziele werden nicht erreicht."],
+  "{count} more target is not reached.": [
+    "{count} weiteres Ziel wird nicht erreicht.",
+    "{count} weitere Ziele werden nicht erreicht.",
+  ],
   "{count} target added: {names}": ["{count} Ziel hinzugefügt: {names}", "{count} Ziele hinzugefügt: {names}"],
   "{count} target has changed.": ["{count} Ziel hat sich geändert.", "{count} Ziele haben sich geändert."],
-  "{count} target is no longer in the data.": ["{count} Ziel ist nicht mehr in den Daten.", "{count} Ziele sind nicht mehr in den Daten."],
+  "{count} target is no longer in the data.": [
+    "{count} Ziel ist nicht mehr in den Daten.",
+    "{count} Ziele sind nicht mehr in den Daten.",
+  ],
   "{count} target is not reached": ["{count} Ziel wird nicht erreicht", "{count} Ziele werden nicht erreicht"],
   "{count} target removed: {names}": ["{count} Ziel entfernt: {names}", "{count} Ziele entfernt: {names}"],
   "{count} UAV added: {names}": ["{count} UAV hinzugefügt: {names}", "{count} UAVs hinzugefügt: {names}"],
@@ -215,7 +241,8 @@ export default {
   "{names} and {count} more": "{names} und {count} weitere",
   "{name} could fly there: it needs {needed}.": "{name} könnte hinfliegen: Es braucht {needed}.",
   "{name} is the last to be done, after {time}.": "{name} ist als Letztes fertig, nach {time}.",
-  "{name} would need {missing} more range, or a start that is nearer: drag its square on the map.": "{name} bräuchte {missing} mehr Reichweite oder einen näheren Start: das Quadrat auf der Karte ziehen.",
+  "{name} would need {missing} more range, or a start that is nearer: drag its square on the map.":
+    "{name} bräuchte {missing} mehr Reichweite oder einen näheren Start: das Quadrat auf der Karte ziehen.",
   "{own}, not {other}.": "{own}, nicht {other}.",
   "{target} is not reached.": "{target} wird nicht erreicht.",
   "{time} later": "{time} später",

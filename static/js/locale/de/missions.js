@@ -3,7 +3,8 @@
 export default {
   "any": "jedes",
   "anybody": "jeder",
-  "Assets, zones or terrain were changed after this was planned. Open it to see what that touches.": "Objekte, Zonen oder Gelände wurden nach der Planung geändert. Öffnen, um zu sehen, was das berührt.",
+  "Assets, zones or terrain were changed after this was planned. Open it to see what that touches.":
+    "Objekte, Zonen oder Gelände wurden nach der Planung geändert. Öffnen, um zu sehen, was das berührt.",
   "at any time": "jederzeit",
   "Author": "Verfasser",
   "Author, Z to A": "Verfasser, Z bis A",
@@ -39,7 +40,8 @@ export default {
   "Pick what to inspect and plan the first one.": "Wählen, was inspiziert wird, und die erste planen.",
   "Shortest distance": "Kürzeste Strecke",
   "Shortest time": "Kürzeste Zeit",
-  "Somebody has changed the mission since; this is how it is now.": "Jemand hat die Mission seither geändert; so ist sie jetzt.",
+  "Somebody has changed the mission since; this is how it is now.":
+    "Jemand hat die Mission seither geändert; so ist sie jetzt.",
   "State, last first": "Zustand, letzter zuerst",
   "The address of “{name}” is copied.": "Die Adresse von „{name}“ ist kopiert.",
   "Time": "Zeit",
@@ -47,7 +49,10 @@ export default {
   "{count} mission chosen": ["{count} Mission gewählt", "{count} Missionen gewählt"],
   "{count} mission is back.": ["{count} Mission ist zurück.", "{count} Missionen sind zurück."],
   "{count} mission is deleted.": ["{count} Mission ist gelöscht.", "{count} Missionen sind gelöscht."],
-  "{count} mission stays as it is.": ["{count} Mission bleibt, wie sie ist.", "{count} Missionen bleiben, wie sie sind."],
+  "{count} mission stays as it is.": [
+    "{count} Mission bleibt, wie sie ist.",
+    "{count} Missionen bleiben, wie sie sind.",
+  ],
   "{first} to {last} of {total}": "{first} bis {last} von {total}",
   "“{before}” is now “{name}”.": "„{before}“ heißt jetzt „{name}“.",
   "“{name}” is back.": "„{name}“ ist zurück.",

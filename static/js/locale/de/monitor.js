@@ -12,16 +12,20 @@ export default {
   "Its flight failed.": "Sein Flug ist gescheitert.",
   "The UAV went past it at a distance.": "Das UAV ist in einem Abstand daran vorbeigeflogen.",
   "The UAV did not stay long enough.": "Das UAV ist nicht lange genug geblieben.",
-  "Each stops on its route and waits for Resume, as long as its battery lasts.": "Jedes hält auf seiner Route an und wartet auf „Fortsetzen“, solange sein Akku reicht.",
+  "Each stops on its route and waits for Resume, as long as its battery lasts.":
+    "Jedes hält auf seiner Route an und wartet auf „Fortsetzen“, solange sein Akku reicht.",
   "Pause all": "Alle pausieren",
-  "Each flies back to where it took off and lands there. Targets that are not reached stay undone.": "Jedes fliegt zu seinem Startplatz zurück und landet dort. Ziele, die nicht erreicht sind, bleiben unerledigt.",
+  "Each flies back to where it took off and lands there. Targets that are not reached stay undone.":
+    "Jedes fliegt zu seinem Startplatz zurück und landet dort. Ziele, die nicht erreicht sind, bleiben unerledigt.",
   "Return all": "Alle zurück",
   "battery {figure}": "Akku {figure}",
   "{distance} of its route to go": "noch {distance} seiner Route",
   "would land {time}": "würde {time} landen",
-  "Nothing is heard from {names} now: this is sent all the same, again and again, and known to be done once it is heard.": "Von {names} ist jetzt nichts zu hören: Der Befehl wird trotzdem gesendet, immer wieder; ob er ausgeführt ist, zeigt sich, sobald etwas zu hören ist.",
+  "Nothing is heard from {names} now: this is sent all the same, again and again, and known to be done once it is heard.":
+    "Von {names} ist jetzt nichts zu hören: Der Befehl wird trotzdem gesendet, immer wieder; ob er ausgeführt ist, zeigt sich, sobald etwas zu hören ist.",
   "No UAV is in the air.": "Kein UAV ist in der Luft.",
-  "There is no link to {names} now: the command waits and is sent on contact, as long as it is wanted.": "Zu {names} besteht jetzt keine Verbindung: Der Befehl wartet und wird beim nächsten Kontakt gesendet, solange er gewünscht ist.",
+  "There is no link to {names} now: the command waits and is sent on contact, as long as it is wanted.":
+    "Zu {names} besteht jetzt keine Verbindung: Der Befehl wartet und wird beim nächsten Kontakt gesendet, solange er gewünscht ist.",
   "{name}: {act}, {state}": "{name}: {act}, {state}",
   "{name}: {act}, given by {who}": "{name}: {act}, gegeben von {who}",
   "Acknowledged by {who}: {message}": "Bestätigt von {who}: {message}",
@@ -84,7 +88,8 @@ export default {
   "a target": "ein Ziel",
   "Next": "Als Nächstes",
   "Following": "Folgt",
-  "{name}: {done} of {targets}, {flown} of {length} flown": "{name}: {done} von {targets}, {flown} von {length} geflogen",
+  "{name}: {done} of {targets}, {flown} of {length} flown":
+    "{name}: {done} von {targets}, {flown} von {length} geflogen",
   "from {degrees}°": "aus {degrees}°",
   "wind {speed}": "Wind {speed}",
   "You are signed out: nothing comes in any more.": "Sie sind abgemeldet: Es kommt nichts mehr herein.",
@@ -93,8 +98,10 @@ export default {
   "What you see is from then. Connecting again.": "Was Sie sehen, ist von da. Die Verbindung wird wieder aufgebaut.",
   "Live": "Live",
   "Fly the other plan?": "Den anderen Plan fliegen?",
-  "{names}: held, given the new route while they hover, and started again. Where a step fails a UAV stays held.": "{names}: werden gehalten, bekommen schwebend die neue Route und fliegen weiter. Scheitert ein Schritt, bleibt ein UAV gehalten.",
-  "What is approved now ends; the rest goes on as a mission of its own.": "Was jetzt freigegeben ist, endet; der Rest geht als eigene Mission weiter.",
+  "{names}: held, given the new route while they hover, and started again. Where a step fails a UAV stays held.":
+    "{names}: werden gehalten, bekommen schwebend die neue Route und fliegen weiter. Scheitert ein Schritt, bleibt ein UAV gehalten.",
+  "What is approved now ends; the rest goes on as a mission of its own.":
+    "Was jetzt freigegeben ist, endet; der Rest geht als eigene Mission weiter.",
   "Keep the plan": "Beim Plan bleiben",
   "Fly the other plan": "Den anderen Plan fliegen",
   "The other plan is flown.": "Der andere Plan wird geflogen.",
@@ -134,13 +141,17 @@ export default {
   "Return {count} UAV?": ["{count} UAV zurückrufen?", "Alle {count} UAVs zurückrufen?"],
   "{count} target open": ["{count} Ziel offen", "{count} Ziele offen"],
   "{count} UAV is being told.": ["{count} UAV erhält den Befehl.", "{count} UAVs erhalten den Befehl."],
-  "{count} UAV gets another route": ["{count} UAV bekommt eine andere Route", "{count} UAVs bekommen eine andere Route"],
+  "{count} UAV gets another route": [
+    "{count} UAV bekommt eine andere Route",
+    "{count} UAVs bekommen eine andere Route",
+  ],
   "{count} target changes hands": ["{count} Ziel wechselt das UAV", "{count} Ziele wechseln das UAV"],
   "{count} target stays undone": ["{count} Ziel bleibt unerledigt", "{count} Ziele bleiben unerledigt"],
   "{count} note.": ["{count} Notiz.", "{count} Notizen."],
   "{count} open alert": ["{count} offener Alarm", "{count} offene Alarme"],
   "{count} mission": ["{count} Mission", "{count} Missionen"],
-  "The other plan was declined: what was approved is flown.": "Der andere Plan wurde abgelehnt: Geflogen wird, was freigegeben ist.",
+  "The other plan was declined: what was approved is flown.":
+    "Der andere Plan wurde abgelehnt: Geflogen wird, was freigegeben ist.",
   "The other plan is offered no more.": "Der andere Plan wird nicht mehr angeboten.",
   "No other plan can be flown.": "Kein anderer Plan kann geflogen werden.",
   "Decided by {who}, {time}.": "Entschieden von {who}, {time}.",

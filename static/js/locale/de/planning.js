@@ -2,22 +2,37 @@
 
 export default {
   "{minutes} min of flight.": "{minutes} min Flug.",
-  "It is locked to others: the run is left out as a whole.": "Es ist mit anderen festgelegt: Die Folge bleibt als Ganzes weg.",
-  "The one that comes nearest lacks {length}, {minutes} min of flight.": "Dem, das ihm am nächsten kommt, fehlen {length}, {minutes} min Flug.",
-  "At most {share} above the best plan without the zones that come or go meanwhile.": "Höchstens {share} über dem besten Plan ohne die Zonen, die währenddessen kommen oder gehen.",
-  "At most {share} above the best plan with what is locked, without the zones that come or go meanwhile.": "Höchstens {share} über dem besten Plan mit dem Festgelegten, ohne die Zonen, die währenddessen kommen oder gehen.",
-  "No worse than the best plan without the zones that come or go meanwhile.": "Nicht schlechter als der beste Plan ohne die Zonen, die währenddessen kommen oder gehen.",
-  "Legs of {name} that were changed by hand and are as planned again: {missed} of {count}. Their ends differ, or something bars them now.": "Von Hand geänderte Abschnitte von {name}, die wieder sind wie geplant: {missed} von {count}. Ihre Enden sind andere, oder etwas ist ihnen jetzt im Weg.",
-  "Each UAV that can do it has as many targets as it may have.": "Jedes UAV, das es könnte, hat so viele Ziele, wie es haben darf.",
-  "However {name} charges on the way, it alone takes up to {missing} Wh more than its battery may give.": "Wie auch immer {name} unterwegs lädt: Allein dafür braucht es bis zu {missing} Wh mehr, als sein Akku geben darf.",
-  "However {name} charges on the way, the battery does not last for it.": "Wie auch immer {name} unterwegs lädt: Der Akku reicht dafür nicht.",
-  "It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it.": "Es sind {needed} {there}, {missing} mehr als die Reichweite des UAV, das ihm am nächsten kommt.",
-  "It is within range alone, but not after the other targets.": "Allein liegt es in Reichweite, nach den anderen Zielen nicht mehr.",
-  "It takes {needed} Wh {there}, {missing} Wh more than the battery of the UAV that comes nearest to it may give.": "{needed} Wh braucht es {there}, {missing} Wh mehr, als der Akku des UAV geben darf, das ihm am nächsten kommt.",
+  "It is locked to others: the run is left out as a whole.":
+    "Es ist mit anderen festgelegt: Die Folge bleibt als Ganzes weg.",
+  "The one that comes nearest lacks {length}, {minutes} min of flight.":
+    "Dem, das ihm am nächsten kommt, fehlen {length}, {minutes} min Flug.",
+  "At most {share} above the best plan without the zones that come or go meanwhile.":
+    "Höchstens {share} über dem besten Plan ohne die Zonen, die währenddessen kommen oder gehen.",
+  "At most {share} above the best plan with what is locked, without the zones that come or go meanwhile.":
+    "Höchstens {share} über dem besten Plan mit dem Festgelegten, ohne die Zonen, die währenddessen kommen oder gehen.",
+  "No worse than the best plan without the zones that come or go meanwhile.":
+    "Nicht schlechter als der beste Plan ohne die Zonen, die währenddessen kommen oder gehen.",
+  "Legs of {name} that were changed by hand and are as planned again: {missed} of {count}. Their ends differ, or something bars them now.":
+    "Von Hand geänderte Abschnitte von {name}, die wieder sind wie geplant: {missed} von {count}. Ihre Enden sind andere, oder etwas ist ihnen jetzt im Weg.",
+  "Each UAV that can do it has as many targets as it may have.":
+    "Jedes UAV, das es könnte, hat so viele Ziele, wie es haben darf.",
+  "However {name} charges on the way, it alone takes up to {missing} Wh more than its battery may give.":
+    "Wie auch immer {name} unterwegs lädt: Allein dafür braucht es bis zu {missing} Wh mehr, als sein Akku geben darf.",
+  "However {name} charges on the way, the battery does not last for it.":
+    "Wie auch immer {name} unterwegs lädt: Der Akku reicht dafür nicht.",
+  "It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it.":
+    "Es sind {needed} {there}, {missing} mehr als die Reichweite des UAV, das ihm am nächsten kommt.",
+  "It is within range alone, but not after the other targets.":
+    "Allein liegt es in Reichweite, nach den anderen Zielen nicht mehr.",
+  "It takes {needed} Wh {there}, {missing} Wh more than the battery of the UAV that comes nearest to it may give.":
+    "{needed} Wh braucht es {there}, {missing} Wh mehr, als der Akku des UAV geben darf, das ihm am nächsten kommt.",
   "or|list": "oder",
-  "Over the ground and what stands tall it takes {needed} Wh {there}, {missing} Wh more than the battery of {name} may give.": "Über Gelände und Hohes hinweg braucht es {needed} Wh {there}, {missing} Wh mehr, als der Akku von {name} geben darf.",
-  "Over the ground and what stands tall, all routes that were tried with it take more than the battery may give.": "Über Gelände und Hohes hinweg brauchen alle versuchten Routen mit ihm mehr, als der Akku geben darf.",
-  "The battery lasts for it alone, but not after the other targets.": "Allein reicht der Akku dafür, nach den anderen Zielen nicht mehr.",
+  "Over the ground and what stands tall it takes {needed} Wh {there}, {missing} Wh more than the battery of {name} may give.":
+    "Über Gelände und Hohes hinweg braucht es {needed} Wh {there}, {missing} Wh mehr, als der Akku von {name} geben darf.",
+  "Over the ground and what stands tall, all routes that were tried with it take more than the battery may give.":
+    "Über Gelände und Hohes hinweg brauchen alle versuchten Routen mit ihm mehr, als der Akku geben darf.",
+  "The battery lasts for it alone, but not after the other targets.":
+    "Allein reicht der Akku dafür, nach den anderen Zielen nicht mehr.",
   "there and back|way": "hin und zurück",
   "there and on to the nearest base|way": "hin und weiter zur nächsten Basis",
   "there|way": "hin",
@@ -28,13 +43,15 @@ export default {
   "as planned": "wie geplant",
   "At most this many targets": "Höchstens so viele Ziele",
   "at most {count} target": ["höchstens {count} Ziel", "höchstens {count} Ziele"],
-  "At most {share} above what is possible with what is locked.": "Höchstens {share} über dem, was mit dem Festgelegten möglich ist.",
+  "At most {share} above what is possible with what is locked.":
+    "Höchstens {share} über dem, was mit dem Festgelegten möglich ist.",
   "At most {share} above what is possible.": "Höchstens {share} über dem, was möglich ist.",
   "before your last change": "vor Ihrer letzten Änderung",
   "different": "verschieden",
   "Each UAV lands at the nearest base": "Jedes UAV landet auf der nächsten Basis",
   "Earlier": "Früher",
-  "Every UAV that could fly it has as many targets as it may.": "Jedes UAV, das es könnte, hat so viele Ziele, wie es darf.",
+  "Every UAV that could fly it has as many targets as it may.":
+    "Jedes UAV, das es könnte, hat so viele Ziele, wie es darf.",
   "Fly with UAV": "Fliegen mit UAV",
   "High": "Hoch",
   "High priority": "Hohe Priorität",
@@ -57,10 +74,12 @@ export default {
   "No plan can be done in less than {time}.": "Kein Plan kann in weniger als {time} fertig sein.",
   "No plan can fly less than {length}.": "Kein Plan kann unter {length} bleiben.",
   "No sensor is stated for it.": "Für es ist kein Sensor angegeben.",
-  "No UAV may fly it: none has the sensor, or is the one it is tied to.": "Kein UAV darf es anfliegen: Keines hat den Sensor oder ist das eine, das es soll.",
+  "No UAV may fly it: none has the sensor, or is the one it is tied to.":
+    "Kein UAV darf es anfliegen: Keines hat den Sensor oder ist das eine, das es soll.",
   "none|sensor": "keiner",
   "Normal": "Normal",
-  "Nothing is locked: {count} UAVs of this mission are called {name}.": "Nichts ist festgelegt: {count} UAVs dieser Mission heißen {name}.",
+  "Nothing is locked: {count} UAVs of this mission are called {name}.":
+    "Nichts ist festgelegt: {count} UAVs dieser Mission heißen {name}.",
   "Nothing is locked any more.": "Nichts ist mehr festgelegt.",
   "Only UAV": "Nur das UAV",
   "only {uav}": "nur {uav}",
@@ -68,44 +87,76 @@ export default {
   "Proven shortest.": "Bewiesen am kürzesten.",
   "Proven shortest with what is locked.": "Bewiesen am kürzesten mit dem, was festgelegt ist.",
   "Proven soonest with what is locked.": "Bewiesen am schnellsten mit dem, was festgelegt ist.",
-  "Proven shortest of plans that reach as many targets.": "Bewiesen am kürzesten unter den Plänen, die so viele Ziele erreichen.",
-  "Proven shortest with what is locked, of plans that reach as many targets.": "Bewiesen am kürzesten mit dem Festgelegten, unter den Plänen, die so viele Ziele erreichen.",
-  "Proven soonest of plans that reach as many targets.": "Bewiesen am schnellsten unter den Plänen, die so viele Ziele erreichen.",
-  "Proven soonest with what is locked, of plans that reach as many targets.": "Bewiesen am schnellsten mit dem Festgelegten, unter den Plänen, die so viele Ziele erreichen.",
+  "Proven shortest of plans that reach as many targets.":
+    "Bewiesen am kürzesten unter den Plänen, die so viele Ziele erreichen.",
+  "Proven shortest with what is locked, of plans that reach as many targets.":
+    "Bewiesen am kürzesten mit dem Festgelegten, unter den Plänen, die so viele Ziele erreichen.",
+  "Proven soonest of plans that reach as many targets.":
+    "Bewiesen am schnellsten unter den Plänen, die so viele Ziele erreichen.",
+  "Proven soonest with what is locked, of plans that reach as many targets.":
+    "Bewiesen am schnellsten mit dem Festgelegten, unter den Plänen, die so viele Ziele erreichen.",
   "Proven soonest.": "Bewiesen am schnellsten.",
   "Raise its limit to {count}": "Seine Grenze auf {count} erhöhen",
   "Sensors: {names}": "Sensoren: {names}",
   "Task and wishes: {name}": "Aufgabe und Wünsche: {name}",
   "The chosen target earlier": "Gewähltes Ziel früher",
   "The chosen target later": "Gewähltes Ziel später",
-  "The priority of {count} target is set.": ["Die Priorität von {count} Ziel ist gesetzt.", "Die Priorität von {count} Zielen ist gesetzt."],
-  "The sensor of {count} target is set.": ["Der Sensor von {count} Ziel ist gesetzt.", "Der Sensor von {count} Zielen ist gesetzt."],
+  "The priority of {count} target is set.": [
+    "Die Priorität von {count} Ziel ist gesetzt.",
+    "Die Priorität von {count} Zielen ist gesetzt.",
+  ],
+  "The sensor of {count} target is set.": [
+    "Der Sensor von {count} Ziel ist gesetzt.",
+    "Der Sensor von {count} Zielen ist gesetzt.",
+  ],
   "Unlock": "Freigeben",
   "Unlock its targets": "Seine Ziele freigeben",
   "Unlock all": "Alle freigeben",
   "What your wish costs is not known.": "Was Ihr Wunsch kostet, ist nicht bekannt.",
-  "The new plan is no better ({figures}). The one on the page stays.": "Der neue Plan ist nicht besser ({figures}). Der auf der Seite bleibt.",
+  "The new plan is no better ({figures}). The one on the page stays.":
+    "Der neue Plan ist nicht besser ({figures}). Der auf der Seite bleibt.",
   "The plan is of what was picked when planning began.": "Der Plan gilt für das, was bei Planungsbeginn gewählt war.",
   "The selection has changed since.": "Die Auswahl hat sich seitdem geändert.",
   "Your wish costs nothing.": "Ihr Wunsch kostet nichts.",
   "Your wish costs {figure} more{share}.": "Ihr Wunsch kostet {figure} mehr{share}.",
   "Your wish is not planned yet.": "Ihr Wunsch ist noch nicht geplant.",
-  "Your wish leaves out {count} target more.": ["Ihr Wunsch lässt {count} Ziel mehr aus.", "Ihr Wunsch lässt {count} Ziele mehr aus."],
-  "Your wish saves {figure}{share}: the search had not found it.": "Ihr Wunsch spart {figure}{share}: Die Suche hatte ihn nicht gefunden.",
+  "Your wish leaves out {count} target more.": [
+    "Ihr Wunsch lässt {count} Ziel mehr aus.",
+    "Ihr Wunsch lässt {count} Ziele mehr aus.",
+  ],
+  "Your wish saves {figure}{share}: the search had not found it.":
+    "Ihr Wunsch spart {figure}{share}: Die Suche hatte ihn nicht gefunden.",
   "{count} target changed": ["{count} Ziel geändert", "{count} Ziele geändert"],
   "{count} route so far": ["bisher {count} Route", "bisher {count} Routen"],
-  "{count} target is flown by {uav} alone.": ["{count} Ziel fliegt allein {uav} an.", "{count} Ziele fliegt allein {uav} an."],
+  "{count} target is flown by {uav} alone.": [
+    "{count} Ziel fliegt allein {uav} an.",
+    "{count} Ziele fliegt allein {uav} an.",
+  ],
   "{count} target is locked.": ["{count} Ziel ist festgelegt.", "{count} Ziele sind festgelegt."],
-  "{count} target may be flown by any UAV.": ["{count} Ziel darf jedes UAV anfliegen.", "{count} Ziele darf jedes UAV anfliegen."],
+  "{count} target may be flown by any UAV.": [
+    "{count} Ziel darf jedes UAV anfliegen.",
+    "{count} Ziele darf jedes UAV anfliegen.",
+  ],
   "{figure} so far": "bisher {figure}",
-  "{figure} so far, at most {share} above what is possible ({least})": "bisher {figure}, höchstens {share} über dem, was möglich ist ({least})",
+  "{figure} so far, at most {share} above what is possible ({least})":
+    "bisher {figure}, höchstens {share} über dem, was möglich ist ({least})",
   "{name} has as many targets as it may have ({count}).": "{name} hat so viele Ziele, wie es haben darf ({count}).",
-  "{name} has as many targets as it may have ({count}), and no other UAV has the range for it.": "{name} hat so viele Ziele, wie es haben darf ({count}), und kein anderes UAV hat die Reichweite dafür.",
-  "{name} may do {count} target at most.": ["{name} darf höchstens {count} Ziel anfliegen.", "{name} darf höchstens {count} Ziele anfliegen."],
-  "{names} and {last} have as many targets as they may have.": "{names} und {last} haben so viele Ziele, wie sie haben dürfen.",
-  "{names} and {last} have as many targets as they may have, and no other UAV has the range for it.": "{names} und {last} haben so viele Ziele, wie sie haben dürfen, und kein anderes UAV hat die Reichweite dafür.",
-  "{names} could fly there, but has as many targets as it may have.": ["{names} könnte hinfliegen, hat aber so viele Ziele, wie es haben darf.", "{names} könnten hinfliegen, haben aber so viele Ziele, wie sie haben dürfen."],
-  "{name} is called {other} in this mission: another UAV has its name.": "{name} heißt in dieser Mission {other}: Ein anderes UAV hat seinen Namen.",
+  "{name} has as many targets as it may have ({count}), and no other UAV has the range for it.":
+    "{name} hat so viele Ziele, wie es haben darf ({count}), und kein anderes UAV hat die Reichweite dafür.",
+  "{name} may do {count} target at most.": [
+    "{name} darf höchstens {count} Ziel anfliegen.",
+    "{name} darf höchstens {count} Ziele anfliegen.",
+  ],
+  "{names} and {last} have as many targets as they may have.":
+    "{names} und {last} haben so viele Ziele, wie sie haben dürfen.",
+  "{names} and {last} have as many targets as they may have, and no other UAV has the range for it.":
+    "{names} und {last} haben so viele Ziele, wie sie haben dürfen, und kein anderes UAV hat die Reichweite dafür.",
+  "{names} could fly there, but has as many targets as it may have.": [
+    "{names} könnte hinfliegen, hat aber so viele Ziele, wie es haben darf.",
+    "{names} könnten hinfliegen, haben aber so viele Ziele, wie sie haben dürfen.",
+  ],
+  "{name} is called {other} in this mission: another UAV has its name.":
+    "{name} heißt in dieser Mission {other}: Ein anderes UAV hat seinen Namen.",
   "{target} is locked as target {number} of {uav}.": "{target} ist als Ziel {number} von {uav} festgelegt.",
   "{target} is locked to {uav}.": "{target} ist auf {uav} festgelegt.",
   "{target} is not locked any more.": "{target} ist nicht mehr festgelegt.",

@@ -1,13 +1,15 @@
 /** German: rehearsals of a mission in simulation. */
 
 export default {
-  "Save the mission first: what is stored is rehearsed.": "Speichern Sie die Mission zuerst: Geprobt wird, was gespeichert ist.",
+  "Save the mission first: what is stored is rehearsed.":
+    "Speichern Sie die Mission zuerst: Geprobt wird, was gespeichert ist.",
   "Plan the mission first.": "Planen Sie die Mission zuerst.",
   "Own figures": "Eigene Werte",
   "Wind from": "Wind aus",
   "out of date": "veraltet",
   "under way": "läuft",
-  "Flown {time}: the same plan in the same air flies alike, and was not flown again.": "Geflogen {time}: Derselbe Plan fliegt in derselben Luft gleich und wurde nicht noch einmal geflogen.",
+  "Flown {time}: the same plan in the same air flies alike, and was not flown again.":
+    "Geflogen {time}: Derselbe Plan fliegt in derselben Luft gleich und wurde nicht noch einmal geflogen.",
   "Fly it again": "Noch einmal fliegen",
   "Rehearse": "Proben",
   "Gusts": "Böen",
@@ -16,8 +18,10 @@ export default {
   "Choose at least one of the conditions.": "Wählen Sie mindestens eine der Bedingungen.",
   "Simulated {time}": "Simuliert {time}",
   "Out of date.": "Überholt.",
-  "The plan is another one by now: this says nothing about it. Rehearse it again.": "Der Plan ist inzwischen ein anderer: Dies sagt nichts über ihn. Proben Sie neu.",
-  "Zones, assets or terrain have changed somewhere since.": "Zonen, Objekte oder Gelände haben sich seither irgendwo geändert.",
+  "The plan is another one by now: this says nothing about it. Rehearse it again.":
+    "Der Plan ist inzwischen ein anderer: Dies sagt nichts über ihn. Proben Sie neu.",
+  "Zones, assets or terrain have changed somewhere since.":
+    "Zonen, Objekte oder Gelände haben sich seither irgendwo geändert.",
   "Limits and what flew": "Grenzen, und was flog",
   "Flown in simulation, and planned or allowed": "In der Simulation geflogen, und geplant oder erlaubt",
   "From another UAV": "Von einem anderen UAV",
@@ -60,5 +64,8 @@ export default {
   "reserve": "Reserve",
   "The rules could not be read.": "Die Regeln konnten nicht gelesen werden.",
   "The rule was not changed.": "Die Regel wurde nicht geändert.",
-  "{count} of {all} targets fails: {conditions}.": ["{count} von {all} Zielen nicht bestanden: {conditions}.", "{count} von {all} Zielen nicht bestanden: {conditions}."],
+  "{count} of {all} targets fails: {conditions}.": [
+    "{count} von {all} Zielen nicht bestanden: {conditions}.",
+    "{count} von {all} Zielen nicht bestanden: {conditions}.",
+  ],
 };

@@ -1,7 +1,10 @@
 /** The record of a mission. English → German; [one, other] where there is a plural. */
 
 export default {
-  "{count} alert, {critical} critical.": ["{count} Alarm, {critical} kritisch.", "{count} Alarme, {critical} kritisch."],
+  "{count} alert, {critical} critical.": [
+    "{count} Alarm, {critical} kritisch.",
+    "{count} Alarme, {critical} kritisch.",
+  ],
   "{count} alert, none critical.": ["{count} Alarm, nicht kritisch.", "{count} Alarme, keiner kritisch."],
   "{count} s": "{count} s",
   "{done} of {all} targets complete": "{done} von {all} Zielen erledigt",

@@ -15,7 +15,8 @@ export default {
   "Planned, not flown": "Geplant, nicht geflogen",
   "Flat ground assumed": "Ebener Boden angenommen",
   "This browser draws no 3D.": "Dieser Browser zeichnet kein 3D.",
-  "WebGL is missing or switched off. You see the flight from above instead.": "WebGL fehlt oder ist abgeschaltet. Sie sehen den Flug stattdessen von oben.",
+  "WebGL is missing or switched off. You see the flight from above instead.":
+    "WebGL fehlt oder ist abgeschaltet. Sie sehen den Flug stattdessen von oben.",
   "counted as {height}": "zählt als {height}",
   "as high as planners count": "so hoch, wie die Planung zählt",
   "The graphics have stopped.": "Die Grafik ist stehen geblieben.",
@@ -39,7 +40,8 @@ export default {
   "Nearer": "Näher",
   "Farther": "Weiter weg",
   "Turn the camera, with the other arrows too": "Kamera drehen, auch mit den anderen Pfeilen",
-  "Free camera: W A S D, E up, Q down, with Shift faster": "Freie Kamera: W A S D, E hinauf, Q hinab, mit Umschalt schneller",
+  "Free camera: W A S D, E up, Q down, with Shift faster":
+    "Freie Kamera: W A S D, E hinauf, Q hinab, mit Umschalt schneller",
   "Keep a picture (PNG)": "Bild behalten (PNG)",
   "Copy the link to this moment": "Link zu diesem Moment kopieren",
   "The link to this moment is copied.": "Der Link zu diesem Moment ist kopiert.",

@@ -15,8 +15,10 @@ export default {
   "Height at a place": "Höhe an einem Ort",
   "height not stated": "Höhe nicht angegeben",
   "Heights": "Höhen",
-  "Heights above sea level need a terrain model: a GeoTIFF or an HGT file.": "Höhen über dem Meer brauchen ein Geländemodell: eine GeoTIFF- oder HGT-Datei.",
-  "Heights then come from older models where they reach, and from none elsewhere. Planned missions say that the ground has changed. The file can be imported again.": "Höhen kommen dann aus älteren Modellen, soweit sie reichen, sonst aus keinem. Geplante Missionen sagen, dass sich das Gelände geändert hat. Die Datei kann wieder importiert werden.",
+  "Heights above sea level need a terrain model: a GeoTIFF or an HGT file.":
+    "Höhen über dem Meer brauchen ein Geländemodell: eine GeoTIFF- oder HGT-Datei.",
+  "Heights then come from older models where they reach, and from none elsewhere. Planned missions say that the ground has changed. The file can be imported again.":
+    "Höhen kommen dann aus älteren Modellen, soweit sie reichen, sonst aus keinem. Geplante Missionen sagen, dass sich das Gelände geändert hat. Die Datei kann wieder importiert werden.",
   "Highest": "Höchster Punkt",
   "It has been removed already.": "Es ist schon entfernt.",
   "Lowest": "Tiefster Punkt",
@@ -33,7 +35,10 @@ export default {
   "Synthetic demo data": "Künstliche Demodaten",
   "Take the last point back": "Letzten Punkt zurücknehmen",
   "under {share}": "unter {share}",
-  "unknown at {count} place of {all}": ["unbekannt an {count} Stelle von {all}", "unbekannt an {count} Stellen von {all}"],
+  "unknown at {count} place of {all}": [
+    "unbekannt an {count} Stelle von {all}",
+    "unbekannt an {count} Stellen von {all}",
+  ],
   "Vertical datum": "Höhenbezug",
   "Voids": "Leerstellen",
   "{count} model, newest on top": ["{count} Modell, neuestes oben", "{count} Modelle, neuestes oben"],

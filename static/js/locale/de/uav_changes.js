@@ -2,9 +2,16 @@
 
 export default {
   "{count} more UAV": ["{count} weiteres UAV", "{count} weitere UAVs"],
-  "A UAV changed since this mission was made.": ["Ein UAV hat sich geändert, seit diese Mission angelegt wurde.", "{count} UAVs haben sich geändert, seit diese Mission angelegt wurde."],
-  "A UAV changed since this was planned.": ["Ein UAV hat sich seit der Planung geändert.", "{count} UAVs haben sich seit der Planung geändert."],
-  "A UAV has other figures than it was planned with, or flies no more. Open it to see which.": "Ein UAV hat andere Werte als bei der Planung oder fliegt nicht mehr. Öffnen zeigt, welches.",
+  "A UAV changed since this mission was made.": [
+    "Ein UAV hat sich geändert, seit diese Mission angelegt wurde.",
+    "{count} UAVs haben sich geändert, seit diese Mission angelegt wurde.",
+  ],
+  "A UAV changed since this was planned.": [
+    "Ein UAV hat sich seit der Planung geändert.",
+    "{count} UAVs haben sich seit der Planung geändert.",
+  ],
+  "A UAV has other figures than it was planned with, or flies no more. Open it to see which.":
+    "Ein UAV hat andere Werte als bei der Planung oder fliegt nicht mehr. Öffnen zeigt, welches.",
   "battery|figure": "Akku",
   "flies again, and the plan leaves it on the ground": "fliegt wieder, und der Plan lässt es am Boden",
   "highest airspeed|figure": "höchste Fluggeschwindigkeit",
@@ -22,7 +29,8 @@ export default {
   "The present figures are taken.": "Die heutigen Werte sind übernommen.",
   "UAV changed since": "UAV seither geändert",
   "Use the fleet's instead of this mission's own": "Die der Flotte statt der eigenen dieser Mission nehmen",
-  "The fleet's figures changed since this mission was given its own.": "Werte der Flotte haben sich geändert, seit diese Mission eigene bekam.",
+  "The fleet's figures changed since this mission was given its own.":
+    "Werte der Flotte haben sich geändert, seit diese Mission eigene bekam.",
   "The fleet's figures are taken.": "Die Werte der Flotte gelten jetzt.",
   "{change} in the fleet, but not in this mission": "{change} in der Flotte, nicht aber in dieser Mission",
   "Use the present figures": "Heutige Werte übernehmen",

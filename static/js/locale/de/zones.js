@@ -15,17 +15,20 @@ export default {
   "at a time": "zu einer Uhrzeit",
   "at times": "zeitweise",
   "Begins": "Beginnt",
-  "Bring in an ED-269, ED-318, OpenAir or GeoJSON file, or have one fetched.": "Eine ED-269-, ED-318-, OpenAir- oder GeoJSON-Datei einlesen oder eine abrufen lassen.",
+  "Bring in an ED-269, ED-318, OpenAir or GeoJSON file, or have one fetched.":
+    "Eine ED-269-, ED-318-, OpenAir- oder GeoJSON-Datei einlesen oder eine abrufen lassen.",
   "By the clock of {zone}.": "Nach der Uhr von {zone}.",
   "daily": "täglich",
   "Days": "Tage",
-  "Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file.": "Eine zeichnen oder eine ED-269-, ED-318-, OpenAir- oder GeoJSON-Datei einlesen.",
+  "Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file.":
+    "Eine zeichnen oder eine ED-269-, ED-318-, OpenAir- oder GeoJSON-Datei einlesen.",
   "Edited": "Bearbeitet",
   "end of evening twilight": "Ende der Abenddämmerung",
   "Ends": "Endet",
   "every {hours}\u00a0h": "alle {hours}\u00a0h",
   "Every … hours": "Alle … Stunden",
-  "Facts as the source states them; whether you may fly is for you to judge.": "Angaben, wie die Quelle sie macht; ob Sie fliegen dürfen, müssen Sie beurteilen.",
+  "Facts as the source states them; whether you may fly is for you to judge.":
+    "Angaben, wie die Quelle sie macht; ob Sie fliegen dürfen, müssen Sie beurteilen.",
   "Fetch a source by itself": "Eine Quelle selbsttätig abrufen",
   "Fetch no longer": "Nicht mehr abrufen",
   "Fetch now": "Jetzt abrufen",
@@ -37,7 +40,8 @@ export default {
   "found out from the file": "aus der Datei ermittelt",
   "Fri": "Fr",
   "From": "Von",
-  "From and until are by the clock of {zone}. Hours of the week are UTC, as sources state them: they do not move with summer time.": "Von und Bis gelten nach der Uhr von {zone}. Stunden der Woche sind UTC, wie Quellen sie angeben: Sie verschieben sich nicht mit der Sommerzeit.",
+  "From and until are by the clock of {zone}. Hours of the week are UTC, as sources state them: they do not move with summer time.":
+    "Von und Bis gelten nach der Uhr von {zone}. Stunden der Woche sind UTC, wie Quellen sie angeben: Sie verschieben sich nicht mit der Sommerzeit.",
   "from {from} on": "ab {from}",
   "from {from} to {to}": "von {from} bis {to}",
   "From {low} to {high}": "Von {low} bis {high}",
@@ -61,7 +65,8 @@ export default {
   "Not fetched.": "Nicht abgerufen.",
   "Nothing new.": "Nichts Neues.",
   "Only at certain hours": "Nur zu bestimmten Stunden",
-  "Other words, or a larger part of the map may have it.": "Andere Wörter oder ein größerer Kartenausschnitt helfen vielleicht.",
+  "Other words, or a larger part of the map may have it.":
+    "Andere Wörter oder ein größerer Kartenausschnitt helfen vielleicht.",
   "paused": "angehalten",
   "Period": "Zeitraum",
   "Period {number}": "Zeitraum {number}",
@@ -94,7 +99,8 @@ export default {
   "Version {number}, the newest": "Fassung {number}, die neueste",
   "Versions of {name}": "Fassungen von {name}",
   "Wed": "Mi",
-  "What it brings is shown as a difference; nothing is replaced before somebody applies it.": "Was sie bringt, wird als Unterschied gezeigt; nichts wird ersetzt, bevor es jemand übernimmt.",
+  "What it brings is shown as a difference; nothing is replaced before somebody applies it.":
+    "Was sie bringt, wird als Unterschied gezeigt; nichts wird ersetzt, bevor es jemand übernimmt.",
   "When it applies": "Wann sie gilt",
   "Your clock shows UTC now.": "Ihre Uhr zeigt jetzt UTC.",
   "Zone set": "Satz",

@@ -6,7 +6,11 @@ const WANTED_PX = 150;
 /** The step whose lines stand nearest to 150 px apart. */
 export function graticuleStep(zoom) {
   const degrees_per_px = 360 / (512 * 2 ** zoom);
-  return STEPS_DEG.reduce((best, step) => (Math.abs(Math.log(step / degrees_per_px / WANTED_PX)) < Math.abs(Math.log(best / degrees_per_px / WANTED_PX)) ? step : best));
+  return STEPS_DEG.reduce((best, step) =>
+    Math.abs(Math.log(step / degrees_per_px / WANTED_PX)) < Math.abs(Math.log(best / degrees_per_px / WANTED_PX))
+      ? step
+      : best,
+  );
 }
 
 /** Lines over [west, south, east, north] and one step beyond, as a MultiLineString. */
@@ -16,10 +20,18 @@ export function graticuleLines([west, south, east, north], step) {
   const bottom = Math.max(-85, from(south) * step);
   const top = Math.min(85, to(north) * step);
   const lines = [];
-  for (let index = from(west); index <= to(east); index += 1) lines.push([[index * step, bottom], [index * step, top]]);
+  for (let index = from(west); index <= to(east); index += 1)
+    lines.push([
+      [index * step, bottom],
+      [index * step, top],
+    ]);
   for (let index = from(south); index <= to(north); index += 1) {
     const latitude = index * step;
-    if (Math.abs(latitude) <= 85) lines.push([[from(west) * step, latitude], [to(east) * step, latitude]]);
+    if (Math.abs(latitude) <= 85)
+      lines.push([
+        [from(west) * step, latitude],
+        [to(east) * step, latitude],
+      ]);
   }
   return { type: "MultiLineString", coordinates: lines };
 }
@@ -33,5 +45,7 @@ export function addTo(map) {
 export function update(map) {
   const bounds = map.getBounds();
   const frame = [bounds.getWest(), bounds.getSouth(), bounds.getEast(), bounds.getNorth()];
-  map.getSource("graticule").setData({ type: "Feature", properties: {}, geometry: graticuleLines(frame, graticuleStep(map.getZoom())) });
+  map
+    .getSource("graticule")
+    .setData({ type: "Feature", properties: {}, geometry: graticuleLines(frame, graticuleStep(map.getZoom())) });
 }

@@ -12,16 +12,49 @@ const isRole = (role) => ["==", ["get", "role"], role];
 const radius = (px) => ["case", ["get", "chosen"], touch ? 10 : 8, ["get", "fixed"], Math.min(3, px), px];
 
 function layers() {
-  const [ink, casing, raised, accent, critical, quiet] = ["--ink", "--map-casing", "--raised", "--accent", "--critical", "--ink-2"].map(read);
+  const [ink, casing, raised, accent, critical, quiet] = [
+    "--ink",
+    "--map-casing",
+    "--raised",
+    "--accent",
+    "--critical",
+    "--ink-2",
+  ].map(read);
   const round = { "line-cap": "round", "line-join": "round" };
-  const leg = (id, state, paint) => ({ id, type: "line", source: SOURCE, filter: ["all", isRole("leg"), ["==", ["get", "state"], state]], layout: round, paint });
+  const leg = (id, state, paint) => ({
+    id,
+    type: "line",
+    source: SOURCE,
+    filter: ["all", isRole("leg"), ["==", ["get", "state"], state]],
+    layout: round,
+    paint,
+  });
   return [
-    { id: "hand-casing", type: "line", source: SOURCE, filter: isRole("leg"), layout: round, paint: { "line-color": casing, "line-width": 7 } },
+    {
+      id: "hand-casing",
+      type: "line",
+      source: SOURCE,
+      filter: isRole("leg"),
+      layout: round,
+      paint: { "line-color": casing, "line-width": 7 },
+    },
     leg("hand-legs", "stored", { "line-color": ink, "line-width": 2 }),
     leg("hand-clear", "clear", { "line-color": accent, "line-width": 4 }),
     leg("hand-asked", "asked", { "line-color": quiet, "line-width": 3, "line-dasharray": [1.5, 1.5] }),
     leg("hand-bad", "bad", { "line-color": critical, "line-width": 4, "line-dasharray": [2.5, 1.2] }),
-    { id: "hand-middles", type: "circle", source: SOURCE, filter: isRole("middle"), paint: { "circle-radius": touch ? 6 : 4, "circle-color": raised, "circle-opacity": 0.85, "circle-stroke-color": ink, "circle-stroke-width": 1.25 } },
+    {
+      id: "hand-middles",
+      type: "circle",
+      source: SOURCE,
+      filter: isRole("middle"),
+      paint: {
+        "circle-radius": touch ? 6 : 4,
+        "circle-color": raised,
+        "circle-opacity": 0.85,
+        "circle-stroke-color": ink,
+        "circle-stroke-width": 1.25,
+      },
+    },
     {
       id: "hand-points",
       type: "circle",
@@ -37,7 +70,11 @@ function layers() {
   ];
 }
 
-const feature = (role, type, coordinates, rest) => ({ type: "Feature", properties: { role, ...rest }, geometry: { type, coordinates } });
+const feature = (role, type, coordinates, rest) => ({
+  type: "Feature",
+  properties: { role, ...rest },
+  geometry: { type, coordinates },
+});
 
 /** points, chosen: see hand_route.js; stateOf(leg): "stored", "clear", "bad" or "asked"; isFree(point). Null points take it away. */
 export function show(map, points, { chosen, stateOf, isFree } = {}) {
@@ -51,9 +88,20 @@ export function show(map, points, { chosen, stateOf, isFree } = {}) {
     map.removeSource(SOURCE);
     return;
   }
-  const legs = points.slice(1).map(({ position }, index) => feature("leg", "LineString", [points[index].position, position], { state: stateOf(index) }));
+  const legs = points
+    .slice(1)
+    .map(({ position }, index) =>
+      feature("leg", "LineString", [points[index].position, position], { state: stateOf(index) }),
+    );
   const middles = middlesOf(map, points).map(({ index, position }) => feature("middle", "Point", position, { index }));
-  const dots = points.map((point, index) => feature("point", "Point", point.position, { index, chosen: index === chosen, fixed: !isFree(point), byHand: point.isByHand }));
+  const dots = points.map((point, index) =>
+    feature("point", "Point", point.position, {
+      index,
+      chosen: index === chosen,
+      fixed: !isFree(point),
+      byHand: point.isByHand,
+    }),
+  );
   map.getSource(SOURCE).setData({ type: "FeatureCollection", features: [...legs, ...middles, ...dots] });
 }
 
@@ -69,5 +117,6 @@ export function middlesOf(map, points) {
 
 export function recolour(map) {
   if (!map.getSource(SOURCE)) return;
-  for (const { id, paint } of layers()) for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
+  for (const { id, paint } of layers())
+    for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
 }

@@ -14,17 +14,52 @@ function layers() {
   const lit = ["get", "lit"];
   const fails = ["get", "fails"];
   return [
-    { id: "lost-link-quiet", type: "line", source: SOURCE, filter: ["all", isKind("LineString"), ["!", fails]], paint: { "line-color": quiet, "line-width": 1, "line-opacity": 0.3, "line-dasharray": [2, 3] } },
-    { id: "lost-link-casing", type: "line", source: SOURCE, filter: ["all", isKind("LineString"), lit], paint: { "line-color": casing, "line-width": 5 } },
-    { id: "lost-link-lines", type: "line", source: SOURCE, filter: ["all", isKind("LineString"), fails], paint: { "line-color": critical, "line-width": ["case", lit, 2, 1], "line-opacity": ["case", lit, 1, 0.35], "line-dasharray": [4, 3] } },
     {
-      id: "lost-link-dots", type: "circle", source: SOURCE, filter: isKind("Point"),
-      paint: { "circle-radius": ["interpolate", ["linear"], ["zoom"], 9, ["case", lit, 4, 2], 13, ["case", lit, 7, 5]], "circle-color": ["case", lit, critical, read("--raised")], "circle-stroke-color": critical, "circle-stroke-width": 2 },
+      id: "lost-link-quiet",
+      type: "line",
+      source: SOURCE,
+      filter: ["all", isKind("LineString"), ["!", fails]],
+      paint: { "line-color": quiet, "line-width": 1, "line-opacity": 0.3, "line-dasharray": [2, 3] },
+    },
+    {
+      id: "lost-link-casing",
+      type: "line",
+      source: SOURCE,
+      filter: ["all", isKind("LineString"), lit],
+      paint: { "line-color": casing, "line-width": 5 },
+    },
+    {
+      id: "lost-link-lines",
+      type: "line",
+      source: SOURCE,
+      filter: ["all", isKind("LineString"), fails],
+      paint: {
+        "line-color": critical,
+        "line-width": ["case", lit, 2, 1],
+        "line-opacity": ["case", lit, 1, 0.35],
+        "line-dasharray": [4, 3],
+      },
+    },
+    {
+      id: "lost-link-dots",
+      type: "circle",
+      source: SOURCE,
+      filter: isKind("Point"),
+      paint: {
+        "circle-radius": ["interpolate", ["linear"], ["zoom"], 9, ["case", lit, 4, 2], 13, ["case", lit, 7, 5]],
+        "circle-color": ["case", lit, critical, read("--raised")],
+        "circle-stroke-color": critical,
+        "circle-stroke-width": 2,
+      },
     },
   ];
 }
 
-const feature = (type, coordinates, { fails = false, lit = false }) => ({ type: "Feature", properties: { fails, lit }, geometry: { type, coordinates } });
+const feature = (type, coordinates, { fails = false, lit = false }) => ({
+  type: "Feature",
+  properties: { fails, lit },
+  geometry: { type, coordinates },
+});
 
 /** returns: [{ from, to, fails, lit }]; none takes them away. */
 export function showReturns(map, returns) {
@@ -33,13 +68,17 @@ export function showReturns(map, returns) {
     map.addSource(SOURCE, { type: "geojson", data: NOTHING });
     for (const layer of layers()) map.addLayer(layer);
   }
-  const features = returns.flatMap(({ from, to, ...how }) => [feature("LineString", [from, to], how), ...(how.fails ? [feature("Point", from, how)] : [])]);
+  const features = returns.flatMap(({ from, to, ...how }) => [
+    feature("LineString", [from, to], how),
+    ...(how.fails ? [feature("Point", from, how)] : []),
+  ]);
   map.getSource(SOURCE).setData({ type: "FeatureCollection", features });
 }
 
 export function recolour(map) {
   if (!map.getSource(SOURCE)) return;
-  for (const { id, paint } of layers()) for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
+  for (const { id, paint } of layers())
+    for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
 }
 
 /** Marks of the rally points. onMove(index, position). */
@@ -55,7 +94,17 @@ export function createRallyPoints(map, { onMove }) {
       marks.forEach((mark) => mark.remove());
       marks = points.map(({ name, position }, index) => {
         const words = t("Rally point {name}", { name });
-        const element = h("div", { class: `map-rally${canMove ? " movable" : ""}`, role: "img", "aria-label": words, title: canMove ? t("Rally point {name}. Drag it to another place", { name }) : words, onclick: (event) => event.stopPropagation() }, h("span", { class: "rally-mark" }, name));
+        const element = h(
+          "div",
+          {
+            class: `map-rally${canMove ? " movable" : ""}`,
+            role: "img",
+            "aria-label": words,
+            title: canMove ? t("Rally point {name}. Drag it to another place", { name }) : words,
+            onclick: (event) => event.stopPropagation(),
+          },
+          h("span", { class: "rally-mark" }, name),
+        );
         const mark = new maplibre.Marker({ element, draggable: canMove });
         mark.on("dragend", () => {
           const { lng, lat } = mark.getLngLat();

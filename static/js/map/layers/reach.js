@@ -9,10 +9,16 @@ const reach = ["coalesce", ["feature-state", "reach"], 0];
 const byReach = (yes, partly, no) => ["match", reach, 1, yes, 2, partly, 3, no, 0];
 
 function layers() {
-  const [yes, partly, no, casing, raised] = ["--accent", "--ink-2", "--warning-mark", "--map-casing", "--raised"].map(read);
+  const [yes, partly, no, casing, raised] = ["--accent", "--ink-2", "--warning-mark", "--map-casing", "--raised"].map(
+    read,
+  );
   const colour = ["match", reach, 1, yes, 2, partly, 3, no, "rgba(0,0,0,0)"];
   const dots = (id, sourceLayer, minzoom, radius) => ({
-    id, type: "circle", source: TILES, "source-layer": sourceLayer, minzoom,
+    id,
+    type: "circle",
+    source: TILES,
+    "source-layer": sourceLayer,
+    minzoom,
     paint: {
       "circle-radius": ["interpolate", ["linear"], ["zoom"], 10, radius * 0.6, 14, radius * 1.3],
       "circle-color": ["match", reach, 1, yes, 2, partly, raised],
@@ -23,10 +29,26 @@ function layers() {
     },
   });
   const lines = (id, sourceLayer, minzoom) => ({
-    id, type: "line", source: TILES, "source-layer": sourceLayer, minzoom, layout: { "line-join": "round" },
-    paint: { "line-color": colour, "line-width": byReach(4, 2.5, 1.5), "line-gap-width": byReach(0, 0, 4), "line-opacity": byReach(0.85, 0.85, 1) },
+    id,
+    type: "line",
+    source: TILES,
+    "source-layer": sourceLayer,
+    minzoom,
+    layout: { "line-join": "round" },
+    paint: {
+      "line-color": colour,
+      "line-width": byReach(4, 2.5, 1.5),
+      "line-gap-width": byReach(0, 0, 4),
+      "line-opacity": byReach(0.85, 0.85, 1),
+    },
   });
-  return [lines("reach-lines", "lines", 0), lines("reach-railways", "railways", 8), lines("reach-bridges", "bridges", 10), dots("reach-bridge-points", "bridge_points", 10, 3), dots("reach-towers", "towers", 10, 4)];
+  return [
+    lines("reach-lines", "lines", 0),
+    lines("reach-railways", "railways", 8),
+    lines("reach-bridges", "bridges", 10),
+    dots("reach-bridge-points", "bridge_points", 10, 3),
+    dots("reach-towers", "towers", 10, 4),
+  ];
 }
 
 const stated = new WeakMap(); // map → Set of "layer id" that have a state

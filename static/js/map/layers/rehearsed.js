@@ -6,8 +6,20 @@ const BEFORE = "line-labels";
 function layersOf(palette) {
   const joined = { "line-join": "round" };
   return [
-    { id: "rehearsed-casing", type: "line", source: SOURCE, layout: joined, paint: { "line-color": palette.casing, "line-width": 4, "line-opacity": 0.9 } },
-    { id: "rehearsed", type: "line", source: SOURCE, layout: joined, paint: { "line-color": palette.ink, "line-width": 1.75, "line-dasharray": [3, 2] } },
+    {
+      id: "rehearsed-casing",
+      type: "line",
+      source: SOURCE,
+      layout: joined,
+      paint: { "line-color": palette.casing, "line-width": 4, "line-opacity": 0.9 },
+    },
+    {
+      id: "rehearsed",
+      type: "line",
+      source: SOURCE,
+      layout: joined,
+      paint: { "line-color": palette.ink, "line-width": 1.75, "line-dasharray": [3, 2] },
+    },
   ];
 }
 
@@ -18,11 +30,20 @@ export function show(map, palette, routes) {
     map.addSource(SOURCE, { type: "geojson", data: { type: "FeatureCollection", features: [] } });
     for (const layer of layersOf(palette)) map.addLayer(layer, map.getLayer(BEFORE) ? BEFORE : undefined);
   }
-  const features = (routes ?? []).flatMap(({ uav, flights }) => flights.filter(({ position }) => position.length > 1).map(({ position }) => ({ type: "Feature", properties: { uav }, geometry: { type: "LineString", coordinates: position } })));
+  const features = (routes ?? []).flatMap(({ uav, flights }) =>
+    flights
+      .filter(({ position }) => position.length > 1)
+      .map(({ position }) => ({
+        type: "Feature",
+        properties: { uav },
+        geometry: { type: "LineString", coordinates: position },
+      })),
+  );
   map.getSource(SOURCE).setData({ type: "FeatureCollection", features });
 }
 
 export function recolour(map, palette) {
   if (!map.getSource(SOURCE)) return;
-  for (const { id, paint } of layersOf(palette)) for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
+  for (const { id, paint } of layersOf(palette))
+    for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
 }

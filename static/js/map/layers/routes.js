@@ -3,7 +3,12 @@
 import { ROUTE_COUNT, routeNumber } from "../palette.js";
 import { routeOpacity } from "../style.js";
 
-const LAYERS = { "routes-casing": "line-opacity", routes: "line-opacity", "routes-dashed": "line-opacity", "routes-arrows": "icon-opacity" };
+const LAYERS = {
+  "routes-casing": "line-opacity",
+  routes: "line-opacity",
+  "routes-dashed": "line-opacity",
+  "routes-arrows": "icon-opacity",
+};
 
 /** routes: [{ sequence, geometry }] */
 export function update(map, routes) {
@@ -13,7 +18,11 @@ export function update(map, routes) {
       .filter((route) => route.geometry)
       .map((route) => ({
         type: "Feature",
-        properties: { sequence: route.sequence, route: routeNumber(route.sequence), dashed: route.sequence >= ROUTE_COUNT },
+        properties: {
+          sequence: route.sequence,
+          route: routeNumber(route.sequence),
+          dashed: route.sequence >= ROUTE_COUNT,
+        },
         geometry: route.geometry,
       })),
   });
@@ -21,14 +30,27 @@ export function update(map, routes) {
 
 /** Places where UAVs wait: [{ kind: "base" | "charging", position }]. */
 export function showStops(map, stops) {
-  map.getSource("route-stops").setData({ type: "FeatureCollection", features: stops.map(({ kind, position }) => ({ type: "Feature", properties: { kind }, geometry: { type: "Point", coordinates: position } })) });
+  map
+    .getSource("route-stops")
+    .setData({
+      type: "FeatureCollection",
+      features: stops.map(({ kind, position }) => ({
+        type: "Feature",
+        properties: { kind },
+        geometry: { type: "Point", coordinates: position },
+      })),
+    });
 }
 
 /** The best routes of a search that goes on: lines with the number of their UAV; null once there is a plan. */
 export function showSoFar(map, lines) {
   map.getSource("routes-so-far").setData({
     type: "FeatureCollection",
-    features: (lines?.features ?? []).map(({ geometry, properties }) => ({ type: "Feature", properties: { route: routeNumber(properties.uav) }, geometry })),
+    features: (lines?.features ?? []).map(({ geometry, properties }) => ({
+      type: "Feature",
+      properties: { route: routeNumber(properties.uav) },
+      geometry,
+    })),
   });
 }
 

@@ -4,7 +4,10 @@ import { TILES } from "../style.js";
 
 let lit = null; // the zone that is ringed
 
-const collection = (geometries) => ({ type: "FeatureCollection", features: geometries.map((geometry) => ({ type: "Feature", properties: {}, geometry })) });
+const collection = (geometries) => ({
+  type: "FeatureCollection",
+  features: geometries.map((geometry) => ({ type: "Feature", properties: {}, geometry })),
+});
 
 export function update(map, geometries) {
   map.getSource("picked-shapes").setData(collection(geometries));

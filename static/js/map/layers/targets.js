@@ -11,7 +11,8 @@ const MOST_NAMES = 6;
 const REACH_PX = 4;
 const MISSED = -1; // instead of a route's number
 
-const lookOf = (pill) => (pill.isMissed ? "missed" : pill.sequence === null ? "waiting" : `route-${routeNumber(pill.sequence)}`);
+const lookOf = (pill) =>
+  pill.isMissed ? "missed" : pill.sequence === null ? "waiting" : `route-${routeNumber(pill.sequence)}`;
 
 function namesOf(members) {
   const names = members.slice(0, MOST_NAMES).map((pill) => pill.name);
@@ -62,7 +63,9 @@ export function createTargets(map, { onPick, onHover }) {
       const key = JSON.stringify([group.label, lookOf(first), first.position, group.members.map((pill) => pill.key)]);
       const kept = markers.get(key);
       const element = kept?.element ?? elementOf(group);
-      const marker = kept?.marker ?? new maplibre.Marker({ element, subpixelPositioning: true }).setLngLat(first.position).addTo(map);
+      const marker =
+        kept?.marker ??
+        new maplibre.Marker({ element, subpixelPositioning: true }).setLngLat(first.position).addTo(map);
       next.set(key, { marker, element, members: group.members });
     }
     for (const [key, { marker, element }] of markers) {
@@ -80,7 +83,10 @@ export function createTargets(map, { onPick, onHover }) {
   function mark() {
     for (const { element, members } of markers.values()) {
       element.classList.toggle("far", lookedAt !== null && members[0].sequence !== lookedAt);
-      element.classList.toggle("chosen", members.some((pill) => pill.key === chosen));
+      element.classList.toggle(
+        "chosen",
+        members.some((pill) => pill.key === chosen),
+      );
     }
   }
 
@@ -109,7 +115,10 @@ export function createTargets(map, { onPick, onHover }) {
     /** The target of the layer at a place on the screen, where there are too many for markers: its key, or null. */
     at({ x, y }) {
       if (pills.length <= MOST_MARKERS) return null;
-      const box = [[x - REACH_PX, y - REACH_PX], [x + REACH_PX, y + REACH_PX]];
+      const box = [
+        [x - REACH_PX, y - REACH_PX],
+        [x + REACH_PX, y + REACH_PX],
+      ];
       return map.queryRenderedFeatures(box, { layers: ["many-targets"] })[0]?.properties.key ?? null;
     },
     lookAt(sequence) {

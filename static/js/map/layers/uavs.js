@@ -4,21 +4,26 @@
  */
 
 import { h, svg } from "../../dom.js";
-import { maplibre } from "../maplibre.js";
 import { t } from "../../text.js";
+import { maplibre } from "../maplibre.js";
 import { routeNumber } from "../palette.js";
 import { mergeDarts } from "../pills.js";
 
 const SQUARE_PX = 22;
 const DART_MIDDLE_PX = 14; // from a dart's left edge; its name stands to the right
 
-const headingWords = ({ heading_deg }) => (knows(heading_deg) ? t("heading {degrees}°", { degrees: String(Math.round(heading_deg) % 360).padStart(3, "0") }) : "");
+const headingWords = ({ heading_deg }) =>
+  knows(heading_deg)
+    ? t("heading {degrees}°", { degrees: String(Math.round(heading_deg) % 360).padStart(3, "0") })
+    : "";
 const knows = (heading_deg) => heading_deg !== null && heading_deg !== undefined;
 
 /** A dart along its heading; without one a round mark that points nowhere. */
 function uavMark({ heading_deg }) {
   const turned = knows(heading_deg) ? { style: `rotate: ${heading_deg}deg` } : {};
-  const shape = knows(heading_deg) ? svg("path", { d: "M12 2.5L19.5 21L12 16.8L4.5 21Z" }) : svg("circle", { cx: 12, cy: 12, r: 7 });
+  const shape = knows(heading_deg)
+    ? svg("path", { d: "M12 2.5L19.5 21L12 16.8L4.5 21Z" })
+    : svg("circle", { cx: 12, cy: 12, r: 7 });
   return svg("svg", { class: "icon", viewBox: "0 0 24 24", "aria-hidden": "true", ...turned }, shape);
 }
 
@@ -53,7 +58,9 @@ export function createUavs(map, { onMove, onPick, onLook }) {
         type: "button",
         tabindex: "-1",
         class: "map-dart",
-        "aria-label": [t("{name}, not in this mission", { name: uav.name }), headingWords(uav)].filter(Boolean).join(", "),
+        "aria-label": [t("{name}, not in this mission", { name: uav.name }), headingWords(uav)]
+          .filter(Boolean)
+          .join(", "),
         title: [t("{name}. Click to take it along", { name: uav.name }), headingWords(uav)].filter(Boolean).join(" · "),
         onclick: (event) => (event.stopPropagation(), onPick(uav.id)),
       },
@@ -85,7 +92,10 @@ export function createUavs(map, { onMove, onPick, onLook }) {
     darts = mergeDarts(placed).flatMap((group) => {
       const [first] = group.members;
       const below = standing.has(placeOf(first)) ? 1 : 0;
-      const at = (element, row) => new maplibre.Marker({ element, anchor: "left", offset: [-DART_MIDDLE_PX, (below + row) * SQUARE_PX] }).setLngLat(first.position).addTo(map);
+      const at = (element, row) =>
+        new maplibre.Marker({ element, anchor: "left", offset: [-DART_MIDDLE_PX, (below + row) * SQUARE_PX] })
+          .setLngLat(first.position)
+          .addTo(map);
       if (group.members.length > 1 && spread !== keyOf(group.members)) return [at(several(group), 0)];
       return group.members.map((uav, row) => at(dart(uav), row));
     });
@@ -101,16 +111,22 @@ export function createUavs(map, { onMove, onPick, onLook }) {
     update(uavs) {
       squares.forEach((marker) => marker.remove());
       standing = new Map();
-      squares = uavs.filter((uav) => uav.sequence !== null).map((uav) => {
-        const before = standing.get(placeOf(uav)) ?? 0;
-        standing.set(placeOf(uav), before + 1);
-        const marker = new maplibre.Marker({ element: square(uav), draggable: uav.canMove, offset: [before * SQUARE_PX, 0] });
-        marker.on("dragend", () => {
-          const { lng, lat } = marker.getLngLat();
-          onMove(uav.sequence, [Number(lng.toFixed(6)), Number(lat.toFixed(6))]);
+      squares = uavs
+        .filter((uav) => uav.sequence !== null)
+        .map((uav) => {
+          const before = standing.get(placeOf(uav)) ?? 0;
+          standing.set(placeOf(uav), before + 1);
+          const marker = new maplibre.Marker({
+            element: square(uav),
+            draggable: uav.canMove,
+            offset: [before * SQUARE_PX, 0],
+          });
+          marker.on("dragend", () => {
+            const { lng, lat } = marker.getLngLat();
+            onMove(uav.sequence, [Number(lng.toFixed(6)), Number(lat.toFixed(6))]);
+          });
+          return marker.setLngLat(uav.position).addTo(map);
         });
-        return marker.setLngLat(uav.position).addTo(map);
-      });
       others = uavs.filter((uav) => uav.sequence === null);
       drawDarts();
     },

@@ -31,8 +31,17 @@ export function waysOf({ selection, figures, planningBeside, refusedBeside, plan
   return OBJECTIVES.map(({ value, words, meaning }) => {
     const basis = basisOf({ ...selection, objective: value });
     const result = figures[basis] ?? null;
-    const fault = refusedBeside[basis] ?? (value === "energy" && isWithoutBattery(plan) ? t("No UAV has a battery.") : "");
-    return { objective: value, words, meaning, result, fault, isPresent: plan?.basis === basis, isBeingMade: planningBeside === basis };
+    const fault =
+      refusedBeside[basis] ?? (value === "energy" && isWithoutBattery(plan) ? t("No UAV has a battery.") : "");
+    return {
+      objective: value,
+      words,
+      meaning,
+      result,
+      fault,
+      isPresent: plan?.basis === basis,
+      isBeingMade: planningBeside === basis,
+    };
   });
 }
 
@@ -59,20 +68,58 @@ export function alternatives(state, actions, canPlan) {
       { class: way.isPresent ? "present" : null, "aria-current": way.isPresent ? "true" : null },
       h("th", { scope: "row" }, nameOf(way, actions, canPlan)),
       way.result
-        ? COLUMNS.map(({ valueOf, textOf }, column) => h("td", { class: best[column][index] ? "best" : null }, said(valueOf(way.result), textOf), best[column][index] && h("span", { class: "unseen" }, ` ${t("(best)")}`)))
+        ? COLUMNS.map(({ valueOf, textOf }, column) =>
+            h(
+              "td",
+              { class: best[column][index] ? "best" : null },
+              said(valueOf(way.result), textOf),
+              best[column][index] && h("span", { class: "unseen" }, ` ${t("(best)")}`),
+            ),
+          )
         : h("td", { colspan: COLUMNS.length }, way.fault || (way.isBeingMade ? t("being planned") : t("not planned"))),
     );
   const isBusy = ways.some(({ isBeingMade }) => isBeingMade);
   const canAsk = canPlan && !isBusy && ways.some(({ result, fault }) => !result && !fault);
   return [
-    h("p", { class: "quiet-text" }, [t("One plan of the same targets for each. The best figure of a column is bold."), differ(ways) && t("Plans that reach fewer targets do not count for it."), openChanges(state.selection, state.mission?.uav_changes).some(({ figures }) => figures.length > 0) && t("All are planned with the figures that this mission has of its UAVs.")].filter(Boolean).join(" ")),
+    h(
+      "p",
+      { class: "quiet-text" },
+      [
+        t("One plan of the same targets for each. The best figure of a column is bold."),
+        differ(ways) && t("Plans that reach fewer targets do not count for it."),
+        openChanges(state.selection, state.mission?.uav_changes).some(({ figures }) => figures.length > 0) &&
+          t("All are planned with the figures that this mission has of its UAVs."),
+      ]
+        .filter(Boolean)
+        .join(" "),
+    ),
     h(
       "div",
       { class: "ways-place" },
-      h("table", { class: "why-table ways", "aria-busy": String(isBusy) }, h("thead", {}, h("tr", {}, h("th", { scope: "col" }, t("Plan|noun")), COLUMNS.map(({ words }) => h("th", { scope: "col" }, words)))), h("tbody", {}, ways.map(row))),
+      h(
+        "table",
+        { class: "why-table ways", "aria-busy": String(isBusy) },
+        h(
+          "thead",
+          {},
+          h(
+            "tr",
+            {},
+            h("th", { scope: "col" }, t("Plan|noun")),
+            COLUMNS.map(({ words }) => h("th", { scope: "col" }, words)),
+          ),
+        ),
+        h("tbody", {}, ways.map(row)),
+      ),
     ),
-    isBusy && h("div", {}, h("button", { type: "button", class: "button", onclick: actions.stopAlternatives }, t("Stop"))),
-    canAsk && h("div", {}, h("button", { type: "button", class: "button", onclick: actions.planAlternatives }, t("Plan the others"))),
+    isBusy &&
+      h("div", {}, h("button", { type: "button", class: "button", onclick: actions.stopAlternatives }, t("Stop"))),
+    canAsk &&
+      h(
+        "div",
+        {},
+        h("button", { type: "button", class: "button", onclick: actions.planAlternatives }, t("Plan the others")),
+      ),
   ].filter(Boolean);
 }
 
@@ -82,6 +129,17 @@ const differ = (ways) => new Set(ways.filter(({ result }) => result).map(({ resu
 const said = (value, textOf) => (value === null ? "—" : textOf(value));
 
 function nameOf({ objective, words, meaning, result, isPresent }, actions, canPlan) {
-  if (isPresent || !result || !canPlan) return h("span", { class: "way", title: meaning }, isPresent && icon("check", "small"), words, isPresent && h("span", { class: "unseen" }, ` ${t("(shown)")}`));
-  return h("button", { type: "button", class: "text-button", title: meaning, onclick: () => actions.setOption("objective", objective) }, words);
+  if (isPresent || !result || !canPlan)
+    return h(
+      "span",
+      { class: "way", title: meaning },
+      isPresent && icon("check", "small"),
+      words,
+      isPresent && h("span", { class: "unseen" }, ` ${t("(shown)")}`),
+    );
+  return h(
+    "button",
+    { type: "button", class: "text-button", title: meaning, onclick: () => actions.setOption("objective", objective) },
+    words,
+  );
 }

@@ -14,10 +14,13 @@ export function whyNotApproved(state) {
 export function mountApprove(store, flying) {
   const button = byId("approve");
   button.addEventListener("click", () => void flying.approve());
-  store.listen(["mission", "plan", "planIsStored", "selection", "name", "savedBasis", "saving", "planning", "isDispatching"], (state) => {
-    button.hidden = !state.plan || state.planning !== null;
-    const reason = whyNotApproved(state);
-    button.disabled = Boolean(reason) || state.isDispatching;
-    button.title = reason;
-  });
+  store.listen(
+    ["mission", "plan", "planIsStored", "selection", "name", "savedBasis", "saving", "planning", "isDispatching"],
+    (state) => {
+      button.hidden = !state.plan || state.planning !== null;
+      const reason = whyNotApproved(state);
+      button.disabled = Boolean(reason) || state.isDispatching;
+      button.title = reason;
+    },
+  );
 }

@@ -4,9 +4,9 @@ import { h } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t, tn } from "../../text.js";
 import { clockText, powerText } from "../../units.js";
-import { targetDifferences, uavDifferences } from "../merge.js";
 import { conditionsText, departureText } from "../flight_options.js";
 import { lostLinkText } from "../lost_link.js";
+import { targetDifferences, uavDifferences } from "../merge.js";
 import { OBJECTIVES } from "../plan_view.js";
 
 const MOST_NAMES = 6;
@@ -28,15 +28,25 @@ function listWords(selection, before, part, { count, nameOf, differences }) {
   return lines;
 }
 
-const TARGETS = { count: (count) => tn(count, "{count} target", "{count} targets"), nameOf: ({ label }) => label, differences: targetDifferences };
-const UAVS = { count: (count) => tn(count, "{count} UAV", "{count} UAVs"), nameOf: ({ name }) => name, differences: uavDifferences };
+const TARGETS = {
+  count: (count) => tn(count, "{count} target", "{count} targets"),
+  nameOf: ({ label }) => label,
+  differences: targetDifferences,
+};
+const UAVS = {
+  count: (count) => tn(count, "{count} UAV", "{count} UAVs"),
+  nameOf: ({ name }) => name,
+  differences: uavDifferences,
+};
 const objectiveWords = (value) => OBJECTIVES.find((objective) => objective.value === value)?.words ?? value;
 const returnWords = (returns) => (returns ? t("yes") : t("no"));
 
 /** "Kite: Tower 4, Tower 2", a line for each lock. */
 function lockWords({ targets, locks = [] }) {
   const labels = new Map(targets.map(({ key, label }) => [key, label]));
-  return locks.length ? locks.map(({ uav, targets: keys }) => `${uav}: ${listed(keys, (key) => labels.get(key) ?? t("Target"))}`) : [t("nothing")];
+  return locks.length
+    ? locks.map(({ uav, targets: keys }) => `${uav}: ${listed(keys, (key) => labels.get(key) ?? t("Target"))}`)
+    : [t("nothing")];
 }
 
 /** conflict: see conflicts.js; ways: { takeTheirs, putMineOnTop, mergeBoth?, keepMineAsCopy }. */
@@ -54,7 +64,8 @@ export function showBoth(conflict, mine, ways) {
     [t("Return to start"), ({ selection }) => [returnWords(selection.return_to_start)]],
     [t("Locked"), ({ selection }) => lockWords(selection)],
   ];
-  const act = (label, does, kind = "") => h("button", { type: "button", class: `button ${kind}`, onclick: () => (dialog.close(), void does()) }, label);
+  const act = (label, does, kind = "") =>
+    h("button", { type: "button", class: `button ${kind}`, onclick: () => (dialog.close(), void does()) }, label);
   const dialog = h(
     "dialog",
     { class: "both", "aria-labelledby": "both-title" },
@@ -62,18 +73,50 @@ export function showBoth(conflict, mine, ways) {
     h(
       "table",
       {},
-      h("thead", {}, h("tr", {}, h("td", {}), h("th", { scope: "col" }, t("Mine, not saved")), h("th", { scope: "col" }, t("Saved at {time}", { time: clockText(conflict.at) }), conflict.actor && h("span", { class: "caption" }, ` ${conflict.actor}`)))),
+      h(
+        "thead",
+        {},
+        h(
+          "tr",
+          {},
+          h("td", {}),
+          h("th", { scope: "col" }, t("Mine, not saved")),
+          h(
+            "th",
+            { scope: "col" },
+            t("Saved at {time}", { time: clockText(conflict.at) }),
+            conflict.actor && h("span", { class: "caption" }, ` ${conflict.actor}`),
+          ),
+        ),
+      ),
       h(
         "tbody",
         {},
         rows.map(([what, words]) => {
           const [own, their] = [words(mine), words(conflict.theirs)];
           const isSame = own.join() === their.join();
-          return h("tr", { class: isSame ? "same" : null }, h("th", { scope: "row" }, what), [own, their].map((lines) => h("td", {}, lines.map((line) => h("span", {}, line)))));
+          return h(
+            "tr",
+            { class: isSame ? "same" : null },
+            h("th", { scope: "row" }, what),
+            [own, their].map((lines) =>
+              h(
+                "td",
+                {},
+                lines.map((line) => h("span", {}, line)),
+              ),
+            ),
+          );
         }),
       ),
     ),
-    h("p", { class: "caption" }, ways.mergeBoth ? t("Put together: what each added and removed, and mine where both changed the same.") : t("Mine is from an earlier visit: only one of the two can be kept under this name.")),
+    h(
+      "p",
+      { class: "caption" },
+      ways.mergeBoth
+        ? t("Put together: what each added and removed, and mine where both changed the same.")
+        : t("Mine is from an earlier visit: only one of the two can be kept under this name."),
+    ),
     h(
       "div",
       { class: "acts" },

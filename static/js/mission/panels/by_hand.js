@@ -17,48 +17,154 @@ export function createByHand(store, actions) {
   const figures = h("p", { class: "hand-figures" });
   const faults = h("ul", { class: "hand-faults", "aria-label": t("What is wrong") });
   const which = h("span", { class: "hand-which" });
-  const go = (step) => () => actions.chooseByHand(Math.min(hand().points.length - 1, Math.max(0, (hand().chosen ?? (step > 0 ? -1 : hand().points.length)) + step)));
-  const before = h("button", { type: "button", class: "icon-button tight", "aria-label": t("Waypoint before"), onclick: go(-1) }, icon("arrow-left", "small"));
-  const after = h("button", { type: "button", class: "icon-button tight turned", "aria-label": t("Next waypoint"), onclick: go(1) }, icon("arrow-left", "small"));
-  const number = (id, how, onchange) => h("input", { class: "input", type: "number", step: "any", id, ...how, onchange });
-  const height = number("hand-height", { min: 0 }, () => height.value && height.validity.valid && actions.raiseByHand(hand().chosen, height.valueAsNumber * SHORT_UNIT.metres));
-  const speed = number("hand-speed", { min: 0 }, () => speed.validity.valid && actions.paceByHand(hand().chosen, speed.value && speed.valueAsNumber > 0 ? speed.valueAsNumber * SPEED_UNIT.mps : null));
+  const go = (step) => () =>
+    actions.chooseByHand(
+      Math.min(hand().points.length - 1, Math.max(0, (hand().chosen ?? (step > 0 ? -1 : hand().points.length)) + step)),
+    );
+  const before = h(
+    "button",
+    { type: "button", class: "icon-button tight", "aria-label": t("Waypoint before"), onclick: go(-1) },
+    icon("arrow-left", "small"),
+  );
+  const after = h(
+    "button",
+    { type: "button", class: "icon-button tight turned", "aria-label": t("Next waypoint"), onclick: go(1) },
+    icon("arrow-left", "small"),
+  );
+  const number = (id, how, onchange) =>
+    h("input", { class: "input", type: "number", step: "any", id, ...how, onchange });
+  const height = number(
+    "hand-height",
+    { min: 0 },
+    () =>
+      height.value &&
+      height.validity.valid &&
+      actions.raiseByHand(hand().chosen, height.valueAsNumber * SHORT_UNIT.metres),
+  );
+  const speed = number(
+    "hand-speed",
+    { min: 0 },
+    () =>
+      speed.validity.valid &&
+      actions.paceByHand(
+        hand().chosen,
+        speed.value && speed.valueAsNumber > 0 ? speed.valueAsNumber * SPEED_UNIT.mps : null,
+      ),
+  );
   const speedSaid = h("p", { class: "caption", id: "hand-speed-said" });
   speed.setAttribute("aria-describedby", speedSaid.id);
-  const toPlace = () => latitude.value && longitude.value && latitude.validity.valid && longitude.validity.valid && actions.moveByHand(hand().chosen, [longitude.valueAsNumber, latitude.valueAsNumber]);
+  const toPlace = () =>
+    latitude.value &&
+    longitude.value &&
+    latitude.validity.valid &&
+    longitude.validity.valid &&
+    actions.moveByHand(hand().chosen, [longitude.valueAsNumber, latitude.valueAsNumber]);
   const latitude = number("hand-latitude", { min: -90, max: 90 }, toPlace);
   const longitude = number("hand-longitude", { min: -180, max: 180 }, toPlace);
-  const field = (label, input, unit) => h("div", { class: "field" }, h("label", { for: input.id }, label), h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)));
-  const put = h("button", { type: "button", class: "button", onclick: () => actions.insertByHand(hand().chosen) }, icon("plus", "small"), t("Put one in after it"));
-  const drop = h("button", { type: "button", class: "button", onclick: () => actions.removeByHand(hand().chosen) }, icon("trash-2", "small"), t("Remove"));
-  const one = h("div", { class: "stack hand-one" }, h("div", { class: "hand-fields" }, field(t("Height above ground"), height, SHORT_UNIT.unit), field(t("Speed on the way here"), speed, SPEED_UNIT.unit), speedSaid, field(t("Latitude"), latitude, "°"), field(t("Longitude"), longitude, "°")), h("div", { class: "hand-acts" }, put, drop));
-  const hint = h("p", { class: "quiet-text" }, t("Drag a waypoint on the map, or pull a new one out of the middle of a leg. Start, end and targets stay."));
-  const undo = h("button", { type: "button", class: "icon-button tight", "aria-label": t("Undo"), title: t("Undo (Ctrl+Z)"), onclick: actions.undoByHand }, icon("undo-2", "small"));
-  const redo = h("button", { type: "button", class: "icon-button tight", "aria-label": t("Redo"), title: t("Redo (Ctrl+Shift+Z)"), onclick: actions.redoByHand }, icon("redo-2", "small"));
+  const field = (label, input, unit) =>
+    h(
+      "div",
+      { class: "field" },
+      h("label", { for: input.id }, label),
+      h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)),
+    );
+  const put = h(
+    "button",
+    { type: "button", class: "button", onclick: () => actions.insertByHand(hand().chosen) },
+    icon("plus", "small"),
+    t("Put one in after it"),
+  );
+  const drop = h(
+    "button",
+    { type: "button", class: "button", onclick: () => actions.removeByHand(hand().chosen) },
+    icon("trash-2", "small"),
+    t("Remove"),
+  );
+  const one = h(
+    "div",
+    { class: "stack hand-one" },
+    h(
+      "div",
+      { class: "hand-fields" },
+      field(t("Height above ground"), height, SHORT_UNIT.unit),
+      field(t("Speed on the way here"), speed, SPEED_UNIT.unit),
+      speedSaid,
+      field(t("Latitude"), latitude, "°"),
+      field(t("Longitude"), longitude, "°"),
+    ),
+    h("div", { class: "hand-acts" }, put, drop),
+  );
+  const hint = h(
+    "p",
+    { class: "quiet-text" },
+    t("Drag a waypoint on the map, or pull a new one out of the middle of a leg. Start, end and targets stay."),
+  );
+  const undo = h(
+    "button",
+    {
+      type: "button",
+      class: "icon-button tight",
+      "aria-label": t("Undo"),
+      title: t("Undo (Ctrl+Z)"),
+      onclick: actions.undoByHand,
+    },
+    icon("undo-2", "small"),
+  );
+  const redo = h(
+    "button",
+    {
+      type: "button",
+      class: "icon-button tight",
+      "aria-label": t("Redo"),
+      title: t("Redo (Ctrl+Shift+Z)"),
+      onclick: actions.redoByHand,
+    },
+    icon("redo-2", "small"),
+  );
   const keep = h("button", { type: "button", class: "button primary", onclick: actions.keepByHand }, t("Keep|route"));
   const leave = h("button", { type: "button", class: "button", onclick: actions.endByHand }, t("Drop the changes"));
-  const takeBack = h("button", { type: "button", class: "button", onclick: actions.takeBackByHand }, icon("undo-2", "small"), t("Take back the last change"));
+  const takeBack = h(
+    "button",
+    { type: "button", class: "button", onclick: actions.takeBackByHand },
+    icon("undo-2", "small"),
+    t("Take back the last change"),
+  );
   const backSaid = h("p", { class: "quiet-text" });
   const back = h("div", { class: "stack hand-back" }, backSaid, h("div", { class: "hand-acts" }, takeBack));
-  const element = h("div", { class: "stack by-hand" }, said, faults, h("div", { class: "hand-walk" }, before, which, after, undo, redo), one, hint, back, h("div", { class: "hand-end" }, figures, h("div", { class: "hand-acts" }, keep, leave)));
+  const element = h(
+    "div",
+    { class: "stack by-hand" },
+    said,
+    faults,
+    h("div", { class: "hand-walk" }, before, which, after, undo, redo),
+    one,
+    hint,
+    back,
+    h("div", { class: "hand-end" }, figures, h("div", { class: "hand-acts" }, keep, leave)),
+  );
 
   const ownSpeed = () => store.state.mission?.uavs[hand().sequence]?.cruise_speed_mps ?? null;
 
   /** Of the leg to a point as the server flies it; null while that is not known. */
-  const flownSpeed = ({ look, points }, index) => (look?.waypoints.length === points.length ? (look.waypoints[index]?.speed_mps ?? null) : null);
+  const flownSpeed = ({ look, points }, index) =>
+    look?.waypoints.length === points.length ? (look.waypoints[index]?.speed_mps ?? null) : null;
 
   function kindWords(point, plan) {
     if (point.kind === "start") return t("start");
     if (point.kind === "end") return t("end");
     if (point.kind === "base") return t("between two flights");
     const hand = point.isByHand ? t("by hand") : t("as planned");
-    return point.kind === "target" ? `${plan.targets[point.target]?.label ?? t("Target")}${point.isByHand ? `, ${hand}` : ""}` : hand;
+    return point.kind === "target"
+      ? `${plan.targets[point.target]?.label ?? t("Target")}${point.isByHand ? `, ${hand}` : ""}`
+      : hand;
   }
 
   function faultsNow({ faults: told, points, unknown }) {
     const leg = (index) => t("Leg {from} to {to}", { from: index + 1, to: index + 2 });
     const ofLegs = [...told.legs].map(([index, words]) => `${leg(Math.min(index, points.length - 2))}: ${words}`);
-    const ofPoints = [...told.points].map(([index, words]) => `${t("Waypoint {number}", { number: index + 1 })}: ${words}`);
+    const ofPoints = [...told.points].map(
+      ([index, words]) => `${t("Waypoint {number}", { number: index + 1 })}: ${words}`,
+    );
     return [...(unknown ? [unknown] : []), ...told.other, ...ofLegs, ...ofPoints];
   }
 
@@ -75,7 +181,11 @@ export function createByHand(store, actions) {
     const list = faultsNow(now);
     const isAsking = now.isLookOld && !now.unknown;
     const changes = changesOf(points, original);
-    const parts = [changes ? tn(changes, "{count} waypoint is changed.", "{count} waypoints are changed.") : t("Nothing is changed yet.")];
+    const parts = [
+      changes
+        ? tn(changes, "{count} waypoint is changed.", "{count} waypoints are changed.")
+        : t("Nothing is changed yet."),
+    ];
     if (isAsking) parts.push(t("The route is being checked."));
     else if (changes && !list.length) parts.push(t("The whole route is clear."));
     said.textContent = parts.join(" ");
@@ -85,9 +195,15 @@ export function createByHand(store, actions) {
     figures.classList.toggle("old", now.isLookOld);
     const rest = list.length - MOST_SAID;
     faults.hidden = list.length === 0;
-    faults.replaceChildren(...[...list.slice(0, MOST_SAID), ...(rest > 0 ? [tn(rest, "and {count} more", "and {count} more")] : [])].map((words) => h("li", {}, icon("circle-x", "small"), h("span", {}, words))));
+    faults.replaceChildren(
+      ...[...list.slice(0, MOST_SAID), ...(rest > 0 ? [tn(rest, "and {count} more", "and {count} more")] : [])].map(
+        (words) => h("li", {}, icon("circle-x", "small"), h("span", {}, words)),
+      ),
+    );
     const point = points[chosen] ?? null;
-    which.textContent = point ? t("{number} of {total}: {kind}", { number: chosen + 1, total: points.length, kind: kindWords(point, plan) }) : tn(points.length, "{count} waypoint", "{count} waypoints");
+    which.textContent = point
+      ? t("{number} of {total}: {kind}", { number: chosen + 1, total: points.length, kind: kindWords(point, plan) })
+      : tn(points.length, "{count} waypoint", "{count} waypoints");
     before.disabled = chosen === 0;
     after.disabled = chosen === points.length - 1;
     one.hidden = !point;
@@ -98,7 +214,13 @@ export function createByHand(store, actions) {
     keep.disabled = changes === 0;
     const steps = plan?.result.routes[now.sequence]?.hand_steps ?? 0;
     back.hidden = steps === 0;
-    backSaid.textContent = changes ? t("Changes that were kept can be taken back once these are kept or dropped.") : tn(steps, "{count} change by hand is kept and can be taken back.", "{count} changes by hand are kept and can be taken back, the last one first.");
+    backSaid.textContent = changes
+      ? t("Changes that were kept can be taken back once these are kept or dropped.")
+      : tn(
+          steps,
+          "{count} change by hand is kept and can be taken back.",
+          "{count} changes by hand are kept and can be taken back, the last one first.",
+        );
     takeBack.disabled = changes > 0 || now.isSaving;
     if (!point) return;
     const free = isFree(point);

@@ -12,9 +12,30 @@ export function mountChosenBar(store, actions, { chooseAll, done }) {
     return store.state.selection.targets.filter((target) => keys.has(target.key));
   };
   const count = h("span", { class: "chosen-count", role: "status" });
-  const task = h("button", { type: "button", class: "button", "aria-haspopup": "true", "aria-expanded": "false", onclick: () => toggleMenu(task, () => targetMenu(chosen(), actions, { ...store.state, orders: [] })) }, icon("list-checks", "small"), t("Task"));
-  const between = h("button", { type: "button", class: "button", onclick: addBetween }, icon("waypoints", "small"), t("Between them"));
-  const drop = h("button", { type: "button", class: "button", onclick: () => actions.removeTargets(store.state.chosenTargets) }, icon("trash-2", "small"), t("Remove"));
+  const task = h(
+    "button",
+    {
+      type: "button",
+      class: "button",
+      "aria-haspopup": "true",
+      "aria-expanded": "false",
+      onclick: () => toggleMenu(task, () => targetMenu(chosen(), actions, { ...store.state, orders: [] })),
+    },
+    icon("list-checks", "small"),
+    t("Task"),
+  );
+  const between = h(
+    "button",
+    { type: "button", class: "button", onclick: addBetween },
+    icon("waypoints", "small"),
+    t("Between them"),
+  );
+  const drop = h(
+    "button",
+    { type: "button", class: "button", onclick: () => actions.removeTargets(store.state.chosenTargets) },
+    icon("trash-2", "small"),
+    t("Remove"),
+  );
   bar.append(
     count,
     h("button", { type: "button", class: "text-button", onclick: chooseAll }, t("All")),
@@ -34,7 +55,9 @@ export function mountChosenBar(store, actions, { chooseAll, done }) {
       bar.hidden = !isShown;
       count.textContent = tn(targets.length, "{count} chosen", "{count} chosen");
       task.disabled = drop.disabled = targets.length === 0;
-      between.hidden = !(targets.length === 2 && targets.every((target) => target.kind === "tower" && target.asset !== null));
+      between.hidden = !(
+        targets.length === 2 && targets.every((target) => target.kind === "tower" && target.asset !== null)
+      );
     },
   };
 }

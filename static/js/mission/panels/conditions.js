@@ -14,8 +14,22 @@ const [COLDEST_C, HOTTEST_C] = [-60, 60];
 /** Typed in the reader's unit, read in SI; one that nobody touched is what it was. */
 function figure(value, { label, min, max, unit, typed = (si) => si, si = (shown) => shown, oninput }) {
   const shown = Number(typed(value).toPrecision(5));
-  const input = h("input", { class: "input", type: "number", step: "any", required: true, min: Math.round(typed(min)), max: Math.round(typed(max)), value: shown, "aria-label": label, oninput });
-  return { element: h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)), input, read: () => (input.valueAsNumber === shown ? value : si(input.valueAsNumber)) };
+  const input = h("input", {
+    class: "input",
+    type: "number",
+    step: "any",
+    required: true,
+    min: Math.round(typed(min)),
+    max: Math.round(typed(max)),
+    value: shown,
+    "aria-label": label,
+    oninput,
+  });
+  return {
+    element: h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)),
+    input,
+    read: () => (input.valueAsNumber === shown ? value : si(input.valueAsNumber)),
+  };
 }
 
 const per = (unit) => ({ typed: (si) => si / unit, si: (shown) => shown * unit });
@@ -26,8 +40,20 @@ export function askForConditions(conditions, use) {
   let rows = [];
   const list = h("div", { class: "wind-rows" });
   const calm = h("p", { class: "quiet-text" }, t("Calm at all heights."));
-  const more = h("button", { type: "button", class: "button", onclick: addLayer }, icon("plus", "small"), t("Add a height"));
-  const temperature = figure(temperature_c, { label: t("Temperature"), min: COLDEST_C, max: HOTTEST_C, unit: TEMPERATURE_UNIT.unit, typed: TEMPERATURE_UNIT.typed, si: TEMPERATURE_UNIT.celsius });
+  const more = h(
+    "button",
+    { type: "button", class: "button", onclick: addLayer },
+    icon("plus", "small"),
+    t("Add a height"),
+  );
+  const temperature = figure(temperature_c, {
+    label: t("Temperature"),
+    min: COLDEST_C,
+    max: HOTTEST_C,
+    unit: TEMPERATURE_UNIT.unit,
+    typed: TEMPERATURE_UNIT.typed,
+    si: TEMPERATURE_UNIT.celsius,
+  });
 
   function rowOf(layer) {
     const arrow = h("span", { class: "wind-from" });
@@ -35,12 +61,53 @@ export function askForConditions(conditions, use) {
       const from_deg = Number.isFinite(side.input.valueAsNumber) ? side.input.valueAsNumber : 0;
       arrow.replaceChildren(windArrow(from_deg), h("small", {}, compassText(from_deg)));
     };
-    const height = figure(layer.altitude_agl_m, { label: t("Height above ground"), min: 0, max: HIGHEST_M, unit: SHORT_UNIT.unit, ...per(SHORT_UNIT.metres) });
-    const speed = figure(layer.speed_mps, { label: t("Wind speed"), min: 0, max: STRONGEST_MPS, unit: SPEED_UNIT.unit, ...per(SPEED_UNIT.mps) });
-    const side = figure(layer.from_deg, { label: t("Wind from, degrees clockwise from north"), min: 0, max: 360, unit: "°", oninput: () => showSide() });
-    const row = { height, speed, side, read: () => ({ altitude_agl_m: height.read(), speed_mps: speed.read(), from_deg: side.read() % 360 }) };
-    const drop = h("button", { type: "button", class: "icon-button tight", "aria-label": t("Remove this height"), title: t("Remove this height"), onclick: () => ((rows = rows.filter((other) => other !== row)), draw(), more.focus()) }, icon("x", "small"));
-    row.element = h("div", { class: "wind-row", role: "group", "aria-label": t("Wind at a height") }, height.element, speed.element, side.element, arrow, drop);
+    const height = figure(layer.altitude_agl_m, {
+      label: t("Height above ground"),
+      min: 0,
+      max: HIGHEST_M,
+      unit: SHORT_UNIT.unit,
+      ...per(SHORT_UNIT.metres),
+    });
+    const speed = figure(layer.speed_mps, {
+      label: t("Wind speed"),
+      min: 0,
+      max: STRONGEST_MPS,
+      unit: SPEED_UNIT.unit,
+      ...per(SPEED_UNIT.mps),
+    });
+    const side = figure(layer.from_deg, {
+      label: t("Wind from, degrees clockwise from north"),
+      min: 0,
+      max: 360,
+      unit: "°",
+      oninput: () => showSide(),
+    });
+    const row = {
+      height,
+      speed,
+      side,
+      read: () => ({ altitude_agl_m: height.read(), speed_mps: speed.read(), from_deg: side.read() % 360 }),
+    };
+    const drop = h(
+      "button",
+      {
+        type: "button",
+        class: "icon-button tight",
+        "aria-label": t("Remove this height"),
+        title: t("Remove this height"),
+        onclick: () => ((rows = rows.filter((other) => other !== row)), draw(), more.focus()),
+      },
+      icon("x", "small"),
+    );
+    row.element = h(
+      "div",
+      { class: "wind-row", role: "group", "aria-label": t("Wind at a height") },
+      height.element,
+      speed.element,
+      side.element,
+      arrow,
+      drop,
+    );
     showSide();
     return row;
   }
@@ -59,18 +126,56 @@ export function askForConditions(conditions, use) {
     more.disabled = rows.length >= MOST_LAYERS;
   }
 
-  const heads = h("div", { class: "wind-row heads", "aria-hidden": "true" }, [t("Height"), t("Speed"), t("From|wind")].map((words) => h("span", {}, words)));
+  const heads = h(
+    "div",
+    { class: "wind-row heads", "aria-hidden": "true" },
+    [t("Height"), t("Speed"), t("From|wind")].map((words) => h("span", {}, words)),
+  );
   const dialog = h("dialog", { class: "conditions", "aria-labelledby": "conditions-title" });
   temperature.input.id = "conditions-temperature";
   const wrong = h("p", { class: "field-error", role: "alert" });
   const form = h(
     "form",
     { method: "dialog" },
-    h("div", {}, h("h2", { id: "conditions-title" }, t("Conditions")), h("p", { class: "quiet-text" }, t("Wind between two heights is in between; below the lowest and above the highest it is as there. Arrows show where it blows."))),
-    h("div", { class: "stack tight" }, h("h3", { class: "field-label" }, t("Wind")), calm, heads, list, h("div", {}, more)),
-    h("div", { class: "field temperature" }, h("label", { for: temperature.input.id }, t("Temperature")), temperature.element),
+    h(
+      "div",
+      {},
+      h("h2", { id: "conditions-title" }, t("Conditions")),
+      h(
+        "p",
+        { class: "quiet-text" },
+        t(
+          "Wind between two heights is in between; below the lowest and above the highest it is as there. Arrows show where it blows.",
+        ),
+      ),
+    ),
+    h(
+      "div",
+      { class: "stack tight" },
+      h("h3", { class: "field-label" }, t("Wind")),
+      calm,
+      heads,
+      list,
+      h("div", {}, more),
+    ),
+    h(
+      "div",
+      { class: "field temperature" },
+      h("label", { for: temperature.input.id }, t("Temperature")),
+      temperature.element,
+    ),
     wrong,
-    h("div", { class: "acts" }, h("button", { type: "button", class: "button quiet", onclick: () => (dialog.close(), use(null)) }, t("Calm and mild")), h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")), h("button", { class: "button primary" }, t("Use these"))),
+    h(
+      "div",
+      { class: "acts" },
+      h(
+        "button",
+        { type: "button", class: "button quiet", onclick: () => (dialog.close(), use(null)) },
+        t("Calm and mild"),
+      ),
+      h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
+      h("button", { class: "button primary" }, t("Use these")),
+    ),
   );
   form.addEventListener("submit", (event) => {
     event.preventDefault();

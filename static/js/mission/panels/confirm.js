@@ -10,21 +10,63 @@ const EDGE_PX = 12;
  * Resolves to what was filled in, null where it is not done. `field`: { name, label, type, value, min, max, step, isNeeded }.
  * isBack: whether the act can be taken back: then it has the focus, else the way out. opener: the button out of which the question grows.
  */
-export function confirmAct({ title, lines, act, keep = t("Not yet"), field = null, isDanger = false, isBack = false, image = null, opener = null }) {
+export function confirmAct({
+  title,
+  lines,
+  act,
+  keep = t("Not yet"),
+  field = null,
+  isDanger = false,
+  isBack = false,
+  image = null,
+  opener = null,
+}) {
   return new Promise((resolve) => {
-    const input = field && h("input", { class: "input", id: "confirm-field", name: field.name, type: field.type ?? "text", value: field.value ?? "", min: field.min, max: field.max, step: field.step, maxlength: field.type === "number" ? null : 300, required: field.isNeeded });
-    const out = h("button", { class: "button", value: "out", type: "button", onclick: () => dialog.close("out") }, keep);
+    const input =
+      field &&
+      h("input", {
+        class: "input",
+        id: "confirm-field",
+        name: field.name,
+        type: field.type ?? "text",
+        value: field.value ?? "",
+        min: field.min,
+        max: field.max,
+        step: field.step,
+        maxlength: field.type === "number" ? null : 300,
+        required: field.isNeeded,
+      });
+    const out = h(
+      "button",
+      { class: "button", value: "out", type: "button", onclick: () => dialog.close("out") },
+      keep,
+    );
     const go = h("button", { class: `button ${isDanger ? "danger filled" : "primary"}`, value: "go" }, act);
     const dialog = h(
       "dialog",
       { class: "confirm", "aria-labelledby": "confirm-title", "aria-describedby": "confirm-lines" },
       h("h2", { id: "confirm-title" }, image && icon(image), title),
-      h("form", { method: "dialog" },
-        h("div", { id: "confirm-lines", class: "confirm-lines" }, lines.filter(Boolean).map((line) => h("p", {}, line))),
+      h(
+        "form",
+        { method: "dialog" },
+        h(
+          "div",
+          { id: "confirm-lines", class: "confirm-lines" },
+          lines.filter(Boolean).map((line) => h("p", {}, line)),
+        ),
         input && h("div", { class: "field" }, h("label", { for: "confirm-field" }, field.label), input),
-        h("div", { class: "acts" }, out, go)),
+        h("div", { class: "acts" }, out, go),
+      ),
     );
-    dialog.addEventListener("close", () => resolve(dialog.returnValue === "go" ? (input ? { [field.name]: field.type === "number" ? input.valueAsNumber : input.value.trim() } : {}) : null));
+    dialog.addEventListener("close", () =>
+      resolve(
+        dialog.returnValue === "go"
+          ? input
+            ? { [field.name]: field.type === "number" ? input.valueAsNumber : input.value.trim() }
+            : {}
+          : null,
+      ),
+    );
     open(dialog);
     if (opener) growFrom(dialog, opener);
     (field?.isNeeded ? input : isBack ? go : out).focus();
@@ -38,6 +80,11 @@ function growFrom(dialog, opener) {
   const middle = box.left + box.width / 2;
   const left = Math.min(Math.max(EDGE_PX, middle - dialog.offsetWidth / 2), innerWidth - dialog.offsetWidth - EDGE_PX);
   const above = box.top - dialog.offsetHeight - EDGE_PX;
-  Object.assign(dialog.style, { margin: "0", left: `${left}px`, top: `${Math.max(EDGE_PX, above)}px`, transformOrigin: `${middle - left}px 100%` });
+  Object.assign(dialog.style, {
+    margin: "0",
+    left: `${left}px`,
+    top: `${Math.max(EDGE_PX, above)}px`,
+    transformOrigin: `${middle - left}px 100%`,
+  });
   dialog.classList.add("grown");
 }

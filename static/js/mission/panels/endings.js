@@ -11,8 +11,18 @@ export function mountEndings(store, actions) {
     list,
     ({ sequence }) => `${sequence}`,
     ({ sequence }) => {
-      const choice = h("select", { class: "input", onchange: () => actions.changeUav(sequence, { end_action: choice.value }) }, END_CHOICES.map(([value, words]) => h("option", { value }, words)));
-      return h("li", {}, h("span", { class: `letter route-${routeNumber(sequence)}` }, routeLetter(sequence)), h("span", { class: "name" }), choice);
+      const choice = h(
+        "select",
+        { class: "input", onchange: () => actions.changeUav(sequence, { end_action: choice.value }) },
+        END_CHOICES.map(([value, words]) => h("option", { value }, words)),
+      );
+      return h(
+        "li",
+        {},
+        h("span", { class: `letter route-${routeNumber(sequence)}` }, routeLetter(sequence)),
+        h("span", { class: "name" }),
+        choice,
+      );
     },
     (row, { name, end_action }) => {
       row.querySelector(".name").textContent = row.querySelector(".name").title = name;

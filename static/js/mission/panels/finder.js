@@ -45,7 +45,14 @@ export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
   function option(result, index) {
     return h(
       "div",
-      { role: "option", id: `found-${index}`, "aria-selected": String(index === active), onpointerdown: (event) => event.preventDefault(), onclick: () => take(index), onpointerenter: () => activate(index, false) },
+      {
+        role: "option",
+        id: `found-${index}`,
+        "aria-selected": String(index === active),
+        onpointerdown: (event) => event.preventDefault(),
+        onclick: () => take(index),
+        onpointerenter: () => activate(index, false),
+      },
       icon(result.icon),
       h("span", { class: "what" }, result.words, " ", h("span", {}, result.detail)),
       h("span", { class: "end" }, result.end),
@@ -66,14 +73,23 @@ export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
     foot.hidden = !canPlan || total < 2;
     if (foot.hidden) return;
     const isTooMany = total > MOST_TARGETS;
-    const words = isTooMany ? t("{count} match; a mission takes {most}. Narrow the search to add all.", { count: total, most: MOST_TARGETS }) : "";
-    const button = h("button", { type: "button", class: "button", onpointerdown: (event) => event.preventDefault(), onclick: takeAll }, icon("list-plus", "small"), tn(total, "Add all {count}", "Add all {count}"));
+    const words = isTooMany
+      ? t("{count} match; a mission takes {most}. Narrow the search to add all.", { count: total, most: MOST_TARGETS })
+      : "";
+    const button = h(
+      "button",
+      { type: "button", class: "button", onpointerdown: (event) => event.preventDefault(), onclick: takeAll },
+      icon("list-plus", "small"),
+      tn(total, "Add all {count}", "Add all {count}"),
+    );
     foot.replaceChildren(isTooMany ? h("p", {}, words) : button);
   }
 
   function activate(index, scroll = true) {
     active = index;
-    list.querySelectorAll("[role=option]").forEach((element, place) => element.setAttribute("aria-selected", String(place === active)));
+    list
+      .querySelectorAll("[role=option]")
+      .forEach((element, place) => element.setAttribute("aria-selected", String(place === active)));
     const element = document.getElementById(`found-${active}`);
     if (element) input.setAttribute("aria-activedescendant", element.id);
     if (scroll) element?.scrollIntoView({ block: "nearest" });
@@ -93,16 +109,34 @@ export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
       show(feature);
       if (canPlan) add(feature);
     };
-    return { icon: kind, words: label, detail: detailOf(kind, feature.properties), end: canPlan ? t("Add") : t("Show"), act };
+    return {
+      icon: kind,
+      words: label,
+      detail: detailOf(kind, feature.properties),
+      end: canPlan ? t("Add") : t("Show"),
+      act,
+    };
   };
-  const placeResult = (place) => ({ icon: place.icon, words: place.label, detail: place.detail ?? "", end: t("Go there"), act: () => goTo(place) });
+  const placeResult = (place) => ({
+    icon: place.icon,
+    words: place.label,
+    detail: place.detail ?? "",
+    end: t("Go there"),
+    act: () => goTo(place),
+  });
 
   /** What is asked of /assets: the text, and what is in view where that is meant. */
   function question() {
     const text = input.value.trim();
     const parts = new URLSearchParams();
     if (text) parts.set("text", text);
-    if (filters.inView || !text) parts.set("bbox", box().map((degrees) => degrees.toFixed(6)).join(","));
+    if (filters.inView || !text)
+      parts.set(
+        "bbox",
+        box()
+          .map((degrees) => degrees.toFixed(6))
+          .join(","),
+      );
     if (filters.kinds.size) parts.set("kind", [...filters.kinds].join(","));
     return parts;
   }
@@ -161,7 +195,16 @@ export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
   }
 
   function filter(words, change) {
-    const button = h("button", { type: "button", class: "filter-chip", "aria-pressed": "false", onpointerdown: (event) => event.preventDefault() }, words);
+    const button = h(
+      "button",
+      {
+        type: "button",
+        class: "filter-chip",
+        "aria-pressed": "false",
+        onpointerdown: (event) => event.preventDefault(),
+      },
+      words,
+    );
     button.addEventListener("click", () => {
       button.setAttribute("aria-pressed", String(change()));
       search();
@@ -171,7 +214,9 @@ export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
 
   byId("found-filters").append(
     filter(t("In view"), () => (filters.inView = !filters.inView)),
-    ...KINDS.map(({ kind, words }) => filter(words(), () => !filters.kinds.delete(kind) && Boolean(filters.kinds.add(kind)))),
+    ...KINDS.map(({ kind, words }) =>
+      filter(words(), () => !filters.kinds.delete(kind) && Boolean(filters.kinds.add(kind))),
+    ),
   );
   input.addEventListener("input", () => {
     clearTimeout(timer);

@@ -12,23 +12,99 @@ const USUAL_CHARGING_W = 100;
 const MOST_CHARGING_W = 5000;
 
 export function mountFlightOptions(store, actions) {
-  const departure = h("input", { class: "input", type: "datetime-local", id: "departure", "aria-describedby": "departure-words", onchange: () => actions.setOption("departs_at", momentTyped(departure.value)) });
+  const departure = h("input", {
+    class: "input",
+    type: "datetime-local",
+    id: "departure",
+    "aria-describedby": "departure-words",
+    onchange: () => actions.setOption("departs_at", momentTyped(departure.value)),
+  });
   const said = h("p", { class: "caption", id: "departure-words", role: "status" });
-  const now = h("button", { type: "button", class: "button", onclick: () => actions.setOption("departs_at", nextMinute(Date.now())) }, t("Now"));
-  const anyTime = h("button", { type: "button", class: "button quiet", onclick: () => (actions.setOption("departs_at", null), departure.focus()) }, t("Any time"));
-  const legal = h("button", { type: "button", class: "text-button", onclick: () => showLegalTimes(store, actions) }, t("When is this mission legal?"));
+  const now = h(
+    "button",
+    { type: "button", class: "button", onclick: () => actions.setOption("departs_at", nextMinute(Date.now())) },
+    t("Now"),
+  );
+  const anyTime = h(
+    "button",
+    {
+      type: "button",
+      class: "button quiet",
+      onclick: () => (actions.setOption("departs_at", null), departure.focus()),
+    },
+    t("Any time"),
+  );
+  const legal = h(
+    "button",
+    { type: "button", class: "text-button", onclick: () => showLegalTimes(store, actions) },
+    t("When is this mission legal?"),
+  );
 
   const air = h("p", { class: "air" });
-  const changeAir = h("button", { type: "button", class: "text-button", onclick: () => askForConditions(store.state.selection.conditions, (conditions) => actions.setOption("conditions", conditions)) }, t("Change"));
+  const changeAir = h(
+    "button",
+    {
+      type: "button",
+      class: "text-button",
+      onclick: () =>
+        askForConditions(store.state.selection.conditions, (conditions) => actions.setOption("conditions", conditions)),
+    },
+    t("Change"),
+  );
 
-  const power = h("input", { class: "input", type: "number", id: "charging-power", min: 1, max: MOST_CHARGING_W, step: "any", onchange: () => power.validity.valid && power.value && actions.setOption("charging_w", power.valueAsNumber) });
-  const powerField = h("div", { class: "field charging-power" }, h("label", { for: power.id }, t("Power while charging")), h("div", { class: "with-unit" }, power, h("span", { class: "unit" }, "W")));
-  const charges = h("input", { class: "switch", type: "checkbox", role: "switch", onchange: () => actions.setOption("charging_w", charges.checked ? USUAL_CHARGING_W : null) });
+  const power = h("input", {
+    class: "input",
+    type: "number",
+    id: "charging-power",
+    min: 1,
+    max: MOST_CHARGING_W,
+    step: "any",
+    onchange: () => power.validity.valid && power.value && actions.setOption("charging_w", power.valueAsNumber),
+  });
+  const powerField = h(
+    "div",
+    { class: "field charging-power" },
+    h("label", { for: power.id }, t("Power while charging")),
+    h("div", { class: "with-unit" }, power, h("span", { class: "unit" }, "W")),
+  );
+  const charges = h("input", {
+    class: "switch",
+    type: "checkbox",
+    role: "switch",
+    onchange: () => actions.setOption("charging_w", charges.checked ? USUAL_CHARGING_W : null),
+  });
 
   byId("flight-options").append(
-    h("div", { class: "flight-option" }, h("label", { for: departure.id, class: "field-label" }, t("Departure")), h("div", { class: "departure-row" }, departure, now, anyTime), said, legal),
-    h("div", { class: "flight-option", role: "group", "aria-labelledby": "air-title" }, h("div", { class: "option-head" }, h("h3", { id: "air-title", class: "field-label" }, t("Conditions")), changeAir), air),
-    h("label", { class: "switch-row" }, h("span", {}, t("Charging on towers"), h("small", { class: "caption" }, t("UAVs that fly once may stop on a tower to charge"))), charges),
+    h(
+      "div",
+      { class: "flight-option" },
+      h("label", { for: departure.id, class: "field-label" }, t("Departure")),
+      h("div", { class: "departure-row" }, departure, now, anyTime),
+      said,
+      legal,
+    ),
+    h(
+      "div",
+      { class: "flight-option", role: "group", "aria-labelledby": "air-title" },
+      h(
+        "div",
+        { class: "option-head" },
+        h("h3", { id: "air-title", class: "field-label" }, t("Conditions")),
+        changeAir,
+      ),
+      air,
+    ),
+    h(
+      "label",
+      { class: "switch-row" },
+      h(
+        "span",
+        {},
+        t("Charging on towers"),
+        h("small", { class: "caption" }, t("UAVs that fly once may stop on a tower to charge")),
+      ),
+      charges,
+    ),
     powerField,
   );
   changeAir.setAttribute("aria-label", t("Change the conditions"));
@@ -37,7 +113,8 @@ export function mountFlightOptions(store, actions) {
   function departureWords({ departs_at }) {
     if (!departs_at) return t("Any time: the plan keeps clear of all zones at all times.");
     const where = zoneText(departs_at);
-    if (Date.parse(departs_at) < Date.now()) return t("{zone}. This moment has passed; zones count at it all the same.", { zone: where });
+    if (Date.parse(departs_at) < Date.now())
+      return t("{zone}. This moment has passed; zones count at it all the same.", { zone: where });
     return t("{zone}. Zones count at the times when the UAVs pass.", { zone: where });
   }
 
@@ -46,7 +123,11 @@ export function mountFlightOptions(store, actions) {
     if (departure.value !== typed) departure.value = typed;
     said.textContent = departureWords(selection);
     anyTime.hidden = !selection.departs_at;
-    const arrows = (selection.conditions?.wind ?? []).filter(({ speed_mps }) => speed_mps > 0).map(({ from_deg }) => h("span", { title: t("from the {side}", { side: compassText(from_deg) }) }, windArrow(from_deg)));
+    const arrows = (selection.conditions?.wind ?? [])
+      .filter(({ speed_mps }) => speed_mps > 0)
+      .map(({ from_deg }) =>
+        h("span", { title: t("from the {side}", { side: compassText(from_deg) }) }, windArrow(from_deg)),
+      );
     air.replaceChildren(...arrows, conditionsText(selection.conditions));
     charges.checked = selection.charging_w !== null && selection.charging_w !== undefined;
     powerField.hidden = !charges.checked;

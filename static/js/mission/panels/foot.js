@@ -16,29 +16,38 @@ export function howFarWords(planning) {
 }
 
 export function mountFoot(store, actions) {
-  const [plan, stop, save, cancel] = ["plan", "stop", "save", "cancel-planning"].map((id) => document.getElementById(id));
+  const [plan, stop, save, cancel] = ["plan", "stop", "save", "cancel-planning"].map((id) =>
+    document.getElementById(id),
+  );
   if (!plan) return;
   plan.addEventListener("click", actions.plan);
   stop.addEventListener("click", actions.stop);
   cancel.addEventListener("click", actions.cancel);
   save.addEventListener("click", () => actions.save());
 
-  store.listen(["planning", "saving", "plan", "selection", "name", "mission", "planIsStored", "savedBasis"], (state) => {
-    const isBusy = state.planning !== null;
-    plan.querySelector("span").textContent = isBusy ? t("Planning") : state.plan ? t("Plan again") : t("Plan");
-    plan.setAttribute("aria-busy", String(isBusy));
-    stop.hidden = !isBusy;
-    stop.textContent = state.planning?.isStopping ? t("Stopping") : state.planning?.job ? t("Stop, keep the best") : t("Stop");
-    stop.setAttribute("aria-busy", String(Boolean(state.planning?.isStopping)));
-    stop.disabled = Boolean(state.planning?.isStopping);
-    cancel.hidden = !state.planning?.job || state.planning.isStopping || state.saving;
-    save.hidden = isBusy;
-    save.textContent = state.saving ? t("Saving") : t("Save");
-    save.setAttribute("aria-busy", String(state.saving));
-    const nothing = !isUnsaved(state);
-    save.disabled = nothing && !state.mission; // a stored mission answers that it is saved
-    save.title = nothing ? (state.mission ? t("Everything is saved") : t("Nothing to save yet")) : t("Save (Ctrl+S)");
-  });
+  store.listen(
+    ["planning", "saving", "plan", "selection", "name", "mission", "planIsStored", "savedBasis"],
+    (state) => {
+      const isBusy = state.planning !== null;
+      plan.querySelector("span").textContent = isBusy ? t("Planning") : state.plan ? t("Plan again") : t("Plan");
+      plan.setAttribute("aria-busy", String(isBusy));
+      stop.hidden = !isBusy;
+      stop.textContent = state.planning?.isStopping
+        ? t("Stopping")
+        : state.planning?.job
+          ? t("Stop, keep the best")
+          : t("Stop");
+      stop.setAttribute("aria-busy", String(Boolean(state.planning?.isStopping)));
+      stop.disabled = Boolean(state.planning?.isStopping);
+      cancel.hidden = !state.planning?.job || state.planning.isStopping || state.saving;
+      save.hidden = isBusy;
+      save.textContent = state.saving ? t("Saving") : t("Save");
+      save.setAttribute("aria-busy", String(state.saving));
+      const nothing = !isUnsaved(state);
+      save.disabled = nothing && !state.mission; // a stored mission answers that it is saved
+      save.title = nothing ? (state.mission ? t("Everything is saved") : t("Nothing to save yet")) : t("Save (Ctrl+S)");
+    },
+  );
 
   store.listen(["planning"], ({ planning }) => {
     byId("job").hidden = planning === null;

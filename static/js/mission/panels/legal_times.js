@@ -5,11 +5,25 @@ import { h } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t } from "../../text.js";
 import { zoneText } from "../../units.js";
-import { isPlanCurrent, routesOf } from "../plan_view.js";
-import { requestOf } from "../selection.js";
 import { scheduleText } from "../../zones/schedule_words.js";
 import { departureText } from "../flight_options.js";
-import { STEP_MS, betterWords, legalTimesOf, legsText, marginText, mayDepartBetter, momentAt, shareOf, spanAt, spanText, stepWithin, ticksOf, wordsOf } from "../legal_times.js";
+import {
+  betterWords,
+  legalTimesOf,
+  legsText,
+  marginText,
+  mayDepartBetter,
+  momentAt,
+  STEP_MS,
+  shareOf,
+  spanAt,
+  spanText,
+  stepWithin,
+  ticksOf,
+  wordsOf,
+} from "../legal_times.js";
+import { isPlanCurrent, routesOf } from "../plan_view.js";
+import { requestOf } from "../selection.js";
 
 const HOUR_MS = 3_600_000;
 const [LAST_ROOM, LAST_ROOM_WIDE] = [0.78, 0.93]; // a label that begins later has no room to the right, on a phone and on a desk
@@ -28,7 +42,13 @@ async function ask({ plan, planIsStored, mission }, signal) {
     return legalTimesOf(data, routes);
   }
   const flown = routes.filter(({ geometry }) => geometry);
-  const asked = flown.map(({ end_action, departs_s, duration_s, arrival_s, waypoints }) => ({ end_action, departs_s: departs_s ?? 0, duration_s, arrival_s: arrival_s ?? [], waypoints: waypoints.map(waypointOf) }));
+  const asked = flown.map(({ end_action, departs_s, duration_s, arrival_s, waypoints }) => ({
+    end_action,
+    departs_s: departs_s ?? 0,
+    duration_s,
+    arrival_s: arrival_s ?? [],
+    waypoints: waypoints.map(waypointOf),
+  }));
   const { data } = await post("/plans/legal-windows", { from, routes: asked }, { signal });
   return legalTimesOf(data, flown);
 }
@@ -43,14 +63,25 @@ export function showLegalTimes(store, actions) {
   let times = null;
 
   function askAgain() {
-    body.replaceChildren(h("div", { class: "stack", role: "status", "aria-label": t("Being worked out") }, [1, 2, 3].map(() => h("div", { class: "skeleton" }))));
+    body.replaceChildren(
+      h(
+        "div",
+        { class: "stack", role: "status", "aria-label": t("Being worked out") },
+        [1, 2, 3].map(() => h("div", { class: "skeleton" })),
+      ),
+    );
     ask(store.state, asking.signal).then(
       (answer) => {
         times = answer;
         body.replaceChildren(said, chart, departure);
         draw();
       },
-      (error) => error.name === "AbortError" || body.replaceChildren(h("p", { role: "alert" }, error.message), h("div", {}, h("button", { type: "button", class: "button", onclick: askAgain }, t("Ask again")))),
+      (error) =>
+        error.name === "AbortError" ||
+        body.replaceChildren(
+          h("p", { role: "alert" }, error.message),
+          h("div", {}, h("button", { type: "button", class: "button", onclick: askAgain }, t("Ask again"))),
+        ),
     );
   }
 
@@ -72,7 +103,16 @@ export function showLegalTimes(store, actions) {
     chart.replaceChildren(
       axis(),
       row(h("strong", {}, t("The mission")), [], unionTrack(), "union"),
-      ...times.zones.map((zone) => row(h("span", { class: "legal-zone" }, zone.name), [scheduleText(zone.schedule, { now: times.from_ms, otherwise: zone.schedule_in_words }), legsText(zone.legs)].filter(Boolean), zoneTrack(zone))),
+      ...times.zones.map((zone) =>
+        row(
+          h("span", { class: "legal-zone" }, zone.name),
+          [
+            scheduleText(zone.schedule, { now: times.from_ms, otherwise: zone.schedule_in_words }),
+            legsText(zone.legs),
+          ].filter(Boolean),
+          zoneTrack(zone),
+        ),
+      ),
       h("div", { class: "legal-over" }, mark(Date.now(), "legal-now", t("now")), slider),
     );
     if (focused) chart.querySelector(`[data-part="${focused}"]`)?.focus();
@@ -85,29 +125,66 @@ export function showLegalTimes(store, actions) {
   };
 
   function mark(moment, name, words) {
-    const element = h("div", { class: name, hidden: moment < times.from_ms || moment > times.to_ms }, h("small", {}, words));
+    const element = h(
+      "div",
+      { class: name, hidden: moment < times.from_ms || moment > times.to_ms },
+      h("small", {}, words),
+    );
     element.style.left = `${shareOf(times, moment) * 100}%`;
     return element;
   }
 
-  const row = (name, seconds, track, kind = "") => h("div", { class: `legal-row ${kind}`.trim() }, h("div", { class: "legal-name" }, name, seconds.map((words) => h("small", { title: words }, words))), track);
+  const row = (name, seconds, track, kind = "") =>
+    h(
+      "div",
+      { class: `legal-row ${kind}`.trim() },
+      h(
+        "div",
+        { class: "legal-name" },
+        name,
+        seconds.map((words) => h("small", { title: words }, words)),
+      ),
+      track,
+    );
 
   function axis() {
     const ticks = ticksOf(times).map(({ at_ms, words, isDay }) => {
       const share = shareOf(times, at_ms);
-      const tick = h("span", { class: [isDay && "day", share > LAST_ROOM && "late", share > LAST_ROOM_WIDE && "at-end"].filter(Boolean).join(" ") || null }, words);
+      const tick = h(
+        "span",
+        {
+          class:
+            [isDay && "day", share > LAST_ROOM && "late", share > LAST_ROOM_WIDE && "at-end"]
+              .filter(Boolean)
+              .join(" ") || null,
+        },
+        words,
+      );
       tick.style.left = `${shareOf(times, at_ms) * 100}%`;
       return tick;
     });
-    return h("div", { class: "legal-row legal-axis", "aria-hidden": "true" }, h("div", {}), h("div", { class: "legal-ticks" }, ticks));
+    return h(
+      "div",
+      { class: "legal-row legal-axis", "aria-hidden": "true" },
+      h("div", {}),
+      h("div", { class: "legal-ticks" }, ticks),
+    );
   }
 
   /** Free spans are buttons: a click takes the moment that was pointed at, Enter the begin of the span. */
   function unionTrack() {
     const track = h("div", { class: "legal-track", role: "group", "aria-label": t("Legal times to depart") });
     times.windows.forEach((free, index) => {
-      const button = h("button", { type: "button", class: "legal-free", dataset: { part: `free-${index}` }, title: spanText(free), "aria-label": t("Depart at the begin of {span}", { span: spanText(free) }) });
-      button.addEventListener("click", (event) => depart(stepWithin(free, event.detail ? pointed(event, track) : free.from_ms)));
+      const button = h("button", {
+        type: "button",
+        class: "legal-free",
+        dataset: { part: `free-${index}` },
+        title: spanText(free),
+        "aria-label": t("Depart at the begin of {span}", { span: spanText(free) }),
+      });
+      button.addEventListener("click", (event) =>
+        depart(stepWithin(free, event.detail ? pointed(event, track) : free.from_ms)),
+      );
       track.append(place(button, free));
     });
     return track;
@@ -115,7 +192,11 @@ export function showLegalTimes(store, actions) {
 
   function zoneTrack({ name, blocked }) {
     const words = blocked.length ? blocked.map(spanText).join("; ") : t("not in the way in these hours");
-    return h("div", { class: "legal-track", role: "img", "aria-label": `${name}: ${words}` }, blocked.map((closed) => place(h("i", { class: "legal-blocked", title: spanText(closed) }), closed)));
+    return h(
+      "div",
+      { class: "legal-track", role: "img", "aria-label": `${name}: ${words}` },
+      blocked.map((closed) => place(h("i", { class: "legal-blocked", title: spanText(closed) }), closed)),
+    );
   }
 
   function sliderOf(moment) {
@@ -127,17 +208,34 @@ export function showLegalTimes(store, actions) {
     const slider = h(
       "div",
       {
-        class: `legal-departure${moment === null ? " unset" : isLegal ? "" : " illegal"} ${sideOf(shareOf(times, at))}`, role: "slider", tabindex: 0, dataset: { part: "departure" },
-        "aria-label": t("Departure"), "aria-valuemin": least, "aria-valuemax": most, "aria-valuenow": at,
-        "aria-valuetext": moment === null ? t("any time") : isLegal ? t("{when}, legal", { when }) : t("{when}, not legal", { when }),
+        class: `legal-departure${moment === null ? " unset" : isLegal ? "" : " illegal"} ${sideOf(shareOf(times, at))}`,
+        role: "slider",
+        tabindex: 0,
+        dataset: { part: "departure" },
+        "aria-label": t("Departure"),
+        "aria-valuemin": least,
+        "aria-valuemax": most,
+        "aria-valuenow": at,
+        "aria-valuetext":
+          moment === null ? t("any time") : isLegal ? t("{when}, legal", { when }) : t("{when}, not legal", { when }),
       },
       handle,
       h("small", {}, moment === null ? t("Departure") : when),
     );
     slider.style.left = `${shareOf(times, at) * 100}%`;
     slider.addEventListener("keydown", (event) => {
-      const steps = { ArrowRight: STEP_MS, ArrowUp: STEP_MS, ArrowLeft: -STEP_MS, ArrowDown: -STEP_MS, PageUp: HOUR_MS, PageDown: -HOUR_MS, Home: least - at, End: most - at };
-      const step = event.shiftKey && event.key.startsWith("Arrow") ? Math.sign(steps[event.key]) * HOUR_MS : steps[event.key];
+      const steps = {
+        ArrowRight: STEP_MS,
+        ArrowUp: STEP_MS,
+        ArrowLeft: -STEP_MS,
+        ArrowDown: -STEP_MS,
+        PageUp: HOUR_MS,
+        PageDown: -HOUR_MS,
+        Home: least - at,
+        End: most - at,
+      };
+      const step =
+        event.shiftKey && event.key.startsWith("Arrow") ? Math.sign(steps[event.key]) * HOUR_MS : steps[event.key];
       if (step === undefined) return;
       event.preventDefault();
       depart(Math.min(most, Math.max(least, Math.round((at + step) / STEP_MS) * STEP_MS)));
@@ -172,15 +270,40 @@ export function showLegalTimes(store, actions) {
   const better = h("div", { class: "stack tight" });
 
   function offerBetter(words = "", departs_at = null) {
-    const look = h("button", { type: "button", class: "button", onclick: lookForBetter }, t("Look for a better departure"));
-    const go = departs_at && h("button", { type: "button", class: "button primary", onclick: () => (actions.setOption("departs_at", departs_at), dialog.close()) }, t("Depart then"));
-    better.replaceChildren(h("p", { class: "quiet-text", role: "status" }, words || t("Zones bar a part of this plan. After one of them ends, another departure may do better.")), h("div", { class: "acts" }, go || look));
+    const look = h(
+      "button",
+      { type: "button", class: "button", onclick: lookForBetter },
+      t("Look for a better departure"),
+    );
+    const go =
+      departs_at &&
+      h(
+        "button",
+        {
+          type: "button",
+          class: "button primary",
+          onclick: () => (actions.setOption("departs_at", departs_at), dialog.close()),
+        },
+        t("Depart then"),
+      );
+    better.replaceChildren(
+      h(
+        "p",
+        { class: "quiet-text", role: "status" },
+        words || t("Zones bar a part of this plan. After one of them ends, another departure may do better."),
+      ),
+      h("div", { class: "acts" }, go || look),
+    );
   }
 
   async function lookForBetter() {
-    better.replaceChildren(h("p", { class: "quiet-text", role: "status" }, t("Plans for other departures are being made.")));
+    better.replaceChildren(
+      h("p", { class: "quiet-text", role: "status" }, t("Plans for other departures are being made.")),
+    );
     try {
-      const { data } = await post("/plans/later-departure", requestOf(store.state.selection), { signal: asking.signal });
+      const { data } = await post("/plans/later-departure", requestOf(store.state.selection), {
+        signal: asking.signal,
+      });
       const { words, departs_at } = betterWords(data);
       offerBetter(words, departs_at);
     } catch (error) {
@@ -190,11 +313,27 @@ export function showLegalTimes(store, actions) {
 
   const isPlanned = store.state.plan?.result.routes.some((route) => route.geometry);
   dialog.append(
-    h("div", { class: "stack" },
-      h("div", {}, h("h2", { id: "legal-title" }, t("When is this mission legal?")), h("p", { class: "quiet-text" }, t("For the routes as planned, by the clock of {zone}.", { zone: zoneText(new Date().toISOString()) }))),
+    h(
+      "div",
+      { class: "stack" },
+      h(
+        "div",
+        {},
+        h("h2", { id: "legal-title" }, t("When is this mission legal?")),
+        h(
+          "p",
+          { class: "quiet-text" },
+          t("For the routes as planned, by the clock of {zone}.", { zone: zoneText(new Date().toISOString()) }),
+        ),
+      ),
       body,
       better,
-      h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Close")))),
+      h(
+        "div",
+        { class: "acts" },
+        h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Close")),
+      ),
+    ),
   );
   const stopListening = store.listen(["selection"], () => times && draw());
   dialog.addEventListener("close", () => {
@@ -202,7 +341,21 @@ export function showLegalTimes(store, actions) {
     asking.abort();
   });
   open(dialog);
-  if (store.state.plan && isPlanCurrent(store.state) && mayDepartBetter(store.state.plan.result, store.state.selection.targets.length)) offerBetter();
+  if (
+    store.state.plan &&
+    isPlanCurrent(store.state) &&
+    mayDepartBetter(store.state.plan.result, store.state.selection.targets.length)
+  )
+    offerBetter();
   if (isPlanned) askAgain();
-  else body.replaceChildren(h("div", { class: "empty" }, h("strong", {}, t("No route yet")), h("span", {}, t("Plan the mission first: which zones it meets, and when, comes from its routes.")), h("button", { type: "button", class: "button", onclick: () => (dialog.close(), actions.plan()) }, t("Plan"))));
+  else
+    body.replaceChildren(
+      h(
+        "div",
+        { class: "empty" },
+        h("strong", {}, t("No route yet")),
+        h("span", {}, t("Plan the mission first: which zones it meets, and when, comes from its routes.")),
+        h("button", { type: "button", class: "button", onclick: () => (dialog.close(), actions.plan()) }, t("Plan")),
+      ),
+    );
 }

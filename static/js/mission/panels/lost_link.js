@@ -11,7 +11,12 @@ import { isPlanCurrent } from "../plan_view.js";
 const SHOWN_FIRST = 6; // groups of waypoints that fail
 const ICONS = { home: "circle-check", lost: "triangle-alert" };
 
-const typed = (position) => position.slice(0, 2).toReversed().map((degrees) => degrees.toFixed(6)).join(", ");
+const typed = (position) =>
+  position
+    .slice(0, 2)
+    .toReversed()
+    .map((degrees) => degrees.toFixed(6))
+    .join(", ");
 
 /** showPlaces(positions): brings them into view. */
 export function mountLostLink(store, actions, { canPlan, showPlaces }) {
@@ -25,13 +30,39 @@ export function mountLostLink(store, actions, { canPlan, showPlaces }) {
   }
 
   const radios = link.BEHAVIOURS.map(({ value, words, meaning }) => {
-    const radio = h("input", { type: "radio", name: "lost-link", value, onchange: () => set(link.withBehaviour(wish(), value)) });
-    return { value, radio, meaning, label: h("label", { title: meaning }, radio, h("span", { class: "segment" }, words)) };
+    const radio = h("input", {
+      type: "radio",
+      name: "lost-link",
+      value,
+      onchange: () => set(link.withBehaviour(wish(), value)),
+    });
+    return {
+      value,
+      radio,
+      meaning,
+      label: h("label", { title: meaning }, radio, h("span", { class: "segment" }, words)),
+    };
   });
   const meaning = h("p", { class: "caption" });
-  const hold = h("input", { class: "input", type: "number", id: "lost-link-hold", min: 0, max: link.LONGEST_HOLD_S, step: 1, required: true, "aria-describedby": "lost-link-hold-fault", onchange: holds });
+  const hold = h("input", {
+    class: "input",
+    type: "number",
+    id: "lost-link-hold",
+    min: 0,
+    max: link.LONGEST_HOLD_S,
+    step: 1,
+    required: true,
+    "aria-describedby": "lost-link-hold-fault",
+    onchange: holds,
+  });
   const holdFault = fault("lost-link-hold-fault");
-  const holdField = h("div", { class: "field lost-link-hold" }, h("label", { for: hold.id }, t("Holds for")), h("div", { class: "with-unit" }, hold, h("span", { class: "unit" }, "s")), holdFault);
+  const holdField = h(
+    "div",
+    { class: "field lost-link-hold" },
+    h("label", { for: hold.id }, t("Holds for")),
+    h("div", { class: "with-unit" }, hold, h("span", { class: "unit" }, "s")),
+    holdFault,
+  );
 
   function holds() {
     const isRight = hold.validity.valid && hold.value !== "";
@@ -42,18 +73,62 @@ export function mountLostLink(store, actions, { canPlan, showPlaces }) {
   // rally points
 
   const count = h("span", { class: "count" });
-  const onMap = h("button", { type: "button", class: "text-button", "aria-pressed": "false", onclick: () => store.update({ tool: store.state.tool === "rally" ? "point" : "rally" }) }, t("Add on the map"));
-  const none = h("p", { class: "caption" }, t("None yet: each UAV returns to its own start. A rally point nearer to the routes saves way and can avoid zones."));
+  const onMap = h(
+    "button",
+    {
+      type: "button",
+      class: "text-button",
+      "aria-pressed": "false",
+      onclick: () => store.update({ tool: store.state.tool === "rally" ? "point" : "rally" }),
+    },
+    t("Add on the map"),
+  );
+  const none = h(
+    "p",
+    { class: "caption" },
+    t("None yet: each UAV returns to its own start. A rally point nearer to the routes saves way and can avoid zones."),
+  );
   const list = h("ol", { class: "rally-list", "aria-label": t("Rally points") });
-  const coordinates = h("input", { class: "input", id: "rally-coordinates", autocomplete: "off", spellcheck: "false", maxlength: 80, placeholder: t("Latitude, longitude"), "aria-describedby": "rally-fault", onkeydown: (event) => event.key === "Enter" && (event.preventDefault(), addTyped()) });
+  const coordinates = h("input", {
+    class: "input",
+    id: "rally-coordinates",
+    autocomplete: "off",
+    spellcheck: "false",
+    maxlength: 80,
+    placeholder: t("Latitude, longitude"),
+    "aria-describedby": "rally-fault",
+    onkeydown: (event) => event.key === "Enter" && (event.preventDefault(), addTyped()),
+  });
   const coordinatesFault = fault("rally-fault");
   const add = h("button", { type: "button", class: "button", onclick: addTyped }, icon("plus", "small"), t("Add"));
-  const adding = h("div", { class: "field" }, h("label", { for: coordinates.id }, t("Add by coordinates")), h("div", { class: "rally-add" }, coordinates, add), coordinatesFault);
-  const rally = h("div", { class: "rally", role: "group", "aria-labelledby": "rally-title" }, h("div", { class: "option-head" }, h("h4", { id: "rally-title", class: "field-label" }, t("Rally points"), " ", count), onMap), none, list, adding);
+  const adding = h(
+    "div",
+    { class: "field" },
+    h("label", { for: coordinates.id }, t("Add by coordinates")),
+    h("div", { class: "rally-add" }, coordinates, add),
+    coordinatesFault,
+  );
+  const rally = h(
+    "div",
+    { class: "rally", role: "group", "aria-labelledby": "rally-title" },
+    h(
+      "div",
+      { class: "option-head" },
+      h("h4", { id: "rally-title", class: "field-label" }, t("Rally points"), " ", count),
+      onMap,
+    ),
+    none,
+    list,
+    adding,
+  );
 
   function addTyped() {
     const found = positionIn(coordinates.value);
-    tell(coordinates, coordinatesFault, found ? "" : t("Latitude and longitude are wanted, such as 39.9612, −82.9988."));
+    tell(
+      coordinates,
+      coordinatesFault,
+      found ? "" : t("Latitude and longitude are wanted, such as 39.9612, −82.9988."),
+    );
     if (!found) return coordinates.focus();
     actions.addRallyPoint(found.position);
     coordinates.value = "";
@@ -67,14 +142,45 @@ export function mountLostLink(store, actions, { canPlan, showPlaces }) {
     ({ index }) => {
       const name = link.rallyName(index);
       const said = fault(`rally-${index}-fault`);
-      const input = h("input", { class: "input", autocomplete: "off", spellcheck: "false", maxlength: 80, "aria-label": t("Latitude and longitude of {name}", { name }), "aria-describedby": said.id, onchange: () => moves(index, input, said), onkeydown: (event) => event.key === "Escape" && (event.stopPropagation(), (input.value = typed(pointsNow()[index])), tell(input, said, "")) });
+      const input = h("input", {
+        class: "input",
+        autocomplete: "off",
+        spellcheck: "false",
+        maxlength: 80,
+        "aria-label": t("Latitude and longitude of {name}", { name }),
+        "aria-describedby": said.id,
+        onchange: () => moves(index, input, said),
+        onkeydown: (event) =>
+          event.key === "Escape" &&
+          (event.stopPropagation(), (input.value = typed(pointsNow()[index])), tell(input, said, "")),
+      });
       return h(
         "li",
         { class: "rally-row" },
         h("span", { class: "rally-mark", "aria-hidden": "true" }, name),
         input,
-        h("button", { type: "button", class: "icon-button tight", "aria-label": t("Show {name} on the map", { name }), title: t("Show on the map"), onclick: () => showPlaces([pointsNow()[index]]) }, icon("locate-fixed", "small")),
-        h("button", { type: "button", class: "icon-button tight", "aria-label": t("Remove {name}", { name }), title: t("Remove"), onclick: () => removes(index) }, icon("trash-2", "small")),
+        h(
+          "button",
+          {
+            type: "button",
+            class: "icon-button tight",
+            "aria-label": t("Show {name} on the map", { name }),
+            title: t("Show on the map"),
+            onclick: () => showPlaces([pointsNow()[index]]),
+          },
+          icon("locate-fixed", "small"),
+        ),
+        h(
+          "button",
+          {
+            type: "button",
+            class: "icon-button tight",
+            "aria-label": t("Remove {name}", { name }),
+            title: t("Remove"),
+            onclick: () => removes(index),
+          },
+          icon("trash-2", "small"),
+        ),
         said,
       );
     },
@@ -102,7 +208,11 @@ export function mountLostLink(store, actions, { canPlan, showPlaces }) {
 
   place.append(
     h("h3", { class: "field-label", id: "lost-link-title" }, t("If the link is lost")),
-    h("fieldset", { class: "segments", "aria-labelledby": "lost-link-title" }, radios.map(({ label }) => label)),
+    h(
+      "fieldset",
+      { class: "segments", "aria-labelledby": "lost-link-title" },
+      radios.map(({ label }) => label),
+    ),
     meaning,
     holdField,
     rally,
@@ -113,7 +223,14 @@ export function mountLostLink(store, actions, { canPlan, showPlaces }) {
     const { behaviour, rally_points, hold_s } = link.wholeLostLink(selection.lost_link);
     for (const { value, radio } of radios) radio.checked = value === behaviour;
     const isUsed = link.usesRallyPoints(selection.lost_link);
-    const kept = !isUsed && rally_points.length > 0 && tn(rally_points.length, "Its rally point is kept, and not used.", "Its {count} rally points are kept, and not used.");
+    const kept =
+      !isUsed &&
+      rally_points.length > 0 &&
+      tn(
+        rally_points.length,
+        "Its rally point is kept, and not used.",
+        "Its {count} rally points are kept, and not used.",
+      );
     meaning.textContent = [radios.find(({ value }) => value === behaviour).meaning, kept].filter(Boolean).join(" ");
     holdField.hidden = behaviour !== "hold";
     if (behaviour === "hold" && hold.valueAsNumber !== hold_s) {
@@ -125,7 +242,12 @@ export function mountLostLink(store, actions, { canPlan, showPlaces }) {
     count.textContent = rally_points.length ? `${rally_points.length}` : "";
     const isFull = rally_points.length >= link.MOST_RALLY_POINTS;
     for (const way of [onMap, add, coordinates]) way.disabled = isFull;
-    if (isFull) tell(coordinates, coordinatesFault, t("A mission has at most {most} rally points.", { most: link.MOST_RALLY_POINTS }));
+    if (isFull)
+      tell(
+        coordinates,
+        coordinatesFault,
+        t("A mission has at most {most} rally points.", { most: link.MOST_RALLY_POINTS }),
+      );
     else if (coordinates.value === "") tell(coordinates, coordinatesFault, "");
     draw(rally_points.map((position, index) => ({ position, index })));
   });
@@ -151,27 +273,46 @@ function checkOf(store, { showPlaces }) {
   const heights = h("p", { class: "caption" });
   const uncounted = h("p", { class: "caption" });
   const rows = h("ul", { class: "link-failures", "aria-label": t("From where a UAV would not get home") });
-  const more = h("button", { type: "button", class: "text-button", onclick: () => ((showsAll = true), draw(store.state)) });
+  const more = h("button", {
+    type: "button",
+    class: "text-button",
+    onclick: () => ((showsAll = true), draw(store.state)),
+  });
   const barred = h("p", { class: "field-error", role: "alert" });
   const element = h("div", { class: "link-check" }, said, barred, rows, more, heights, uncounted);
   let showsAll = false;
   let held = null; // the group that was clicked stays lit while its row has focus
 
-  const light = (group) => store.update({ litReturn: group?.key ?? null, litZones: group?.zone_id ? [group.zone_id] : [] });
+  const light = (group) =>
+    store.update({ litReturn: group?.key ?? null, litZones: group?.zone_id ? [group.zone_id] : [] });
 
   function row(plan, group) {
     const { where, why } = link.failureText(group);
     const places = plan.result.routes[group.sequence].waypoints;
     const look = () => {
       light((held = group));
-      showPlaces(link.returnLinesOf(plan).filter(({ key }) => key === group.key).flatMap(({ from, to }) => [from, to]).concat(group.waypoints.slice(0, 1).map((index) => places[index].position)));
+      showPlaces(
+        link
+          .returnLinesOf(plan)
+          .filter(({ key }) => key === group.key)
+          .flatMap(({ from, to }) => [from, to])
+          .concat(group.waypoints.slice(0, 1).map((index) => places[index].position)),
+      );
     };
     return h(
       "li",
       {},
       h(
         "button",
-        { type: "button", title: t("Show on the map"), onclick: look, onpointerenter: () => light(group), onpointerleave: () => light(held), onfocus: () => light(group), onblur: () => light((held = null)) },
+        {
+          type: "button",
+          title: t("Show on the map"),
+          onclick: look,
+          onpointerenter: () => light(group),
+          onpointerleave: () => light(held),
+          onfocus: () => light(group),
+          onblur: () => light((held = null)),
+        },
         h("span", { class: `letter route-${routeNumber(group.sequence)}` }, group.letter),
         h("span", {}, h("strong", {}, `${group.name}: ${where}`), h("small", {}, why)),
       ),

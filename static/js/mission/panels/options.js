@@ -7,9 +7,20 @@ import { basisOf } from "../selection.js";
 
 export function mountOptions(store, actions, canPlan) {
   const choices = OBJECTIVES.map(({ value, words, meaning }) => {
-    const radio = h("input", { type: "radio", name: "objective", value, disabled: !canPlan, onchange: () => actions.setOption("objective", value) });
+    const radio = h("input", {
+      type: "radio",
+      name: "objective",
+      value,
+      disabled: !canPlan,
+      onchange: () => actions.setOption("objective", value),
+    });
     const figures = h("small", {});
-    return { value, radio, figures, label: h("label", { title: meaning }, radio, h("span", { class: "segment" }, h("span", {}, words), figures)) };
+    return {
+      value,
+      radio,
+      figures,
+      label: h("label", { title: meaning }, radio, h("span", { class: "segment" }, h("span", {}, words), figures)),
+    };
   });
   const group = byId("objective");
   group.append(...choices.map((choice) => choice.label));
@@ -34,7 +45,11 @@ export function mountOptions(store, actions, canPlan) {
     for (const choice of choices) {
       choice.radio.checked = selection.objective === choice.value;
       const basis = basisOf({ ...selection, objective: choice.value });
-      choice.figures.textContent = figures[basis] ? figuresOf(figures[basis]) : planningBeside === basis ? t("planning") : "";
+      choice.figures.textContent = figures[basis]
+        ? figuresOf(figures[basis])
+        : planningBeside === basis
+          ? t("planning")
+          : "";
     }
     meaning.textContent = OBJECTIVES.find(({ value }) => value === selection.objective)?.meaning ?? "";
     back.checked = selection.return_to_start;

@@ -8,12 +8,23 @@ import { counterpart, profileOfSummary } from "../compare.js";
 import { timeAt } from "../flight_options.js";
 import { lockOf, ordersOf, stopsWished, wishedOrders } from "../locks.js";
 import { checkStateOf, checkText } from "../lost_link.js";
-import { endingOf, isPlanCurrent, isPlanInSight, lastPlanOf, pointAlong, qualityOf, routesOf, sentenceOf, stripLabel, wishWordsOf } from "../plan_view.js";
+import {
+  endingOf,
+  isPlanCurrent,
+  isPlanInSight,
+  lastPlanOf,
+  pointAlong,
+  qualityOf,
+  routesOf,
+  sentenceOf,
+  stripLabel,
+  wishWordsOf,
+} from "../plan_view.js";
 import { GROUNDING } from "../plan_words.js";
 import { batteryOf, delayText, landing_s, separationOf, staysOf, staysText, stayText } from "../route_times.js";
-import { createPillDrag } from "../strip_drag.js";
 import { uavsByName } from "../selection.js";
 import { paleStrip, profileOf, spanStrip, stripAxis, stripTable } from "../span_strip.js";
+import { createPillDrag } from "../strip_drag.js";
 import { passedZones } from "../zones_passed.js";
 
 const BESIDE_PX = 184 + 84 + 72 + 80 + 4 * 12 + 32; // name, figures, hand and Why, gaps and edges, as in planning.css
@@ -23,7 +34,8 @@ const LEAST_STRIP_PX = 200; // else length and battery give way
 const MOST_LOOKED_AT = 12; // routes beside which zones are looked for at once
 
 /** One that cannot take off; the notice and the row of the UAV say which. */
-const isGrounded = ({ result }, { sequence }) => (result.warnings ?? []).some(({ code, uav }) => GROUNDING.includes(code) && uav === sequence);
+const isGrounded = ({ result }, { sequence }) =>
+  (result.warnings ?? []).some(({ code, uav }) => GROUNDING.includes(code) && uav === sequence);
 
 /** "+1.2 km", "−3 min", "=": more or less than before. */
 export function moreOrLess(difference, least, textOf) {
@@ -32,7 +44,8 @@ export function moreOrLess(difference, least, textOf) {
 }
 
 /** What the grid leaves beside name and all figures. */
-const roomBesideAll = (dock) => dock.querySelector(".dock-main").clientWidth - BESIDE_PX - (dock.classList.contains("with-battery") ? BATTERY_PX : 0);
+const roomBesideAll = (dock) =>
+  dock.querySelector(".dock-main").clientWidth - BESIDE_PX - (dock.classList.contains("with-battery") ? BATTERY_PX : 0);
 
 /** Room for a strip: on a phone all there is, where the dock is narrow without length and battery. */
 export function stripRoom(dock) {
@@ -62,26 +75,107 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     const look = () => store.update({ lookedAt: route.sequence });
     const leave = () => store.update({ lookedAt: null });
     const old = before && counterpart(route, before);
-    const second = isUsed ? [tn(route.targets.length, "{count} target", "{count} targets"), route.by_hand?.length > 0 && t("changed by hand"), staysText(route), delayText(route), endingOf(route)].filter(Boolean).join(" · ") : isGrounded(state.plan, route) ? t("cannot take off") : state.plan.result.unassigned.length ? t("reaches none of what is left") : t("not needed");
+    const second = isUsed
+      ? [
+          tn(route.targets.length, "{count} target", "{count} targets"),
+          route.by_hand?.length > 0 && t("changed by hand"),
+          staysText(route),
+          delayText(route),
+          endingOf(route),
+        ]
+          .filter(Boolean)
+          .join(" · ")
+      : isGrounded(state.plan, route)
+        ? t("cannot take off")
+        : state.plan.result.unassigned.length
+          ? t("reaches none of what is left")
+          : t("not needed");
     const delta = (words) => old && h("small", {}, words);
     const landing = isUsed && state.plan.result.departs_at && !old ? landing_s(route) : null;
     const battery = isUsed ? batteryOf(route) : null;
     return h(
       "li",
-      { class: `route route-${routeNumber(route.sequence)}`, dataset: { sequence: route.sequence }, onpointerenter: look, onpointerleave: leave, onfocusin: look, onfocusout: leave },
+      {
+        class: `route route-${routeNumber(route.sequence)}`,
+        dataset: { sequence: route.sequence },
+        onpointerenter: look,
+        onpointerleave: leave,
+        onfocusin: look,
+        onfocusout: leave,
+      },
       h(
         "button",
-        { type: "button", class: "who", disabled: !isUsed, "aria-pressed": String(state.chosenRoute === route.sequence), title: second, onclick: () => store.update({ chosenRoute: store.state.chosenRoute === route.sequence ? null : route.sequence }) },
+        {
+          type: "button",
+          class: "who",
+          disabled: !isUsed,
+          "aria-pressed": String(state.chosenRoute === route.sequence),
+          title: second,
+          onclick: () =>
+            store.update({ chosenRoute: store.state.chosenRoute === route.sequence ? null : route.sequence }),
+        },
         h("span", { class: "letter" }, route.letter),
         h("span", {}, h("strong", {}, route.name), h("small", {}, second)),
       ),
-      h("div", { class: "strip-place" }, (isUsed || wishes[route.sequence].length > 0) && strip(route, state, longest(state, before)), old?.length_m > 0 && oldStrip(old, longest(state, before))),
-      h("span", { class: "figure length-figure" }, isUsed ? lengthText(route.length_m) : "—", delta(old && moreOrLess(route.length_m - old.length_m, 50, lengthText))),
-      h("span", { class: "figure" }, isUsed ? durationText(route.duration_s) : "—", delta(old && moreOrLess(route.duration_s - old.duration_s, 30, durationText)), landing !== null && h("small", {}, t("until {time}", { time: timeAt(state.plan.result.departs_at, landing) }))),
-      dock.classList.contains("with-battery") && h("span", { class: "figure battery-figure", title: battery ? t("{percent} left, {energy} used", { percent: battery.left, energy: battery.used }) : null }, battery?.left ?? "—", battery && h("small", {}, t("at landing"))),
-      isUsed && h("span", { class: "route-acts" },
-        canPlan && h("button", { type: "button", class: "icon-button tight", "aria-label": t("Change the route of {name} by hand", { name: route.name }), title: route.charging?.length ? t("A route with stops to charge cannot be changed by hand.") : t("Change by hand"), disabled: Boolean(route.charging?.length), onclick: () => void actions.beginByHand(route.sequence) }, icon("hand", "small")),
-        h("button", { type: "button", class: "text-button why-button", "aria-label": t("Why does {name} fly this route?", { name: route.name }), onclick: () => store.update({ why: { route: route.sequence } }) }, t("Why?"))),
+      h(
+        "div",
+        { class: "strip-place" },
+        (isUsed || wishes[route.sequence].length > 0) && strip(route, state, longest(state, before)),
+        old?.length_m > 0 && oldStrip(old, longest(state, before)),
+      ),
+      h(
+        "span",
+        { class: "figure length-figure" },
+        isUsed ? lengthText(route.length_m) : "—",
+        delta(old && moreOrLess(route.length_m - old.length_m, 50, lengthText)),
+      ),
+      h(
+        "span",
+        { class: "figure" },
+        isUsed ? durationText(route.duration_s) : "—",
+        delta(old && moreOrLess(route.duration_s - old.duration_s, 30, durationText)),
+        landing !== null && h("small", {}, t("until {time}", { time: timeAt(state.plan.result.departs_at, landing) })),
+      ),
+      dock.classList.contains("with-battery") &&
+        h(
+          "span",
+          {
+            class: "figure battery-figure",
+            title: battery ? t("{percent} left, {energy} used", { percent: battery.left, energy: battery.used }) : null,
+          },
+          battery?.left ?? "—",
+          battery && h("small", {}, t("at landing")),
+        ),
+      isUsed &&
+        h(
+          "span",
+          { class: "route-acts" },
+          canPlan &&
+            h(
+              "button",
+              {
+                type: "button",
+                class: "icon-button tight",
+                "aria-label": t("Change the route of {name} by hand", { name: route.name }),
+                title: route.charging?.length
+                  ? t("A route with stops to charge cannot be changed by hand.")
+                  : t("Change by hand"),
+                disabled: Boolean(route.charging?.length),
+                onclick: () => void actions.beginByHand(route.sequence),
+              },
+              icon("hand", "small"),
+            ),
+          h(
+            "button",
+            {
+              type: "button",
+              class: "text-button why-button",
+              "aria-label": t("Why does {name} fly this route?", { name: route.name }),
+              onclick: () => store.update({ why: { route: route.sequence } }),
+            },
+            t("Why?"),
+          ),
+        ),
     );
   }
 
@@ -90,13 +184,16 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
   }
 
   /** What keys mean on this page: targets of the plan, and those picked since. */
-  const targetOf = ({ plan, selection }, key) => plan.targets.find((target) => target.key === key) ?? selection.targets.find((target) => target.key === key);
+  const targetOf = ({ plan, selection }, key) =>
+    plan.targets.find((target) => target.key === key) ?? selection.targets.find((target) => target.key === key);
 
   /** The pills of a route: as planned, and once a wish is not planned yet, where it would be. */
   function stopsOf(route, { plan, selection }, planned) {
     const stops = planned.map(({ target, at }) => ({ target: plan.targets[target]?.key ?? `${target}`, at }));
     const isAsPlanned = wishes[route.sequence].join() === ordersOf(plan)[route.sequence].targets.join();
-    const shown = isAsPlanned ? stops : stopsWished(stops, wishes[route.sequence], route.length_m || plan.result.longest_route_m);
+    const shown = isAsPlanned
+      ? stops
+      : stopsWished(stops, wishes[route.sequence], route.length_m || plan.result.longest_route_m);
     return shown.map((stop) => ({ ...stop, isLocked: lockOf(selection, stop.target) !== null }));
   }
 
@@ -109,11 +206,18 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
       length_m,
       longest_m,
       width_px,
-      label: stripLabel(route, wishes[route.sequence].map((key) => ({ ...targetOf(state, key), isLocked: lockOf(state.selection, key) !== null }))),
+      label: stripLabel(
+        route,
+        wishes[route.sequence].map((key) => ({
+          ...targetOf(state, key),
+          isLocked: lockOf(state.selection, key) !== null,
+        })),
+      ),
       stopsOf: (planned) => stopsOf(route, state, planned),
       zones: zonesOf.get(waypoints) ?? [],
       waits: staysOf(route).map((stay) => ({ ...stay, words: stayText(stay) })),
-      onAlong: (at_m) => store.update({ along: at_m === null ? null : { sequence: route.sequence, at_m, isWished: false } }),
+      onAlong: (at_m) =>
+        store.update({ along: at_m === null ? null : { sequence: route.sequence, at_m, isWished: false } }),
       onTarget: (key) => store.update({ litTarget: key }),
       grab: canPlan && uavsByName(state.selection).some(({ name }) => name === route.name) ? grab : undefined,
     });
@@ -122,7 +226,11 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
   }
 
   function oldStrip(old, longest_m) {
-    const words = t("In the last plan {name} flew {length} in {time}.", { name: old.uav, length: lengthText(old.length_m), time: durationText(old.duration_s) });
+    const words = t("In the last plan {name} flew {length} in {time}.", {
+      name: old.uav,
+      length: lengthText(old.length_m),
+      time: durationText(old.duration_s),
+    });
     return paleStrip({ profile: profileOfSummary(old), longest_m, width_px, label: words });
   }
 
@@ -131,8 +239,13 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     if (!state.plan) return;
     const { sentence, facts } = sentenceOf(state.plan);
     byId("plan-sentence").textContent = `${sentence}.`;
-    byId("plan-facts").textContent = isPlanCurrent(state) ? facts : `${facts} · ${isPlanInSight(state) ? t("before your last change") : t("for the selection before")}`;
-    dock.classList.toggle("with-battery", state.plan.result.routes.some((route) => batteryOf(route)));
+    byId("plan-facts").textContent = isPlanCurrent(state)
+      ? facts
+      : `${facts} · ${isPlanInSight(state) ? t("before your last change") : t("for the selection before")}`;
+    dock.classList.toggle(
+      "with-battery",
+      state.plan.result.routes.some((route) => batteryOf(route)),
+    );
     width_px = stripRoom(dock);
     dock.classList.toggle("tight", roomBesideAll(dock) < LEAST_STRIP_PX);
     const last = lastPlanOf(state);
@@ -156,7 +269,9 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
   function wishesOf({ plan, selection }) {
     const known = new Set(selection.targets.map(({ key }) => key));
     const wished = wishedOrders(ordersOf(plan), selection.locks ?? []);
-    return plan.result.routes.map((_, sequence) => wished[sequence].targets.filter((key) => known.has(key) || plan.targets.some((target) => target.key === key)));
+    return plan.result.routes.map((_, sequence) =>
+      wished[sequence].targets.filter((key) => known.has(key) || plan.targets.some((target) => target.key === key)),
+    );
   }
 
   /** How good the plan is, how its UAVs are kept apart, what locking costs, and the way back. */
@@ -165,10 +280,11 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     const quality = isCurrent ? qualityOf(state.plan.result) : null;
     const locked = state.selection.locks?.length ?? 0;
     const wish = isCurrent ? wishWordsOf(state.plan.result) : locked ? t("Your wish is not planned yet.") : "";
-    const acts = canPlan && locked > 0 && [
-      !isCurrent && h("button", { type: "button", class: "text-button", onclick: actions.plan }, t("Plan again")),
-      h("button", { type: "button", class: "text-button", onclick: actions.unlockAll }, t("Unlock all")),
-    ];
+    const acts = canPlan &&
+      locked > 0 && [
+        !isCurrent && h("button", { type: "button", class: "text-button", onclick: actions.plan }, t("Plan again")),
+        h("button", { type: "button", class: "text-button", onclick: actions.unlockAll }, t("Unlock all")),
+      ];
     const place = byId("plan-quality");
     const separation = isCurrent ? separationOf(state.plan.result) : null;
     const linkState = checkStateOf(state.selection.lost_link, state.plan, isCurrent);
@@ -176,9 +292,34 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     place.hidden = !quality && !locked && !separation && !isLost;
     place.replaceChildren(
       ...[
-        quality && h("span", { class: "plan-bound" }, icon(quality.isProven ? "circle-check" : "info", "small"), h("span", {}, h("strong", {}, quality.words), " ", quality.detail)),
-        separation && h("span", { class: `plan-bound${separation.isFault ? " fault" : ""}` }, icon(separation.isFault ? "triangle-alert" : "replace", "small"), h("span", {}, separation.words)),
-        isLost && h("span", { class: "plan-bound fault" }, icon("triangle-alert", "small"), h("span", {}, t("If the link is lost:"), " ", checkText(linkState, state.plan), h("button", { type: "button", class: "text-button", onclick: showLostLink }, t("Show")))),
+        quality &&
+          h(
+            "span",
+            { class: "plan-bound" },
+            icon(quality.isProven ? "circle-check" : "info", "small"),
+            h("span", {}, h("strong", {}, quality.words), " ", quality.detail),
+          ),
+        separation &&
+          h(
+            "span",
+            { class: `plan-bound${separation.isFault ? " fault" : ""}` },
+            icon(separation.isFault ? "triangle-alert" : "replace", "small"),
+            h("span", {}, separation.words),
+          ),
+        isLost &&
+          h(
+            "span",
+            { class: "plan-bound fault" },
+            icon("triangle-alert", "small"),
+            h(
+              "span",
+              {},
+              t("If the link is lost:"),
+              " ",
+              checkText(linkState, state.plan),
+              h("button", { type: "button", class: "text-button", onclick: showLostLink }, t("Show")),
+            ),
+          ),
         locked > 0 && h("span", { class: "plan-wish" }, icon("lock", "small"), h("span", {}, wish), acts),
       ].filter(Boolean),
     );
@@ -203,7 +344,8 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
 
   function follow(state) {
     const { along } = state;
-    for (const [sequence, drawn] of strips) drawn.point(along?.sequence === sequence && !along.isWished ? along.at_m : null);
+    for (const [sequence, drawn] of strips)
+      drawn.point(along?.sequence === sequence && !along.isWished ? along.at_m : null);
     const position = pointAlong(state);
     if (position || isPointed) showPoint(position);
     isPointed = position !== null;
@@ -211,7 +353,9 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
 
   /** Where routes go round zones, once the server has said so. */
   function lookForZones({ plan }) {
-    for (const route of routesOf(plan).filter(({ geometry }) => geometry).slice(0, MOST_LOOKED_AT)) {
+    for (const route of routesOf(plan)
+      .filter(({ geometry }) => geometry)
+      .slice(0, MOST_LOOKED_AT)) {
       if (zonesOf.has(route.waypoints)) continue;
       grounds(route).then(
         (ground) => {
@@ -229,7 +373,9 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     store.update({ why: isOpen ? null : { alternatives: true } });
     if (!isOpen && canPlan) actions.planAlternatives();
   });
-  byId("compare-plans").addEventListener("click", () => store.update({ why: store.state.why?.compare ? null : { compare: true } }));
+  byId("compare-plans").addEventListener("click", () =>
+    store.update({ why: store.state.why?.compare ? null : { compare: true } }),
+  );
   store.listen(["plan", "selection", "lastPlan", "mission"], draw);
   store.listen(["why"], (state) => {
     byId("compare-ways").setAttribute("aria-pressed", String(Boolean(state.why?.alternatives)));

@@ -12,8 +12,20 @@ export function savedWords(state) {
   if (saving) return { words: t("Saving…"), image: "loader-circle" };
   if (!mission && isAway) return { words: t("No connection. Kept in this browser."), image: "cloud-off", isBad: true };
   if (!mission) return { words: t("Kept in this browser until it is planned or saved"), image: "info" };
-  if (!isUnsaved(state)) return isAway ? { words: t("No connection. Saved {time}.", { time: clockText(mission.updated_at) }), image: "cloud-off", isBad: true } : { words: t("Saved {time}", { time: clockText(mission.updated_at) }), image: "check", at: mission.updated_at };
-  if (conflict) return { words: t("Not saved: {whose} save came in between", { whose: conflict.whose }), image: "triangle-alert", isBad: true };
+  if (!isUnsaved(state))
+    return isAway
+      ? {
+          words: t("No connection. Saved {time}.", { time: clockText(mission.updated_at) }),
+          image: "cloud-off",
+          isBad: true,
+        }
+      : { words: t("Saved {time}", { time: clockText(mission.updated_at) }), image: "check", at: mission.updated_at };
+  if (conflict)
+    return {
+      words: t("Not saved: {whose} save came in between", { whose: conflict.whose }),
+      image: "triangle-alert",
+      isBad: true,
+    };
   if (isAway) return { words: t("Not saved: the server cannot be reached"), image: "cloud-off", isBad: true };
   if (problem?.isOfSaving) return { words: t("Not saved: see below"), image: "circle-alert", isBad: true };
   return { words: t("Not saved yet"), image: "circle-dashed" };
@@ -26,16 +38,25 @@ function othersWords(others) {
 
 export function mountSavedState(store, canPlan) {
   const place = byId("save-state");
-  store.listen(["mission", "saving", "problem", "conflict", "isAway", "selection", "name", "plan", "planIsStored", "savedBasis"], (state) => {
-    const found = canPlan ? savedWords(state) : state.isAway ? { words: t("No connection"), image: "cloud-off", isBad: true } : null;
-    place.hidden = !found;
-    if (!found) return;
-    place.className = `save-state${found.isBad ? " bad" : ""}`;
-    place.title = found.at ? exactText(found.at) : "";
-    place.replaceChildren(icon(found.image, "small"), h("span", {}, found.words));
-  });
+  store.listen(
+    ["mission", "saving", "problem", "conflict", "isAway", "selection", "name", "plan", "planIsStored", "savedBasis"],
+    (state) => {
+      const found = canPlan
+        ? savedWords(state)
+        : state.isAway
+          ? { words: t("No connection"), image: "cloud-off", isBad: true }
+          : null;
+      place.hidden = !found;
+      if (!found) return;
+      place.className = `save-state${found.isBad ? " bad" : ""}`;
+      place.title = found.at ? exactText(found.at) : "";
+      place.replaceChildren(icon(found.image, "small"), h("span", {}, found.words));
+    },
+  );
   store.listen(["others"], ({ others }) => {
     byId("others").hidden = others.length === 0;
-    byId("others").replaceChildren(...(others.length ? [icon("users", "small"), h("span", {}, othersWords(others))] : []));
+    byId("others").replaceChildren(
+      ...(others.length ? [icon("users", "small"), h("span", {}, othersWords(others))] : []),
+    );
   });
 }

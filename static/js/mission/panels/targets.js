@@ -57,17 +57,22 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
 
   function more(target) {
     if (!isWhole(target) || target.asset === null) return [];
-    if (target.kind === "line") return [{ icon: "tower", words: t("Add every tower of it"), act: () => actions.addTowersOf(target.asset) }];
+    if (target.kind === "line")
+      return [{ icon: "tower", words: t("Add every tower of it"), act: () => actions.addTowersOf(target.asset) }];
     return [{ icon: "bridge", words: t("Add every bridge of it"), act: () => actions.addBridgesOf(target.asset) }];
   }
 
   function openTask(opener, key) {
     const target = store.state.selection.targets.find((candidate) => candidate.key === key);
-    toggleMenu(opener, () => targetMenu([target], actions, { ...store.state, orders: ordersOf(store.state.plan) }, more(target)));
+    toggleMenu(opener, () =>
+      targetMenu([target], actions, { ...store.state, orders: ordersOf(store.state.plan) }, more(target)),
+    );
   }
 
   function make(target) {
-    const check = canPlan && h("input", { type: "checkbox", class: "check", "aria-label": t("Choose {name}", { name: target.label }) });
+    const check =
+      canPlan &&
+      h("input", { type: "checkbox", class: "check", "aria-label": t("Choose {name}", { name: target.label }) });
     const row = h(
       "li",
       {
@@ -80,14 +85,32 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
       check,
       h("span", { class: "pill" }),
       icon(ICONS[target.kind] ?? "map-pin"),
-      h("button", { type: "button", class: "what", onclick: (event) => press(event, target) }, h("span", {}, target.label), h("small", {})),
+      h(
+        "button",
+        { type: "button", class: "what", onclick: (event) => press(event, target) },
+        h("span", {}, target.label),
+        h("small", {}),
+      ),
       h("span", { class: "target-marks" }),
       h("span", { class: "target-when" }),
-      canPlan && h("button", { type: "button", class: "icon-button tight task", "aria-haspopup": "true", "aria-expanded": "false", onclick: (event) => openTask(event.currentTarget, target.key) }),
+      canPlan &&
+        h("button", {
+          type: "button",
+          class: "icon-button tight task",
+          "aria-haspopup": "true",
+          "aria-expanded": "false",
+          onclick: (event) => openTask(event.currentTarget, target.key),
+        }),
       canPlan &&
         h(
           "button",
-          { type: "button", class: "icon-button tight", "aria-label": t("Remove {name}", { name: target.label }), title: t("Remove (Del)"), onclick: () => actions.removeTargets([target.key]) },
+          {
+            type: "button",
+            class: "icon-button tight",
+            "aria-label": t("Remove {name}", { name: target.label }),
+            title: t("Remove (Del)"),
+            onclick: () => actions.removeTargets([target.key]),
+          },
           icon("x", "small"),
         ),
     );
@@ -136,7 +159,14 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     const pill = row.querySelector(".pill");
     pill.className = `pill ${place ? `route-${routeNumber(place.sequence)}` : isMissed ? "missed" : "waiting"}`;
     pill.textContent = place ? `${place.letter}${place.number}` : isMissed ? "×" : `${index + 1}`;
-    pill.setAttribute("aria-label", place ? t("Target {number} of UAV {letter}", { number: place.number, letter: place.letter }) : isMissed ? t("Not reached") : t("Not planned yet"));
+    pill.setAttribute(
+      "aria-label",
+      place
+        ? t("Target {number} of UAV {letter}", { number: place.number, letter: place.letter })
+        : isMissed
+          ? t("Not reached")
+          : t("Not planned yet"),
+    );
     const second = [whoMayFly(target), target.detail].filter(Boolean).join(" · ");
     row.querySelector("small").textContent = second;
     row.querySelector(".what").title = nameOf({ ...target, detail: second });
@@ -158,7 +188,11 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     const key = marks.join("|");
     if (place.dataset.key === key) return;
     place.dataset.key = key;
-    place.replaceChildren(...marks.map(([image, words]) => h("span", { role: "img", "aria-label": words, title: words }, icon(image, "small"))));
+    place.replaceChildren(
+      ...marks.map(([image, words]) =>
+        h("span", { role: "img", "aria-label": words, title: words }, icon(image, "small")),
+      ),
+    );
   }
 
   function refreshTask(button, target) {
@@ -177,7 +211,12 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     const { targets } = state.selection;
     const { places, missed } = shownPlaces(state);
     const all = inPlanOrder(targets, places);
-    shown = { places, missed, order: all.map((target) => target.key), arrivals: isPlanCurrent(state) ? arrivalsOf(state.plan) : new Map() };
+    shown = {
+      places,
+      missed,
+      order: all.map((target) => target.key),
+      arrivals: isPlanCurrent(state) ? arrivalsOf(state.plan) : new Map(),
+    };
     isChoosing &&= targets.length > 1;
     list.classList.toggle("choosing", isChoosing);
     const visible = showAll ? all : all.slice(0, SHOWN_FIRST);
@@ -213,7 +252,9 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
       refresh(store.state);
       return list.querySelector(".check")?.focus();
     });
-    byId("clear-targets").addEventListener("click", () => actions.removeTargets(store.state.selection.targets.map((target) => target.key)));
+    byId("clear-targets").addEventListener("click", () =>
+      actions.removeTargets(store.state.selection.targets.map((target) => target.key)),
+    );
     byId("undo").addEventListener("click", actions.undo);
     byId("redo").addEventListener("click", actions.redo);
   }
@@ -222,9 +263,11 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
   store.listen(["chosenTarget", "selection"], ({ chosenTarget, chosenTargets, selection }) => {
     const known = new Set(selection.targets.map((target) => target.key));
     const kept = chosenTargets.filter((key) => known.has(key));
-    if (chosenTarget !== null && known.has(chosenTarget) && !kept.includes(chosenTarget)) store.update({ chosenTargets: [chosenTarget] });
+    if (chosenTarget !== null && known.has(chosenTarget) && !kept.includes(chosenTarget))
+      store.update({ chosenTargets: [chosenTarget] });
     else if (chosenTarget === null && kept.length) store.update({ chosenTargets: [] });
-    else if (kept.length !== chosenTargets.length) store.update({ chosenTargets: kept, chosenTarget: kept.at(-1) ?? null });
+    else if (kept.length !== chosenTargets.length)
+      store.update({ chosenTargets: kept, chosenTarget: kept.at(-1) ?? null });
   });
   store.listen(["selection", "plan", "chosenTargets", "canUndo", "canRedo"], refresh);
 }

@@ -25,14 +25,23 @@ export function uavNotice(state, actions, canPlan) {
   const hasFigures = changes.some(({ figures }) => figures.length > 0);
   const isOfFleetAlone = !hasFigures && changes.every((change) => change.state === null);
   const acts = [
-    hasFigures ? { label: t("Use the present figures"), act: actions.takePresentFigures } : !isOfFleetAlone && { label: t("Plan again"), act: actions.plan },
-    changes.some(({ said }) => said.length > 0) && { label: t("Use the fleet's instead of this mission's own"), act: actions.takeFleetFigures },
+    hasFigures
+      ? { label: t("Use the present figures"), act: actions.takePresentFigures }
+      : !isOfFleetAlone && { label: t("Plan again"), act: actions.plan },
+    changes.some(({ said }) => said.length > 0) && {
+      label: t("Use the fleet's instead of this mission's own"),
+      act: actions.takeFleetFigures,
+    },
   ].filter(Boolean);
   const headline = isOfFleetAlone
     ? t("The fleet's figures changed since this mission was given its own.")
     : isPlanCurrent(state)
-    ? tn(changes.length, "A UAV changed since this was planned.", "{count} UAVs changed since this was planned.")
-    : tn(changes.length, "A UAV changed since this mission was made.", "{count} UAVs changed since this mission was made.");
+      ? tn(changes.length, "A UAV changed since this was planned.", "{count} UAVs changed since this was planned.")
+      : tn(
+          changes.length,
+          "A UAV changed since this mission was made.",
+          "{count} UAVs changed since this mission was made.",
+        );
   const more = changes.length - MOST_TOLD;
   return h(
     "div",
@@ -42,9 +51,18 @@ export function uavNotice(state, actions, canPlan) {
       "div",
       {},
       h("p", {}, h("strong", {}, headline)),
-      h("ul", { class: "causes" }, changes.slice(0, MOST_TOLD).map((change) => h("li", {}, changeWords(change)))),
+      h(
+        "ul",
+        { class: "causes" },
+        changes.slice(0, MOST_TOLD).map((change) => h("li", {}, changeWords(change))),
+      ),
       more > 0 && h("p", { class: "caption" }, tn(more, "{count} more UAV", "{count} more UAVs")),
-      mayChange && h("p", {}, acts.map(({ label, act }) => h("button", { type: "button", class: "text-button", onclick: act }, label))),
+      mayChange &&
+        h(
+          "p",
+          {},
+          acts.map(({ label, act }) => h("button", { type: "button", class: "text-button", onclick: act }, label)),
+        ),
     ),
   );
 }

@@ -17,7 +17,13 @@ function field(label, input, unit = "") {
   input.id = `field-${fields}`;
   const fault = h("p", { class: "field-error", id: `${input.id}-fault`, hidden: true });
   input.setAttribute("aria-describedby", fault.id);
-  return h("div", { class: "field" }, h("label", { for: input.id }, label), unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input, fault);
+  return h(
+    "div",
+    { class: "field" },
+    h("label", { for: input.id }, label),
+    unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input,
+    fault,
+  );
 }
 
 /** Says beside a field what is wrong with it; empty words take that away. */
@@ -62,19 +68,50 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
   const name = h("input", { class: "input", required: true, maxlength: 100, value: uav.name });
   const base = h("input", { class: "input", maxlength: 100, value: uav.base_name });
   const range = number(uav.max_range_m === null ? "" : inUnits(uav.max_range_m, LONG_UNIT.metres), 0.1, 1000, false);
-  const speed = number(uav.cruise_speed_mps === null || uav.cruise_speed_mps === undefined ? "" : inUnits(uav.cruise_speed_mps, SPEED_UNIT.mps), 0.5, 300, false);
-  const end = h("select", { class: "input" }, END_CHOICES.map(([value, words]) => h("option", { value, selected: value === uav.end_action }, words)));
-  const most = h("input", { class: "input", type: "number", min: 1, max: MOST_TARGETS, step: 1, placeholder: t("as many as fit"), value: uav.most_targets ?? "" });
+  const speed = number(
+    uav.cruise_speed_mps === null || uav.cruise_speed_mps === undefined
+      ? ""
+      : inUnits(uav.cruise_speed_mps, SPEED_UNIT.mps),
+    0.5,
+    300,
+    false,
+  );
+  const end = h(
+    "select",
+    { class: "input" },
+    END_CHOICES.map(([value, words]) => h("option", { value, selected: value === uav.end_action }, words)),
+  );
+  const most = h("input", {
+    class: "input",
+    type: "number",
+    min: 1,
+    max: MOST_TARGETS,
+    step: 1,
+    placeholder: t("as many as fit"),
+    value: uav.most_targets ?? "",
+  });
   const battery = own("battery_wh", uav.battery_wh);
   const mass = own("mass_kg", uav.mass_kg);
   const reserve = own("reserve_percent", uav.reserve_percent);
   const airspeed = own("max_airspeed_mps", uav.max_airspeed_mps, SPEED_UNIT.mps);
   const type = h("select", { class: "input", onchange: takesType }, h("option", { value: "" }, t("none")));
-  const byName = { name, base_name: base, max_range_m: range, cruise_speed_mps: speed, battery_wh: battery, mass_kg: mass, reserve_percent: reserve, max_airspeed_mps: airspeed, end_action: end, type };
+  const byName = {
+    name,
+    base_name: base,
+    max_range_m: range,
+    cruise_speed_mps: speed,
+    battery_wh: battery,
+    mass_kg: mass,
+    reserve_percent: reserve,
+    max_airspeed_mps: airspeed,
+    end_action: end,
+    type,
+  };
   let types = [];
   function showUsual(usual) {
     const units = { max_airspeed_mps: SPEED_UNIT.mps };
-    for (const [figure, value] of Object.entries(usual)) byName[figure].placeholder = value === null ? "" : inUnits(value, units[figure] ?? 1);
+    for (const [figure, value] of Object.entries(usual))
+      byName[figure].placeholder = value === null ? "" : inUnits(value, units[figure] ?? 1);
   }
   showUsual(uav.usual ?? usualOf(null));
 
@@ -85,10 +122,20 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
     speed.placeholder = chosen ? inUnits(chosen.cruise_speed_mps, SPEED_UNIT.mps) : "";
     sayWhatIsMissing();
   }
-  const sorties = h("input", { class: "input", type: "number", min: 1, max: MOST_SORTIES, step: 1, required: true, value: uav.sorties ?? 1 });
+  const sorties = h("input", {
+    class: "input",
+    type: "number",
+    min: 1,
+    max: MOST_SORTIES,
+    step: 1,
+    required: true,
+    value: uav.sorties ?? 1,
+  });
   const unlimited = h("p", { class: "caption", role: "status" });
   const wrong = h("p", { class: "field-error", role: "alert" });
-  const sayWhatIsMissing = () => (unlimited.textContent = range.value || range.placeholder ? "" : t("Range not stated: it is planned as unlimited."));
+  const sayWhatIsMissing = () =>
+    (unlimited.textContent =
+      range.value || range.placeholder ? "" : t("Range not stated: it is planned as unlimited."));
   range.addEventListener("input", sayWhatIsMissing);
   sayWhatIsMissing();
   const dialog = h("dialog", { "aria-labelledby": "place-title" });
@@ -99,23 +146,65 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
     h("div", {}, h("h2", { id: "place-title" }, title), h("p", { class: "quiet-text" }, note)),
     isNew && h("div", { class: "pair" }, field(t("Name"), name), field(t("Base"), base)),
     ofType,
-    h("div", {}, h("div", { class: "pair" }, field(t("Range"), range, LONG_UNIT.unit), field(t("Speed"), speed, SPEED_UNIT.unit)), unlimited),
+    h(
+      "div",
+      {},
+      h("div", { class: "pair" }, field(t("Range"), range, LONG_UNIT.unit), field(t("Speed"), speed, SPEED_UNIT.unit)),
+      unlimited,
+    ),
     h(
       "div",
       { class: "stack", role: "group", "aria-label": t("Battery and airspeed") },
       h("div", { class: "pair" }, field(t("Battery"), battery, "Wh"), field(t("Kept in reserve"), reserve, "%")),
-      h("div", { class: "pair" }, field(t("Mass at take-off"), mass, "kg"), field(t("Highest airspeed"), airspeed, SPEED_UNIT.unit)),
-      h("p", { class: "caption own-values" }, isNew ? t("Empty: as its type, in grey. Without a battery its energy is not planned.") : t("Empty: as in the fleet, in grey. Without a battery its energy is not planned.")),
+      h(
+        "div",
+        { class: "pair" },
+        field(t("Mass at take-off"), mass, "kg"),
+        field(t("Highest airspeed"), airspeed, SPEED_UNIT.unit),
+      ),
+      h(
+        "p",
+        { class: "caption own-values" },
+        isNew
+          ? t("Empty: as its type, in grey. Without a battery its energy is not planned.")
+          : t("Empty: as in the fleet, in grey. Without a battery its energy is not planned."),
+      ),
     ),
     field(t("End, where “Return to start” is off"), end),
-    !isNew && h("div", {}, h("div", { class: "pair" }, field(t("At most this many targets"), most), field(t("At most this many flights"), sorties)), h("p", { class: "caption" }, t("More than one flight only where it returns to its start; each on a full battery."), " ", uav.sensors?.length ? t("Sensors: {names}", { names: uav.sensors.join(", ") }) : t("No sensor is stated for it."))),
+    !isNew &&
+      h(
+        "div",
+        {},
+        h(
+          "div",
+          { class: "pair" },
+          field(t("At most this many targets"), most),
+          field(t("At most this many flights"), sorties),
+        ),
+        h(
+          "p",
+          { class: "caption" },
+          t("More than one flight only where it returns to its start; each on a full battery."),
+          " ",
+          uav.sensors?.length
+            ? t("Sensors: {names}", { names: uav.sensors.join(", ") })
+            : t("No sensor is stated for it."),
+        ),
+      ),
     h("div", { class: "pair" }, field(t("Latitude"), latitude, "°"), field(t("Longitude"), longitude, "°")),
     wrong,
-    h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")), h("button", { class: "button primary" }, act)),
+    h(
+      "div",
+      { class: "acts" },
+      h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
+      h("button", { class: "button primary" }, act),
+    ),
   );
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
-    Object.values(byName).filter((input) => form.contains(input)).forEach((input) => tell(input, ""));
+    Object.values(byName)
+      .filter((input) => form.contains(input))
+      .forEach((input) => tell(input, ""));
     wrong.replaceChildren();
     try {
       await submit({
@@ -129,14 +218,23 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
         mass_kg: kept(mass, uav.mass_kg, 1),
         reserve_percent: kept(reserve, uav.reserve_percent, 1),
         max_airspeed_mps: kept(airspeed, uav.max_airspeed_mps, SPEED_UNIT.mps),
-        ...(isNew ? { type: type.value ? Number(type.value) : null } : { most_targets: Number.isFinite(most.valueAsNumber) ? most.valueAsNumber : null, sorties: sorties.valueAsNumber }),
+        ...(isNew
+          ? { type: type.value ? Number(type.value) : null }
+          : {
+              most_targets: Number.isFinite(most.valueAsNumber) ? most.valueAsNumber : null,
+              sorties: sorties.valueAsNumber,
+            }),
       });
       dialog.close();
     } catch (error) {
       const told = Object.entries(error.details ?? {}).filter(([part]) => byName[part] && form.contains(byName[part]));
       for (const [part, words] of told) tell(byName[part], [words].flat().join(" "));
       if (told.length) byName[told[0][0]].focus();
-      else wrong.replaceChildren(error instanceof ApiError ? error.message : t("It could not be added."), error.isSignedOut ? h("a", { href: signInAddress() }, t("Sign in")) : "");
+      else
+        wrong.replaceChildren(
+          error instanceof ApiError ? error.message : t("It could not be added."),
+          error.isSignedOut ? h("a", { href: signInAddress() }, t("Sign in")) : "",
+        );
     }
   });
   dialog.append(form);

@@ -26,7 +26,13 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
     byId("uav-list"),
     keyOf,
     (uav) => {
-      const box = canPlan && h("input", { type: "checkbox", class: "check", onchange: () => (box.checked ? actions.addUavOfFleet(uav.id) : actions.removeUav(sequenceOf(uav))) });
+      const box =
+        canPlan &&
+        h("input", {
+          type: "checkbox",
+          class: "check",
+          onchange: () => (box.checked ? actions.addUavOfFleet(uav.id) : actions.removeUav(sequenceOf(uav))),
+        });
       return h(
         "li",
         { class: "uav", onpointerenter: () => look(uav), onpointerleave: () => store.update({ lookedAt: null }) },
@@ -38,7 +44,17 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
           h("span", { class: "name" }, h("span", { class: "called" }), h("small", {}), h("span", { class: "facts" })),
         ),
         h("span", { class: "battery" }),
-        canPlan && h("button", { type: "button", class: "icon-button tight", title: t("Start, range, speed, battery, end, targets"), onclick: () => changeUav(sequenceOf(uav)) }, icon("pencil", "small")),
+        canPlan &&
+          h(
+            "button",
+            {
+              type: "button",
+              class: "icon-button tight",
+              title: t("Start, range, speed, battery, end, targets"),
+              onclick: () => changeUav(sequenceOf(uav)),
+            },
+            icon("pencil", "small"),
+          ),
       );
     },
     (row, uav) => {
@@ -70,7 +86,8 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
   );
 
   /** Its place in the mission now, −1 where it does not fly. */
-  const sequenceOf = (uav) => (uav.id === null ? uav.sequence : store.state.selection.uavs.findIndex((chosen) => chosen.id === uav.id));
+  const sequenceOf = (uav) =>
+    uav.id === null ? uav.sequence : store.state.selection.uavs.findIndex((chosen) => chosen.id === uav.id);
 
   function look(uav) {
     const sequence = sequenceOf(uav);
@@ -85,14 +102,21 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
       note: t("In this mission only; the fleet stays as it is. Its start can be dragged on the map as well."),
       uav,
       act: t("Change"),
-      submit: ({ name, base_name, cruise_speed_mps, ...values }) => actions.changeUav(sequence, saidInMission(uav, { ...values, ...(cruise_speed_mps === null ? {} : { cruise_speed_mps }) }, known)),
+      submit: ({ name, base_name, cruise_speed_mps, ...values }) =>
+        actions.changeUav(
+          sequence,
+          saidInMission(uav, { ...values, ...(cruise_speed_mps === null ? {} : { cruise_speed_mps }) }, known),
+        ),
     });
   }
 
   /** Those to choose from, as narrowed; who flies already stays in sight. */
   function shownOf(state) {
     const warnings = isPlanCurrent(state) ? (state.plan.result.warnings ?? []) : [];
-    const grounded = (uav) => inWords(warnings.find((warning) => GROUNDING.includes(warning.code) && warning.uav === uav.sequence)?.message ?? "");
+    const grounded = (uav) =>
+      inWords(
+        warnings.find((warning) => GROUNDING.includes(warning.code) && warning.uav === uav.sequence)?.message ?? "",
+      );
     const fleet = inFleetOrder(state).map((uav) => ({ ...uav, grounded: grounded(uav) }));
     if (state.mission && !canPlan) return fleet.filter((uav) => uav.sequence !== null); // who does not fly is of use only to who plans
     return fleet.filter((uav) => uav.sequence !== null || isAskedFor(uav, asked));
@@ -104,7 +128,11 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
     draw(visible);
     byId("uavs-empty").hidden = state.fleet.length > 0 || uavs.length > 0;
     const total = Math.max(state.fleet.length, uavs.length);
-    byId("uav-count").textContent = total ? (canPlan ? t("{chosen} of {total}", { chosen: state.selection.uavs.length, total }) : uavs.length) : "";
+    byId("uav-count").textContent = total
+      ? canPlan
+        ? t("{chosen} of {total}", { chosen: state.selection.uavs.length, total })
+        : uavs.length
+      : "";
     if (!canPlan) return;
     drawFilters(state.fleet);
     const more = byId("more-uavs");
@@ -125,11 +153,26 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
     const key = JSON.stringify([choices, fleet.length < LEAST_TO_NARROW]);
     if (key === narrowedBy) return;
     narrowedBy = key;
-    const words = { base: [t("Base"), t("Every base")], sensor: [t("Sensor"), t("Every sensor")], type: [t("Type"), t("Every type")] };
-    const lists = Object.entries(choices).filter(([, names]) => names.length > 1 || (names.length === 1 && fleet.length >= LEAST_TO_NARROW));
+    const words = {
+      base: [t("Base"), t("Every base")],
+      sensor: [t("Sensor"), t("Every sensor")],
+      type: [t("Type"), t("Every type")],
+    };
+    const lists = Object.entries(choices).filter(
+      ([, names]) => names.length > 1 || (names.length === 1 && fleet.length >= LEAST_TO_NARROW),
+    );
     place.replaceChildren(
       ...lists.map(([name, names]) => {
-        const list = h("select", { class: "input", "aria-label": words[name][0], onchange: () => ((asked = { ...asked, [name]: list.value }), refresh(store.state)) }, h("option", { value: "" }, words[name][1]), names.map((value) => h("option", { value, selected: asked[name] === value }, value)));
+        const list = h(
+          "select",
+          {
+            class: "input",
+            "aria-label": words[name][0],
+            onchange: () => ((asked = { ...asked, [name]: list.value }), refresh(store.state)),
+          },
+          h("option", { value: "" }, words[name][1]),
+          names.map((value) => h("option", { value, selected: asked[name] === value }, value)),
+        );
         return list;
       }),
     );
@@ -139,7 +182,13 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
   if (canPlan) {
     byId("add-uav").addEventListener("click", () => store.update({ tool: "place" }));
     byId("more-uavs").addEventListener("click", () => ((showAll = true), refresh(store.state)));
-    byId("choose-uavs").addEventListener("click", () => actions.addUavsOfFleet(shownOf(store.state).filter((uav) => uav.sequence === null && canFly(uav)).map(({ id }) => id)));
+    byId("choose-uavs").addEventListener("click", () =>
+      actions.addUavsOfFleet(
+        shownOf(store.state)
+          .filter((uav) => uav.sequence === null && canFly(uav))
+          .map(({ id }) => id),
+      ),
+    );
     byId("all-uavs").addEventListener("click", () => {
       asked = { base: "", sensor: "", type: "" };
       narrowedBy = "";
@@ -155,10 +204,18 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
       uavDialog({
         title: t("Add a UAV"),
         note: t("It stays in the fleet for other missions."),
-        uav: { position, name: t("UAV {number}", { number: store.state.fleet.length + 1 }), base_name: "", max_range_m: null, cruise_speed_mps: null, end_action: "hover" },
+        uav: {
+          position,
+          name: t("UAV {number}", { number: store.state.fleet.length + 1 }),
+          base_name: "",
+          max_range_m: null,
+          cruise_speed_mps: null,
+          end_action: "hover",
+        },
         isNew: true,
         act: t("Add"),
-        submit: ({ cruise_speed_mps, ...body }) => actions.addUav(cruise_speed_mps === null ? body : { ...body, cruise_speed_mps }),
+        submit: ({ cruise_speed_mps, ...body }) =>
+          actions.addUav(cruise_speed_mps === null ? body : { ...body, cruise_speed_mps }),
       });
     },
   };

@@ -46,7 +46,14 @@ export function mountWhy(store, actions, { canPlan }) {
   }
 
   async function answer(title, asked, show) {
-    put(title, h("div", { class: "stack", role: "status", "aria-label": t("Being worked out") }, [1, 2, 3].map(() => h("div", { class: "skeleton" }))));
+    put(
+      title,
+      h(
+        "div",
+        { class: "stack", role: "status", "aria-label": t("Being worked out") },
+        [1, 2, 3].map(() => h("div", { class: "skeleton" })),
+      ),
+    );
     const { why } = store.state;
     try {
       const said = await asked;
@@ -54,7 +61,12 @@ export function mountWhy(store, actions, { canPlan }) {
       put(title, ...show(said));
       store.update({ litZones: (said.zones ?? []).map(({ id }) => id) });
     } catch (error) {
-      if (store.state.why === why) put(title, h("p", { role: "alert" }, error.message), h("button", { type: "button", class: "button", onclick: () => draw(store.state) }, t("Ask again")));
+      if (store.state.why === why)
+        put(
+          title,
+          h("p", { role: "alert" }, error.message),
+          h("button", { type: "button", class: "button", onclick: () => draw(store.state) }, t("Ask again")),
+        );
     }
   }
 
@@ -75,11 +87,18 @@ export function mountWhy(store, actions, { canPlan }) {
     }
     byId("dock").classList.toggle("with-ways", Boolean(why.alternatives));
     if (why.byHand !== undefined) {
-      if (why !== shown) put(t("Change the route of {name} by hand", { name: plan.result.routes[why.byHand].uav }), byHand.element);
+      if (why !== shown)
+        put(t("Change the route of {name} by hand", { name: plan.result.routes[why.byHand].uav }), byHand.element);
     } else if (why.alternatives) {
-      const focused = panel.contains(document.activeElement) && document.activeElement !== byId("why-title") ? document.activeElement.textContent : null;
+      const focused =
+        panel.contains(document.activeElement) && document.activeElement !== byId("why-title")
+          ? document.activeElement.textContent
+          : null;
       put(t("Ways to plan it"), ...alternatives(state, actions, canPlan && isPlanCurrent(state)));
-      if (focused) ([...panel.querySelectorAll("button")].find(({ textContent }) => textContent === focused) ?? byId("why-title")).focus();
+      if (focused)
+        (
+          [...panel.querySelectorAll("button")].find(({ textContent }) => textContent === focused) ?? byId("why-title")
+        ).focus();
     } else if (why.compare) {
       const last = lastPlanOf(state);
       if (last) put(t("Against the last plan"), ...comparison(plan, last));
@@ -88,11 +107,25 @@ export function mountWhy(store, actions, { canPlan }) {
       const index = plan.targets.findIndex(({ key }) => key === why.target);
       const entry = plan.result.unassigned.find(({ target }) => target === index);
       if (!entry) store.update({ why: null });
-      else answer(t("Why {target} is not reached", { target: plan.targets[index].label }), ask(plan, "/plans/why-target", { target: index }), (said) => targetExplanation(said, { plan, entry, store, actions, canPlan: canPlan && isPlanCurrent(state) }));
+      else
+        answer(
+          t("Why {target} is not reached", { target: plan.targets[index].label }),
+          ask(plan, "/plans/why-target", { target: index }),
+          (said) => targetExplanation(said, { plan, entry, store, actions, canPlan: canPlan && isPlanCurrent(state) }),
+        );
     } else {
       const route = plan.result.routes[why.route];
       if (!route?.geometry) store.update({ why: null });
-      else answer(t("Why {name} flies this way", { name: route.uav }), ask(plan, "/plans/why-route", { uav: why.route, routes: plan.result.routes.map(({ targets }) => targets), shortest_ways: takesShortestWays(plan.result) }), (said) => routeExplanation(said, { plan, store, actions, canPlan: canPlan && isPlanCurrent(state) }));
+      else
+        answer(
+          t("Why {name} flies this way", { name: route.uav }),
+          ask(plan, "/plans/why-route", {
+            uav: why.route,
+            routes: plan.result.routes.map(({ targets }) => targets),
+            shortest_ways: takesShortestWays(plan.result),
+          }),
+          (said) => routeExplanation(said, { plan, store, actions, canPlan: canPlan && isPlanCurrent(state) }),
+        );
     }
     const sequence = why.route ?? why.byHand;
     panel.className = sequence === undefined ? "why" : `why route-${routeNumber(sequence)}`;
@@ -119,5 +152,8 @@ export function mountWhy(store, actions, { canPlan }) {
     store.update({ why: null });
   });
   store.listen(["why", "plan", "lastPlan"], draw);
-  store.listen(["figures", "planningBeside", "refusedBeside", "selection"], (state) => state.why?.alternatives && draw(state));
+  store.listen(
+    ["figures", "planningBeside", "refusedBeside", "selection"],
+    (state) => state.why?.alternatives && draw(state),
+  );
 }

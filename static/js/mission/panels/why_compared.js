@@ -12,15 +12,30 @@ const MOST_MOVES = 30;
 export function comparison(plan, last) {
   const now = summaryOfPlan(plan);
   const moves = movesBetween(last, now);
-  return [h("p", { class: "why-sentence" }, sentenceOf(last, now, moves)), table(now, last), gone(now, last), moved(moves, now)].filter(Boolean);
+  return [
+    h("p", { class: "why-sentence" }, sentenceOf(last, now, moves)),
+    table(now, last),
+    gone(now, last),
+    moved(moves, now),
+  ].filter(Boolean);
 }
 
 function sentenceOf(last, now, moves) {
   const [time, length] = [now.duration_s - last.duration_s, now.total_length_m - last.total_length_m];
   const parts = [];
-  if (Math.abs(time) >= 30) parts.push(time < 0 ? t("{time} sooner", { time: durationText(-time) }) : t("{time} later", { time: durationText(time) }));
-  if (Math.abs(length) >= 50) parts.push(length < 0 ? t("{length} less in total", { length: lengthText(-length) }) : t("{length} more in total", { length: lengthText(length) }));
-  const changes = moves.length ? tn(moves.length, "{count} target has changed.", "{count} targets have changed.") : t("Every target stays with its UAV.");
+  if (Math.abs(time) >= 30)
+    parts.push(
+      time < 0 ? t("{time} sooner", { time: durationText(-time) }) : t("{time} later", { time: durationText(time) }),
+    );
+  if (Math.abs(length) >= 50)
+    parts.push(
+      length < 0
+        ? t("{length} less in total", { length: lengthText(-length) })
+        : t("{length} more in total", { length: lengthText(length) }),
+    );
+  const changes = moves.length
+    ? tn(moves.length, "{count} target has changed.", "{count} targets have changed.")
+    : t("Every target stays with its UAV.");
   return `${parts.length ? `${parts.join(", ")}.` : t("As long and as late as before.")} ${changes}`;
 }
 
@@ -29,15 +44,47 @@ function table(now, last) {
   const rows = now.routes.map((route, sequence) => {
     const old = counterpart(route, last);
     const figures = (of) => (of?.length_m > 0 ? `${lengthText(of.length_m)}, ${durationText(of.duration_s)}` : "—");
-    const differences = [moreOrLess(route.length_m - (old?.length_m ?? 0), 50, lengthText), moreOrLess(route.duration_s - (old?.duration_s ?? 0), 30, durationText)].filter((words) => words !== "=");
+    const differences = [
+      moreOrLess(route.length_m - (old?.length_m ?? 0), 50, lengthText),
+      moreOrLess(route.duration_s - (old?.duration_s ?? 0), 30, durationText),
+    ].filter((words) => words !== "=");
     differences.push(...endWords(endsBetween(old, route)));
     const difference = differences.join(", ") || t("the same");
-    return h("tr", {}, h("th", { scope: "row", class: `route-${routeNumber(sequence)}` }, h("span", { class: "why-uav" }, h("span", { class: "letter" }, routeLetter(sequence)), route.uav)), h("td", {}, figures(old)), h("td", {}, figures(route)), h("td", {}, difference));
+    return h(
+      "tr",
+      {},
+      h(
+        "th",
+        { scope: "row", class: `route-${routeNumber(sequence)}` },
+        h("span", { class: "why-uav" }, h("span", { class: "letter" }, routeLetter(sequence)), route.uav),
+      ),
+      h("td", {}, figures(old)),
+      h("td", {}, figures(route)),
+      h("td", {}, difference),
+    );
   });
-  return h("table", { class: "why-table" }, h("thead", {}, h("tr", {}, heads.map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, rows));
+  return h(
+    "table",
+    { class: "why-table" },
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        heads.map((words) => h("th", { scope: "col" }, words)),
+      ),
+    ),
+    h("tbody", {}, rows),
+  );
 }
 
-const END_WORDS = { hover: t("hovering at its last target"), return: t("at its start"), land: t("on the ground at its last target"), base: t("at the nearest base") };
+const END_WORDS = {
+  hover: t("hovering at its last target"),
+  return: t("at its start"),
+  land: t("on the ground at its last target"),
+  base: t("at the nearest base"),
+};
 
 /** "starts 1.2 km from before", "ends at its start instead of hovering at its last target". */
 function endWords({ moved_m, from, to }) {
@@ -58,14 +105,18 @@ function moved(moves, now) {
   const place = (route) => {
     if (route === undefined) return t("not in the mission");
     if (route === null) return t("not reached");
-    const sequence = now.routes.findIndex((other) => other === route || (other.uav === route.uav && other.uav_id === route.uav_id));
+    const sequence = now.routes.findIndex(
+      (other) => other === route || (other.uav === route.uav && other.uav_id === route.uav_id),
+    );
     return sequence < 0 ? route.uav : `${routeLetter(sequence)} ${route.uav}`;
   };
   const rest = moves.length - MOST_MOVES;
   return h(
     "ul",
     { class: "why-moves", "aria-label": t("Targets that have changed") },
-    moves.slice(0, MOST_MOVES).map(({ label, from, to }) => h("li", {}, h("span", {}, label), h("small", {}, `${place(from)} → ${place(to)}`))),
+    moves
+      .slice(0, MOST_MOVES)
+      .map(({ label, from, to }) => h("li", {}, h("span", {}, label), h("small", {}, `${place(from)} → ${place(to)}`))),
     rest > 0 && h("li", {}, tn(rest, "and {count} more", "and {count} more")),
   );
 }

@@ -4,9 +4,9 @@ import { h } from "../../dom.js";
 import { zoneDetails } from "../../map/zone_details.js";
 import { t } from "../../text.js";
 import { durationText, energyText, lengthText } from "../../units.js";
-import { longestDuration_s, otherObjective, OBJECTIVES, routesOf } from "../plan_view.js";
 import { heightsText } from "../../zones/heights.js";
 import { scheduleText } from "../../zones/schedule_words.js";
+import { longestDuration_s, OBJECTIVES, otherObjective, routesOf } from "../plan_view.js";
 import { basisOf } from "../selection.js";
 
 const LEAST_M = 20; // less is the rounding of positions
@@ -14,7 +14,16 @@ const LEAST_M = 20; // less is the rounding of positions
 /** said: see RouteExplanationSerializer. */
 export function routeExplanation(said, { plan, store, actions, canPlan }) {
   const route = routesOf(plan)[said.uav];
-  return [bar(said), parts(said), zonesInTheWay(said), instead(said, plan), limit(plan, route), bound(said), heaviest(said, { plan, route, actions, canPlan }), otherWay({ plan, store, actions, canPlan })].filter(Boolean);
+  return [
+    bar(said),
+    parts(said),
+    zonesInTheWay(said),
+    instead(said, plan),
+    limit(plan, route),
+    bound(said),
+    heaviest(said, { plan, route, actions, canPlan }),
+    otherWay({ plan, store, actions, canPlan }),
+  ].filter(Boolean);
 }
 
 /** [{ name, words, length_m }]: straight, kept to the lines, round zones. */
@@ -23,7 +32,11 @@ export function partsOf(said) {
   const list = [
     { name: "straight", words: t("Straight from target to target"), length_m: said.straight_m },
     { name: "lines", words: t("Kept to the lines"), length_m: said.on_lines_m },
-    { name: "zones", words: zones.length ? t("Round {zones}", { zones: zones.join(", ") }) : t("Round no-fly zones"), length_m: said.round_zones_m },
+    {
+      name: "zones",
+      words: zones.length ? t("Round {zones}", { zones: zones.join(", ") }) : t("Round no-fly zones"),
+      length_m: said.round_zones_m,
+    },
   ];
   return list.filter(({ name, length_m }) => name === "straight" || (length_m !== null && length_m >= LEAST_M));
 }
@@ -38,7 +51,14 @@ function bar(said) {
 }
 
 function parts(said) {
-  const rows = partsOf(said).map(({ name, words, length_m }) => h("div", {}, h("dt", {}, h("i", { class: name, "aria-hidden": "true" }), words), h("dd", {}, `${name === "straight" ? "" : "+"}${lengthText(length_m)}`)));
+  const rows = partsOf(said).map(({ name, words, length_m }) =>
+    h(
+      "div",
+      {},
+      h("dt", {}, h("i", { class: name, "aria-hidden": "true" }), words),
+      h("dd", {}, `${name === "straight" ? "" : "+"}${lengthText(length_m)}`),
+    ),
+  );
   return h("dl", { class: "why-parts" }, rows);
 }
 
@@ -52,7 +72,13 @@ function zonesInTheWay({ zones }) {
     found.map(({ id, name, extra_m }) => {
       const reason = h("small", {}, t("Reading times and source…"));
       zoneDetails(id).then(
-        (details) => (reason.textContent = [heightsText(details), scheduleText(details.schedule, { otherwise: details.schedule_words })].filter(Boolean).join(" · ")),
+        (details) =>
+          (reason.textContent = [
+            heightsText(details),
+            scheduleText(details.schedule, { otherwise: details.schedule_words }),
+          ]
+            .filter(Boolean)
+            .join(" · ")),
         () => (reason.textContent = t("Times and source cannot be read now.")),
       );
       return h("li", {}, h("span", { class: "zone-name" }, name, reason), h("span", {}, `+${lengthText(extra_m)}`));
@@ -85,18 +111,23 @@ function limit(plan, route) {
   if (flown.length < 2) return null;
   const last = flown.reduce((a, b) => (b.duration_s > a.duration_s ? b : a));
   const time = durationText(last.duration_s);
-  const words = last.uav === route.uav ? t("{name} is the last to be done, after {time}.", { name: last.uav, time }) : t("Not this route: {name} is the last to be done, after {time}.", { name: last.uav, time });
+  const words =
+    last.uav === route.uav
+      ? t("{name} is the last to be done, after {time}.", { name: last.uav, time })
+      : t("Not this route: {name} is the last to be done, after {time}.", { name: last.uav, time });
   return h("p", {}, h("strong", {}, t("What limits the plan.")), " ", words);
 }
 
 /** What keeps the route from more targets, or from being quicker. */
 function bound({ binds, used_wh, usable_wh, wind_s }) {
   const words = {
-    battery: () => t("the battery, {used} of {usable} are used", { used: energyText(used_wh), usable: energyText(usable_wh) }),
+    battery: () =>
+      t("the battery, {used} of {usable} are used", { used: energyText(used_wh), usable: energyText(usable_wh) }),
     range: () => t("its range"),
     most_targets: () => t("as many targets as it may have"),
     zone: () => t("a zone"),
-    wind: () => (wind_s > 0 ? t("the wind, {time} more than in calm air", { time: durationText(wind_s) }) : t("the wind")),
+    wind: () =>
+      wind_s > 0 ? t("the wind, {time} more than in calm air", { time: durationText(wind_s) }) : t("the wind"),
     balance: () => t("another UAV’s route is the longest"),
   };
   const said = (binds ?? []).filter((what) => words[what]).map((what) => words[what]());
@@ -108,8 +139,25 @@ const sentence = (words) => words[0].toUpperCase() + words.slice(1);
 function heaviest({ heaviest: found }, { plan, route, actions, canPlan }) {
   const target = found && plan.targets[found.target];
   if (!target || found.saves_m < LEAST_M || route.targets.length < 2) return null;
-  const words = t("Without {target} {name} flies {length} less.", { target: target.label, name: route.name, length: lengthText(found.saves_m) });
-  return h("p", {}, h("strong", {}, t("What costs most.")), " ", words, " ", canPlan && h("button", { type: "button", class: "text-button", onclick: () => actions.removeTargets([target.key]) }, t("Remove it")));
+  const words = t("Without {target} {name} flies {length} less.", {
+    target: target.label,
+    name: route.name,
+    length: lengthText(found.saves_m),
+  });
+  return h(
+    "p",
+    {},
+    h("strong", {}, t("What costs most.")),
+    " ",
+    words,
+    " ",
+    canPlan &&
+      h(
+        "button",
+        { type: "button", class: "text-button", onclick: () => actions.removeTargets([target.key]) },
+        t("Remove it"),
+      ),
+  );
 }
 
 /** The other objective, where it is planned: what it wins and what it costs. */
@@ -122,8 +170,24 @@ function otherWay({ plan, store, actions, canPlan }) {
   if (Math.abs(time) < 30 && Math.abs(length) < 50) return null;
   const name = OBJECTIVES.find(({ value }) => value === objective).words;
   const clauses = [
-    Math.abs(time) >= 30 && (time < 0 ? t("{time} sooner", { time: durationText(-time) }) : t("{time} later", { time: durationText(time) })),
-    Math.abs(length) >= 50 && (length < 0 ? t("{length} less in total", { length: lengthText(-length) }) : t("{length} more in total", { length: lengthText(length) })),
+    Math.abs(time) >= 30 &&
+      (time < 0 ? t("{time} sooner", { time: durationText(-time) }) : t("{time} later", { time: durationText(time) })),
+    Math.abs(length) >= 50 &&
+      (length < 0
+        ? t("{length} less in total", { length: lengthText(-length) })
+        : t("{length} more in total", { length: lengthText(length) })),
   ];
-  return h("p", {}, h("strong", {}, t("Worth trying.")), " ", `${name}: ${clauses.filter(Boolean).join(", ")}.`, " ", h("button", { type: "button", class: "text-button", onclick: () => actions.setOption("objective", objective) }, t("Try it")));
+  return h(
+    "p",
+    {},
+    h("strong", {}, t("Worth trying.")),
+    " ",
+    `${name}: ${clauses.filter(Boolean).join(", ")}.`,
+    " ",
+    h(
+      "button",
+      { type: "button", class: "text-button", onclick: () => actions.setOption("objective", objective) },
+      t("Try it"),
+    ),
+  );
 }

@@ -10,27 +10,53 @@ import { showLegalTimes } from "./legal_times.js";
 export function targetExplanation(said, { plan, entry, store, actions, canPlan }) {
   const target = plan.targets[said.target];
   const full = fullUavs(said, plan);
-  return [h("p", { class: "why-sentence" }, [reasonWords(said, full) || inWords(entry.message), lackWords(said, entry)].filter(Boolean).join(" ")), facts(said), canPlan && changes(said, { target, full, store, actions })].filter(Boolean);
+  return [
+    h(
+      "p",
+      { class: "why-sentence" },
+      [reasonWords(said, full) || inWords(entry.message), lackWords(said, entry)].filter(Boolean).join(" "),
+    ),
+    facts(said),
+    canPlan && changes(said, { target, full, store, actions }),
+  ].filter(Boolean);
 }
 
 /** UAVs of the mission that could fly there but for having as many targets as they may. */
 export function fullUavs(said, plan) {
   const done = (uav) => new Set(plan.result.routes.find((route) => route.uav === uav.name)?.targets).size;
-  return said.uavs.filter((uav) => uav.is_in_mission && uav.is_enough && uav.most_targets !== null && uav.most_targets !== undefined && done(uav) >= uav.most_targets);
+  return said.uavs.filter(
+    (uav) =>
+      uav.is_in_mission &&
+      uav.is_enough &&
+      uav.most_targets !== null &&
+      uav.most_targets !== undefined &&
+      done(uav) >= uav.most_targets,
+  );
 }
 
 function sharedWords(said, full) {
   const able = (said.uavs ?? []).filter((uav) => uav.is_in_mission && uav.is_enough);
-  if (!full.length) return t("One UAV alone could fly there, but none has range or battery left after its other targets.");
+  if (!full.length)
+    return t("One UAV alone could fly there, but none has range or battery left after its other targets.");
   const names = full.map(({ name }) => name).join(", ");
-  const words = tn(full.length, "{names} could fly there, but has as many targets as it may have.", "{names} could fly there, but have as many targets as they may have.", { names });
-  return full.length === able.length ? words : `${words} ${t("No other UAV has the range left after its other targets.")}`;
+  const words = tn(
+    full.length,
+    "{names} could fly there, but has as many targets as it may have.",
+    "{names} could fly there, but have as many targets as they may have.",
+    { names },
+  );
+  return full.length === able.length
+    ? words
+    : `${words} ${t("No other UAV has the range left after its other targets.")}`;
 }
 
 /** What the range lacks of the UAV that comes nearest; sentences of batteries have it in themselves. */
 export function lackWords({ reason }, { missing_m, missing_s }) {
   if (reason !== "beyond_range" || !missing_m) return "";
-  return t("The one that comes nearest lacks {length}, {minutes} min of flight.", { length: lengthText(missing_m), minutes: numberText(Math.ceil(missing_s / 6) / 10, 1) });
+  return t("The one that comes nearest lacks {length}, {minutes} min of flight.", {
+    length: lengthText(missing_m),
+    minutes: numberText(Math.ceil(missing_s / 6) / 10, 1),
+  });
 }
 
 /** full: see fullUavs. */
@@ -39,10 +65,22 @@ export function reasonWords(said, full = []) {
   const lengths = { reach: lengthText(said.access_limit_m), distance: lengthText(said.network_m) };
   const words = {
     asset_gone: () => t("It has been deleted from the data since it was picked."),
-    inside_zone: () => (said.stretches.length ? t("It runs through {zones}.", { zones }) : t("It stands inside {zones}.", { zones: zones || t("the margin round a no-fly zone") })),
-    above_height_limit: () => t("It is {height} high. A UAV would have to fly at {needed}; the limit is {limit}.", { height: heightText(said.height_m), needed: heightText(said.needed_height_m), limit: heightText(said.height_limit_m) }),
-    too_far_from_network: () => t("The nearest line, railway or bridge is {distance} away; up to {reach} is flown off the network.", lengths),
-    no_path: () => (zones ? t("Every way to it leads through {zones}.", { zones }) : t("No way leads there that keeps clear of every zone.")),
+    inside_zone: () =>
+      said.stretches.length
+        ? t("It runs through {zones}.", { zones })
+        : t("It stands inside {zones}.", { zones: zones || t("the margin round a no-fly zone") }),
+    above_height_limit: () =>
+      t("It is {height} high. A UAV would have to fly at {needed}; the limit is {limit}.", {
+        height: heightText(said.height_m),
+        needed: heightText(said.needed_height_m),
+        limit: heightText(said.height_limit_m),
+      }),
+    too_far_from_network: () =>
+      t("The nearest line, railway or bridge is {distance} away; up to {reach} is flown off the network.", lengths),
+    no_path: () =>
+      zones
+        ? t("Every way to it leads through {zones}.", { zones })
+        : t("No way leads there that keeps clear of every zone."),
     beyond_range: () => t("It is out of range of every UAV of this mission."),
     beyond_energy: () => inWords(said.message, t("No battery lasts for the way there and back.")),
     wind: () => t("The wind is too strong on every way to it, or back."),
@@ -62,27 +100,91 @@ function facts(said) {
     const needed = is_grounded ? t("cannot take off") : needed_m === null ? t("no way") : lengthText(needed_m);
     return h("tr", {}, h("th", { scope: "row" }, name), h("td", {}, needed), h("td", {}, has));
   };
-  return h("table", { class: "why-table" }, h("thead", {}, h("tr", {}, [t("UAV"), t("needs"), t("has")].map((words) => h("th", { scope: "col" }, words)))), h("tbody", {}, needs.map(row)));
+  return h(
+    "table",
+    { class: "why-table" },
+    h(
+      "thead",
+      {},
+      h(
+        "tr",
+        {},
+        [t("UAV"), t("needs"), t("has")].map((words) => h("th", { scope: "col" }, words)),
+      ),
+    ),
+    h("tbody", {}, needs.map(row)),
+  );
 }
 
 function changes(said, { target, full, store, actions }) {
-  const act = (words, label, run) => h("li", {}, h("span", {}, words), " ", h("button", { type: "button", class: "text-button", onclick: run }, label));
+  const act = (words, label, run) =>
+    h("li", {}, h("span", {}, words), " ", h("button", { type: "button", class: "text-button", onclick: run }, label));
   const list = [];
-  if (said.stretches.length) list.push(act(t("The parts outside can be flown."), t("Take the parts outside"), () => actions.replaceByStretches(target, said.stretches)));
+  if (said.stretches.length)
+    list.push(
+      act(t("The parts outside can be flown."), t("Take the parts outside"), () =>
+        actions.replaceByStretches(target, said.stretches),
+      ),
+    );
   for (const { name, most_targets } of full) {
     const raise = () => {
-      actions.changeUav(store.state.selection.uavs.findIndex((uav) => uav.name === name), { most_targets: most_targets + 1 });
+      actions.changeUav(
+        store.state.selection.uavs.findIndex((uav) => uav.name === name),
+        { most_targets: most_targets + 1 },
+      );
       actions.plan();
     };
-    list.push(act(tn(most_targets, "{name} may do {count} target at most.", "{name} may do {count} targets at most.", { name }), t("Let {name} do one more", { name }), raise));
+    list.push(
+      act(
+        tn(most_targets, "{name} may do {count} target at most.", "{name} may do {count} targets at most.", { name }),
+        t("Let {name} do one more", { name }),
+        raise,
+      ),
+    );
   }
   const isOfRange = !["beyond_energy", "wind"].includes(said.reason);
   const spare = isOfRange && said.uavs.find((uav) => !uav.is_in_mission && uav.is_enough);
-  if (spare) list.push(act(t("{name} could fly there: it needs {needed}.", { name: spare.name, needed: lengthText(spare.needed_m) }), t("Take {name} along", { name: spare.name }), () => (actions.addUavOfFleet(spare.uav_id), actions.plan())));
-  const nearest = said.uavs.filter((uav) => isOfRange && uav.is_in_mission && uav.is_allowed && uav.needed_m !== null && uav.max_range_m !== null && !uav.is_enough).sort((a, b) => a.needed_m - a.max_range_m - (b.needed_m - b.max_range_m))[0];
-  if (nearest) list.push(h("li", {}, t("{name} would need {missing} more range, or a start that is nearer: drag its square on the map.", { name: nearest.name, missing: lengthText(nearest.needed_m - nearest.max_range_m) })));
+  if (spare)
+    list.push(
+      act(
+        t("{name} could fly there: it needs {needed}.", { name: spare.name, needed: lengthText(spare.needed_m) }),
+        t("Take {name} along", { name: spare.name }),
+        () => (actions.addUavOfFleet(spare.uav_id), actions.plan()),
+      ),
+    );
+  const nearest = said.uavs
+    .filter(
+      (uav) =>
+        isOfRange &&
+        uav.is_in_mission &&
+        uav.is_allowed &&
+        uav.needed_m !== null &&
+        uav.max_range_m !== null &&
+        !uav.is_enough,
+    )
+    .sort((a, b) => a.needed_m - a.max_range_m - (b.needed_m - b.max_range_m))[0];
+  if (nearest)
+    list.push(
+      h(
+        "li",
+        {},
+        t("{name} would need {missing} more range, or a start that is nearer: drag its square on the map.", {
+          name: nearest.name,
+          missing: lengthText(nearest.needed_m - nearest.max_range_m),
+        }),
+      ),
+    );
   if (said.reason === "not_with_the_others") list.push(h("li", {}, t("Add a UAV, or plan it as a flight of its own.")));
-  if (["inside_zone", "no_path"].includes(said.reason) && said.zones.length) list.push(act(t("The zone may be over later."), t("Look for a better departure"), () => showLegalTimes(store, actions)));
-  list.push(act(t("The plan goes without it."), t("Remove it"), () => (store.update({ why: null }), actions.removeTargets([target.key]))));
+  if (["inside_zone", "no_path"].includes(said.reason) && said.zones.length)
+    list.push(
+      act(t("The zone may be over later."), t("Look for a better departure"), () => showLegalTimes(store, actions)),
+    );
+  list.push(
+    act(
+      t("The plan goes without it."),
+      t("Remove it"),
+      () => (store.update({ why: null }), actions.removeTargets([target.key])),
+    ),
+  );
   return h("div", {}, h("h3", {}, t("What would help")), h("ul", { class: "why-changes" }, list));
 }

@@ -2,8 +2,8 @@
 
 import { h, icon } from "../../dom.js";
 import { provideImages } from "../../map/images.js";
-import { maplibre } from "../../map/maplibre.js";
 import { boxAround, tellFaults } from "../../map/map_view.js";
+import { maplibre } from "../../map/maplibre.js";
 import { mapStyle, repaint } from "../../map/style.js";
 import { t } from "../../text.js";
 import { ESTIMATED, withinOf_m } from "../certainty.js";
@@ -15,17 +15,44 @@ const READABLE_PX = 24;
 const ROUND = 1.6; // of the ring that is shown
 
 /** Whether the ring of an estimate is too small to read: at a zoom, lon lat. */
-export const isTooSmall = ({ position, bound }, zoom) => withinOf_m({ bound }) / metresPerPixel(zoom, position[1]) < READABLE_PX;
+export const isTooSmall = ({ position, bound }, zoom) =>
+  withinOf_m({ bound }) / metresPerPixel(zoom, position[1]) < READABLE_PX;
 
 export function createCloseUp(view, frame, page) {
   const { map: large } = view;
   const title = h("strong", {});
   const letter = h("span", { class: "letter" });
   const place = h("div", { class: "close-up-map", "aria-hidden": "true" });
-  const box = h("section", { class: "close-up float", "aria-label": t("Close-up"), hidden: true }, h("header", {}, letter, title, h("span", { class: "quiet-text" }, t("close up")), h("button", { type: "button", class: "icon-button tight", "aria-label": t("Close the close-up"), onclick: () => (box.dataset.closed = shownFor, (box.hidden = true)) }, icon("x", "small"))), place);
+  const box = h(
+    "section",
+    { class: "close-up float", "aria-label": t("Close-up"), hidden: true },
+    h(
+      "header",
+      {},
+      letter,
+      title,
+      h("span", { class: "quiet-text" }, t("close up")),
+      h(
+        "button",
+        {
+          type: "button",
+          class: "icon-button tight",
+          "aria-label": t("Close the close-up"),
+          onclick: () => ((box.dataset.closed = shownFor), (box.hidden = true)),
+        },
+        icon("x", "small"),
+      ),
+    ),
+    place,
+  );
   frame.append(box);
   let shownFor = "";
-  const options = { tilesAddress: `${location.origin}/api/v1/tiles/{z}/{x}/{y}`, baseMap: page.baseMap, satellite: page.satellite, under: "" };
+  const options = {
+    tilesAddress: `${location.origin}/api/v1/tiles/{z}/{x}/{y}`,
+    baseMap: page.baseMap,
+    satellite: page.satellite,
+    under: "",
+  };
   let small = null;
   let redrawImages = null;
   let markers = null;
@@ -34,7 +61,15 @@ export function createCloseUp(view, frame, page) {
   let drawn = "";
 
   function start() {
-    small = new maplibre.Map({ container: place, style: mapStyle(view.palette(), options), interactive: false, attributionControl: false, fadeDuration: 0, center: latest.position, zoom: 14 });
+    small = new maplibre.Map({
+      container: place,
+      style: mapStyle(view.palette(), options),
+      interactive: false,
+      attributionControl: false,
+      fadeDuration: 0,
+      center: latest.position,
+      zoom: 14,
+    });
     tellFaults(small);
     redrawImages = provideImages(small, () => view.palette());
     small.on("load", () => {
@@ -50,9 +85,19 @@ export function createCloseUp(view, frame, page) {
     const key = JSON.stringify([uav.id, uav.position, uav.bound]);
     if (key === drawn) return;
     drawn = key;
-    const ring = ellipseRing(uav.position, { ...uav.bound, along_m: uav.bound.along_m * ROUND, across_m: uav.bound.across_m * ROUND }, 20);
+    const ring = ellipseRing(
+      uav.position,
+      { ...uav.bound, along_m: uav.bound.along_m * ROUND, across_m: uav.bound.across_m * ROUND },
+      20,
+    );
     const [west, south, east, north] = boxAround([...ring]);
-    small.fitBounds([[west, south], [east, north]], { duration: 0, padding: 12, maxZoom: 16 });
+    small.fitBounds(
+      [
+        [west, south],
+        [east, north],
+      ],
+      { duration: 0, padding: 12, maxZoom: 16 },
+    );
     small.getSource("routes").setData(routes);
     flightLayers.showFlown(small, flown);
     flightLayers.showUncertain(small, [uav]);

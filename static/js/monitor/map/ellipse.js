@@ -4,7 +4,8 @@ const CORNERS = 48;
 const METRES_A_DEGREE = 111_195; // of latitude, on the sphere that draws it
 
 /** Metres that a pixel shows at a latitude, of MapLibre's tiles of 512 px. */
-export const metresPerPixel = (zoom, latitude) => (40_075_016.686 * Math.cos((latitude * Math.PI) / 180)) / (512 * 2 ** zoom);
+export const metresPerPixel = (zoom, latitude) =>
+  (40_075_016.686 * Math.cos((latitude * Math.PI) / 180)) / (512 * 2 ** zoom);
 
 /** bound: { along_m, across_m, bearing_deg }; no semi-axis shorter than least_m. A closed ring of lon lat. */
 export function ellipseRing([longitude, latitude], { along_m, across_m, bearing_deg }, least_m = 0) {

@@ -9,22 +9,70 @@ const CLEAR_PX = 48;
 const NOTHING = { type: "FeatureCollection", features: [] };
 const SOURCES = ["flown", "last-report", "ellipses", "offered"];
 
-const colourOf = (palette) => ["case", ["get", "isLost"], palette.inkSecond, ["match", ["get", "route"], ...palette.routes.flatMap((colour, index) => [index + 1, colour]), palette.inkSecond]];
+const colourOf = (palette) => [
+  "case",
+  ["get", "isLost"],
+  palette.inkSecond,
+  ["match", ["get", "route"], ...palette.routes.flatMap((colour, index) => [index + 1, colour]), palette.inkSecond],
+];
 
 function layersOf(palette) {
   const round = { "line-cap": "round", "line-join": "round" };
   const colour = colourOf(palette);
   return [
-    { id: "offered", type: "line", source: "offered", layout: round, paint: { "line-color": colour, "line-width": 3, "line-dasharray": [2, 2] } },
-    { id: "flown-casing", type: "line", source: "flown", layout: round, paint: { "line-color": palette.casing, "line-width": 6 } },
+    {
+      id: "offered",
+      type: "line",
+      source: "offered",
+      layout: round,
+      paint: { "line-color": colour, "line-width": 3, "line-dasharray": [2, 2] },
+    },
+    {
+      id: "flown-casing",
+      type: "line",
+      source: "flown",
+      layout: round,
+      paint: { "line-color": palette.casing, "line-width": 6 },
+    },
     { id: "flown", type: "line", source: "flown", layout: round, paint: { "line-color": colour, "line-width": 3.6 } },
     { id: "ellipses", type: "fill", source: "ellipses", paint: { "fill-color": colour, "fill-opacity": 0.15 } },
-    { id: "ellipses-line", type: "line", source: "ellipses", paint: { "line-color": colour, "line-width": 1.75, "line-dasharray": [3, 2] } },
-    { id: "last-report-line", type: "line", source: "last-report", filter: ["==", ["geometry-type"], "LineString"], paint: { "line-color": colour, "line-width": 2, "line-dasharray": [2, 2] } },
-    { id: "last-report", type: "circle", source: "last-report", filter: ["==", ["geometry-type"], "Point"], paint: { "circle-radius": 4, "circle-color": colour, "circle-stroke-color": palette.casing, "circle-stroke-width": 2 } },
     {
-      id: "last-report-time", type: "symbol", source: "last-report", filter: ["==", ["geometry-type"], "Point"],
-      layout: { "text-font": palette.fonts, "text-size": 11, "text-field": ["get", "words"], "text-anchor": "top", "text-offset": [0, 0.6] },
+      id: "ellipses-line",
+      type: "line",
+      source: "ellipses",
+      paint: { "line-color": colour, "line-width": 1.75, "line-dasharray": [3, 2] },
+    },
+    {
+      id: "last-report-line",
+      type: "line",
+      source: "last-report",
+      filter: ["==", ["geometry-type"], "LineString"],
+      paint: { "line-color": colour, "line-width": 2, "line-dasharray": [2, 2] },
+    },
+    {
+      id: "last-report",
+      type: "circle",
+      source: "last-report",
+      filter: ["==", ["geometry-type"], "Point"],
+      paint: {
+        "circle-radius": 4,
+        "circle-color": colour,
+        "circle-stroke-color": palette.casing,
+        "circle-stroke-width": 2,
+      },
+    },
+    {
+      id: "last-report-time",
+      type: "symbol",
+      source: "last-report",
+      filter: ["==", ["geometry-type"], "Point"],
+      layout: {
+        "text-font": palette.fonts,
+        "text-size": 11,
+        "text-field": ["get", "words"],
+        "text-anchor": "top",
+        "text-offset": [0, 0.6],
+      },
       paint: { "text-color": palette.ink, "text-halo-color": palette.halo, "text-halo-width": 2 },
     },
   ];
@@ -40,12 +88,17 @@ export function addTo(map, palette) {
 }
 
 export function recolour(map, palette) {
-  for (const { id, paint } of layersOf(palette)) for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
+  for (const { id, paint } of layersOf(palette))
+    for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
   map.setPaintProperty("routes-casing", "line-width", 4);
   thinRoutes(map);
 }
 
-const feature = (uav, geometry, more = {}) => ({ type: "Feature", properties: { route: uav.place === null ? 0 : routeNumber(uav.place), isLost: uav.certainty === "lost", ...more }, geometry });
+const feature = (uav, geometry, more = {}) => ({
+  type: "Feature",
+  properties: { route: uav.place === null ? 0 : routeNumber(uav.place), isLost: uav.certainty === "lost", ...more },
+  geometry,
+});
 const shown = new WeakMap(); // source → what it shows, in one text
 
 /** Only what is another is drawn: each time costs the whole map a frame, and the clock ticks without anything having moved. */
@@ -57,11 +110,24 @@ function show(map, name, features, key = JSON.stringify(features)) {
 }
 
 /** A line of thousands of places grows at its end. */
-const lineKey = (uavs) => JSON.stringify(uavs.map(({ place, parts }) => [place, parts.length, parts.at(-1)?.length, parts.at(-1)?.at(-1), parts[0]?.[0]]));
+const lineKey = (uavs) =>
+  JSON.stringify(
+    uavs.map(({ place, parts }) => [place, parts.length, parts.at(-1)?.length, parts.at(-1)?.at(-1), parts[0]?.[0]]),
+  );
 
 /** uavs: [{ place, certainty, parts: [[lon lat, …], …] }] */
 export function showFlown(map, uavs) {
-  show(map, "flown", uavs.map((uav) => feature({ ...uav, certainty: "measured" }, { type: "MultiLineString", coordinates: uav.parts.filter((part) => part.length > 1) })), lineKey(uavs));
+  show(
+    map,
+    "flown",
+    uavs.map((uav) =>
+      feature(
+        { ...uav, certainty: "measured" },
+        { type: "MultiLineString", coordinates: uav.parts.filter((part) => part.length > 1) },
+      ),
+    ),
+    lineKey(uavs),
+  );
 }
 
 /** The time of a last report is left out where the UAV itself would stand on it. */
@@ -73,11 +139,35 @@ function isClear(map, { last, position }) {
 /** uavs that are estimated or lost: [{ place, certainty, position, bound, last: lon lat or null, words }]. */
 export function showUncertain(map, uavs) {
   const zoom = map.getZoom();
-  show(map, "ellipses", uavs.filter(({ bound }) => bound).map((uav) => feature(uav, { type: "Polygon", coordinates: [ellipseRing(uav.position, uav.bound, LEAST_RING_PX * metresPerPixel(zoom, uav.position[1]))] })));
-  show(map, "last-report", uavs.filter(({ last }) => last).flatMap((uav) => [feature(uav, { type: "LineString", coordinates: [uav.last, uav.position] }), feature(uav, { type: "Point", coordinates: uav.last }, { words: isClear(map, uav) ? uav.words : "" })]));
+  show(
+    map,
+    "ellipses",
+    uavs
+      .filter(({ bound }) => bound)
+      .map((uav) =>
+        feature(uav, {
+          type: "Polygon",
+          coordinates: [ellipseRing(uav.position, uav.bound, LEAST_RING_PX * metresPerPixel(zoom, uav.position[1]))],
+        }),
+      ),
+  );
+  show(
+    map,
+    "last-report",
+    uavs
+      .filter(({ last }) => last)
+      .flatMap((uav) => [
+        feature(uav, { type: "LineString", coordinates: [uav.last, uav.position] }),
+        feature(uav, { type: "Point", coordinates: uav.last }, { words: isClear(map, uav) ? uav.words : "" }),
+      ]),
+  );
 }
 
 /** Routes of another plan that is offered: [{ place, geometry }]. */
 export function showOffered(map, routes) {
-  show(map, "offered", routes.map(({ place, geometry }) => feature({ place, certainty: "measured" }, geometry)));
+  show(
+    map,
+    "offered",
+    routes.map(({ place, geometry }) => feature({ place, certainty: "measured" }, geometry)),
+  );
 }

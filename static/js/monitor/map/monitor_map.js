@@ -28,7 +28,15 @@ export function drawnUav(uav, now_ms, chosen) {
   if (!at) return null;
   const isSure = certainty === MEASURED;
   return {
-    ...at, id: uav.id, name: uav.name, place: uav.place, letter: uav.place === null ? "" : routeLetter(uav.place), certainty, fact: mapFact(uav, certainty), isChosen: uav.id === chosen, isSimulated: uav.is_simulated,
+    ...at,
+    id: uav.id,
+    name: uav.name,
+    place: uav.place,
+    letter: uav.place === null ? "" : routeLetter(uav.place),
+    certainty,
+    fact: mapFact(uav, certainty),
+    isChosen: uav.id === chosen,
+    isSimulated: uav.is_simulated,
     routeClass: uav.place === null ? "" : `route-${routeNumber(uav.place)}`,
     bound: isSure || certainty === LOST ? null : uav.estimated.bound,
     last: isSure ? null : (uav.measured?.position ?? null),
@@ -39,40 +47,83 @@ export function drawnUav(uav, now_ms, chosen) {
 export function mountMonitorMap(store, page, { pick }) {
   const container = byId("map");
   const frame = container.parentElement;
-  const view = createMap(container, { baseMap: page.baseMap, satellite: page.satellite, under: rememberedUnder(page), describe: t("Map"), bounds: page.bounds ?? page.extent, extent: page.extent });
+  const view = createMap(container, {
+    baseMap: page.baseMap,
+    satellite: page.satellite,
+    under: rememberedUnder(page),
+    describe: t("Map"),
+    bounds: page.bounds ?? page.extent,
+    extent: page.extent,
+  });
   const { map } = view;
   const tip = createTip(frame);
   let parts = null; // once the map has its style
-  const controls = mountControls(view, page, { fit: () => fit(), recoloured: (palette) => (flightLayers.recolour(map, palette), parts?.closeUp.recolour()) });
+  const controls = mountControls(view, page, {
+    fit: () => fit(),
+    recoloured: (palette) => (flightLayers.recolour(map, palette), parts?.closeUp.recolour()),
+  });
   map.on("dragstart", () => store.update({ isFollowing: false }));
   showTipsOnly(map, { controls, tip });
 
   const drawn = ({ uavs, now_ms, chosen }) => uavs.map((uav) => drawnUav(uav, now_ms, chosen)).filter(Boolean);
-  const routesShown = ({ missions, details }) => missions.flatMap(({ id }) => (details.get(id)?.plan?.routes ?? []).map((route, sequence) => ({ sequence, geometry: route.geometry })));
-  const flownOf = ({ uavs, flown }) => uavs.filter(({ id }) => flown.has(id)).map((uav) => ({ place: uav.place, parts: flown.get(uav.id) }));
-  const collection = (routes) => ({ type: "FeatureCollection", features: routes.filter(({ geometry }) => geometry).map(({ sequence, geometry }) => ({ type: "Feature", properties: { sequence, route: routeNumber(sequence), dashed: false }, geometry })) });
+  const routesShown = ({ missions, details }) =>
+    missions.flatMap(({ id }) =>
+      (details.get(id)?.plan?.routes ?? []).map((route, sequence) => ({ sequence, geometry: route.geometry })),
+    );
+  const flownOf = ({ uavs, flown }) =>
+    uavs.filter(({ id }) => flown.has(id)).map((uav) => ({ place: uav.place, parts: flown.get(uav.id) }));
+  const collection = (routes) => ({
+    type: "FeatureCollection",
+    features: routes
+      .filter(({ geometry }) => geometry)
+      .map(({ sequence, geometry }) => ({
+        type: "Feature",
+        properties: { sequence, route: routeNumber(sequence), dashed: false },
+        geometry,
+      })),
+  });
 
   function drawUavs(state) {
     const shown = drawn(state);
     const isMixed = !state.uavs.every(({ is_simulated }) => is_simulated); // else the head of the page says it once
     parts.markers.update(shown.map((uav) => ({ ...uav, isMarked: uav.isSimulated && isMixed })));
-    flightLayers.showUncertain(map, shown.filter(({ certainty }) => certainty !== MEASURED));
+    flightLayers.showUncertain(
+      map,
+      shown.filter(({ certainty }) => certainty !== MEASURED),
+    );
     const chosen = shown.find(({ isChosen }) => isChosen) ?? null;
     parts.closeUp.update(chosen, collection(routesShown(state)), flownOf(state));
     if (state.isFollowing && chosen) map.easeTo({ center: chosen.position, duration: calm.matches ? 0 : 300 });
   }
 
   function drawTargets({ missions, details }) {
-    parts.pills.update(missions.flatMap((mission) => {
-      const detail = details.get(mission.id);
-      const numbers = numbersOf(detail);
-      return mission.targets.map((target) => ({ key: `${mission.id} ${target.place}`, position: detail?.targets[target.place]?.position ?? null, sequence: target.uav, letter: target.uav === null ? "" : routeLetter(target.uav), number: numbers.get(target.place) ?? target.place + 1, name: `${pillOf(target, numbers)} ${target.label}`, state: target.state, isMissed: false }));
-    }).filter(({ position }) => position));
+    parts.pills.update(
+      missions
+        .flatMap((mission) => {
+          const detail = details.get(mission.id);
+          const numbers = numbersOf(detail);
+          return mission.targets.map((target) => ({
+            key: `${mission.id} ${target.place}`,
+            position: detail?.targets[target.place]?.position ?? null,
+            sequence: target.uav,
+            letter: target.uav === null ? "" : routeLetter(target.uav),
+            number: numbers.get(target.place) ?? target.place + 1,
+            name: `${pillOf(target, numbers)} ${target.label}`,
+            state: target.state,
+            isMissed: false,
+          }));
+        })
+        .filter(({ position }) => position),
+    );
   }
 
   function start() {
     flightLayers.addTo(map, view.palette());
-    parts = { markers: createUavMarkers(map, { onPick: pick }), pills: createTargetPills(map), closeUp: createCloseUp(view, frame, page) };
+    parts = {
+      markers: createUavMarkers(map, { onPick: pick }),
+      pills: createTargetPills(map),
+      closeUp: createCloseUp(view, frame, page),
+    };
     store.listen(["missions", "details"], (state) => {
       routesLayer.update(map, routesShown(state));
       drawTargets(state);
@@ -82,7 +133,11 @@ export function mountMonitorMap(store, page, { pick }) {
     store.listen(["offered"], ({ offered }) => flightLayers.showOffered(map, offered));
     store.listen(["ground"], ({ ground }) => controls.setGround(ground));
     map.on("zoomend", () => drawUavs(store.state));
-    store.listen(["uavs"], ({ uavs }) => map.getCanvas().setAttribute("aria-label", t("Map, {uavs}", { uavs: tn(uavs.length, "{count} UAV", "{count} UAVs") })));
+    store.listen(["uavs"], ({ uavs }) =>
+      map
+        .getCanvas()
+        .setAttribute("aria-label", t("Map, {uavs}", { uavs: tn(uavs.length, "{count} UAV", "{count} UAVs") })),
+    );
   }
 
   function positions(state) {
@@ -106,7 +161,12 @@ export function mountMonitorMap(store, page, { pick }) {
     /** Brings a UAV into view, near enough to see what it does. */
     jumpTo(id) {
       const uav = drawn(store.state).find((entry) => entry.id === id);
-      if (uav) map.easeTo({ center: uav.position, zoom: Math.max(map.getZoom(), NEAR_ZOOM), duration: calm.matches ? 0 : 350 });
+      if (uav)
+        map.easeTo({
+          center: uav.position,
+          zoom: Math.max(map.getZoom(), NEAR_ZOOM),
+          duration: calm.matches ? 0 : 350,
+        });
       return Boolean(uav);
     },
     showPlace(position) {

@@ -18,7 +18,9 @@ export function createTargetPills(map) {
   function draw() {
     const placed = pills.slice(0, MOST).map((pill) => ({ ...pill, ...map.project(pill.position) }));
     const groups = mergePills(placed);
-    const now = JSON.stringify(groups.map(({ label, members }) => [label, members.map(({ key, state }) => [key, state])]));
+    const now = JSON.stringify(
+      groups.map(({ label, members }) => [label, members.map(({ key, state }) => [key, state])]),
+    );
     if (now === drawn) return;
     drawn = now;
     markers.forEach((marker) => marker.remove());
@@ -26,7 +28,16 @@ export function createTargetPills(map) {
       const [first] = members;
       const state = stateOf(members);
       const words = members.map(({ name, state: own }) => `${name}: ${STATES[own].words}`).join("; ");
-      const element = h("span", { class: `map-pill live-pill ${state} ${first.sequence === null ? "waiting" : `route-${routeNumber(first.sequence)}`}`, role: "img", "aria-label": t("Target {label}: {names}", { label, names: words }), title: words }, h("span", { class: "pill" }, label));
+      const element = h(
+        "span",
+        {
+          class: `map-pill live-pill ${state} ${first.sequence === null ? "waiting" : `route-${routeNumber(first.sequence)}`}`,
+          role: "img",
+          "aria-label": t("Target {label}: {names}", { label, names: words }),
+          title: words,
+        },
+        h("span", { class: "pill" }, label),
+      );
       return new maplibre.Marker({ element, subpixelPositioning: true }).setLngLat(first.position).addTo(map);
     });
   }

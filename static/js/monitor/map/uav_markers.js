@@ -16,7 +16,12 @@ function drawMarker({ id, onPick }) {
   const name = h("strong", {});
   const certainty = h("span", { class: "unseen" });
   const fact = h("span", {});
-  const element = h("button", { type: "button", tabindex: "-1", class: "map-flyer", onclick: (event) => (event.stopPropagation(), onPick(id)) }, h("span", { class: "flyer-mark" }, dart), h("span", { class: "flyer-label" }, letter, name, certainty, fact));
+  const element = h(
+    "button",
+    { type: "button", tabindex: "-1", class: "map-flyer", onclick: (event) => (event.stopPropagation(), onPick(id)) },
+    h("span", { class: "flyer-mark" }, dart),
+    h("span", { class: "flyer-label" }, letter, name, certainty, fact),
+  );
   return { element, dart, letter, name, certainty, fact };
 }
 
@@ -52,19 +57,35 @@ export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS }) {
     /** shown: [{ id, name, letter, place, position, heading_deg, certainty, fact, isMarked, isChosen }]; isMarked: as simulated */
     update(shown) {
       const seen = new Set(shown.map(({ id }) => id));
-      for (const [id, { marker }] of flyers) if (!seen.has(id)) (marker.remove(), flyers.delete(id));
+      for (const [id, { marker }] of flyers) if (!seen.has(id)) marker.remove(), flyers.delete(id);
       for (const uav of shown) {
         if (!flyers.has(uav.id)) {
           const parts = drawMarker({ id: uav.id, onPick });
-          const marker = new maplibre.Marker({ element: parts.element, anchor: "left", offset: [-20, 0], subpixelPositioning: true }).setLngLat(uav.position).addTo(map);
+          const marker = new maplibre.Marker({
+            element: parts.element,
+            anchor: "left",
+            offset: [-20, 0],
+            subpixelPositioning: true,
+          })
+            .setLngLat(uav.position)
+            .addTo(map);
           flyers.set(uav.id, { marker, parts, from: uav.position, to: uav.position, began_ms: 0 });
         }
         const flyer = flyers.get(uav.id);
         const { element, dart, letter, name, certainty, fact } = flyer.parts;
         const look = `map-flyer ${uav.certainty} ${uav.place === null ? "" : `route-${routeNumber(uav.place)}`}`.trim();
-        for (const kind of ["map-flyer", "measured", "estimated", "lost", ...[1, 2, 3, 4, 5, 6, 7, 8].map((number) => `route-${number}`)]) element.classList.toggle(kind, look.split(" ").includes(kind));
+        for (const kind of [
+          "map-flyer",
+          "measured",
+          "estimated",
+          "lost",
+          ...[1, 2, 3, 4, 5, 6, 7, 8].map((number) => `route-${number}`),
+        ])
+          element.classList.toggle(kind, look.split(" ").includes(kind));
         element.classList.toggle("chosen", uav.isChosen);
-        certainty.textContent = uav.fact.includes(CERTAINTIES[uav.certainty]) ? ", " : `, ${CERTAINTIES[uav.certainty]}, `;
+        certainty.textContent = uav.fact.includes(CERTAINTIES[uav.certainty])
+          ? ", "
+          : `, ${CERTAINTIES[uav.certainty]}, `;
         dart.replaceChildren(shapeOf(uav.heading_deg));
         letter.hidden = uav.letter === "";
         letter.textContent = uav.letter;

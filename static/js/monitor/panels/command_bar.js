@@ -21,11 +21,26 @@ export function mountCommandBar(store, commanding) {
   const letter = h("span", { class: "letter" });
   const name = h("strong", {});
   const buttons = BUTTONS.map(({ kind, image, words, isWide, isDanger }) => {
-    const button = h("button", { type: "button", class: `command-button ${isWide ? "wide" : ""} ${isDanger ? "danger" : ""}`, "data-kind": kind, onclick: () => void commanding.ask(store.state.chosen, button.dataset.kind, button) }, icon(image), h("span", {}, words));
+    const button = h(
+      "button",
+      {
+        type: "button",
+        class: `command-button ${isWide ? "wide" : ""} ${isDanger ? "danger" : ""}`,
+        "data-kind": kind,
+        onclick: () => void commanding.ask(store.state.chosen, button.dataset.kind, button),
+      },
+      icon(image),
+      h("span", {}, words),
+    );
     return button;
   });
   const [pause] = buttons;
-  const bar = h("div", { class: "command-bar float", role: "group", hidden: true }, h("span", { class: "command-who" }, letter, name), buttons);
+  const bar = h(
+    "div",
+    { class: "command-bar float", role: "group", hidden: true },
+    h("span", { class: "command-who" }, letter, name),
+    buttons,
+  );
   byId("main").append(bar);
   const chosenFlyer = (state) => flyingUavs(state).find(({ id }) => id === state.chosen) ?? null;
 
@@ -46,15 +61,29 @@ export function mountCommandBar(store, commanding) {
     pause.dataset.kind = kind;
     pause.replaceChildren(icon(kind === "resume" ? "play" : "pause"), h("span", {}, KINDS[kind]));
   });
-  for (const [id, kind] of [["pause-all", "pause"], ["return-all", "return"]]) byId(id).addEventListener("click", () => void commanding.askAll(kind, byId(id)));
-  store.listen(["uavs", "missions"], (state) => ["pause-all", "return-all"].forEach((id) => (byId(id).disabled = flyingUavs(state).length === 0)));
+  for (const [id, kind] of [
+    ["pause-all", "pause"],
+    ["return-all", "return"],
+  ])
+    byId(id).addEventListener("click", () => void commanding.askAll(kind, byId(id)));
+  store.listen(["uavs", "missions"], (state) =>
+    ["pause-all", "return-all"].forEach((id) => (byId(id).disabled = flyingUavs(state).length === 0)),
+  );
 
-  const key = (keys, kind, words) => ({ keys: [keys], words, act: () => {
-    const uav = chosenFlyer(store.state);
-    if (!uav) return false;
-    void commanding.ask(uav.id, kind, buttons.find((button) => button.dataset.kind === kind));
-    return true;
-  } });
+  const key = (keys, kind, words) => ({
+    keys: [keys],
+    words,
+    act: () => {
+      const uav = chosenFlyer(store.state);
+      if (!uav) return false;
+      void commanding.ask(
+        uav.id,
+        kind,
+        buttons.find((button) => button.dataset.kind === kind),
+      );
+      return true;
+    },
+  });
   return [
     key("shift+p", "pause", t("Pause the chosen UAV")),
     key("shift+h", "hold", t("Hold the chosen UAV")),

@@ -8,7 +8,12 @@ import { alertsInOrder, isUnanswered } from "../order.js";
 /** open() shows the alerts and offers. */
 export function mountUrgent(store, { open }) {
   const words = h("span", {});
-  const box = h("div", { class: "urgent float", hidden: true }, words, h("button", { type: "button", class: "text-button", onclick: open }, t("Decide")));
+  const box = h(
+    "div",
+    { class: "urgent float", hidden: true },
+    words,
+    h("button", { type: "button", class: "text-button", onclick: open }, t("Decide")),
+  );
   byId("map").parentElement.append(box);
   store.listen(["alerts", "offers"], ({ alerts, offers }) => {
     const [worst] = alertsInOrder(alerts.filter(isUnanswered)).filter(({ level }) => level !== "advisory");
@@ -16,10 +21,16 @@ export function mountUrgent(store, { open }) {
     box.hidden = !worst && !offer;
     if (worst) {
       box.className = `urgent float ${worst.level}`;
-      words.replaceChildren(icon(worst.level === "critical" ? "octagon-alert" : "triangle-alert"), h("strong", {}, worst.message));
+      words.replaceChildren(
+        icon(worst.level === "critical" ? "octagon-alert" : "triangle-alert"),
+        h("strong", {}, worst.message),
+      );
     } else if (offer) {
       box.className = "urgent float offered";
-      words.replaceChildren(icon("waypoints"), h("span", {}, h("strong", {}, `${t("Another plan is offered")}. `), `${causeWords(offer)}.`));
+      words.replaceChildren(
+        icon("waypoints"),
+        h("span", {}, h("strong", {}, `${t("Another plan is offered")}. `), `${causeWords(offer)}.`),
+      );
     }
   });
 }

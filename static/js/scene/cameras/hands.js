@@ -4,8 +4,16 @@ const TURN_DEG_PER_PX = 0.28;
 const WHEEL = 0.0014;
 const CLICK_PX = 5;
 const HELD = {
-  arrowleft: { turn: [-1, 0] }, arrowright: { turn: [1, 0] }, arrowup: { turn: [0, 1] }, arrowdown: { turn: [0, -1] },
-  w: { move: [1, 0, 0] }, s: { move: [-1, 0, 0] }, a: { move: [0, -1, 0] }, d: { move: [0, 1, 0] }, e: { move: [0, 0, 1] }, q: { move: [0, 0, -1] },
+  arrowleft: { turn: [-1, 0] },
+  arrowright: { turn: [1, 0] },
+  arrowup: { turn: [0, 1] },
+  arrowdown: { turn: [0, -1] },
+  w: { move: [1, 0, 0] },
+  s: { move: [-1, 0, 0] },
+  a: { move: [0, -1, 0] },
+  d: { move: [0, 1, 0] },
+  e: { move: [0, 0, 1] },
+  q: { move: [0, 0, -1] },
 };
 const TURNS_DEG_S = 55;
 const MOVES_MPS = 22;
@@ -19,7 +27,10 @@ export function listenToHands(canvas, rig, { onChange, onPick }) {
   let isFast = false;
   const heightPx = () => canvas.clientHeight || 1;
 
-  const middleOf = (points) => [points.reduce((sum, [x]) => sum + x, 0) / points.length, points.reduce((sum, [, y]) => sum + y, 0) / points.length];
+  const middleOf = (points) => [
+    points.reduce((sum, [x]) => sum + x, 0) / points.length,
+    points.reduce((sum, [, y]) => sum + y, 0) / points.length,
+  ];
   const spreadOf = ([[xa, ya], [xb, yb]]) => Math.hypot(xa - xb, ya - yb);
 
   function down(event) {
@@ -39,7 +50,8 @@ export function listenToHands(canvas, rig, { onChange, onPick }) {
     if (fingers.size === 1) {
       const isMoving = event.shiftKey || event.ctrlKey || (event.buttons & 6) !== 0 || rig.mode === "top";
       if (isMoving) rig.pan(-dx / heightPx(), dy / heightPx());
-      else if (rig.mode === "free" || rig.mode === "onboard") rig.turn(-dx * TURN_DEG_PER_PX * 0.6, dy * TURN_DEG_PER_PX * 0.6);
+      else if (rig.mode === "free" || rig.mode === "onboard")
+        rig.turn(-dx * TURN_DEG_PER_PX * 0.6, dy * TURN_DEG_PER_PX * 0.6);
       else rig.turn(dx * TURN_DEG_PER_PX, dy * TURN_DEG_PER_PX);
     } else if (fingers.size === 2) {
       const after = [...fingers.values()];
@@ -54,7 +66,8 @@ export function listenToHands(canvas, rig, { onChange, onPick }) {
     const at = fingers.get(event.pointerId);
     if (!at) return;
     fingers.delete(event.pointerId);
-    if (event.type === "pointerup" && fingers.size === 0 && moved_px < CLICK_PX && event.button === 0) onPick({ x: at[0], y: at[1] });
+    if (event.type === "pointerup" && fingers.size === 0 && moved_px < CLICK_PX && event.button === 0)
+      onPick({ x: at[0], y: at[1] });
   }
 
   function wheel(event) {
@@ -78,7 +91,13 @@ export function listenToHands(canvas, rig, { onChange, onPick }) {
   const releaseAll = () => held.clear();
 
   const menu = (event) => event.preventDefault(); // the right button moves
-  const listeners = [["pointerdown", down], ["pointermove", move], ["pointerup", up], ["pointercancel", up], ["contextmenu", menu]];
+  const listeners = [
+    ["pointerdown", down],
+    ["pointermove", move],
+    ["pointerup", up],
+    ["pointercancel", up],
+    ["contextmenu", menu],
+  ];
   for (const [name, act] of listeners) canvas.addEventListener(name, act);
   canvas.addEventListener("wheel", wheel, { passive: false });
   document.addEventListener("keyup", release);

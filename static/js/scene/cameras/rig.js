@@ -52,7 +52,17 @@ export function createRig({ isCalm = () => false } = {}) {
       case "onboard": {
         const away = subject?.camera ?? towards(heading_deg, elevation_deg);
         const seen = directionOf(away);
-        return { eye: plus(middle, [0, -0.12, 0]), look: plus(middle, towards(seen.bearing_deg + bearing_deg, within(seen.elevation_deg + elevation_deg - BEGINNINGS.onboard.elevation_deg, -88, 60)), 10) };
+        return {
+          eye: plus(middle, [0, -0.12, 0]),
+          look: plus(
+            middle,
+            towards(
+              seen.bearing_deg + bearing_deg,
+              within(seen.elevation_deg + elevation_deg - BEGINNINGS.onboard.elevation_deg, -88, 60),
+            ),
+            10,
+          ),
+        };
       }
       default:
         return { eye: rig.eye, look: plus(rig.eye, towards(bearing_deg, elevation_deg), 10) };
@@ -83,7 +93,9 @@ export function createRig({ isCalm = () => false } = {}) {
   }
 
   /** Whether the next frame would be another one though nothing flies. */
-  const isMoving = (subject) => rig.isGliding || (rig.mode === "chase" && heading_deg !== null && Math.abs(turn_deg(heading_deg, subject?.heading_deg ?? 0)) > 0.2);
+  const isMoving = (subject) =>
+    rig.isGliding ||
+    (rig.mode === "chase" && heading_deg !== null && Math.abs(turn_deg(heading_deg, subject?.heading_deg ?? 0)) > 0.2);
 
   return Object.assign(rig, {
     pose,
@@ -95,7 +107,10 @@ export function createRig({ isCalm = () => false } = {}) {
       if (mode === "free" && shown) {
         rig.eye = shown.eye;
         const seen = directionOf(minus(shown.look, shown.eye));
-        Object.assign(views.free, { bearing_deg: seen.bearing_deg, elevation_deg: within(seen.elevation_deg, -85, 60) });
+        Object.assign(views.free, {
+          bearing_deg: seen.bearing_deg,
+          elevation_deg: within(seen.elevation_deg, -85, 60),
+        });
       }
       rig.mode = mode;
       rig.offset = [0, 0, 0];
@@ -120,7 +135,8 @@ export function createRig({ isCalm = () => false } = {}) {
     /** factor above 1: farther away; the free camera goes back and forth. */
     zoom(factor) {
       if (rig.mode === "free") return rig.move(Math.log(factor) * -60, 0, 0);
-      if (rig.mode !== "onboard") view().distance_m = within(view().distance_m * factor, NEAREST_M[rig.mode], FARTHEST_M);
+      if (rig.mode !== "onboard")
+        view().distance_m = within(view().distance_m * factor, NEAREST_M[rig.mode], FARTHEST_M);
       return undefined;
     },
     /** Along the picture's plane, in shares of its height. */
@@ -128,7 +144,8 @@ export function createRig({ isCalm = () => false } = {}) {
       const { bearing_deg, distance_m } = view();
       if (rig.mode === "onboard") return rig.turn(right * 40, up * 40);
       if (rig.mode === "free") return rig.move(0, right * 40, up * 40);
-      const facing_deg = rig.mode === "top" ? bearing_deg : rig.mode === "chase" ? heading_deg + bearing_deg : bearing_deg + 180;
+      const facing_deg =
+        rig.mode === "top" ? bearing_deg : rig.mode === "chase" ? heading_deg + bearing_deg : bearing_deg + 180;
       const size_m = distance_m * 0.85;
       const [across, ahead] = [towards(facing_deg + 90), rig.mode === "top" ? towards(facing_deg) : [0, 1, 0]];
       rig.offset = plus(plus(rig.offset, across, right * size_m), ahead, up * size_m);
@@ -139,7 +156,11 @@ export function createRig({ isCalm = () => false } = {}) {
       if (rig.mode !== "free") rig.setMode("free");
       rig.isGliding = false;
       const { bearing_deg, elevation_deg } = view();
-      rig.eye = plus(plus(plus(rig.eye, towards(bearing_deg, elevation_deg), ahead_m), towards(bearing_deg + 90), right_m), [0, 1, 0], up_m);
+      rig.eye = plus(
+        plus(plus(rig.eye, towards(bearing_deg, elevation_deg), ahead_m), towards(bearing_deg + 90), right_m),
+        [0, 1, 0],
+        up_m,
+      );
     },
     /** As a link keeps it. */
     state: () => ({ mode: rig.mode, ...view(), eye: rig.eye, offset: rig.offset }),

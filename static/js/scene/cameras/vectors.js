@@ -15,7 +15,10 @@ export function towards(bearing_deg, elevation_deg = 0) {
 
 /** Bearing and elevation [deg] of a direction: the way back of `towards`. */
 export function directionOf([x, y, z]) {
-  return { bearing_deg: ((Math.atan2(x, -z) / RADIANS) + 360) % 360, elevation_deg: Math.atan2(y, Math.hypot(x, z)) / RADIANS };
+  return {
+    bearing_deg: (Math.atan2(x, -z) / RADIANS + 360) % 360,
+    elevation_deg: Math.atan2(y, Math.hypot(x, z)) / RADIANS,
+  };
 }
 
 /** From one bearing to another the short way, -180 to 180 [deg]. */

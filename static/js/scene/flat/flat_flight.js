@@ -3,7 +3,12 @@
 import { ESTIMATED, LOST, MEASURED } from "../sources/pieces.js";
 
 const ROUTES = 8;
-const DART = [[0, -13], [9, 11], [0, 6], [-9, 11]];
+const DART = [
+  [0, -13],
+  [9, 11],
+  [0, 6],
+  [-9, 11],
+];
 const REST = 0.35; // of what is not looked at
 const LEAST_RING_PX = 14;
 
@@ -11,7 +16,8 @@ const colourOf = (palette, place) => palette.routes[place % ROUTES];
 
 function stroke(context, positions, onScreen, until = Infinity) {
   context.beginPath();
-  for (let at = 0; at < positions.length && at / 3 < until; at += 3) context[at ? "lineTo" : "moveTo"](...onScreen([positions[at], positions[at + 1], positions[at + 2]]));
+  for (let at = 0; at < positions.length && at / 3 < until; at += 3)
+    context[at ? "lineTo" : "moveTo"](...onScreen([positions[at], positions[at + 1], positions[at + 2]]));
   context.stroke();
 }
 
@@ -72,7 +78,15 @@ function ring(context, { along_m, across_m, bearing_deg }, metresPerPixel, turn,
   context.save();
   context.rotate((bearing_deg * Math.PI) / 180 - turn);
   context.beginPath();
-  context.ellipse(0, 0, Math.max(LEAST_RING_PX, across_m / metresPerPixel), Math.max(LEAST_RING_PX, along_m / metresPerPixel), 0, 0, 2 * Math.PI);
+  context.ellipse(
+    0,
+    0,
+    Math.max(LEAST_RING_PX, across_m / metresPerPixel),
+    Math.max(LEAST_RING_PX, along_m / metresPerPixel),
+    0,
+    0,
+    2 * Math.PI,
+  );
   context.globalAlpha = 0.15;
   context.fillStyle = colour;
   context.fill();

@@ -1,12 +1,21 @@
 /** Zones, railways, bridges, lines and towers from above, on a plain canvas. */
 
-const VOLTAGES = [[380_000, "volt400", 3], [200_000, "volt220", 2.2], [100_000, "volt132", 1.6], [50_000, "volt66", 1.1], [0, "volt20", 0.8]];
+const VOLTAGES = [
+  [380_000, "volt400", 3],
+  [200_000, "volt220", 2.2],
+  [100_000, "volt132", 1.6],
+  [50_000, "volt66", 1.1],
+  [0, "volt20", 0.8],
+];
 const GRID_M = [10, 20, 50, 100, 200, 500, 1_000, 2_000, 5_000, 10_000];
 const GRID_PX = 70;
 const TOWERS_PX = 0.18; // pixels a metre, from which on towers are drawn
 const HATCH_PX = 9;
 
-const lookOf = (voltage_v) => (voltage_v === null || voltage_v === undefined ? ["voltUnknown", 1.2] : VOLTAGES.find(([least]) => voltage_v >= least).slice(1));
+const lookOf = (voltage_v) =>
+  voltage_v === null || voltage_v === undefined
+    ? ["voltUnknown", 1.2]
+    : VOLTAGES.find(([least]) => voltage_v >= least).slice(1);
 
 export function drawGround(context, { scene, frame, onScreen, palette, metresPerPixel, size }) {
   const at = ([lon, lat]) => onScreen(frame.toLocal(lon, lat, 0));
@@ -27,7 +36,12 @@ export function drawGround(context, { scene, frame, onScreen, palette, metresPer
   for (const { polygons } of scene.bridges) for (const outline of polygons) line(outline, palette.bridge, 1.6);
   for (const span of scene.spans) {
     const [name, width] = lookOf(span.voltage_v);
-    line([scene.supports[span.from].position, scene.supports[span.to].position], palette[name], width, name === "voltUnknown" ? [4, 2] : []);
+    line(
+      [scene.supports[span.from].position, scene.supports[span.to].position],
+      palette[name],
+      width,
+      name === "voltUnknown" ? [4, 2] : [],
+    );
   }
   context.setLineDash([]);
   if (1 / metresPerPixel < TOWERS_PX) return;
@@ -49,7 +63,10 @@ function graticule(context, { onScreen, palette, metresPerPixel, size }) {
   const step = GRID_M.find((metres) => metres / metresPerPixel >= GRID_PX) ?? GRID_M.at(-1);
   const reach = Math.ceil((Math.hypot(size.width, size.height) * metresPerPixel) / step) + 1;
   const [cx, cy] = onScreen([0, 0, 0]);
-  const middle = [Math.round(((size.width / 2 - cx) * metresPerPixel) / step), Math.round(((size.height / 2 - cy) * metresPerPixel) / step)];
+  const middle = [
+    Math.round(((size.width / 2 - cx) * metresPerPixel) / step),
+    Math.round(((size.height / 2 - cy) * metresPerPixel) / step),
+  ];
   context.strokeStyle = palette.graticule;
   context.lineWidth = 1;
   context.setLineDash([]);
@@ -89,7 +106,12 @@ function drawZone(context, { polygons }, at, palette) {
   context.lineWidth = 1;
   context.globalAlpha = 0.5;
   context.beginPath();
-  const [west, north, east, south] = [Math.max(box[0], -50), Math.max(box[1], -50), Math.min(box[2], context.canvas.width + 50), Math.min(box[3], context.canvas.height + 50)];
+  const [west, north, east, south] = [
+    Math.max(box[0], -50),
+    Math.max(box[1], -50),
+    Math.min(box[2], context.canvas.width + 50),
+    Math.min(box[3], context.canvas.height + 50),
+  ];
   for (let x = west - (south - north); x < east; x += HATCH_PX) {
     context.moveTo(x, south);
     context.lineTo(x + (south - north), north);

@@ -3,8 +3,8 @@
 import { makeFrame } from "../frame.js";
 import { makeGround } from "../geometry/ground.js";
 import { wiresOf } from "../geometry/wires.js";
-import { drawGround } from "./flat_ground.js";
 import { drawUavs, drawWays } from "./flat_flight.js";
+import { drawGround } from "./flat_ground.js";
 
 const FIELD_DEG = 40; // of the camera from above: the same place and width in both pictures
 
@@ -78,13 +78,31 @@ export function createFlatPicture(container, canvas, { palette, draw }) {
     },
     setDate() {},
     show({ pose, distance_m, drawn, chosen, looked, at_ms }) {
-      at = { centre: pose.look, metresPerPixel: (2 * distance_m * Math.tan((FIELD_DEG * Math.PI) / 360)) / size.height, turn: Math.atan2(pose.up[0], -pose.up[2]) };
+      at = {
+        centre: pose.look,
+        metresPerPixel: (2 * distance_m * Math.tan((FIELD_DEG * Math.PI) / 360)) / size.height,
+        turn: Math.atan2(pose.up[0], -pose.up[2]),
+      };
       context.setTransform(pixels, 0, 0, pixels, 0, 0);
       context.fillStyle = colours.ground;
       context.fillRect(0, 0, size.width, size.height);
-      drawGround(context, { scene, frame: picture.frame, onScreen, palette: colours, metresPerPixel: at.metresPerPixel, size });
+      drawGround(context, {
+        scene,
+        frame: picture.frame,
+        onScreen,
+        palette: colours,
+        metresPerPixel: at.metresPerPixel,
+        size,
+      });
       drawWays(context, { planned, flown, onScreen, palette: colours, at_ms, looked });
-      drawUavs(context, { drawn, chosen, onScreen, palette: colours, metresPerPixel: at.metresPerPixel, turn: at.turn });
+      drawUavs(context, {
+        drawn,
+        chosen,
+        onScreen,
+        palette: colours,
+        metresPerPixel: at.metresPerPixel,
+        turn: at.turn,
+      });
       return false;
     },
     project(place) {

@@ -47,13 +47,20 @@ export function drawFlight(source, { frame, groundAt, groundKind }) {
   }
 
   const flownLines = ({ place: number, pieces }) =>
-    pieces.filter(({ samples }) => samples.length > 1).map(({ kind, samples }) => ({ kind, positions: samples.flatMap((sample) => place(sample, takeOffs.get(number), trust)), at_ms: samples.map(({ at_ms }) => at_ms) }));
+    pieces
+      .filter(({ samples }) => samples.length > 1)
+      .map(({ kind, samples }) => ({
+        kind,
+        positions: samples.flatMap((sample) => place(sample, takeOffs.get(number), trust)),
+        at_ms: samples.map(({ at_ms }) => at_ms),
+      }));
 
   return {
     takeOffs,
     plannedLines: () => source.routes.map((route) => ({ place: route.place, positions: plannedLine(route) })),
     /** Planned places only fly: their way is the plan's own. */
-    flownLines: () => (source.kind === "plan" ? [] : source.routes.map((route) => ({ place: route.place, pieces: flownLines(route) }))),
+    flownLines: () =>
+      source.kind === "plan" ? [] : source.routes.map((route) => ({ place: route.place, pieces: flownLines(route) })),
     targetPlace: ({ position, height_m = null }) => {
       const [x, , z] = frame.toLocal(position[0], position[1], 0);
       return [x, groundAt(x, z) + (height_m === null ? PLAIN_TARGET_M : height_m * TARGET_SHARE), z];
@@ -65,9 +72,19 @@ export function drawFlight(source, { frame, groundAt, groundKind }) {
       const away = target && minus(target, [x, y, z]);
       const seesTarget = away && moment.isInAir !== false && lengthOf(away) > 0.5 && lengthOf(away) < SEES_TARGET_M;
       return {
-        route: route.place, moment, place: [x, y, z], ground, heading_deg: moment.heading_deg ?? 0, roll_deg: moment.roll_deg ?? 0, pitch_deg: moment.pitch_deg ?? 0,
-        camera: seesTarget ? away.map((metres) => metres / lengthOf(away)) : towards(moment.heading_deg ?? 0, CAMERA_DOWN_DEG), seesTarget: Boolean(seesTarget),
-        height_agl_m: Math.max(0, y - ground), isInAir: moment.isInAir !== false && !moment.isOver,
+        route: route.place,
+        moment,
+        place: [x, y, z],
+        ground,
+        heading_deg: moment.heading_deg ?? 0,
+        roll_deg: moment.roll_deg ?? 0,
+        pitch_deg: moment.pitch_deg ?? 0,
+        camera: seesTarget
+          ? away.map((metres) => metres / lengthOf(away))
+          : towards(moment.heading_deg ?? 0, CAMERA_DOWN_DEG),
+        seesTarget: Boolean(seesTarget),
+        height_agl_m: Math.max(0, y - ground),
+        isInAir: moment.isInAir !== false && !moment.isOver,
       };
     },
   };

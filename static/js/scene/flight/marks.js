@@ -1,7 +1,18 @@
 /** Lines and arrows round the UAVs of a moment: the pole to the ground, the way since the last report, the wind. */
 
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineSegments, LineBasicMaterial, Mesh, MeshBasicMaterial, Vector3 } from "../three.js";
 import { towards } from "../cameras/vectors.js";
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  MeshBasicMaterial,
+  Vector3,
+} from "../three.js";
 
 const WIND_ABOVE_M = 0.4; // the arrow's height over the UAV
 const WIND_BESIDE_M = 0.9; // of its tip from the UAV: it points at it from where the wind comes
@@ -11,8 +22,17 @@ const DASHES = 24;
 
 /** A flat arrow towards the north, 1 m long, its middle at 0. */
 function arrowShape() {
-  const outline = [[-0.05, 0.5], [0.05, 0.5], [0.05, -0.1], [-0.05, -0.1]];
-  const head = [[-0.17, -0.1], [0.17, -0.1], [0, -0.5]];
+  const outline = [
+    [-0.05, 0.5],
+    [0.05, 0.5],
+    [0.05, -0.1],
+    [-0.05, -0.1],
+  ];
+  const head = [
+    [-0.17, -0.1],
+    [0.17, -0.1],
+    [0, -0.5],
+  ];
   const corners = [outline[0], outline[1], outline[2], outline[0], outline[2], outline[3], ...head];
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(new Float32Array(corners.flatMap(([x, z]) => [x, 0, z])), 3));
@@ -26,7 +46,10 @@ export function createMarks(count) {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", position);
   geometry.setAttribute("color", colours);
-  const lines = new LineSegments(geometry, new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.85 }));
+  const lines = new LineSegments(
+    geometry,
+    new LineBasicMaterial({ vertexColors: true, transparent: true, opacity: 0.85 }),
+  );
   lines.frustumCulled = false;
   const arrow = new Mesh(arrowShape(), new MeshBasicMaterial({ side: DoubleSide, transparent: true, opacity: 0.9 }));
   arrow.visible = false;
@@ -68,7 +91,9 @@ export function createMarks(count) {
       const scale = Math.max(1, 40 * metresPerPixel(uav.place));
       const long_m = scale * (0.5 + 1.5 * Math.min(1, wind.speed_mps / FULL_WIND_MPS));
       const from = new Vector3(...towards(wind.from_deg));
-      arrow.position.set(uav.place[0], uav.place[1] + WIND_ABOVE_M * scale, uav.place[2]).addScaledVector(from, WIND_BESIDE_M * scale + long_m / 2);
+      arrow.position
+        .set(uav.place[0], uav.place[1] + WIND_ABOVE_M * scale, uav.place[2])
+        .addScaledVector(from, WIND_BESIDE_M * scale + long_m / 2);
       arrow.lookAt(from.add(arrow.position)); // its tail, at +z, is where the wind comes from
       arrow.scale.setScalar(long_m);
       arrow.material.color.set(isNight ? WIND_AT_NIGHT : palette.inkSecond);

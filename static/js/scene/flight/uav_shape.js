@@ -1,10 +1,23 @@
 /** A multirotor made of boxes, tubes and balls: metres, its nose to the north (−z), its middle at 0. */
 
-import { BoxGeometry, BufferAttribute, BufferGeometry, Color, CylinderGeometry, Matrix4, SphereGeometry } from "../three.js";
+import {
+  BoxGeometry,
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  CylinderGeometry,
+  Matrix4,
+  SphereGeometry,
+} from "../three.js";
 
 export const SPAN_M = 1.05; // from rotor tip to rotor tip
 export const ROTOR_M = 0.19; // radius
-export const ROTORS = [[-0.27, -0.25], [0.27, -0.25], [-0.27, 0.27], [0.27, 0.27]].map(([x, z]) => [x, 0.085, z]);
+export const ROTORS = [
+  [-0.27, -0.25],
+  [0.27, -0.25],
+  [-0.27, 0.27],
+  [0.27, 0.27],
+].map(([x, z]) => [x, 0.085, z]);
 /** A rotor turns against its neighbours. */
 export const TURNS = [1, -1, -1, 1];
 
@@ -13,7 +26,8 @@ const DARK = "#2b3033";
 const LENS = "#0c1216";
 const NOSE = "#f4f2ec";
 
-const moved = (geometry, [x, y, z], turn = null) => geometry.applyMatrix4(turn ?? new Matrix4()).applyMatrix4(new Matrix4().makeTranslation(x, y, z));
+const moved = (geometry, [x, y, z], turn = null) =>
+  geometry.applyMatrix4(turn ?? new Matrix4()).applyMatrix4(new Matrix4().makeTranslation(x, y, z));
 
 /** One geometry of several, each in its own colour (sRGB hex): drawn at once. */
 export function merged(parts) {
@@ -25,7 +39,8 @@ export function merged(parts) {
     const { r, g, b } = new Color(parts[index].color);
     position.set(geometry.attributes.position.array, at * 3);
     normal.set(geometry.attributes.normal.array, at * 3);
-    for (let vertex = 0; vertex < geometry.attributes.position.count; vertex += 1) color.set([r, g, b], (at + vertex) * 3);
+    for (let vertex = 0; vertex < geometry.attributes.position.count; vertex += 1)
+      color.set([r, g, b], (at + vertex) * 3);
     at += geometry.attributes.position.count;
     geometry.dispose();
     parts[index].geometry.dispose();
@@ -48,15 +63,35 @@ export function bodyShape() {
     ];
   });
   const legs = [-0.13, 0.13].flatMap((x) => [
-    { geometry: moved(new CylinderGeometry(0.008, 0.008, 0.4, 6), [x, -0.12, 0.01], new Matrix4().makeRotationX(Math.PI / 2)), color: DARK },
-    ...[-0.1, 0.12].map((z) => ({ geometry: moved(new CylinderGeometry(0.008, 0.008, 0.11, 6), [x * 0.9, -0.07, z]), color: DARK })),
+    {
+      geometry: moved(
+        new CylinderGeometry(0.008, 0.008, 0.4, 6),
+        [x, -0.12, 0.01],
+        new Matrix4().makeRotationX(Math.PI / 2),
+      ),
+      color: DARK,
+    },
+    ...[-0.1, 0.12].map((z) => ({
+      geometry: moved(new CylinderGeometry(0.008, 0.008, 0.11, 6), [x * 0.9, -0.07, z]),
+      color: DARK,
+    })),
   ]);
   return merged([
-    { geometry: moved(new SphereGeometry(0.5, 20, 12), [0, 0.01, 0], new Matrix4().makeScale(0.26, 0.13, 0.4)), color: TINTED },
+    {
+      geometry: moved(new SphereGeometry(0.5, 20, 12), [0, 0.01, 0], new Matrix4().makeScale(0.26, 0.13, 0.4)),
+      color: TINTED,
+    },
     { geometry: moved(new BoxGeometry(0.12, 0.045, 0.2), [0, 0.075, 0.03]), color: TINTED },
     { geometry: moved(new BoxGeometry(0.07, 0.022, 0.05), [0, 0.045, -0.172]), color: NOSE },
     { geometry: moved(new SphereGeometry(0.048, 12, 8), [0, -0.075, -0.14]), color: DARK },
-    { geometry: moved(new CylinderGeometry(0.022, 0.026, 0.03, 10), [0, -0.075, -0.19], new Matrix4().makeRotationX(Math.PI / 2)), color: LENS },
+    {
+      geometry: moved(
+        new CylinderGeometry(0.022, 0.026, 0.03, 10),
+        [0, -0.075, -0.19],
+        new Matrix4().makeRotationX(Math.PI / 2),
+      ),
+      color: LENS,
+    },
     ...arms,
     ...legs,
   ]);
@@ -68,7 +103,9 @@ export function rotorShape() {
     { geometry: moved(new BoxGeometry(ROTOR_M * 1.96, 0.006, 0.024), [0, 0.012, 0]), color: DARK },
     { geometry: moved(new CylinderGeometry(0.014, 0.014, 0.024, 8), [0, 0.012, 0]), color: DARK },
   ]);
-  const disc = merged([{ geometry: moved(new CylinderGeometry(ROTOR_M, ROTOR_M, 0.002, 28), [0, 0.012, 0]), color: DARK }]);
+  const disc = merged([
+    { geometry: moved(new CylinderGeometry(ROTOR_M, ROTOR_M, 0.002, 28), [0, 0.012, 0]), color: DARK },
+  ]);
   const [solid, sheer] = [blades, disc].map(({ attributes }) => attributes);
   const count = solid.position.count + sheer.position.count;
   const whole = new BufferGeometry();

@@ -1,10 +1,24 @@
 /** UAVs of a moment: measured ones solid, estimated ones hollow in the ellipsoid that they are in, lost ones grey; rotors, camera cones. */
 
-import {
-  AdditiveBlending, Color, ConeGeometry, DoubleSide, Euler, Group, InstancedMesh, Matrix4, MeshBasicMaterial, MeshStandardMaterial, NormalBlending, Quaternion, ShaderMaterial, SphereGeometry, Vector3,
-} from "../three.js";
 import { RADIANS } from "../cameras/vectors.js";
 import { ESTIMATED, LOST, MEASURED, PLANNED } from "../sources/pieces.js";
+import {
+  AdditiveBlending,
+  Color,
+  ConeGeometry,
+  DoubleSide,
+  Euler,
+  Group,
+  InstancedMesh,
+  Matrix4,
+  MeshBasicMaterial,
+  MeshStandardMaterial,
+  NormalBlending,
+  Quaternion,
+  ShaderMaterial,
+  SphereGeometry,
+  Vector3,
+} from "../three.js";
 import { bodyShape, ROTORS, rotorShape, SPAN_M, TURNS } from "./uav_shape.js";
 
 const LEAST_PX = 40; // across: from far away it is drawn larger than it is
@@ -39,12 +53,23 @@ const RIM_FRAGMENT = `
   }`;
 
 /** See-through with a clear edge: what is hollow. */
-const hollow = (inner, rim) => new ShaderMaterial({ vertexShader: RIM_VERTEX, fragmentShader: RIM_FRAGMENT, uniforms: { inner: { value: inner }, rim: { value: rim } }, transparent: true, depthWrite: false, side: DoubleSide });
+const hollow = (inner, rim) =>
+  new ShaderMaterial({
+    vertexShader: RIM_VERTEX,
+    fragmentShader: RIM_FRAGMENT,
+    uniforms: { inner: { value: inner }, rim: { value: rim } },
+    transparent: true,
+    depthWrite: false,
+    side: DoubleSide,
+  });
 
 /** It is never as dark as the night: some of its own colour shines. */
 function litFromWithin(material) {
   material.onBeforeCompile = (shader) => {
-    shader.fragmentShader = shader.fragmentShader.replace("#include <emissivemap_fragment>", `#include <emissivemap_fragment>\n  totalEmissiveRadiance += diffuseColor.rgb * ${GLOW.toFixed(2)};`);
+    shader.fragmentShader = shader.fragmentShader.replace(
+      "#include <emissivemap_fragment>",
+      `#include <emissivemap_fragment>\n  totalEmissiveRadiance += diffuseColor.rgb * ${GLOW.toFixed(2)};`,
+    );
   };
   return material;
 }
@@ -66,19 +91,43 @@ export function createUavs(count) {
     return mesh;
   };
   const body = bodyShape();
-  const solid = many(body, litFromWithin(new MeshStandardMaterial({ vertexColors: true, roughness: 0.55, metalness: 0.05 })));
+  const solid = many(
+    body,
+    litFromWithin(new MeshStandardMaterial({ vertexColors: true, roughness: 0.55, metalness: 0.05 })),
+  );
   solid.castShadow = true;
   const ghosts = many(body, hollow(0.1, 0.95));
-  const rotors = many(rotorShape(), new MeshBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false, side: DoubleSide }), count * 4);
-  const cone = new ConeGeometry(Math.tan(CONE_HALF_DEG * RADIANS) * CONE_M, CONE_M, 4, 1, true).rotateY(Math.PI / 4).translate(0, -CONE_M / 2, 0); // its top at 0, opening downwards
-  const cones = many(cone, new MeshBasicMaterial({ transparent: true, opacity: 0.1, depthWrite: false, side: DoubleSide, blending: AdditiveBlending }));
+  const rotors = many(
+    rotorShape(),
+    new MeshBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false, side: DoubleSide }),
+    count * 4,
+  );
+  const cone = new ConeGeometry(Math.tan(CONE_HALF_DEG * RADIANS) * CONE_M, CONE_M, 4, 1, true)
+    .rotateY(Math.PI / 4)
+    .translate(0, -CONE_M / 2, 0); // its top at 0, opening downwards
+  const cones = many(
+    cone,
+    new MeshBasicMaterial({
+      transparent: true,
+      opacity: 0.1,
+      depthWrite: false,
+      side: DoubleSide,
+      blending: AdditiveBlending,
+    }),
+  );
   const bounds = many(new SphereGeometry(1, 32, 16), hollow(0.09, 0.6));
   ghosts.renderOrder = 4;
   bounds.renderOrder = 3;
   cones.renderOrder = 5;
 
   const [turn, tilt, at, size, matrix] = [new Quaternion(), new Euler(), new Vector3(), new Vector3(), new Matrix4()];
-  const [rotor, own, down, colour, aim] = [new Matrix4(), new Matrix4(), new Vector3(0, -1, 0), new Color(), new Vector3()];
+  const [rotor, own, down, colour, aim] = [
+    new Matrix4(),
+    new Matrix4(),
+    new Vector3(0, -1, 0),
+    new Color(),
+    new Vector3(),
+  ];
   let spin = 0; // radians
 
   function put(mesh, number, tint) {
@@ -110,7 +159,10 @@ export function createUavs(count) {
           own.copy(matrix);
           ROTORS.forEach((place, index) => {
             rotor.makeTranslation(place[0], place[1], place[2]);
-            matrix.makeRotationY(uav.isInAir ? spin * TURNS[index] + index : index).premultiply(rotor).premultiply(own);
+            matrix
+              .makeRotationY(uav.isInAir ? spin * TURNS[index] + index : index)
+              .premultiply(rotor)
+              .premultiply(own);
             put(rotors, numbers.rotors++, isDark ? BRIGHT : WHITE);
           });
         }
@@ -122,7 +174,15 @@ export function createUavs(count) {
         if (kind === ESTIMATED && bound) {
           const least = Math.max(LEAST_BOUND_M, LEAST_BOUND_PX * per_px);
           turn.setFromEuler(tilt.set(0, -bound.bearing_deg * RADIANS, 0));
-          matrix.compose(at, turn, size.set(Math.max(bound.across_m, least), Math.max(bound.height_m ?? 0, least * 0.5), Math.max(bound.along_m, least)));
+          matrix.compose(
+            at,
+            turn,
+            size.set(
+              Math.max(bound.across_m, least),
+              Math.max(bound.height_m ?? 0, least * 0.5),
+              Math.max(bound.along_m, least),
+            ),
+          );
           put(bounds, numbers.bounds++, uav.colour);
         }
       }

@@ -1,8 +1,18 @@
 /** Planned and flown ways as ribbons with height poles: one drawing for all routes of a kind, cut off at the moment that is shown. */
 
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, Group, LineSegments, Mesh, ShaderMaterial, Vector4 } from "../three.js";
 import { heightPoles, ribbon, stepped } from "../geometry/ribbon.js";
 import { ESTIMATED } from "../sources/pieces.js";
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  Group,
+  LineSegments,
+  Mesh,
+  ShaderMaterial,
+  Vector4,
+} from "../three.js";
 
 const ROUTES = 8;
 const PLANNED = { width_m: 0.16, least_px: 1.4, most_px: 3, poles_m: 120 };
@@ -59,8 +69,17 @@ function material({ isLine, width_m = 0, least_px = 1, most_px = 1, opacity, lat
     vertexShader: isLine ? LINE_VERTEX : VERTEX,
     fragmentShader: FRAGMENT,
     uniforms: {
-      viewport: { value: [1, 1] }, leastPx: { value: least_px }, mostPx: { value: most_px }, halfWidth: { value: width_m / 2 }, colours: { value: Array.from({ length: ROUTES }, () => new Color()) }, now: { value: FOR_EVER_S }, opacity: { value: opacity },
-      later: { value: later }, heads: { value: Array.from({ length: ROUTES }, () => new Vector4()) }, looked: { value: -1 }, rest: { value: 0.35 },
+      viewport: { value: [1, 1] },
+      leastPx: { value: least_px },
+      mostPx: { value: most_px },
+      halfWidth: { value: width_m / 2 },
+      colours: { value: Array.from({ length: ROUTES }, () => new Color()) },
+      now: { value: FOR_EVER_S },
+      opacity: { value: opacity },
+      later: { value: later },
+      heads: { value: Array.from({ length: ROUTES }, () => new Vector4()) },
+      looked: { value: -1 },
+      rest: { value: 0.35 },
     },
     transparent: true,
     depthWrite: false,
@@ -91,7 +110,8 @@ export function thinned({ positions, at_s, ...line }) {
   for (let point = 0; point < count; point += 1) {
     const [x, y, z] = positions.slice(point * 3, point * 3 + 3);
     const end = kept.length;
-    if (end && point < count - 1 && Math.hypot(x - kept[end - 3], y - kept[end - 2], z - kept[end - 1]) < APART_M) continue;
+    if (end && point < count - 1 && Math.hypot(x - kept[end - 3], y - kept[end - 2], z - kept[end - 1]) < APART_M)
+      continue;
     kept.push(x, y, z);
     if (at_s) times.push(at_s[point]);
   }
@@ -100,9 +120,15 @@ export function thinned({ positions, at_s, ...line }) {
 
 /** lines: [{ place, positions, at_s, dashed }] → attributes and index of all of them together. */
 export function ribbonArrays(lines) {
-  const drawn = lines.map(thinned).filter(({ positions }) => positions.length >= 6).map((line) => stepped(line, LONGEST_M)).map((line) => ({ ...line, band: ribbon(line.positions), tangents: tangentsOf(line.positions) }));
+  const drawn = lines
+    .map(thinned)
+    .filter(({ positions }) => positions.length >= 6)
+    .map((line) => stepped(line, LONGEST_M))
+    .map((line) => ({ ...line, band: ribbon(line.positions), tangents: tangentsOf(line.positions) }));
   const count = drawn.reduce((sum, { positions }) => sum + (positions.length / 3) * 2, 0);
-  const arrays = Object.fromEntries(Object.entries(ATTRIBUTES).map(([name, size]) => [name, new Float32Array(count * size)]));
+  const arrays = Object.fromEntries(
+    Object.entries(ATTRIBUTES).map(([name, size]) => [name, new Float32Array(count * size)]),
+  );
   const index = new Uint32Array(drawn.reduce((sum, { band }) => sum + band.index.length, 0));
   let [first, put] = [0, 0];
   for (const { place, positions, at_s, dashed, band, tangents } of drawn) {
@@ -146,8 +172,12 @@ function passing(positions, at_s) {
   let [point, way_m] = [0, 0];
   return (wanted_m) => {
     for (; point < at_s.length - 1; point += 1) {
-      const step_m = Math.hypot(positions[point * 3 + 3] - positions[point * 3], positions[point * 3 + 5] - positions[point * 3 + 2]);
-      if (way_m + step_m >= wanted_m) return at_s[point] + (at_s[point + 1] - at_s[point]) * (step_m > 0 ? (wanted_m - way_m) / step_m : 0);
+      const step_m = Math.hypot(
+        positions[point * 3 + 3] - positions[point * 3],
+        positions[point * 3 + 5] - positions[point * 3 + 2],
+      );
+      if (way_m + step_m >= wanted_m)
+        return at_s[point] + (at_s[point + 1] - at_s[point]) * (step_m > 0 ? (wanted_m - way_m) / step_m : 0);
       way_m += step_m;
     }
     return at_s.at(-1);
@@ -156,7 +186,8 @@ function passing(positions, at_s) {
 
 function geometryOf({ arrays, index = null }, sizes) {
   const geometry = new BufferGeometry();
-  for (const [name, array] of Object.entries(arrays)) geometry.setAttribute(name, new BufferAttribute(array, sizes[name]));
+  for (const [name, array] of Object.entries(arrays))
+    geometry.setAttribute(name, new BufferAttribute(array, sizes[name]));
   if (index) geometry.setIndex(new BufferAttribute(index, 1));
   return geometry;
 }
@@ -197,9 +228,24 @@ export function createWays(groundAt) {
     /** routes: of drawFlight().flownLines(); begins_ms: from which times are counted, so that they stay exact. */
     showFlown(routes, begins_ms) {
       from_ms = begins_ms;
-      const lines = routes.flatMap(({ place, pieces }) => pieces.map(({ kind, positions, at_ms }) => ({ place, positions, at_s: at_ms.map((at) => (at - from_ms) / 1_000), dashed: kind === ESTIMATED })));
+      const lines = routes.flatMap(({ place, pieces }) =>
+        pieces.map(({ kind, positions, at_ms }) => ({
+          place,
+          positions,
+          at_s: at_ms.map((at) => (at - from_ms) / 1_000),
+          dashed: kind === ESTIMATED,
+        })),
+      );
       refill(flown, ribbonArrays(lines), ATTRIBUTES);
-      refill(flownPoles, poleArrays(lines.filter(({ dashed }) => !dashed), groundAt, FLOWN.poles_m), { position: 3, route: 1, at: 1 });
+      refill(
+        flownPoles,
+        poleArrays(
+          lines.filter(({ dashed }) => !dashed),
+          groundAt,
+          FLOWN.poles_m,
+        ),
+        { position: 3, route: 1, at: 1 },
+      );
     },
     /** at_ms: what is later is faint; heads: UAVs as [{ route, place, radius_m }], which their ways do not cover; looked: a route's place, or null. */
     frame({ at_ms, heads, looked, viewport }) {
@@ -208,11 +254,13 @@ export function createWays(groundAt) {
         look.uniforms.looked.value = looked ?? -1;
         look.uniforms.viewport.value = viewport;
         look.uniforms.heads.value.forEach((head) => head.set(0, 0, 0, 0));
-        for (const { route, place, radius_m } of heads) look.uniforms.heads.value[route % ROUTES].set(...place, radius_m);
+        for (const { route, place, radius_m } of heads)
+          look.uniforms.heads.value[route % ROUTES].set(...place, radius_m);
       }
     },
     setPalette(palette) {
-      for (const { material: look } of all) look.uniforms.colours.value.forEach((colour, index) => colour.set(palette.routes[index]));
+      for (const { material: look } of all)
+        look.uniforms.colours.value.forEach((colour, index) => colour.set(palette.routes[index]));
     },
     dispose() {
       for (const { geometry, material: look } of all) {

@@ -62,7 +62,13 @@ function supportsOf(ring) {
     const isEnd = field === 0 || field === fields;
     const [middle, half] = [(across[0] + across[1]) / 2, (across[1] - across[0]) / 2 - (isEnd ? 0.3 : 0)];
     const wide = isEnd ? half : Math.min(half * 0.55, 6);
-    const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1], [-1, -1]];
+    const corners = [
+      [-1, -1],
+      [1, -1],
+      [1, 1],
+      [-1, 1],
+      [-1, -1],
+    ];
     walls.push(
       corners.map(([u, v]) => {
         const [far, side] = [along + (u * PIER_M) / 2, middle + v * wide];
@@ -77,7 +83,10 @@ function supportsOf(ring) {
 function widthAt(ring, [x0, z0], [along_x, along_z], along) {
   const crossings = [];
   for (let at = 0; at < ring.length - 1; at += 1) {
-    const [here, there] = [ring[at], ring[at + 1]].map(([x, z]) => [(x - x0) * along_x + (z - z0) * along_z - along, (z - z0) * along_x - (x - x0) * along_z]);
+    const [here, there] = [ring[at], ring[at + 1]].map(([x, z]) => [
+      (x - x0) * along_x + (z - z0) * along_z - along,
+      (z - z0) * along_x - (x - x0) * along_z,
+    ]);
     if (here[0] * there[0] < 0) crossings.push(here[1] + ((there[1] - here[1]) * -here[0]) / (there[0] - here[0]));
   }
   return crossings.length ? [Math.min(...crossings), Math.max(...crossings)] : null;

@@ -49,8 +49,19 @@ export function foldsOf(ground) {
   function joined(parts, [c0, r0, c1, r1]) {
     if (parts.length < 2) return parts;
     const [x0, z0, x1, z1] = [x(c0), z(r0), x(c1), z(r1)];
-    const isWhole = areaOf(parts) >= 2 * (x1 - x0) * (z1 - z0) * (1 - ALL) && parts.every((part) => part.every(([px, pz]) => px > x0 - ALL && px < x1 + ALL && pz > z0 - ALL && pz < z1 + ALL));
-    return isWhole ? [[[x0, z0], [x1, z0], [x1, z1], [x0, z1]]] : parts;
+    const isWhole =
+      areaOf(parts) >= 2 * (x1 - x0) * (z1 - z0) * (1 - ALL) &&
+      parts.every((part) => part.every(([px, pz]) => px > x0 - ALL && px < x1 + ALL && pz > z0 - ALL && pz < z1 + ALL));
+    return isWhole
+      ? [
+          [
+            [x0, z0],
+            [x1, z0],
+            [x1, z1],
+            [x0, z1],
+          ],
+        ]
+      : parts;
   }
 
   function descend(level, i, j, given, within_m, isFlat, put) {
@@ -66,19 +77,30 @@ export function foldsOf(ground) {
     }
     const half = 1 << (level - 1);
     const [c, r] = [c0 + half, r0 + half];
-    const halves = (own, isCut, at, axis) => (isCut ? [cut(own, (...p) => at - p[axis]), cut(own, (...p) => p[axis] - at)] : [own]);
+    const halves = (own, isCut, at, axis) =>
+      isCut ? [cut(own, (...p) => at - p[axis]), cut(own, (...p) => p[axis] - at)] : [own];
     halves(parts, c < c1, x(c), 0).forEach((column, di) => {
-      if (column.length) halves(column, r < r1, z(r), 1).forEach((own, dj) => own.length && descend(level - 1, 2 * i + di, 2 * j + dj, own, within_m, isFlat, put));
+      if (column.length)
+        halves(column, r < r1, z(r), 1).forEach(
+          (own, dj) => own.length && descend(level - 1, 2 * i + di, 2 * j + dj, own, within_m, isFlat, put),
+        );
     });
   }
 
   function countIn(level, i, j, box, within_m) {
     const [c0, r0, c1, r1] = corners(level, i, j);
-    if (c0 >= columns - 1 || r0 >= rows - 1 || x(c1) < box[0] || x(c0) > box[2] || z(r1) < box[1] || z(r0) > box[3]) return 0;
+    if (c0 >= columns - 1 || r0 >= rows - 1 || x(c1) < box[0] || x(c0) > box[2] || z(r1) < box[1] || z(r0) > box[3])
+      return 0;
     const { across, strays } = levels[level];
     if (level === 0 || strays[j * across + i] <= within_m) return 1;
     let sum = 0;
-    for (const [di, dj] of [[0, 0], [1, 0], [0, 1], [1, 1]]) sum += countIn(level - 1, 2 * i + di, 2 * j + dj, box, within_m);
+    for (const [di, dj] of [
+      [0, 0],
+      [1, 0],
+      [0, 1],
+      [1, 1],
+    ])
+      sum += countIn(level - 1, 2 * i + di, 2 * j + dj, box, within_m);
     return sum;
   }
 
@@ -93,8 +115,13 @@ export function foldsOf(ground) {
       const at = (px, pz) => [(px - west) / stepX, (pz - north) / stepZ];
       const [[au, av], [bu, bv]] = [at(ax, az), at(bx, bz)];
       const shares = [];
-      for (const [from, to] of [[au, bu], [av, bv], [av - au, bv - bu]]) {
-        for (let line = Math.ceil(Math.min(from, to)); line <= Math.max(from, to) && from !== to; line += 1) shares.push((line - from) / (to - from));
+      for (const [from, to] of [
+        [au, bu],
+        [av, bv],
+        [av - au, bv - bu],
+      ]) {
+        for (let line = Math.ceil(Math.min(from, to)); line <= Math.max(from, to) && from !== to; line += 1)
+          shares.push((line - from) / (to - from));
       }
       return shares.filter((share) => share > 1e-9 && share < 1 - 1e-9).sort((one, other) => one - other);
     },
@@ -109,7 +136,15 @@ function pyramid({ columns, rows, heights }) {
     const [across, down] = [Math.ceil((columns - 1) / size), Math.ceil((rows - 1) / size)];
     const [strays, highest] = [new Float32Array(across * down), new Float32Array(across * down).fill(-Infinity)];
     for (let j = 0; j < down; j += 1) {
-      for (let i = 0; i < across; i += 1) measure(heights, columns, [i * size, j * size, Math.min((i + 1) * size, columns - 1), Math.min((j + 1) * size, rows - 1)], j * across + i, strays, highest);
+      for (let i = 0; i < across; i += 1)
+        measure(
+          heights,
+          columns,
+          [i * size, j * size, Math.min((i + 1) * size, columns - 1), Math.min((j + 1) * size, rows - 1)],
+          j * across + i,
+          strays,
+          highest,
+        );
     }
     levels.push({ across, strays, highest });
     if (across <= 1 && down <= 1) return levels;
@@ -123,7 +158,10 @@ function measure(heights, columns, [c0, r0, c1, r1], place, strays, highest) {
   for (let row = r0; row <= r1; row += 1) {
     for (let column = c0; column <= c1; column += 1) {
       const [east, south] = [(column - c0) / (c1 - c0), (row - r0) / (r1 - r0)];
-      const flat = south > east ? northWest + south * (southWest - northWest) + east * (southEast - southWest) : northWest + east * (northEast - northWest) + south * (southEast - northEast);
+      const flat =
+        south > east
+          ? northWest + south * (southWest - northWest) + east * (southEast - southWest)
+          : northWest + east * (northEast - northWest) + south * (southEast - northEast);
       const height = at(column, row);
       if (height > high) high = height;
       const off = Math.abs(height - flat);

@@ -20,7 +20,12 @@ export function makeGround(ground, frame) {
     const [column, row] = [Math.min(Math.floor(inU), columns - 2), Math.min(Math.floor(inV), rows - 2)];
     const [east, south] = [inU - column, inV - row];
     const at = row * columns + column;
-    const [northWest, northEast, southWest, southEast] = [heights[at], heights[at + 1], heights[at + columns], heights[at + columns + 1]];
+    const [northWest, northEast, southWest, southEast] = [
+      heights[at],
+      heights[at + 1],
+      heights[at + columns],
+      heights[at + columns + 1],
+    ];
     const inside =
       south > east
         ? northWest + south * (southWest - northWest) + east * (southEast - southWest)
@@ -51,7 +56,10 @@ export function groundMesh(ground) {
   ring.forEach(([column, row], number) => {
     const out_x = column === 0 ? -1 : column === columns - 1 ? 1 : 0;
     const out_z = row === 0 ? -1 : row === rows - 1 ? 1 : 0;
-    vertices.set([west + column * stepX + out_x * SKIRT_M, edge, north + row * stepZ + out_z * SKIRT_M], (inner + number) * 3);
+    vertices.set(
+      [west + column * stepX + out_x * SKIRT_M, edge, north + row * stepZ + out_z * SKIRT_M],
+      (inner + number) * 3,
+    );
     const next = (number + 1) % ring.length;
     const [here, there] = [row * columns + column, ring[next][1] * columns + ring[next][0]];
     index.push(here, there, inner + next, here, inner + next, inner + number);
@@ -79,8 +87,16 @@ export function normalsOf(vertices, index) {
   const normals = new Float32Array(vertices.length);
   for (let at = 0; at < index.length; at += 3) {
     const [a, b, c] = [index[at] * 3, index[at + 1] * 3, index[at + 2] * 3];
-    const [ux, uy, uz] = [vertices[b] - vertices[a], vertices[b + 1] - vertices[a + 1], vertices[b + 2] - vertices[a + 2]];
-    const [vx, vy, vz] = [vertices[c] - vertices[a], vertices[c + 1] - vertices[a + 1], vertices[c + 2] - vertices[a + 2]];
+    const [ux, uy, uz] = [
+      vertices[b] - vertices[a],
+      vertices[b + 1] - vertices[a + 1],
+      vertices[b + 2] - vertices[a + 2],
+    ];
+    const [vx, vy, vz] = [
+      vertices[c] - vertices[a],
+      vertices[c + 1] - vertices[a + 1],
+      vertices[c + 2] - vertices[a + 2],
+    ];
     const normal = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
     for (const corner of [a, b, c]) for (let axis = 0; axis < 3; axis += 1) normals[corner + axis] += normal[axis];
   }

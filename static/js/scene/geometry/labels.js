@@ -7,18 +7,39 @@ const TOP_M = 4; // over the top of what is named
 /** [{ kind, id, text, position: [x, y, z], weight, counted_m }], heavier first; counted_m: the height that planners count, of what is drawn lower. */
 export function labelsOf(scene, frame, volumes) {
   const labels = [];
-  scene.zones.forEach((zone, number) => labels.push({ kind: "zone", id: zone.id, text: zone.name, position: volumes[number].middle, weight: volumes[number].isInForce ? 90 : 60 }));
+  scene.zones.forEach((zone, number) =>
+    labels.push({
+      kind: "zone",
+      id: zone.id,
+      text: zone.name,
+      position: volumes[number].middle,
+      weight: volumes[number].isInForce ? 90 : 60,
+    }),
+  );
   for (const support of scene.supports) {
     const { id, label, position, ground_amsl_m, height_m, voltage_v } = support;
     if (id === null) continue;
     const weight = 20 + Math.min((voltage_v ?? 0) / 20_000, 30);
-    labels.push({ kind: "tower", id, text: label, position: frame.toLocal(...position, ground_amsl_m + height_m + TOP_M), weight, counted_m: uncounted_m(support) ? height_m : null });
+    labels.push({
+      kind: "tower",
+      id,
+      text: label,
+      position: frame.toLocal(...position, ground_amsl_m + height_m + TOP_M),
+      weight,
+      counted_m: uncounted_m(support) ? height_m : null,
+    });
   }
   for (const { id, label, is_named, polygons, deck_amsl_m } of scene.bridges) {
     if (!is_named) continue;
     const points = polygons.flatMap(([outline]) => outline);
     const [lon, lat] = [0, 1].map((axis) => points.reduce((sum, point) => sum + point[axis], 0) / points.length);
-    labels.push({ kind: "bridge", id, text: label, position: frame.toLocal(lon, lat, deck_amsl_m + TOP_M), weight: 15 });
+    labels.push({
+      kind: "bridge",
+      id,
+      text: label,
+      position: frame.toLocal(lon, lat, deck_amsl_m + TOP_M),
+      weight: 15,
+    });
   }
   return labels.sort((one, other) => other.weight - one.weight);
 }

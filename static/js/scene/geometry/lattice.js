@@ -1,6 +1,11 @@
 /** A tower of steel lattice: four legs that meet at the lowest arm and go up as a slim body, arms as wedges, crosses between the legs. */
 
-const SIDES = [[-1, -1], [1, -1], [1, 1], [-1, 1]]; // corners as signs across and along, in turn
+const SIDES = [
+  [-1, -1],
+  [1, -1],
+  [1, 1],
+  [-1, 1],
+]; // corners as signs across and along, in turn
 
 /** draw: { outline, fine } of (start, end, width_m, tone); points are [across, up, along]. */
 export function lattice(support, draw, { foot_m = footOf(support), waist_m = waistOf(support) } = {}) {
@@ -12,12 +17,21 @@ export function lattice(support, draw, { foot_m = footOf(support), waist_m = wai
   const top_m = waist_m * 0.55;
   body(draw, { low: 0, high: lowest_m, lowHalf_m: foot_m / 2, highHalf_m: waist_m / 2, legs_m, brace_m });
   if (highest_m > lowest_m + 0.5) {
-    body(draw, { low: lowest_m, high: highest_m, lowHalf_m: waist_m / 2, highHalf_m: top_m / 2, legs_m: legs_m * 0.8, brace_m: brace_m * 0.85 });
+    body(draw, {
+      low: lowest_m,
+      high: highest_m,
+      lowHalf_m: waist_m / 2,
+      highHalf_m: top_m / 2,
+      legs_m: legs_m * 0.8,
+      brace_m: brace_m * 0.85,
+    });
   }
-  const half = (up) => (highest_m > lowest_m ? waist_m + ((top_m - waist_m) * (up - lowest_m)) / (highest_m - lowest_m) : waist_m) / 2;
+  const half = (up) =>
+    (highest_m > lowest_m ? waist_m + ((top_m - waist_m) * (up - lowest_m)) / (highest_m - lowest_m) : waist_m) / 2;
   for (const arm of arms) wedge(draw, arm, half(arm[0]), brace_m);
   const peak = half(highest_m);
-  if (height_m > highest_m + 0.1) for (const [a, b] of SIDES) draw.outline([a * peak, highest_m, b * peak], [0, height_m, 0], legs_m * 0.6);
+  if (height_m > highest_m + 0.1)
+    for (const [a, b] of SIDES) draw.outline([a * peak, highest_m, b * peak], [0, height_m, 0], legs_m * 0.6);
   footings(draw, foot_m, legs_m, support.depth_m);
 }
 
@@ -77,14 +91,19 @@ function wedge({ outline, fine }, [up, left_m, right_m], half_m, brace_m) {
       const share = step / steps;
       const [across, along] = [sign * (half_m + (reach_m - half_m) * share), half_m * (1 - share)];
       fine([across, up, -along], [across, up, along], brace_m * 0.8);
-      for (const side of [-along, along]) fine([across, up, side], [across, up + deep_m * (1 - share), side], brace_m * 0.8);
+      for (const side of [-along, along])
+        fine([across, up, side], [across, up + deep_m * (1 - share), side], brace_m * 0.8);
     }
   }
 }
 
 /** The body ends below the beam in two arms of a Y, which carry the beam and, above it, the tips with the earth wires. */
 function delta(support, draw, { foot_m, waist_m, legs_m, brace_m }) {
-  const { height_m, earth, arms: [[beam_m, left_m, right_m]] } = support;
+  const {
+    height_m,
+    earth,
+    arms: [[beam_m, left_m, right_m]],
+  } = support;
   const { outline, fine } = draw;
   const shoulder_m = Math.abs(earth[0][0]);
   const neck_m = beam_m - Math.min(shoulder_m * 2.1, beam_m * 0.36);
@@ -95,7 +114,11 @@ function delta(support, draw, { foot_m, waist_m, legs_m, brace_m }) {
     for (const along of [-half_m, half_m]) {
       const side = along * 0.7;
       outline([sign * half_m, neck_m, along], [sign * (shoulder_m + thick_m), beam_m, side], legs_m * 0.8);
-      outline([sign * half_m * 0.2, neck_m + thick_m, along], [sign * (shoulder_m - thick_m), beam_m, side], legs_m * 0.7);
+      outline(
+        [sign * half_m * 0.2, neck_m + thick_m, along],
+        [sign * (shoulder_m - thick_m), beam_m, side],
+        legs_m * 0.7,
+      );
       outline([sign * (shoulder_m - thick_m), beam_m, side], [sign * shoulder_m, height_m, 0], legs_m * 0.5);
       outline([sign * (shoulder_m + thick_m), beam_m, side], [sign * shoulder_m, height_m, 0], legs_m * 0.5);
     }
@@ -104,14 +127,16 @@ function delta(support, draw, { foot_m, waist_m, legs_m, brace_m }) {
       const out = half_m + (shoulder_m + thick_m - half_m) * share;
       const inside = half_m * 0.2 + (shoulder_m - thick_m - half_m * 0.2) * share;
       const [up, inner] = [neck_m + (beam_m - neck_m) * share, neck_m + thick_m + (beam_m - neck_m - thick_m) * share];
-      for (const along of [-half_m, half_m]) fine([sign * out, up, along * (1 - 0.3 * share)], [sign * inside, inner, along * (1 - 0.3 * share)], brace_m);
+      for (const along of [-half_m, half_m])
+        fine([sign * out, up, along * (1 - 0.3 * share)], [sign * inside, inner, along * (1 - 0.3 * share)], brace_m);
     }
   }
   outline([left_m, beam_m, 0], [right_m, beam_m, 0], brace_m * 1.4);
   for (const along of [-half_m * 0.7, half_m * 0.7]) {
     outline([-shoulder_m, beam_m, along], [shoulder_m, beam_m, along], brace_m * 1.3);
     outline([-shoulder_m, beam_m + thick_m * 1.4, along], [shoulder_m, beam_m + thick_m * 1.4, along], brace_m * 1.3);
-    for (const tip of [left_m, right_m]) outline([Math.sign(tip) * shoulder_m, beam_m + thick_m * 1.4, along], [tip, beam_m, 0], brace_m * 1.2);
+    for (const tip of [left_m, right_m])
+      outline([Math.sign(tip) * shoulder_m, beam_m + thick_m * 1.4, along], [tip, beam_m, 0], brace_m * 1.2);
     const steps = Math.max(4, Math.round(shoulder_m));
     for (let step = 0; step < steps; step += 1) {
       const [here, there] = [step / steps, (step + 1) / steps].map((share) => -shoulder_m + 2 * shoulder_m * share);
@@ -122,5 +147,6 @@ function delta(support, draw, { foot_m, waist_m, legs_m, brace_m }) {
 }
 
 function footings({ fine }, foot_m, legs_m, depth_m) {
-  for (const [a, b] of SIDES) fine([(a * foot_m) / 2, -depth_m, (b * foot_m) / 2], [(a * foot_m) / 2, 0.4, (b * foot_m) / 2], legs_m * 3, 2);
+  for (const [a, b] of SIDES)
+    fine([(a * foot_m) / 2, -depth_m, (b * foot_m) / 2], [(a * foot_m) / 2, 0.4, (b * foot_m) / 2], legs_m * 3, 2);
 }

@@ -27,7 +27,12 @@ export function railwayTracks(railways, { frame, ground, deckAt = () => null, wi
   const ways = railways.map((railway) => {
     const points = densified(railway.line.map(([lon, lat]) => frame.toLocal(lon, lat, 0)).map(([x, , z]) => [x, z]));
     const onDeck = points.map(([x, z]) => deckAt(x, z));
-    return { railway, points, onDeck, heights: points.map(([x, z], place) => Math.max(ground.heightAt(x, z), onDeck[place] ?? -Infinity)) };
+    return {
+      railway,
+      points,
+      onDeck,
+      heights: points.map(([x, z], place) => Math.max(ground.heightAt(x, z), onDeck[place] ?? -Infinity)),
+    };
   });
   ramps(ways);
   return ways.map((way) => ({ ...track(way, ground), ...overhead(way, wire_agl_m) }));
@@ -48,13 +53,14 @@ function ramps(ways) {
         ends.set(at, Math.max(ends.get(at) ?? -Infinity, way.heights[place]));
       }
     }
-    waiting = ways.filter((way) =>
-      [0, way.points.length - 1].filter((place) => {
-        const height = ends.get(key(way.points[place]));
-        if (!lifted.has(key(way.points[place])) || height <= way.heights[place] + LEAST_LIFT_M) return false;
-        way.heights[place] = height;
-        return true;
-      }).length > 0,
+    waiting = ways.filter(
+      (way) =>
+        [0, way.points.length - 1].filter((place) => {
+          const height = ends.get(key(way.points[place]));
+          if (!lifted.has(key(way.points[place])) || height <= way.heights[place] + LEAST_LIFT_M) return false;
+          way.heights[place] = height;
+          return true;
+        }).length > 0,
     );
   }
 }
@@ -78,18 +84,28 @@ function track({ railway, points, onDeck, heights }, ground) {
     const [side_x, side_z] = sides[place];
     const y = heights[place] + BED_LIFT_M;
     const dam_m = onDeck[place] === null ? Math.max(y - ground.heightAt(x, z), 0) : 0;
-    for (const [corner, sign] of [[-1, -1], [0, -1], [1, 1], [2, 1]]) {
+    for (const [corner, sign] of [
+      [-1, -1],
+      [0, -1],
+      [1, 1],
+      [2, 1],
+    ]) {
       const isFoot = corner === -1 || corner === 2;
       const out_m = width_m / 2 + (isFoot ? dam_m * DAM_SLOPE : 0);
       bed.vertices.push(x + sign * side_x * out_m, isFoot ? y - dam_m : y, z + sign * side_z * out_m);
       bed.uv.push(corner, along_m);
     }
     if (place < points.length - 1) {
-      for (const low of [0, 1, 2].map((corner) => place * 4 + corner)) bed.index.push(low, low + 1, low + 4, low + 1, low + 5, low + 4);
+      for (const low of [0, 1, 2].map((corner) => place * 4 + corner))
+        bed.index.push(low, low + 1, low + 4, low + 1, low + 5, low + 4);
     }
   });
   return {
-    bed: { vertices: Float32Array.from(bed.vertices), uv: Float32Array.from(bed.uv), index: Uint32Array.from(bed.index) },
+    bed: {
+      vertices: Float32Array.from(bed.vertices),
+      uv: Float32Array.from(bed.uv),
+      index: Uint32Array.from(bed.index),
+    },
     rails: railLines(points, heights, sides, railway.tracks),
   };
 }
@@ -101,7 +117,11 @@ function overhead({ railway, points, heights }, wire_agl_m) {
   const sides = sidesOf(points);
   const out_m = (BED_M + (railway.tracks - 1) * TRACK_M) / 2 + MAST_OUT_M;
   const high_m = wire_agl_m - 0.3; // the bed's lift is below the wire, too
-  const at = (place, across, up) => [points[place][0] + across * sides[place][0], heights[place] + up, points[place][1] + across * sides[place][1]];
+  const at = (place, across, up) => [
+    points[place][0] + across * sides[place][0],
+    heights[place] + up,
+    points[place][1] + across * sides[place][1],
+  ];
   const stands = mastPlaces(points);
   for (const place of stands) {
     masts.add(at(place, out_m, 0), at(place, out_m, wire_agl_m), 0.28);
@@ -113,7 +133,8 @@ function overhead({ railway, points, heights }, wire_agl_m) {
     for (let field = 1; field < stands.length; field += 1) {
       const [from, to] = [stands[field - 1], stands[field]];
       for (let place = from; place < to; place += 1) {
-        const carried = (own) => high_m - 4 * CARRIER_SAG_M * ((own - from) / (to - from)) * (1 - (own - from) / (to - from));
+        const carried = (own) =>
+          high_m - 4 * CARRIER_SAG_M * ((own - from) / (to - from)) * (1 - (own - from) / (to - from));
         wires.push(...at(place, across, CONTACT_M), ...at(place + 1, across, CONTACT_M));
         wires.push(...at(place, across, carried(place)), ...at(place + 1, across, carried(place + 1)));
       }
@@ -140,7 +161,11 @@ function railLines(points, heights, sides, tracks) {
   for (let track = 0; track < tracks; track += 1) {
     const middle_m = (track - (tracks - 1) / 2) * TRACK_M;
     for (const across of [middle_m - GAUGE_M / 2, middle_m + GAUGE_M / 2]) {
-      const place = (at) => [points[at][0] + across * sides[at][0], heights[at] + BED_LIFT_M + RAIL_LIFT_M, points[at][1] + across * sides[at][1]];
+      const place = (at) => [
+        points[at][0] + across * sides[at][0],
+        heights[at] + BED_LIFT_M + RAIL_LIFT_M,
+        points[at][1] + across * sides[at][1],
+      ];
       for (let at = 0; at < points.length - 1; at += 1) segments.push(...place(at), ...place(at + 1));
     }
   }
@@ -153,7 +178,8 @@ function densified(line) {
     if (at) {
       const [lastX, lastZ] = line[at - 1];
       const pieces = Math.ceil(Math.hypot(x - lastX, z - lastZ) / STEP_M);
-      for (let piece = 1; piece < pieces; piece += 1) points.push([lastX + ((x - lastX) * piece) / pieces, lastZ + ((z - lastZ) * piece) / pieces]);
+      for (let piece = 1; piece < pieces; piece += 1)
+        points.push([lastX + ((x - lastX) * piece) / pieces, lastZ + ((z - lastZ) * piece) / pieces]);
     }
     points.push([x, z]);
   });

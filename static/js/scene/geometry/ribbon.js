@@ -17,9 +17,17 @@ export function ribbon(positions, { width_m = 2 } = {}) {
   let way_m = 0;
   for (let point = 0; point < count; point += 1) {
     const at = point * 3;
-    if (point) way_m += Math.hypot(positions[at] - positions[at - 3], positions[at + 1] - positions[at - 2], positions[at + 2] - positions[at - 1]);
+    if (point)
+      way_m += Math.hypot(
+        positions[at] - positions[at - 3],
+        positions[at + 1] - positions[at - 2],
+        positions[at + 2] - positions[at - 1],
+      );
     const [side_x, side_z, stretch] = across[point];
-    for (const [side, sign] of [[0, -1], [1, 1]]) {
+    for (const [side, sign] of [
+      [0, -1],
+      [1, 1],
+    ]) {
       const to = (point * 2 + side) * 3;
       vertices[to] = positions[at] + sign * half_m * stretch * side_x;
       vertices[to + 1] = positions[at + 1];
@@ -41,7 +49,10 @@ function directionsAcross(positions) {
   const legs = [];
   let last = [1, 0];
   for (let point = 0; point < count - 1; point += 1) {
-    const [x, z] = [positions[point * 3 + 3] - positions[point * 3], positions[point * 3 + 5] - positions[point * 3 + 2]];
+    const [x, z] = [
+      positions[point * 3 + 3] - positions[point * 3],
+      positions[point * 3 + 5] - positions[point * 3 + 2],
+    ];
     const length = Math.hypot(x, z);
     if (length > 1e-6) last = [-z / length, x / length];
     legs.push(length > 1e-6 || point ? last : null);
@@ -76,7 +87,8 @@ export function heightPoles(positions, groundAt, { spacing_m = 50 } = {}) {
     const [x, y, z] = [positions[at], positions[at + 1], positions[at + 2]];
     const [dx, dy, dz] = [positions[at + 3] - x, positions[at + 4] - y, positions[at + 5] - z];
     const length = Math.hypot(dx, dz);
-    for (; left_m < length; left_m += spacing_m) stand(x + (dx * left_m) / length, y + (dy * left_m) / length, z + (dz * left_m) / length);
+    for (; left_m < length; left_m += spacing_m)
+      stand(x + (dx * left_m) / length, y + (dy * left_m) / length, z + (dz * left_m) / length);
     left_m -= length;
   }
   if (positions.length >= 3) stand(...positions.slice(-3));

@@ -26,7 +26,10 @@ export function supportMembers(support, frame, below_m = 0) {
     stand.foot[1] + up,
     stand.foot[2] + across * stand.across[1] + along * stand.along[1],
   ];
-  const into = (list) => (start, end, width_m, tone = BODY) => list.add(place(start), place(end), width_m, tone);
+  const into =
+    (list) =>
+    (start, end, width_m, tone = BODY) =>
+      list.add(place(start), place(end), width_m, tone);
   const draw = { outline: into(outline), fine: into(fine) };
   const drawn = { ...support, height_m: support.likely_m, depth_m: LEAST_DEPTH_M + Math.max(below_m, 0) };
   (BUILDERS[support.form] ?? pole)(drawn, draw);
@@ -52,7 +55,8 @@ function pole(support, { outline, fine }) {
   }
   for (const [arm_m, left_m, right_m] of support.arms) {
     const rise_m = isWooden ? 0 : 0.05 * Math.max(-left_m, right_m);
-    for (const end of [left_m, right_m]) if (end) outline([0, arm_m - rise_m, 0], [end, arm_m, 0], isWooden ? 0.2 : foot_m * 0.24);
+    for (const end of [left_m, right_m])
+      if (end) outline([0, arm_m - rise_m, 0], [end, arm_m, 0], isWooden ? 0.2 : foot_m * 0.24);
     if (isWooden && left_m && right_m) {
       for (const end of [left_m, right_m]) fine([0, arm_m - 0.9, 0], [end * 0.7, arm_m, 0], 0.1);
     }
@@ -85,7 +89,12 @@ function guyed(support, draw) {
   const { height_m, arms } = support;
   lattice(support, draw, { foot_m: 0.5, waist_m: Math.min(Math.max(height_m * 0.03, 0.8), 1.6) });
   const hold_m = arms.length ? Math.min(...arms.map(([arm]) => arm)) : height_m * 0.7;
-  for (const [across, along] of [[1, 1], [1, -1], [-1, 1], [-1, -1]]) {
+  for (const [across, along] of [
+    [1, 1],
+    [1, -1],
+    [-1, 1],
+    [-1, -1],
+  ]) {
     draw.outline([across * 0.5, hold_m, along * 0.5], [across * hold_m * 0.42, 0, along * hold_m * 0.42], 0.08);
   }
 }
@@ -96,6 +105,11 @@ function insulators({ arms, slots, form }, { fine }) {
   for (const [across, hangs_m] of slots) {
     const from_m = Math.min(...arms.map(([arm]) => arm).filter((arm) => arm >= hangs_m - 0.3));
     if (!Number.isFinite(from_m)) continue;
-    fine([across, from_m, 0], [across, Math.abs(from_m - hangs_m) < 0.05 ? hangs_m - 0.25 : hangs_m, 0], 0.22, INSULATOR);
+    fine(
+      [across, from_m, 0],
+      [across, Math.abs(from_m - hangs_m) < 0.05 ? hangs_m - 0.25 : hangs_m, 0],
+      0.22,
+      INSULATOR,
+    );
   }
 }

@@ -56,7 +56,8 @@ function seen(ring, hole, point, at) {
     for (let side = 0; side < sides.length; side += 1) {
       const [a, b] = [sides[side], sides[(side + 1) % sides.length]];
       if ([a, b].some((end) => same(end, corner) || same(end, point))) continue;
-      if (cross(a, b, point) * cross(a, b, corner) < 0 && cross(point, corner, a) * cross(point, corner, b) < 0) return false;
+      if (cross(a, b, point) * cross(a, b, corner) < 0 && cross(point, corner, a) * cross(point, corner, b) < 0)
+        return false;
     }
   }
   return true;

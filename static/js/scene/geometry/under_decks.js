@@ -10,7 +10,11 @@ export function deckUnder(bridges, frame) {
       polygons.map(([outline]) => {
         const ring = outline.map(([lon, lat]) => frame.toLocal(lon, lat, 0)).map(([x, , z]) => [x, z]);
         const [xs, zs] = [ring.map(([x]) => x), ring.map(([, z]) => z)];
-        return { ring, box: [Math.min(...xs), Math.min(...zs), Math.max(...xs), Math.max(...zs)], y: deck_amsl_m - frame.origin.altitude_amsl_m };
+        return {
+          ring,
+          box: [Math.min(...xs), Math.min(...zs), Math.max(...xs), Math.max(...zs)],
+          y: deck_amsl_m - frame.origin.altitude_amsl_m,
+        };
       }),
     );
   return (x, z) => {

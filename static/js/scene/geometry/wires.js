@@ -32,7 +32,12 @@ export function wiresOf(scene, frame) {
     for (const [start, end] of phases) add(start, end, own.sag_m, number, 0);
     for (const [start, end] of earth) add(start, end, own.sag_m * scene.rules.earth_sag_share, number, 1);
   });
-  return { points: Float64Array.from(points), first: Uint32Array.from(first), span: Uint32Array.from(span), isEarth: Uint8Array.from(isEarth) };
+  return {
+    points: Float64Array.from(points),
+    first: Uint32Array.from(first),
+    span: Uint32Array.from(span),
+    isEarth: Uint8Array.from(isEarth),
+  };
 }
 
 /** Which slot goes to which: both ends sorted from left to right as the span is seen from its start, then from below. */
@@ -47,7 +52,10 @@ function pairs(ends, kind, wanted) {
       .sort((one, other) => turned * (one[0] - other[0]) || one[1] - other[1])
       .map((slot) => slotPoint(stand, slot));
   });
-  return Array.from({ length: Math.min(wanted, sorted[0].length, sorted[1].length) }, (_, place) => [sorted[0][place], sorted[1][place]]);
+  return Array.from({ length: Math.min(wanted, sorted[0].length, sorted[1].length) }, (_, place) => [
+    sorted[0][place],
+    sorted[1][place],
+  ]);
 }
 
 /** Of more slots than wires: one side's where that is enough, else the inner ones. */

@@ -10,8 +10,12 @@ const LIFT_M = 0.25; // a floor on the ground lies so far above it
 
 /** How far zones may stray from the ground they follow: WITHIN_M, more where they would be too many triangles together. */
 export function withinFor(zones, frame, folds) {
-  const following = zones.flatMap((zone) => [zone.lower, zone.upper].filter(({ above }) => above !== "sea").map(() => zone));
-  const boxes = following.flatMap(({ polygons }) => polygons.map(([outline]) => boxOf(outline.map(([lon, lat]) => local(frame, lon, lat)))));
+  const following = zones.flatMap((zone) =>
+    [zone.lower, zone.upper].filter(({ above }) => above !== "sea").map(() => zone),
+  );
+  const boxes = following.flatMap(({ polygons }) =>
+    polygons.map(([outline]) => boxOf(outline.map(([lon, lat]) => local(frame, lon, lat)))),
+  );
   let within_m = WITHIN_M;
   while (boxes.reduce((sum, box) => sum + folds.count(box, within_m), 0) > MOST_BLOCKS) within_m *= 2;
   return within_m;
@@ -34,23 +38,47 @@ export function zoneVolume(zone, { frame, ground, folds, clip, rules, within_m =
   const room = { frame, open_top_agl_m: rules.open_top_agl_m };
   const floor = higherOf(surfaceOf(zone.lower, "lower", room), { level: -Infinity, over: LIFT_M });
   const ceiling = higherOf(surfaceOf(zone.upper, "upper", room), floor);
-  const [low, high] = [floor, ceiling].map(({ level, over }) => (x, z) => Math.max(level, ground.heightAt(x, z) + over));
+  const [low, high] = [floor, ceiling].map(
+    ({ level, over }) =>
+      (x, z) =>
+        Math.max(level, ground.heightAt(x, z) + over),
+  );
   const isOpen = zone.upper.above === "open";
   const walls = { vertices: [], uv: [], fade: [], index: [] };
   const caps = { vertices: [], index: [] };
   const edges = [];
   let largest = null;
   for (const rings of zone.polygons) {
-    for (const ring of rings.map(facingOut)) addWalls(ring, { frame, ground, folds, clip, low, high, kinks: [floor, ceiling], isOpen, within_m, walls, edges });
+    for (const ring of rings.map(facingOut))
+      addWalls(ring, {
+        frame,
+        ground,
+        folds,
+        clip,
+        low,
+        high,
+        kinks: [floor, ceiling],
+        isOpen,
+        within_m,
+        walls,
+        edges,
+      });
     const { points, triangles } = triangulate(rings.map((ring) => ring.map(([lon, lat]) => local(frame, lon, lat))));
-    const parts = Array.from({ length: triangles.length / 3 }, (_, place) => [0, 1, 2].map((corner) => points[triangles[place * 3 + corner]]));
+    const parts = Array.from({ length: triangles.length / 3 }, (_, place) =>
+      [0, 1, 2].map((corner) => points[triangles[place * 3 + corner]]),
+    );
     addCap(caps, parts, floor, low, 1, { ground, folds, within_m });
     if (!isOpen) addCap(caps, parts, ceiling, high, -1, { ground, folds, within_m });
     largest = larger(largest, points, triangles);
   }
   const [x, z] = largest?.middle ?? [0, 0];
   return {
-    walls: { vertices: Float32Array.from(walls.vertices), uv: Float32Array.from(walls.uv), fade: Float32Array.from(walls.fade), index: Uint32Array.from(walls.index) },
+    walls: {
+      vertices: Float32Array.from(walls.vertices),
+      uv: Float32Array.from(walls.uv),
+      fade: Float32Array.from(walls.fade),
+      index: Uint32Array.from(walls.index),
+    },
     caps: { vertices: Float32Array.from(caps.vertices), index: Uint32Array.from(caps.index) },
     edges: Float32Array.from(edges),
     middle: [x, high(x, z), z],
@@ -68,7 +96,9 @@ function local(frame, lon, lat) {
 }
 
 function boxOf(points) {
-  return [0, 1].map((axis) => points.reduce((least, point) => Math.min(least, point[axis]), Infinity)).concat([0, 1].map((axis) => points.reduce((most, point) => Math.max(most, point[axis]), -Infinity)));
+  return [0, 1]
+    .map((axis) => points.reduce((least, point) => Math.min(least, point[axis]), Infinity))
+    .concat([0, 1].map((axis) => points.reduce((most, point) => Math.max(most, point[axis]), -Infinity)));
 }
 
 function addWalls(ring, { frame, ground, folds, clip, low, high, kinks, isOpen, within_m, walls, edges }) {
@@ -82,9 +112,14 @@ function addWalls(ring, { frame, ground, folds, clip, low, high, kinks, isOpen, 
       return { x, z, low: low(x, z), high: high(x, z), share, along: along_m + length * share };
     };
     if (!liesOn(clip, ring[at], ring[at + 1])) {
-      const shares = withKinks([0, ...folds.meeting(start, end), 1], (share) => ground.heightAt(...[0, 1].map((axis) => start[axis] + (end[axis] - start[axis]) * share)), kinks);
+      const shares = withKinks(
+        [0, ...folds.meeting(start, end), 1],
+        (share) => ground.heightAt(...[0, 1].map((axis) => start[axis] + (end[axis] - start[axis]) * share)),
+        kinks,
+      );
       const corners = straightened(shares.map(corner), within_m);
-      for (let piece = 1; piece < corners.length; piece += 1) addPanel(walls, edges, corners[piece - 1], corners[piece], isOpen);
+      for (let piece = 1; piece < corners.length; piece += 1)
+        addPanel(walls, edges, corners[piece - 1], corners[piece], isOpen);
       const { x, z, low: bottom, high: top } = corners[0];
       if (isCorner(ring, at) && !isOpen) edges.push(x, bottom, z, x, top, z);
     }
@@ -117,7 +152,9 @@ function straightened(corners, within_m) {
     let [worst, most] = [-1, within_m];
     for (let at = from + 1; at < to; at += 1) {
       const share = (corners[at].share - start.share) / (end.share - start.share || 1);
-      const off = Math.max(...["low", "high"].map((name) => Math.abs(start[name] + share * (end[name] - start[name]) - corners[at][name])));
+      const off = Math.max(
+        ...["low", "high"].map((name) => Math.abs(start[name] + share * (end[name] - start[name]) - corners[at][name])),
+      );
       if (off > most) [worst, most] = [at, off];
     }
     if (worst < 0) kept.push(end);
@@ -142,7 +179,10 @@ function addPanel({ vertices, uv, fade, index }, edges, here, there, isOpen) {
 function isCorner(ring, at) {
   const last = ring.length - 2;
   const [before, here, after] = [ring[at === 0 ? last : at - 1], ring[at], ring[at + 1]];
-  const [a, b] = [Math.atan2(here[1] - before[1], here[0] - before[0]), Math.atan2(after[1] - here[1], after[0] - here[0])];
+  const [a, b] = [
+    Math.atan2(here[1] - before[1], here[0] - before[0]),
+    Math.atan2(after[1] - here[1], after[0] - here[0]),
+  ];
   return Math.abs(Math.atan2(Math.sin(b - a), Math.cos(b - a))) > Math.PI / 9;
 }
 
@@ -156,10 +196,13 @@ function liesOn([west, south, east, north], [lon, lat], [nextLon, nextLat]) {
 function addCap({ vertices, index }, parts, { level, over }, heightOf, turn, { ground, folds, within_m }) {
   const aboveLevel = (x, z) => ground.heightAt(x, z) + over - level;
   for (const piece of folds.pieces(parts, within_m, (highest) => highest + over <= level)) {
-    for (const part of Number.isFinite(level) ? [cutBy(piece, aboveLevel), cutBy(piece, (x, z) => -aboveLevel(x, z))] : [piece]) {
+    for (const part of Number.isFinite(level)
+      ? [cutBy(piece, aboveLevel), cutBy(piece, (x, z) => -aboveLevel(x, z))]
+      : [piece]) {
       const first = vertices.length / 3;
       for (const [x, z] of part) vertices.push(x, heightOf(x, z), z);
-      for (let at = 1; at < part.length - 1; at += 1) index.push(first, ...(turn > 0 ? [first + at, first + at + 1] : [first + at + 1, first + at]));
+      for (let at = 1; at < part.length - 1; at += 1)
+        index.push(first, ...(turn > 0 ? [first + at, first + at + 1] : [first + at + 1, first + at]));
     }
   }
 }

@@ -16,13 +16,37 @@ export function surroundingsOf(sceneData, frame, wires, groundAt) {
     .filter(({ kind }) => kind !== "vertex")
     .map(({ id, label, position, ground_amsl_m, height_m, arms }) => {
       const [x, y, z] = frame.toLocal(position[0], position[1], ground_amsl_m);
-      return { id, label, x, z, bottom: y, top: y + height_m, wide_m: Math.max(height_m * FOOT_SHARE, ...arms.flatMap(([, left_m, right_m]) => [-left_m, right_m])) };
+      return {
+        id,
+        label,
+        x,
+        z,
+        bottom: y,
+        top: y + height_m,
+        wide_m: Math.max(height_m * FOOT_SHARE, ...arms.flatMap(([, left_m, right_m]) => [-left_m, right_m])),
+      };
     });
   const zones = sceneData.zones.map(({ id, name, polygons, lower, upper, schedule, schedule_words }) => ({
-    id, name, lower, upper, schedule, schedule_words,
-    polygons: polygons.map((rings) => rings.map((ring) => ring.map(([lon, lat]) => { const [x, , z] = frame.toLocal(lon, lat, 0); return [x, z]; }))),
+    id,
+    name,
+    lower,
+    upper,
+    schedule,
+    schedule_words,
+    polygons: polygons.map((rings) =>
+      rings.map((ring) =>
+        ring.map(([lon, lat]) => {
+          const [x, , z] = frame.toLocal(lon, lat, 0);
+          return [x, z];
+        }),
+      ),
+    ),
   }));
-  const hung = [wires, countedAir(sceneData, frame)].map((lines, number) => ({ ...lines, boxes: boxesOf(lines), isCounted: number === 1 }));
+  const hung = [wires, countedAir(sceneData, frame)].map((lines, number) => ({
+    ...lines,
+    boxes: boxesOf(lines),
+    isCounted: number === 1,
+  }));
   return { towers, hung, zones, groundAt, origin_m };
 }
 
@@ -59,12 +83,32 @@ function nearestOf({ points, first, boxes, isCounted }, [x, y, z], reach_m) {
   let least = reach_m;
   for (let line = 0; line < first.length - 1; line += 1) {
     const box = line * 6;
-    if (Math.hypot(beyond(x, boxes[box], boxes[box + 3]), beyond(y, boxes[box + 1], boxes[box + 4]), beyond(z, boxes[box + 2], boxes[box + 5])) >= least) continue;
+    if (
+      Math.hypot(
+        beyond(x, boxes[box], boxes[box + 3]),
+        beyond(y, boxes[box + 1], boxes[box + 4]),
+        beyond(z, boxes[box + 2], boxes[box + 5]),
+      ) >= least
+    )
+      continue;
     for (let at = first[line]; at < first[line + 1] - 1; at += 1) {
       const from = at * 3;
-      const [dx, dy, dz] = [points[from + 3] - points[from], points[from + 4] - points[from + 1], points[from + 5] - points[from + 2]];
+      const [dx, dy, dz] = [
+        points[from + 3] - points[from],
+        points[from + 4] - points[from + 1],
+        points[from + 5] - points[from + 2],
+      ];
       const length2 = dx * dx + dy * dy + dz * dz;
-      const share = length2 > 0 ? Math.min(1, Math.max(0, ((x - points[from]) * dx + (y - points[from + 1]) * dy + (z - points[from + 2]) * dz) / length2)) : 0;
+      const share =
+        length2 > 0
+          ? Math.min(
+              1,
+              Math.max(
+                0,
+                ((x - points[from]) * dx + (y - points[from + 1]) * dy + (z - points[from + 2]) * dz) / length2,
+              ),
+            )
+          : 0;
       const point = [points[from] + share * dx, points[from + 1] + share * dy, points[from + 2] + share * dz];
       const away_m = Math.hypot(x - point[0], y - point[1], z - point[2]);
       if (away_m < least) [least, nearest] = [away_m, { away_m, line, point, isCounted }];
@@ -81,7 +125,11 @@ export function nearestTower({ towers }, [x, y, z], reach_m = Infinity) {
     const beside = Math.hypot(x - tower.x, z - tower.z);
     if (beside >= least) continue;
     const away_m = Math.hypot(beside, beyond(y, tower.bottom, tower.top));
-    if (away_m < least) [least, nearest] = [away_m, { away_m, tower, point: [tower.x, Math.min(tower.top, Math.max(tower.bottom, y)), tower.z] }];
+    if (away_m < least)
+      [least, nearest] = [
+        away_m,
+        { away_m, tower, point: [tower.x, Math.min(tower.top, Math.max(tower.bottom, y)), tower.z] },
+      ];
   }
   return nearest;
 }
@@ -89,13 +137,27 @@ export function nearestTower({ towers }, [x, y, z], reach_m = Infinity) {
 /** How far from a place the nearest of ground, towers with their arms, wires and what is at `others` is. */
 export function roomRound(surroundings, [x, y, z], others = []) {
   const above_m = y - surroundings.groundAt(x, z);
-  const apart_m = others.reduce((least, [ox, oy, oz]) => Math.min(least, Math.hypot(ox - x, oy - y, oz - z)), Math.max(above_m, 0));
+  const apart_m = others.reduce(
+    (least, [ox, oy, oz]) => Math.min(least, Math.hypot(ox - x, oy - y, oz - z)),
+    Math.max(above_m, 0),
+  );
   if (above_m > CLEAR_OF_ALL_M) return Math.min(apart_m, above_m - CLEAR_OF_ALL_M * 0.8);
-  const towers_m = surroundings.towers.reduce((least, tower) => Math.min(least, Math.hypot(Math.max(Math.hypot(x - tower.x, z - tower.z) - tower.wide_m, 0), beyond(y, tower.bottom, tower.top))), apart_m);
+  const towers_m = surroundings.towers.reduce(
+    (least, tower) =>
+      Math.min(
+        least,
+        Math.hypot(
+          Math.max(Math.hypot(x - tower.x, z - tower.z) - tower.wide_m, 0),
+          beyond(y, tower.bottom, tower.top),
+        ),
+      ),
+    apart_m,
+  );
   return nearestWire(surroundings, [x, y, z], towers_m)?.away_m ?? towers_m;
 }
 
-const limitAt = ({ above, m }, ground, origin_m, otherwise) => (above === "open" || m === null ? otherwise : above === "ground" ? ground + m : m - origin_m);
+const limitAt = ({ above, m }, ground, origin_m, otherwise) =>
+  above === "open" || m === null ? otherwise : above === "ground" ? ground + m : m - origin_m;
 
 /** The nearest zone of those that keep(zone): { away_m, zone, isInside } or null; beside it and over or under it together. */
 export function nearestZone({ zones, groundAt, origin_m }, [x, y, z], keep = () => true) {
@@ -103,7 +165,11 @@ export function nearestZone({ zones, groundAt, origin_m }, [x, y, z], keep = () 
   for (const zone of zones) {
     if (!keep(zone)) continue;
     const ground = groundAt(x, z);
-    const height_m = beyond(y, limitAt(zone.lower, ground, origin_m, -Infinity), limitAt(zone.upper, ground, origin_m, Infinity));
+    const height_m = beyond(
+      y,
+      limitAt(zone.lower, ground, origin_m, -Infinity),
+      limitAt(zone.upper, ground, origin_m, Infinity),
+    );
     for (const rings of zone.polygons) {
       const beside_m = isWithin(rings, x, z) ? 0 : edgeDistance(rings, x, z);
       const away_m = Math.hypot(beside_m, height_m);

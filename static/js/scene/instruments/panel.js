@@ -13,7 +13,13 @@ export function createInstruments() {
   const certainty = h("span", { class: "scene-certainty caption" });
   const list = h("dl", { class: "scene-readings" });
   const empty = h("p", { class: "caption", hidden: true }, t("Nothing is known of it at this moment."));
-  const element = h("section", { class: "scene-instruments", "aria-label": t("Instruments") }, h("header", {}, letter, h("div", {}, name, certainty)), list, empty);
+  const element = h(
+    "section",
+    { class: "scene-instruments", "aria-label": t("Instruments") },
+    h("header", {}, letter, h("div", {}, name, certainty)),
+    list,
+    empty,
+  );
   const rows = new Map();
 
   function row({ name: key, words }) {

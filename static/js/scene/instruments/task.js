@@ -9,7 +9,8 @@ const CLIMBING_MPS = 0.4;
 /** Before its first waypoint and after its last one it goes up or down. */
 function untold({ planned }, { climb_mps }, isDescending) {
   const first = planned.find(({ target }) => target !== null && target !== undefined)?.target ?? null;
-  if (typeof climb_mps === "number" && climb_mps > CLIMBING_MPS && first !== null) return { kind: "take-off", target: first };
+  if (typeof climb_mps === "number" && climb_mps > CLIMBING_MPS && first !== null)
+    return { kind: "take-off", target: first };
   return { kind: isDescending ? "landing" : "unknown", target: null };
 }
 
@@ -27,6 +28,7 @@ export function taskOf(route, moment) {
   if (here !== null && stepOf(moment.position, ahead[0].position).metres < AT_M) return { kind: "at", target: here };
   const next = ahead.find(({ target }) => target !== null && target !== undefined)?.target ?? null;
   const first = route.planned[0];
-  if (moment.waypoint === first?.sequence && next !== null && stepOf(moment.position, first.position).metres < AT_M) return { kind: "take-off", target: next };
+  if (moment.waypoint === first?.sequence && next !== null && stepOf(moment.position, first.position).metres < AT_M)
+    return { kind: "take-off", target: next };
   return next === null ? { kind: isDescending ? "landing" : "home", target: null } : { kind: "to", target: next };
 }

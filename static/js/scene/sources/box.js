@@ -9,7 +9,10 @@ export function boxRound(places) {
   if (!places.length) return null;
   const spans = [0, 1].map((axis) => {
     const values = places.map((place) => place[axis]);
-    return [values.reduce((least, value) => Math.min(least, value)), values.reduce((most, value) => Math.max(most, value))];
+    return [
+      values.reduce((least, value) => Math.min(least, value)),
+      values.reduce((most, value) => Math.max(most, value)),
+    ];
   });
   const latitude = (spans[1][0] + spans[1][1]) / 2;
   const metres = [METRES_PER_DEGREE * Math.cos((latitude * Math.PI) / 180), METRES_PER_DEGREE];
@@ -23,5 +26,11 @@ export function boxRound(places) {
 
 /** All places of a source: planned, flown, its targets. */
 export function placesOf({ routes, targets }) {
-  return [...routes.flatMap(({ planned, pieces }) => [...planned.map(({ position }) => position), ...pieces.flatMap(({ samples }) => samples.map(({ position }) => position))]), ...targets.map(({ position }) => position)];
+  return [
+    ...routes.flatMap(({ planned, pieces }) => [
+      ...planned.map(({ position }) => position),
+      ...pieces.flatMap(({ samples }) => samples.map(({ position }) => position)),
+    ]),
+    ...targets.map(({ position }) => position),
+  ];
 }

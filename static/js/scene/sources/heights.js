@@ -15,7 +15,8 @@ export function altitudeOf({ altitude_amsl_m = null, altitude_relative_m = null 
 }
 
 /** Which height of a source to believe, over this ground ("terrain", "partly", "flat"). Flat ground is 0 everywhere, and so is what a rehearsal over it says. */
-export const trustIn = (sourceKind, groundKind) => (sourceKind === "rehearsal" || (sourceKind === "plan" && groundKind !== "flat") ? "amsl" : "relative");
+export const trustIn = (sourceKind, groundKind) =>
+  sourceKind === "rehearsal" || (sourceKind === "plan" && groundKind !== "flat") ? "amsl" : "relative";
 
 /** Planned heights: of the plan itself wherever it knows them and the ground is drawn. */
 export const trustInPlan = (groundKind) => (groundKind === "flat" ? "relative" : "amsl");

@@ -1,6 +1,6 @@
 /** A mission as it flies: the feed's word of each UAV, and between two words a glide. */
 
-import { certaintyOf, LOST as UNHEARD, MEASURED as HEARD } from "../../monitor/certainty.js";
+import { certaintyOf, MEASURED as HEARD, LOST as UNHEARD } from "../../monitor/certainty.js";
 import { inAir } from "../../monitor/in_air.js";
 import { tracksOf } from "../../report/track.js";
 import { completed, ESTIMATED, LOST, MEASURED, momentOf } from "./pieces.js";
@@ -31,7 +31,8 @@ export function liveSample(uav, now_ms) {
     roll_deg: isHeard ? measured.roll_deg : 0,
     pitch_deg: isHeard ? measured.pitch_deg : 0,
     battery_percent: measured?.battery_percent ?? null,
-    waypoint: (isHeard ? measured.waypoint_sequence : estimated?.waypoint_sequence) ?? measured?.waypoint_sequence ?? null,
+    waypoint:
+      (isHeard ? measured.waypoint_sequence : estimated?.waypoint_sequence) ?? measured?.waypoint_sequence ?? null,
     mode: measured?.mode ?? "",
     isInAir: inAir(uav) !== false,
     bound: isHeard || !estimated ? null : estimated.bound,
@@ -52,7 +53,10 @@ function thinOut(pieces) {
   const longest = pieces.at(-1);
   if (longest.samples.length <= MOST_SAMPLES) return;
   const half = MOST_SAMPLES / 2;
-  longest.samples = [...longest.samples.slice(0, half).filter((_, index) => index % 2 === 0), ...longest.samples.slice(half)];
+  longest.samples = [
+    ...longest.samples.slice(0, half).filter((_, index) => index % 2 === 0),
+    ...longest.samples.slice(half),
+  ];
 }
 
 /**
@@ -63,15 +67,34 @@ export function liveSource({ detail, features = [] }) {
   const flown = tracksOf(features);
   const latest = new Map(); // place → { from, to }: the last two words, and what is between
   const routes = (detail.plan?.routes ?? []).map((route, place) => {
-    const samples = completed((flown.get(route.uav_id) ?? []).filter(({ position }) => position).map((sample) => ({ ...sample, altitude_relative_m: sample.height_m })));
+    const samples = completed(
+      (flown.get(route.uav_id) ?? [])
+        .filter(({ position }) => position)
+        .map((sample) => ({ ...sample, altitude_relative_m: sample.height_m })),
+    );
     const pieces = [];
     for (const sample of samples) addSample(pieces, sample);
-    return { place, uav: route.uav_id, name: route.uav, isSimulated: detail.uavs?.find(({ id }) => id === route.uav_id)?.is_simulated ?? false, planned: plannedOf(route), pieces };
+    return {
+      place,
+      uav: route.uav_id,
+      name: route.uav,
+      isSimulated: detail.uavs?.find(({ id }) => id === route.uav_id)?.is_simulated ?? false,
+      planned: plannedOf(route),
+      pieces,
+    };
   });
-  const uavOfRoute = (route, uavs) => uavs.find(({ id, mission, place }) => id === route.uav || (mission === detail.id && place === route.place));
+  const uavOfRoute = (route, uavs) =>
+    uavs.find(({ id, mission, place }) => id === route.uav || (mission === detail.id && place === route.place));
 
   const source = {
-    kind: "live", isSimulated: routes.length > 0 && routes.every(({ isSimulated }) => isSimulated), departs_ms: null, hasDate: true, span: null, routes, targets: targetsOf(routes, detail.targets), events: [],
+    kind: "live",
+    isSimulated: routes.length > 0 && routes.every(({ isSimulated }) => isSimulated),
+    departs_ms: null,
+    hasDate: true,
+    span: null,
+    routes,
+    targets: targetsOf(routes, detail.targets),
+    events: [],
     revision: 0, // of what was flown: a ribbon that has grown
     wind: null,
     windAt: () => source.wind,
@@ -91,8 +114,14 @@ export function liveSource({ detail, features = [] }) {
           isNew = true;
         }
         const { measured } = uav;
-        if (sample.kind === MEASURED && sample.isInAir && addSample(route.pieces, { ...sample, at_ms: Date.parse(measured.measured_at), bound: null })) source.revision += 1;
-        if (typeof measured?.wind_speed_mps === "number") source.wind = { speed_mps: measured.wind_speed_mps, from_deg: measured.wind_from_deg ?? 0 };
+        if (
+          sample.kind === MEASURED &&
+          sample.isInAir &&
+          addSample(route.pieces, { ...sample, at_ms: Date.parse(measured.measured_at), bound: null })
+        )
+          source.revision += 1;
+        if (typeof measured?.wind_speed_mps === "number")
+          source.wind = { speed_mps: measured.wind_speed_mps, from_deg: measured.wind_from_deg ?? 0 };
       }
       return isNew;
     },
@@ -105,12 +134,37 @@ export function liveSource({ detail, features = [] }) {
     if (!known) return null;
     const { from, to, at_ms } = known;
     if (from === to || now_ms >= at_ms + GLIDE_MS) return to;
-    const between = momentOf([{ kind: to.kind, samples: [{ ...from, at_ms }, { ...to, at_ms: at_ms + GLIDE_MS }] }], Math.max(at_ms, now_ms));
+    const between = momentOf(
+      [
+        {
+          kind: to.kind,
+          samples: [
+            { ...from, at_ms },
+            { ...to, at_ms: at_ms + GLIDE_MS },
+          ],
+        },
+      ],
+      Math.max(at_ms, now_ms),
+    );
     return { ...to, ...between, bound: to.bound, since_ms: to.since_ms, waypoint: to.waypoint };
   }
 
   return source;
 }
 
-const SEEN = ["kind", "altitude_relative_m", "heading_deg", "roll_deg", "pitch_deg", "battery_percent", "waypoint", "isInAir", "since_ms"];
-const isOther = (a, b) => SEEN.some((name) => a[name] !== b[name]) || a.position[0] !== b.position[0] || a.position[1] !== b.position[1] || a.bound?.along_m !== b.bound?.along_m;
+const SEEN = [
+  "kind",
+  "altitude_relative_m",
+  "heading_deg",
+  "roll_deg",
+  "pitch_deg",
+  "battery_percent",
+  "waypoint",
+  "isInAir",
+  "since_ms",
+];
+const isOther = (a, b) =>
+  SEEN.some((name) => a[name] !== b[name]) ||
+  a.position[0] !== b.position[0] ||
+  a.position[1] !== b.position[1] ||
+  a.bound?.along_m !== b.bound?.along_m;

@@ -7,7 +7,15 @@ export const ESTIMATED = "estimated";
 export const PLANNED = "planned";
 export const LOST = "lost"; // nobody knows where it is by now: where it was last
 
-const NUMBERS = ["altitude_amsl_m", "altitude_relative_m", "speed_mps", "climb_mps", "battery_percent", "roll_deg", "pitch_deg"];
+const NUMBERS = [
+  "altitude_amsl_m",
+  "altitude_relative_m",
+  "speed_mps",
+  "climb_mps",
+  "battery_percent",
+  "roll_deg",
+  "pitch_deg",
+];
 const NO_BOUND = { along_m: 0, across_m: 0, bearing_deg: 0, height_m: 0 }; // at a report
 
 /**
@@ -27,7 +35,14 @@ export function momentOf(pieces, at_ms) {
   }
   if (!last) return null;
   const sample = last.samples.at(-1);
-  return { ...sample, kind: sample.isInAir === false || last.kind === PLANNED ? last.kind : LOST, since_ms: sample.at_ms, speed_mps: 0, climb_mps: 0, isOver: true };
+  return {
+    ...sample,
+    kind: sample.isInAir === false || last.kind === PLANNED ? last.kind : LOST,
+    since_ms: sample.at_ms,
+    speed_mps: 0,
+    climb_mps: 0,
+    isOver: true,
+  };
 }
 
 function at({ kind, samples }, at_ms) {
@@ -35,16 +50,32 @@ function at({ kind, samples }, at_ms) {
   const before = samples[Math.max(0, samples.indexOf(after) - 1)];
   if (after === before || after.at_ms === before.at_ms) return { ...after, kind, since_ms: after.at_ms };
   const share = (at_ms - before.at_ms) / (after.at_ms - before.at_ms);
-  const mixed = { ...before, kind, at_ms, since_ms: before.at_ms, position: [0, 1].map((axis) => before.position[axis] + (after.position[axis] - before.position[axis]) * share) };
-  for (const name of NUMBERS) mixed[name] = isKnown(before[name]) && isKnown(after[name]) ? before[name] + (after[name] - before[name]) * share : (before[name] ?? null);
-  if (isKnown(before.heading_deg) && isKnown(after.heading_deg)) mixed.heading_deg = (before.heading_deg + turn_deg(before.heading_deg, after.heading_deg) * share + 360) % 360;
+  const mixed = {
+    ...before,
+    kind,
+    at_ms,
+    since_ms: before.at_ms,
+    position: [0, 1].map((axis) => before.position[axis] + (after.position[axis] - before.position[axis]) * share),
+  };
+  for (const name of NUMBERS)
+    mixed[name] =
+      isKnown(before[name]) && isKnown(after[name])
+        ? before[name] + (after[name] - before[name]) * share
+        : (before[name] ?? null);
+  if (isKnown(before.heading_deg) && isKnown(after.heading_deg))
+    mixed.heading_deg = (before.heading_deg + turn_deg(before.heading_deg, after.heading_deg) * share + 360) % 360;
   mixed.bound = kind === ESTIMATED ? boundBetween(before.bound ?? NO_BOUND, after.bound ?? NO_BOUND, share) : null;
   return mixed;
 }
 
 function boundBetween(before, after, share) {
   const part = (name) => (before[name] ?? 0) + ((after[name] ?? 0) - (before[name] ?? 0)) * share;
-  return { along_m: part("along_m"), across_m: part("across_m"), height_m: part("height_m"), bearing_deg: share < 0.5 ? before.bearing_deg : after.bearing_deg };
+  return {
+    along_m: part("along_m"),
+    across_m: part("across_m"),
+    height_m: part("height_m"),
+    bearing_deg: share < 0.5 ? before.bearing_deg : after.bearing_deg,
+  };
 }
 
 const isKnown = (value) => typeof value === "number" && Number.isFinite(value);
@@ -66,7 +97,10 @@ const METRES_PER_DEGREE = 111_195; // of latitude, on a sphere: for courses and 
 export function stepOf([lon, lat], [toLon, toLat]) {
   const east_m = (toLon - lon) * METRES_PER_DEGREE * Math.cos(((lat + toLat) / 2) * (Math.PI / 180));
   const north_m = (toLat - lat) * METRES_PER_DEGREE;
-  return { metres: Math.hypot(east_m, north_m), bearing_deg: ((Math.atan2(east_m, north_m) * 180) / Math.PI + 360) % 360 };
+  return {
+    metres: Math.hypot(east_m, north_m),
+    bearing_deg: ((Math.atan2(east_m, north_m) * 180) / Math.PI + 360) % 360,
+  };
 }
 
 /** Samples that lack a heading, a speed or a climb get those of their way to the next; one that stands keeps its heading. */
@@ -76,9 +110,21 @@ export function completed(samples) {
     const next = samples[index + 1];
     const seconds = next ? (next.at_ms - sample.at_ms) / 1_000 : 0;
     const step = next && seconds > 0 ? stepOf(sample.position, next.position) : null;
-    heading_deg = isKnown(sample.heading_deg) ? sample.heading_deg : step && step.metres > 0.3 ? step.bearing_deg : heading_deg;
-    const climb = step && isKnown(sample.altitude_relative_m) && isKnown(next.altitude_relative_m) ? (next.altitude_relative_m - sample.altitude_relative_m) / seconds : null;
-    return { ...sample, heading_deg, speed_mps: isKnown(sample.speed_mps) ? sample.speed_mps : step ? step.metres / seconds : 0, climb_mps: isKnown(sample.climb_mps) ? sample.climb_mps : climb };
+    heading_deg = isKnown(sample.heading_deg)
+      ? sample.heading_deg
+      : step && step.metres > 0.3
+        ? step.bearing_deg
+        : heading_deg;
+    const climb =
+      step && isKnown(sample.altitude_relative_m) && isKnown(next.altitude_relative_m)
+        ? (next.altitude_relative_m - sample.altitude_relative_m) / seconds
+        : null;
+    return {
+      ...sample,
+      heading_deg,
+      speed_mps: isKnown(sample.speed_mps) ? sample.speed_mps : step ? step.metres / seconds : 0,
+      climb_mps: isKnown(sample.climb_mps) ? sample.climb_mps : climb,
+    };
   });
   const first = found.find((sample) => sample.heading_deg !== null)?.heading_deg ?? 0;
   return found.map((sample) => (sample.heading_deg === null ? { ...sample, heading_deg: first } : sample));

@@ -8,29 +8,81 @@ export const NO_DATE_MS = 0;
 
 /** Planned waypoints of a mission's route (GET /missions/{id}): [{ position, altitude_amsl_m, altitude_relative_m, at_s, target, kind }]. */
 export const plannedOf = ({ waypoints, arrival_s }) =>
-  waypoints.map(({ position, altitude_amsl_m, altitude_relative_m, target, kind }, index) => ({ sequence: index, position, altitude_amsl_m, altitude_relative_m, at_s: arrival_s[index] ?? null, target, kind }));
+  waypoints.map(({ position, altitude_amsl_m, altitude_relative_m, target, kind }, index) => ({
+    sequence: index,
+    position,
+    altitude_amsl_m,
+    altitude_relative_m,
+    at_s: arrival_s[index] ?? null,
+    target,
+    kind,
+  }));
 
 /** Targets with the label they have on all stages: [{ place, label, name, asset, position, route }]. routes: [{ place, planned }]; targets: [{ label, asset }]. */
 export function targetsOf(routes, targets) {
   const labels = labelsOf(routes.map(({ place, planned }) => ({ place, waypoints: planned })));
-  return [...labels].map(([place, { label, place: route, position }]) => ({ place, label, name: targets[place]?.label ?? targets[place]?.name ?? "", asset: targets[place]?.asset ?? null, position, route }));
+  return [...labels].map(([place, { label, place: route, position }]) => ({
+    place,
+    label,
+    name: targets[place]?.label ?? targets[place]?.name ?? "",
+    asset: targets[place]?.asset ?? null,
+    position,
+    route,
+  }));
 }
 
 /** detail: GET /missions/{id}. → a source, see sources/read.js. */
 export function planSource(detail) {
   const departs_ms = detail.departs_at ? Date.parse(detail.departs_at) : NO_DATE_MS;
-  const routes = (detail.plan?.routes ?? []).map((route, place) => {
-    const planned = plannedOf(route);
-    const timed = planned.filter(({ at_s }) => at_s !== null);
-    const samples = completed(timed.map(({ at_s, position, altitude_amsl_m, altitude_relative_m, sequence }) => ({ at_ms: departs_ms + at_s * 1_000, position, altitude_amsl_m, altitude_relative_m, waypoint: sequence, battery_percent: route.battery_left_percent?.[sequence] ?? null, isInAir: true })));
-    return { place, name: route.uav, uav: route.uav_id, planned, pieces: samples.length > 1 ? [{ kind: PLANNED, samples: samples.map((sample, index) => ({ ...sample, waypoint: samples[index + 1]?.waypoint ?? sample.waypoint })) }] : [] };
-  }).filter(({ planned }) => planned.length);
-  const moments = routes.flatMap(({ pieces }) => pieces.flatMap(({ samples }) => [samples[0].at_ms, samples.at(-1).at_ms]));
+  const routes = (detail.plan?.routes ?? [])
+    .map((route, place) => {
+      const planned = plannedOf(route);
+      const timed = planned.filter(({ at_s }) => at_s !== null);
+      const samples = completed(
+        timed.map(({ at_s, position, altitude_amsl_m, altitude_relative_m, sequence }) => ({
+          at_ms: departs_ms + at_s * 1_000,
+          position,
+          altitude_amsl_m,
+          altitude_relative_m,
+          waypoint: sequence,
+          battery_percent: route.battery_left_percent?.[sequence] ?? null,
+          isInAir: true,
+        })),
+      );
+      return {
+        place,
+        name: route.uav,
+        uav: route.uav_id,
+        planned,
+        pieces:
+          samples.length > 1
+            ? [
+                {
+                  kind: PLANNED,
+                  samples: samples.map((sample, index) => ({
+                    ...sample,
+                    waypoint: samples[index + 1]?.waypoint ?? sample.waypoint,
+                  })),
+                },
+              ]
+            : [],
+      };
+    })
+    .filter(({ planned }) => planned.length);
+  const moments = routes.flatMap(({ pieces }) =>
+    pieces.flatMap(({ samples }) => [samples[0].at_ms, samples.at(-1).at_ms]),
+  );
   const wind = detail.plan?.conditions?.wind ?? [];
   return {
-    kind: "plan", isSimulated: false, departs_ms, hasDate: Boolean(detail.departs_at), routes,
+    kind: "plan",
+    isSimulated: false,
+    departs_ms,
+    hasDate: Boolean(detail.departs_at),
+    routes,
     span: moments.length ? { from_ms: Math.min(...moments), to_ms: Math.max(...moments) } : null,
-    targets: targetsOf(routes, detail.targets), events: [], windAt: (_at_ms, height_m) => windAtHeight(wind, height_m),
+    targets: targetsOf(routes, detail.targets),
+    events: [],
+    windAt: (_at_ms, height_m) => windAtHeight(wind, height_m),
   };
 }
 
@@ -42,8 +94,12 @@ export function windAtHeight(layers, height_m) {
   const below = sorted.findLast(({ altitude_agl_m }) => altitude_agl_m <= height_m) ?? sorted[0];
   const reach = above.altitude_agl_m - below.altitude_agl_m;
   const share = reach > 0 ? (height_m - below.altitude_agl_m) / reach : 0;
-  const part = (axis) => [below, above].map(({ speed_mps, from_deg }) => speed_mps * Math[axis]((from_deg * Math.PI) / 180));
-  const mixed = (axis) => { const [low, high] = part(axis); return low + (high - low) * share; };
+  const part = (axis) =>
+    [below, above].map(({ speed_mps, from_deg }) => speed_mps * Math[axis]((from_deg * Math.PI) / 180));
+  const mixed = (axis) => {
+    const [low, high] = part(axis);
+    return low + (high - low) * share;
+  };
   const [east, north] = [mixed("sin"), mixed("cos")];
   return { speed_mps: Math.hypot(east, north), from_deg: ((Math.atan2(east, north) * 180) / Math.PI + 360) % 360 };
 }

@@ -21,12 +21,16 @@ const ORDER = ["fail", "warnings", "pass"];
 export function usualSource({ state }, rehearsals) {
   if (UNDER_WAY.includes(state)) return { kind: "live", rehearsal: null, run: null };
   if (OVER.includes(state)) return { kind: "record", rehearsal: null, run: null };
-  return rehearsals.some(({ level }) => level) ? { kind: "rehearsal", rehearsal: null, run: null } : { kind: "plan", rehearsal: null, run: null };
+  return rehearsals.some(({ level }) => level)
+    ? { kind: "rehearsal", rehearsal: null, run: null }
+    : { kind: "plan", rehearsal: null, run: null };
 }
 
 /** The worst of a rehearsal's runs that was flown; null where none was. */
 export function worstRun({ runs }) {
-  const flown = runs.filter(({ level }) => level).sort((a, b) => ORDER.indexOf(a.level) - ORDER.indexOf(b.level) || a.sequence - b.sequence);
+  const flown = runs
+    .filter(({ level }) => level)
+    .sort((a, b) => ORDER.indexOf(a.level) - ORDER.indexOf(b.level) || a.sequence - b.sequence);
   return flown[0]?.sequence ?? null;
 }
 
@@ -37,11 +41,16 @@ async function readRehearsal(mission, { rehearsal, run }, rehearsals) {
   const number = run !== null && detail.runs[run]?.level ? run : worstRun(detail);
   if (number === null) return null;
   const { data: track } = await get(`/missions/${mission.id}/rehearsals/${id}/track?run=${number}`);
-  return { ...rehearsalSource({ detail, track, mission }), runs: detail.runs.filter(({ level }) => level).map(({ sequence, words }) => ({ sequence, words })) };
+  return {
+    ...rehearsalSource({ detail, track, mission }),
+    runs: detail.runs.filter(({ level }) => level).map(({ sequence, words }) => ({ sequence, words })),
+  };
 }
 
 async function readLive(mission) {
-  const { data } = await get(`/telemetry?mission=${mission.id}&most=${MOST_RECORDS}&limit=${MOST_RECORDS > 1_000 ? 1_000 : MOST_RECORDS}`);
+  const { data } = await get(
+    `/telemetry?mission=${mission.id}&most=${MOST_RECORDS}&limit=${MOST_RECORDS > 1_000 ? 1_000 : MOST_RECORDS}`,
+  );
   const features = [...data.features];
   for (let { next } = data; next; ) {
     const { data: more } = await get(next);
@@ -56,7 +65,12 @@ export async function readSource(mission, wanted = null) {
   const { data: listed } = await get(`/missions/${mission.id}/rehearsals`);
   const rehearsals = listed.results;
   const choice = wanted ?? usualSource(mission, rehearsals);
-  const read = { rehearsal: () => readRehearsal(mission, choice, rehearsals), record: async () => recordSource(await loadMission(mission.id)), live: () => readLive(mission), plan: () => planSource(mission) };
+  const read = {
+    rehearsal: () => readRehearsal(mission, choice, rehearsals),
+    record: async () => recordSource(await loadMission(mission.id)),
+    live: () => readLive(mission),
+    plan: () => planSource(mission),
+  };
   const source = (await read[choice.kind]()) ?? planSource(mission);
   return { source, choices: choicesOf(mission, rehearsals, source) };
 }

@@ -35,9 +35,18 @@ export function rehearsalSource({ detail, track, mission }) {
     planned: planned.map(({ waypoint, ...point }) => ({ ...point, sequence: waypoint })),
     pieces: flights.map((flight) => ({ kind: MEASURED, samples: samplesOf(flight, departs_ms) })),
   }));
-  const moments = routes.flatMap(({ pieces }) => pieces.flatMap(({ samples }) => [samples[0].at_ms, samples.at(-1).at_ms]));
+  const moments = routes.flatMap(({ pieces }) =>
+    pieces.flatMap(({ samples }) => [samples[0].at_ms, samples.at(-1).at_ms]),
+  );
   return {
-    kind: "rehearsal", rehearsal: detail.id, run: track.run, isSimulated: true, conditions: run.words, departs_ms, hasDate: Boolean(mission.departs_at), routes,
+    kind: "rehearsal",
+    rehearsal: detail.id,
+    run: track.run,
+    isSimulated: true,
+    conditions: run.words,
+    departs_ms,
+    hasDate: Boolean(mission.departs_at),
+    routes,
     span: moments.length ? { from_ms: Math.min(...moments), to_ms: Math.max(...moments) } : null,
     targets: targetsOf(routes, mission.targets),
     events: eventsOfRun(run.verdict, routes, departs_ms),
@@ -47,7 +56,16 @@ export function rehearsalSource({ detail, track, mission }) {
 
 /** Take-offs, targets and landings of a run, as the record page has them: [{ at_ms, kind, place, target? }]. */
 export function eventsOfRun(verdict, routes, departs_ms) {
-  const flights = routes.flatMap(({ place, pieces }) => pieces.flatMap(({ samples }) => [{ at_ms: samples[0].at_ms, kind: "take-off", place }, { at_ms: samples.at(-1).at_ms, kind: "landing", place }]));
-  const targets = (verdict?.routes ?? []).flatMap(({ uav, targets: flown }) => flown.filter(({ at_s }) => at_s !== null).map(({ at_s, target }) => ({ at_ms: departs_ms + at_s * 1_000, kind: "target", place: uav, target })));
+  const flights = routes.flatMap(({ place, pieces }) =>
+    pieces.flatMap(({ samples }) => [
+      { at_ms: samples[0].at_ms, kind: "take-off", place },
+      { at_ms: samples.at(-1).at_ms, kind: "landing", place },
+    ]),
+  );
+  const targets = (verdict?.routes ?? []).flatMap(({ uav, targets: flown }) =>
+    flown
+      .filter(({ at_s }) => at_s !== null)
+      .map(({ at_s, target }) => ({ at_ms: departs_ms + at_s * 1_000, kind: "target", place: uav, target })),
+  );
   return [...flights, ...targets].sort((a, b) => a.at_ms - b.at_ms);
 }

@@ -38,7 +38,12 @@ export function mood(palette, altitude_deg) {
     ground: new Color(palette.isDark ? "#c6c9cb" : "#d5d0c8"),
     strength: Math.PI * fillShare,
   };
-  const lit = ground.clone().multiply(fill.sky.clone().multiplyScalar(fillShare).add(sun.colour.clone().multiplyScalar(strength * height)));
+  const lit = ground.clone().multiply(
+    fill.sky
+      .clone()
+      .multiplyScalar(fillShare)
+      .add(sun.colour.clone().multiplyScalar(strength * height)),
+  );
   const glow = new Color(DUSK[palette.isDark ? "dark" : "light"]);
   return {
     phase: altitude_deg < -6 ? "night" : altitude_deg < 6 ? "dusk" : "day",
@@ -60,7 +65,8 @@ export function mood(palette, altitude_deg) {
  */
 export function nightPalette(palette, night) {
   if (palette.isDark || night < 0.02) return palette;
-  const towards = (names, colour, share) => names.map((name) => [name, `#${new Color(palette[name]).lerp(new Color(colour), share).getHexString()}`]);
+  const towards = (names, colour, share) =>
+    names.map((name) => [name, `#${new Color(palette[name]).lerp(new Color(colour), share).getHexString()}`]);
   const pale = step(night, 0.68, 0.82); // all at once, when the ground is as far from dark lines as from pale ones
   return {
     ...palette,
@@ -122,7 +128,14 @@ export function makeLights({ shadows }) {
       if (size_m !== wanted_m) {
         size_m = wanted_m;
         const box = sun.shadow.camera;
-        [box.left, box.right, box.top, box.bottom, box.near, box.far] = [-size_m, size_m, size_m, -size_m, AWAY_M - 1_500, AWAY_M + 1_500];
+        [box.left, box.right, box.top, box.bottom, box.near, box.far] = [
+          -size_m,
+          size_m,
+          size_m,
+          -size_m,
+          AWAY_M - 1_500,
+          AWAY_M + 1_500,
+        ];
         box.updateProjectionMatrix();
       }
       sun.target.updateMatrixWorld();

@@ -3,7 +3,12 @@
 import { voltageColour } from "../../map/style.js";
 import { Color } from "../three.js";
 
-const WIRE_PX = [[380_000, 1.5], [200_000, 1.35], [100_000, 1.2], [0, 1]];
+const WIRE_PX = [
+  [380_000, 1.5],
+  [200_000, 1.35],
+  [100_000, 1.2],
+  [0, 1],
+];
 const WIRE_M = 0.11; // a bundle, or a rope with the eye's help
 const EARTH = { px: 0.8, m: 0.05 };
 const RAIL = { px: 0.7, m: 0.14 };
@@ -62,7 +67,14 @@ export function edgeSegments(volumes, palette) {
   let at = 0;
   for (const { edges, isInForce } of volumes) {
     for (let place = 0; place < edges.length; place += 6) {
-      lines.put(at, edges.subarray(place, place + 6), colour, isInForce ? 0 : REST_DASH_M, isInForce ? EDGE_PX : 1.2, 0);
+      lines.put(
+        at,
+        edges.subarray(place, place + 6),
+        colour,
+        isInForce ? 0 : REST_DASH_M,
+        isInForce ? EDGE_PX : 1.2,
+        0,
+      );
       at += 1;
     }
   }
@@ -70,7 +82,11 @@ export function edgeSegments(volumes, palette) {
 }
 
 function arrays(count) {
-  const [segments, tints, sizes] = [new Float32Array(count * 6), new Float32Array(count * 4), new Float32Array(count * 2)];
+  const [segments, tints, sizes] = [
+    new Float32Array(count * 6),
+    new Float32Array(count * 4),
+    new Float32Array(count * 2),
+  ];
   return {
     all: [segments, tints, sizes],
     put(at, ends, colour, dash_m, px, metres) {

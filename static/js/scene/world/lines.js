@@ -1,6 +1,18 @@
 /** Lines of a width in pixels, or in metres where that is more: wires, rails, edges of zones; one draw call for all of a kind. */
 
-import { DynamicDrawUsage, InstancedBufferAttribute, InstancedBufferGeometry, BufferAttribute, DoubleSide, Mesh, ShaderMaterial, StaticDrawUsage, UniformsLib, UniformsUtils, Vector4 } from "../three.js";
+import {
+  BufferAttribute,
+  DoubleSide,
+  DynamicDrawUsage,
+  InstancedBufferAttribute,
+  InstancedBufferGeometry,
+  Mesh,
+  ShaderMaterial,
+  StaticDrawUsage,
+  UniformsLib,
+  UniformsUtils,
+  Vector4,
+} from "../three.js";
 
 const VERTEX = /* glsl */ `
   attribute vec3 start;
@@ -73,7 +85,10 @@ export function screenLines({ fade = [6_000, 0.4], order = 2 } = {}) {
   const material = new ShaderMaterial({
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
-    uniforms: UniformsUtils.merge([UniformsLib.fog, { viewport: { value: new Vector4(0, 0, 1, 1) }, pixelRatio: { value: 1 }, fade: { value: fade } }]),
+    uniforms: UniformsUtils.merge([
+      UniformsLib.fog,
+      { viewport: { value: new Vector4(0, 0, 1, 1) }, pixelRatio: { value: 1 }, fade: { value: fade } },
+    ]),
     transparent: true,
     side: DoubleSide,
     depthWrite: false,

@@ -1,7 +1,15 @@
 /** Members of supports: one draw call for the outlines of all, one for the bracing of those near by. */
 
-import { Color, CylinderGeometry, DynamicDrawUsage, InstancedMesh, MeshDepthMaterial, MeshLambertMaterial, Vector2 } from "../three.js";
 import { memberMatrices } from "../geometry/struts.js";
+import {
+  Color,
+  CylinderGeometry,
+  DynamicDrawUsage,
+  InstancedMesh,
+  MeshDepthMaterial,
+  MeshLambertMaterial,
+  Vector2,
+} from "../three.js";
 
 const LEAST_PX = 0.9; // an outline is never thinner on the screen
 const LEAST_SHADOW_PX = 2.4; // nor its shadow in the shadow map
@@ -35,7 +43,10 @@ function shadowMaterial(leastShadow) {
     shader.uniforms.leastShadow = leastShadow;
     shader.vertexShader = shader.vertexShader
       .replace("#include <common>", "#include <common>\nuniform float leastShadow;")
-      .replace("#include <begin_vertex>", "#include <begin_vertex>\ntransformed.xz *= max(1.0, leastShadow / length(instanceMatrix[0].xyz));");
+      .replace(
+        "#include <begin_vertex>",
+        "#include <begin_vertex>\ntransformed.xz *= max(1.0, leastShadow / length(instanceMatrix[0].xyz));",
+      );
   };
   return material;
 }
@@ -66,7 +77,8 @@ export function memberMesh({ leastPx = LEAST_PX, castShadow = true } = {}) {
     own.customDepthMaterial = depth;
     own.onBeforeRender = (renderer, _scene, camera) => {
       const height = renderer.getDrawingBufferSize(SIZE).y;
-      uniforms.tanPerPx.value = (2 * Math.tan(((camera.fov ?? 50) * Math.PI) / 360) * renderer.getPixelRatio()) / Math.max(height, 1);
+      uniforms.tanPerPx.value =
+        (2 * Math.tan(((camera.fov ?? 50) * Math.PI) / 360) * renderer.getPixelRatio()) / Math.max(height, 1);
     };
   }
   holder.mesh.setColorAt(0, new Color());

@@ -25,7 +25,15 @@ const FRAGMENT = /* glsl */ `
 /** Gives { mesh, apply(mood), dispose() }. */
 export function makeSky() {
   const uniforms = { sky: { value: new Color() }, horizon: { value: new Color() }, glow: { value: new Color() } };
-  const material = new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms, side: BackSide, depthWrite: false, depthTest: false, fog: false });
+  const material = new ShaderMaterial({
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENT,
+    uniforms,
+    side: BackSide,
+    depthWrite: false,
+    depthTest: false,
+    fog: false,
+  });
   const mesh = new Mesh(new SphereGeometry(1, 24, 32), material);
   mesh.frustumCulled = false;
   mesh.renderOrder = -10;

@@ -5,7 +5,11 @@ import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, MeshLambertMa
 /** Arrays { vertices, index, uv? } of many pieces as one. */
 export function merged(pieces) {
   const count = (of) => pieces.reduce((sum, piece) => sum + (piece[of]?.length ?? 0), 0);
-  const [vertices, uv, index] = [new Float32Array(count("vertices")), new Float32Array(count("uv")), new Uint32Array(count("index"))];
+  const [vertices, uv, index] = [
+    new Float32Array(count("vertices")),
+    new Float32Array(count("uv")),
+    new Uint32Array(count("index")),
+  ];
   let [vertex, atUv, atIndex] = [0, 0, 0];
   for (const piece of pieces) {
     vertices.set(piece.vertices, vertex);
@@ -48,7 +52,12 @@ const SLEEPERS = /* glsl */ `
 
 /** The beds, with sleepers across, and their dams; `ties` and `dams` are their colours. */
 export function makeBeds() {
-  const material = new MeshLambertMaterial({ side: DoubleSide, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 });
+  const material = new MeshLambertMaterial({
+    side: DoubleSide,
+    polygonOffset: true,
+    polygonOffsetFactor: -2,
+    polygonOffsetUnits: -4,
+  });
   const uniforms = { tieColour: { value: new Color() }, damColour: { value: new Color() } };
   material.defines = { USE_UV: "" };
   material.onBeforeCompile = (shader) => {

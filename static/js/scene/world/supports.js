@@ -28,7 +28,10 @@ export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
   let isStale = false;
 
   function outlineColours() {
-    return coloursOf([...supports.map((support, place) => [support, outlines[place]]), ...masts.map((own) => [MAST, own])]);
+    return coloursOf([
+      ...supports.map((support, place) => [support, outlines[place]]),
+      ...masts.map((own) => [MAST, own]),
+    ]);
   }
 
   function coloursOf(pairs) {
@@ -37,7 +40,8 @@ export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
     for (const [support, { tone }] of pairs) {
       const own = colours.of(support);
       for (let member = 0; member < tone.length; member += 1) {
-        const colour = tone[member] === INSULATOR ? colours.insulator : tone[member] === FOUNDATION ? colours.foundation : own;
+        const colour =
+          tone[member] === INSULATOR ? colours.insulator : tone[member] === FOUNDATION ? colours.foundation : own;
         values[at] = colour.r;
         values[at + 1] = colour.g;
         values[at + 2] = colour.b;
@@ -74,7 +78,8 @@ export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
 
   /** A few a frame, so that no frame is late; drawn once all are there. */
   function workOut() {
-    for (const place of wanted.splice(0, MOST_A_FRAME)) near.set(place, supportMembers(supports[place], frame, belowFoot(supports[place])).fine);
+    for (const place of wanted.splice(0, MOST_A_FRAME))
+      near.set(place, supportMembers(supports[place], frame, belowFoot(supports[place])).fine);
     if (wanted.length) return;
     isStale = false;
     paintNear();
@@ -86,7 +91,11 @@ export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
     show(next, ownFrame, along = [], groundAt = () => Infinity) {
       ground = groundAt;
       [supports, frame, masts, near, lookedFrom, wanted, isStale] = [next, ownFrame, along, new Map(), null, [], false];
-      feet = Float32Array.from(supports.flatMap(({ position, ground_amsl_m, height_m }) => ownFrame.toLocal(...position, ground_amsl_m + height_m / 2)));
+      feet = Float32Array.from(
+        supports.flatMap(({ position, ground_amsl_m, height_m }) =>
+          ownFrame.toLocal(...position, ground_amsl_m + height_m / 2),
+        ),
+      );
       group.visible = supports.length + masts.length > 0;
       outlines = supports.map((support) => supportMembers(support, frame).outline);
       outline.set(joined([...outlines, ...masts]), colours ? outlineColours() : new Float32Array(0));
@@ -100,7 +109,11 @@ export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
         foundation: new Color(palette.pressed).lerp(new Color(palette.inkSecond), 0.25),
         of({ voltage_v, isMast }) {
           if (isMast) return mast;
-          if (!body.has(voltage_v)) body.set(voltage_v, new Color(voltage_v === null ? palette.tower : voltageColour(palette, voltage_v / 1_000)));
+          if (!body.has(voltage_v))
+            body.set(
+              voltage_v,
+              new Color(voltage_v === null ? palette.tower : voltageColour(palette, voltage_v / 1_000)),
+            );
           return body.get(voltage_v);
         },
       };

@@ -1,7 +1,7 @@
 /** The ground: one surface in the token's colour with a graticule, and contour lines where it is not flat. */
 
-import { BufferAttribute, BufferGeometry, Color, Mesh, MeshLambertMaterial } from "../three.js";
 import { groundMesh } from "../geometry/ground.js";
+import { BufferAttribute, BufferGeometry, Color, Mesh, MeshLambertMaterial } from "../three.js";
 
 const RELIEF = 2.2;
 const PARS = /* glsl */ `
@@ -30,7 +30,12 @@ const LINES = /* glsl */ `
 /** Gives { mesh, show(ground, frame), apply(colours), dispose() }. */
 export function makeTerrain() {
   const material = new MeshLambertMaterial();
-  const uniforms = { lineColour: { value: new Color() }, contourColour: { value: new Color() }, origin: { value: { x: 0, y: 0, z: 0 } }, contour_m: { value: 0 } };
+  const uniforms = {
+    lineColour: { value: new Color() },
+    contourColour: { value: new Color() },
+    origin: { value: { x: 0, y: 0, z: 0 } },
+    contour_m: { value: 0 },
+  };
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, uniforms);
     shader.vertexShader = shader.vertexShader
@@ -53,7 +58,9 @@ export function makeTerrain() {
       mesh.geometry.setAttribute("normal", new BufferAttribute(steeper(normals), 3));
       mesh.geometry.setIndex(new BufferAttribute(index, 1));
       const heights = ground.heights;
-      const range_m = heights.reduce((most, height) => Math.max(most, height), -Infinity) - heights.reduce((least, height) => Math.min(least, height), Infinity);
+      const range_m =
+        heights.reduce((most, height) => Math.max(most, height), -Infinity) -
+        heights.reduce((least, height) => Math.min(least, height), Infinity);
       uniforms.contour_m.value = range_m < 2 ? 0 : range_m < 60 ? 5 : range_m < 250 ? 10 : range_m < 800 ? 20 : 50;
       uniforms.origin.value = { x: 0, y: -frame.origin.altitude_amsl_m, z: 0 };
     },

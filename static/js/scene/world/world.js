@@ -28,7 +28,12 @@ const FOG_SHARES = [1.1, 3]; // of what is looked at from farther away: that is 
 const LINES_M = 4_000; // what is looked at from farther away has lines as strong as from here
 const FLAT = { columns: 2, rows: 2, step_lon_deg: 0.1, step_lat_deg: 0.1 };
 const NO_AIR = { points: new Float64Array(0), first: new Uint32Array(1), marks: new Float32Array(0) };
-const NO_WIRES = { points: new Float64Array(0), first: new Uint32Array(1), span: new Uint32Array(0), isEarth: new Uint8Array(0) };
+const NO_WIRES = {
+  points: new Float64Array(0),
+  first: new Uint32Array(1),
+  span: new Uint32Array(0),
+  isEarth: new Uint8Array(0),
+};
 
 /** quality: "high", or "low" without shadows and with little bracing. */
 export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
@@ -40,7 +45,11 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
   const wires = screenLines({ fade: [3_500, 0.3], order: 2 });
   const edges = screenLines({ fade: [16_000, 0.5], order: 4 });
   const parts = [sky, terrain, beds, bridges, supports, wires, edges, zones];
-  group.add(lights.group, supports.group, ...[sky, terrain, beds, bridges, zones, wires, edges].map((part) => part.mesh));
+  group.add(
+    lights.group,
+    supports.group,
+    ...[sky, terrain, beds, bridges, zones, wires, edges].map((part) => part.mesh),
+  );
 
   let palette = firstPalette;
   let scene = null;
@@ -55,7 +64,11 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     fog.color.copy(now.horizon);
     sky.apply(now);
     const graticule = new Color(palette.graticule).lerp(now.line, now.night);
-    terrain.apply({ ground: now.ground, graticule, contour: graticule.clone().lerp(new Color(palette.inkSecond), palette.isDark ? 0.08 : 0.24) });
+    terrain.apply({
+      ground: now.ground,
+      graticule,
+      contour: graticule.clone().lerp(new Color(palette.inkSecond), palette.isDark ? 0.08 : 0.24),
+    });
     lights.apply(now, sun);
   }
 
@@ -71,7 +84,15 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
     beds.dams.copy(near("railway", palette.isDark ? 0.92 : 0.8));
     zones.apply(own);
     supports.apply(own);
-    const [lines, borders] = [joined([wireSegments(shown.wires, scene, own), railSegments(shown.rails, own), railWireSegments(shown.railWires, own), countedSegments(shown.counted.marks, own)]), edgeSegments(shown.volumes, own)];
+    const [lines, borders] = [
+      joined([
+        wireSegments(shown.wires, scene, own),
+        railSegments(shown.rails, own),
+        railWireSegments(shown.railWires, own),
+        countedSegments(shown.counted.marks, own),
+      ]),
+      edgeSegments(shown.volumes, own),
+    ];
     if (isNew) {
       wires.set(...lines);
       edges.set(...borders);
@@ -82,7 +103,9 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
   }
 
   function tellForce() {
-    const states = (scene?.zones ?? []).map((zone) => isInForce(zone.schedule, moment.getTime(), frame.origin.position) !== false);
+    const states = (scene?.zones ?? []).map(
+      (zone) => isInForce(zone.schedule, moment.getTime(), frame.origin.position) !== false,
+    );
     const isSame = states.every((state, number) => state === shown.volumes[number].isInForce);
     states.forEach((state, number) => (shown.volumes[number].isInForce = state));
     return !isSame;
@@ -150,8 +173,23 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
 
 function emptyShown(frame) {
   const [lon, lat] = frame.origin.position;
-  const flat = { ...FLAT, west_deg: lon - 0.05, north_deg: lat + 0.05, altitude_amsl_m: Array(4).fill(frame.origin.altitude_amsl_m) };
-  return { ground: makeGround(flat, frame), wires: NO_WIRES, counted: NO_AIR, rails: [], railWires: [], masts: [], beds: [], bridges: [], volumes: [] };
+  const flat = {
+    ...FLAT,
+    west_deg: lon - 0.05,
+    north_deg: lat + 0.05,
+    altitude_amsl_m: Array(4).fill(frame.origin.altitude_amsl_m),
+  };
+  return {
+    ground: makeGround(flat, frame),
+    wires: NO_WIRES,
+    counted: NO_AIR,
+    rails: [],
+    railWires: [],
+    masts: [],
+    beds: [],
+    bridges: [],
+    volumes: [],
+  };
 }
 
 function shownOf(scene, frame) {

@@ -1,6 +1,15 @@
 /** Zones as translucent volumes: walls with hatching, faint floors and ceilings; their edges are lines of world.js. */
 
-import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, ShaderMaterial, UniformsLib, UniformsUtils } from "../three.js";
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Color,
+  DoubleSide,
+  Mesh,
+  ShaderMaterial,
+  UniformsLib,
+  UniformsUtils,
+} from "../three.js";
 import { merged } from "./solids.js";
 
 const VERTEX = /* glsl */ `
@@ -34,8 +43,22 @@ const FRAGMENT = /* glsl */ `
 
 /** Gives { mesh, show(volumes), apply(palette), dispose() }; volumes: of geometry/zones.js with { isInForce }. */
 export function makeZones() {
-  const uniforms = UniformsUtils.merge([UniformsLib.fog, { colour: { value: new Color() }, strength: { value: 0.12 } }]);
-  const material = new ShaderMaterial({ vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms, transparent: true, depthWrite: false, side: DoubleSide, fog: true, polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -2 }); // a floor lies close over the ground
+  const uniforms = UniformsUtils.merge([
+    UniformsLib.fog,
+    { colour: { value: new Color() }, strength: { value: 0.12 } },
+  ]);
+  const material = new ShaderMaterial({
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENT,
+    uniforms,
+    transparent: true,
+    depthWrite: false,
+    side: DoubleSide,
+    fog: true,
+    polygonOffset: true,
+    polygonOffsetFactor: -1,
+    polygonOffsetUnits: -2,
+  }); // a floor lies close over the ground
   const mesh = new Mesh(new BufferGeometry(), material);
   mesh.renderOrder = 3;
   mesh.frustumCulled = false;
@@ -45,7 +68,10 @@ export function makeZones() {
     show(volumes) {
       mesh.geometry.dispose();
       mesh.geometry = new BufferGeometry();
-      const pieces = volumes.flatMap(({ walls, caps }) => [walls, { ...caps, uv: new Float32Array((caps.vertices.length / 3) * 2) }]);
+      const pieces = volumes.flatMap(({ walls, caps }) => [
+        walls,
+        { ...caps, uv: new Float32Array((caps.vertices.length / 3) * 2) },
+      ]);
       const { vertices, uv, index } = merged(pieces);
       mesh.geometry.setAttribute("position", new BufferAttribute(vertices, 3));
       mesh.geometry.setAttribute("uv2", new BufferAttribute(uv, 2));
