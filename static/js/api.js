@@ -2,9 +2,23 @@
 
 import { t } from "./text.js";
 
+/** @import { Job } from "./api_types.d.ts" */
+
+/**
+ * An answer of the server. The caller says of which shape its data are, by an annotation `Answer<Mission>`.
+ *
+ * @template [Data=unknown]
+ * @typedef {{ data: Data, status: number, etag: string | null }} Answer
+ */
+/** @typedef {{ body?: unknown, bytes?: Blob, headers?: Record<string, string>, signal?: AbortSignal, keepalive?: boolean }} Options */
+
 const ROOT = "/api/v1";
 
 export class ApiError extends Error {
+  /**
+   * @param {string} message for the reader
+   * @param {{ status?: number, code?: string, details?: any, retryAfter_s?: number | null }} [answer]
+   */
   constructor(message, { status = 0, code = "", details = null, retryAfter_s = null } = {}) {
     super(message);
     this.name = "ApiError";
@@ -25,22 +39,35 @@ export class ApiError extends Error {
 
 const SIGNED_OUT = t("You are signed out. Your selection is kept in this browser.");
 
-/** Also where the session ended and the page's CSRF token with it. */
+/**
+ * Also where the session ended and the page's CSRF token with it.
+ *
+ * @param {number} status
+ * @param {string} [code]
+ * @param {string} [message]
+ */
 export function isSignedOut(status, code, message) {
   return status === 401 || (status === 403 && (code === "not_authenticated" || (message ?? "").startsWith("CSRF")));
 }
 
-/** The door, and from there back to where the page is now. */
+/** The door, and from there back to where the page is now. @param {{ pathname: string, search?: string, hash?: string }} [place] */
 export function signInAddress({ pathname, search = "", hash = "" } = location) {
   return `/sign-in?next=${encodeURIComponent(pathname + search + hash)}`;
 }
 
+/** @param {string} name */
 function cookie(name) {
   const entry = document.cookie.split("; ").find((part) => part.startsWith(`${name}=`));
   return entry ? decodeURIComponent(entry.slice(name.length + 1)) : "";
 }
 
-/** First message in DRF's nested details, with the place where it stands. */
+/**
+ * First message in DRF's nested details, with the place where it stands.
+ *
+ * @param {unknown} details
+ * @param {string} [place]
+ * @returns {string}
+ */
 export function firstDetail(details, place = "") {
   if (typeof details === "string") return place ? `${place}: ${details}` : details;
   if (Array.isArray(details)) {
@@ -56,8 +83,10 @@ export function firstDetail(details, place = "") {
   return "";
 }
 
+/** @param {Response} response */
 async function problemOf(response) {
   const status = response.status;
+  /** @type {{ code?: string, message?: string, details?: unknown }} */
   let error = {};
   try {
     error = (await response.json()).error ?? {};
@@ -65,6 +94,7 @@ async function problemOf(response) {
     /* not our server's answer: the status says what can be said */
   }
   const detail = status === 400 ? firstDetail(error.details) : "";
+  /** @type {Record<number, string>} */
   const words = {
     413: t("That is too much for one request."),
     429: t("Too many requests. Wait a moment, then try again."),
@@ -83,9 +113,18 @@ async function problemOf(response) {
   });
 }
 
-/** request("POST", "/plans", { body }) → { data, status, etag }; 304 comes without data. Throws ApiError; an abort passes as AbortError. */
+/**
+ * request("POST", "/plans", { body }) → { data, status, etag }; 304 comes without data.
+ *
+ * @param {string} method
+ * @param {string} path below the API's root, or an address that the API has given
+ * @param {Options} [options]
+ * @returns {Promise<Answer>}
+ * @throws {ApiError} an abort passes as AbortError
+ */
 export async function request(method, path, { body, bytes, headers = {}, signal, keepalive = false } = {}) {
   const address = path.startsWith("http") || path.startsWith("/api/") ? path : ROOT + path;
+  /** @type {RequestInit & { headers: Record<string, string> }} */
   const send = {
     method,
     signal,
@@ -106,7 +145,7 @@ export async function request(method, path, { body, bytes, headers = {}, signal,
   try {
     response = await fetch(address, send);
   } catch (error) {
-    if (error.name === "AbortError") throw error;
+    if (error instanceof DOMException && error.name === "AbortError") throw error;
     throw new ApiError(t("The server cannot be reached."), { code: "server_away" });
   }
   if (response.status === 304) return { data: null, status: 304, etag: response.headers.get("ETag") };
@@ -115,26 +154,43 @@ export async function request(method, path, { body, bytes, headers = {}, signal,
   return { data: text ? JSON.parse(text) : null, status: response.status, etag: response.headers.get("ETag") };
 }
 
+/** @param {string} path @param {Options} [options] */
 export const get = (path, options) => request("GET", path, options);
+/** @param {string} path @param {unknown} [body] @param {Options} [options] */
 export const post = (path, body, options) => request("POST", path, { ...options, body });
+/** @param {string} path @param {unknown} body @param {Options} [options] */
 export const patch = (path, body, options) => request("PATCH", path, { ...options, body });
+/** @param {string} path @param {unknown} body @param {Options} [options] */
 export const put = (path, body, options) => request("PUT", path, { ...options, body });
-/** Raw bytes: a Blob. */
+/** @param {string} path @param {Blob} bytes @param {Options} [options] */
 export const putBytes = (path, bytes, options) => request("PUT", path, { ...options, bytes });
+/** @param {string} path @param {Options} [options] */
 export const remove = (path, options) => request("DELETE", path, options);
 
+/** @param {number} ms @param {AbortSignal} [signal] @returns {Promise<void>} */
 const pause = (ms, signal) =>
   new Promise((resolve, reject) => {
     const timer = setTimeout(resolve, ms);
-    signal?.addEventListener("abort", () => (clearTimeout(timer), reject(new DOMException("stopped", "AbortError"))), {
-      once: true,
-    });
+    const stop = () => {
+      clearTimeout(timer);
+      reject(new DOMException("stopped", "AbortError"));
+    };
+    signal?.addEventListener("abort", stop, { once: true });
   });
 
-/** Follows a job until it ends; `onProgress(job)` is told on the way. Returns the job; throws where it failed. */
+/**
+ * Follows a job until it ends, and returns it. `onProgress(job)` is called on the way.
+ *
+ * @param {string} jobId
+ * @param {{ onProgress?: (job: Job) => void, signal?: AbortSignal, every_ms?: number }} [options]
+ * @returns {Promise<Job>}
+ * @throws {ApiError} if it failed
+ */
 export async function follow(jobId, { onProgress, signal, every_ms = 700 } = {}) {
   for (;;) {
-    const { data: job } = await get(`/jobs/${jobId}`, { signal });
+    const { data: job } = /** @type {Answer<Job & { error: { code?: string, message?: string } | null }>} */ (
+      await get(`/jobs/${jobId}`, { signal })
+    );
     if (job.state === "failed")
       throw new ApiError(job.error?.message ?? t("The job failed."), { status: 500, code: job.error?.code ?? "" });
     if (job.state === "done" || job.state === "cancelled") return job;

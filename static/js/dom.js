@@ -5,46 +5,94 @@ import { staticAddress } from "./static_address.js";
 const SPRITE = staticAddress("lib/icons.svg");
 const SVG = "http://www.w3.org/2000/svg";
 
-/** h("button", { class: "button", onclick: save, disabled: true }, icon("x"), "Save") */
+/** @typedef {Node | string | number | boolean | null | undefined | Child[]} Child null, undefined and false make nothing */
+/** @typedef {{ [E in keyof HTMLElementEventMap as `on${E}`]?: ((event: HTMLElementEventMap[E]) => unknown) | null | false }} Handlers */
+/**
+ * Attributes, event handlers ("onclick"), `dataset`, `value` and `checked`. null, undefined and false set nothing.
+ *
+ * @typedef {Handlers & { [name: string]: unknown }} Properties
+ */
+
+/**
+ * Returns an HTML element: h("button", { class: "button", onclick: save, disabled: true }, icon("x"), "Save").
+ *
+ * @template {keyof HTMLElementTagNameMap} Tag
+ * @param {Tag} tag
+ * @param {Properties} [properties]
+ * @param {...Child} children
+ * @returns {HTMLElementTagNameMap[Tag]}
+ */
 export function h(tag, properties = {}, ...children) {
   return fill(document.createElement(tag), properties, children);
 }
 
+/**
+ * @template {keyof SVGElementTagNameMap} Tag
+ * @param {Tag} tag
+ * @param {Properties} [attributes]
+ * @param {...Child} children
+ * @returns {SVGElementTagNameMap[Tag]}
+ */
 export function svg(tag, attributes = {}, ...children) {
   return fill(document.createElementNS(SVG, tag), attributes, children);
 }
 
+/** @param {Child[]} children @returns {(Node | string)[]} */
+function shown(children) {
+  return /** @type {Exclude<Child, Child[]>[]} */ (children.flat(/** @type {1} */ (Infinity)))
+    .filter((child) => child !== null && child !== undefined && child !== false)
+    .map((child) => (child instanceof Object ? /** @type {Node} */ (child) : String(child)));
+}
+
+/**
+ * @template {HTMLElement | SVGElement} Kind
+ * @param {Kind} element
+ * @param {Properties} properties
+ * @param {Child[]} children
+ */
 function fill(element, properties, children) {
   for (const [name, value] of Object.entries(properties)) {
     if (value === undefined || value === null || value === false) continue;
-    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), /** @type {EventListener} */ (value));
     else if (name === "dataset") Object.assign(element.dataset, value);
-    else if (name === "value" || name === "checked") element[name] = value;
-    else element.setAttribute(name, value === true ? "" : value);
+    else if (name === "value" || name === "checked") Object.assign(element, { [name]: value });
+    else element.setAttribute(name, value === true ? "" : String(value));
   }
-  element.append(
-    ...children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false),
-  );
+  element.append(...shown(children));
   return element;
 }
 
+/** @param {string} name of a Lucide icon @param {string} [size] a class */
 export function icon(name, size = "") {
   return svg("svg", { class: `icon ${size}`.trim(), "aria-hidden": "true" }, svg("use", { href: `${SPRITE}#${name}` }));
 }
 
-/** Puts children into an element only where they would be others than before: the pointer and the focus stay with the same ones. */
+/**
+ * Puts children into an element only where they would be others than before: the pointer and the focus stay with the same ones.
+ *
+ * @param {HTMLElement | SVGElement} element
+ * @param {string} key is equal as long as the children are
+ * @param {() => Child} make
+ */
 export function refill(element, key, make) {
   if (element.dataset.filled === key) return;
   element.dataset.filled = key;
-  element.replaceChildren(
-    ...[make()]
-      .flat(Infinity)
-      .filter((child) => child !== null && child !== undefined && child !== false && child !== ""),
-  );
+  element.replaceChildren(...shown([make()]).filter((child) => child !== ""));
 }
 
-/** Keeps a list's elements by key, so that focus, hover and transitions survive a new drawing. */
+/**
+ * Keeps a list's elements by key, so that focus, hover and transitions survive a new drawing.
+ *
+ * @template Item
+ * @template {HTMLElement} [Row=HTMLElement]
+ * @param {HTMLElement} container
+ * @param {(item: Item) => string | number} keyOf
+ * @param {(item: Item) => Row} make
+ * @param {(element: Row, item: Item, index: number) => void} refresh
+ * @returns {(items: readonly Item[]) => void}
+ */
 export function keyedList(container, keyOf, make, refresh) {
+  /** @type {Map<string | number, Row>} */
   const kept = new Map();
   return (items) => {
     const focused = container.contains(document.activeElement) ? document.activeElement : null;
@@ -52,8 +100,8 @@ export function keyedList(container, keyOf, make, refresh) {
     items.forEach((item, index) => {
       const key = keyOf(item);
       seen.add(key);
-      if (!kept.has(key)) kept.set(key, make(item));
-      const element = kept.get(key);
+      const element = kept.get(key) ?? make(item);
+      kept.set(key, element);
       refresh(element, item, index);
       if (container.children[index] !== element) container.insertBefore(element, container.children[index] ?? null);
     });
@@ -62,13 +110,38 @@ export function keyedList(container, keyOf, make, refresh) {
       const next = element.contains(focused) ? (element.nextElementSibling ?? element.previousElementSibling) : null;
       element.remove();
       kept.delete(key);
-      next?.querySelector("button, input, [tabindex]")?.focus();
+      /** @type {HTMLElement | null | undefined} */ (next?.querySelector("button, input, [tabindex]"))?.focus();
     }
   };
 }
 
-export function byId(id) {
+/**
+ * Returns the element with this id: byId("name", HTMLInputElement).value.
+ *
+ * @template {HTMLElement} [Kind=HTMLElement]
+ * @param {string} id
+ * @param {new () => Kind} [kind] its class; a type alone, nothing is checked
+ * @throws {Error} if the page has none
+ */
+export function byId(id, kind) {
+  void kind;
   const element = document.getElementById(id);
   if (!element) throw new Error(`the page has no #${id}`);
-  return element;
+  return /** @type {Kind} */ (element);
+}
+
+/**
+ * Returns the first element inside `parent` that matches: find(row, ".name", HTMLInputElement).value.
+ *
+ * @template {Element} [Kind=HTMLElement]
+ * @param {ParentNode} parent
+ * @param {string} selector
+ * @param {new () => Kind} [kind] its class; a type alone, nothing is checked
+ * @throws {Error} if there is none
+ */
+export function find(parent, selector, kind) {
+  void kind;
+  const element = parent.querySelector(selector);
+  if (!element) throw new Error(`nothing matches ${selector}`);
+  return /** @type {Kind} */ (element);
 }

@@ -1,13 +1,30 @@
 /** What a page knows, who listens, and a history for the part that an operator can take back. */
 
+/**
+ * @template {object} State
+ * @typedef {object} Store
+ * @property {Readonly<State>} state
+ * @property {(change: Partial<State>) => void} update Puts new values in and tells those who listen to one of the changed names.
+ * @property {(names: (keyof State)[], tell: (state: Readonly<State>) => void) => () => void} listen
+ *   tell(state) is called at once and after each change of one of the names. Returns a function that ends it.
+ */
+
+/**
+ * @template {object} State
+ * @param {State} initial
+ * @returns {Store<State>}
+ */
 export function createStore(initial) {
+  /** @type {Set<{ names: (keyof State)[], tell: (state: Readonly<State>) => void }>} */
   const listeners = new Set();
+  /** @type {Store<State>} */
   const store = {
     state: Object.freeze({ ...initial }),
 
-    /** Puts new values in and tells those who listen to one of the changed names. */
     update(change) {
-      const changed = Object.keys(change).filter((name) => change[name] !== store.state[name]);
+      const changed = /** @type {(keyof State)[]} */ (Object.keys(change)).filter(
+        (name) => change[name] !== store.state[name],
+      );
       if (!changed.length) return;
       store.state = Object.freeze({ ...store.state, ...change });
       for (const listener of [...listeners]) {
@@ -15,7 +32,6 @@ export function createStore(initial) {
       }
     },
 
-    /** tell(state) is called at once and after each change of one of the names. Returns a function that ends it. */
     listen(names, tell) {
       const listener = { names, tell };
       listeners.add(listener);
@@ -26,17 +42,31 @@ export function createStore(initial) {
   return store;
 }
 
-/** Undo and redo over one name of the store, back to the beginning. `changeTo` is one step; equal values make none. */
+/**
+ * Undo and redo over one name of the store, back to the beginning. `changeTo` is one step; equal values make none.
+ *
+ * @template {{ canUndo: boolean, canRedo: boolean }} State
+ * @template {keyof State} Name
+ * @param {Store<State>} store
+ * @param {Name} name
+ */
 export function createHistory(store, name) {
+  /** @typedef {State[Name]} Value */
+  /** @type {Value[]} */
   let past = [];
+  /** @type {Value[]} */
   let future = [];
+  /** @param {Value} a @param {Value} b */
   const isSame = (a, b) => a === b || JSON.stringify(a) === JSON.stringify(b);
 
+  /** @param {Value} value */
   function show(value) {
-    store.update({ [name]: value, canUndo: past.length > 0, canRedo: future.length > 0 });
+    const change = { [name]: value, canUndo: past.length > 0, canRedo: future.length > 0 };
+    store.update(/** @type {Partial<State>} */ (change));
   }
 
   return {
+    /** @param {Value} value @returns {boolean} whether it was another value */
     changeTo(value) {
       const current = store.state[name];
       if (isSame(current, value)) return false;
@@ -48,26 +78,30 @@ export function createHistory(store, name) {
     undo() {
       if (!past.length) return false;
       future.push(store.state[name]);
-      show(past.pop());
+      show(/** @type {Value} */ (past.pop()));
       return true;
     },
     redo() {
       if (!future.length) return false;
       past.push(store.state[name]);
-      show(future.pop());
+      show(/** @type {Value} */ (future.pop()));
       return true;
     },
-    /** The same step in other words, as the server has stored it: what went before can still be undone. */
+    /** The same step in other words, as the server has stored it: what went before can still be undone. @param {Value} value */
     settle(value) {
       show(value);
     },
-    /** Each step with what somebody else has changed meanwhile: undo takes back one's own steps alone. */
+    /**
+     * Applies what another user has changed to each step: undo takes back one's own steps alone.
+     *
+     * @param {(value: Value) => Value} change
+     */
     rebase(change) {
       past = past.map(change);
       future = future.map(change);
       show(change(store.state[name]));
     },
-    /** A new beginning: what is loaded from the server cannot be undone. */
+    /** A new beginning: what is loaded from the server cannot be undone. @param {Value} value */
     startFrom(value) {
       past = [];
       future = [];

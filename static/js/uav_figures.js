@@ -12,22 +12,33 @@ export const BOUNDS = Object.freeze({
   rotor_disk_m2: { min: 0.001, max: 1000 },
   hover_power_w: { min: 1, max: 1_000_000 },
 });
-/** What a UAV may have of its own. */
+/** @typedef {"battery_wh" | "mass_kg" | "reserve_percent" | "max_airspeed_mps"} OwnFigure */
+
+/** What a UAV may have of its own. @type {OwnFigure[]} */
 export const OWN_FIGURES = ["battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps"];
 
-/** What counts for a UAV of this type, or of none, where it has no figure of its own. A battery of its own needs a mass that is stated. */
-export const usualOf = (type) =>
-  Object.fromEntries(
-    OWN_FIGURES.map((name) => [
-      name,
-      type?.[name] ??
-        { mass_kg: type?.battery_wh ? IRIS.mass_kg : null, reserve_percent: USUAL_RESERVE_PERCENT }[name] ??
-        null,
-    ]),
-  );
+/**
+ * What counts for a UAV of this type, or of none, where it has no figure of its own. A battery of its own needs a mass that is stated.
+ *
+ * @param {Partial<Record<OwnFigure, number | null>> | null | undefined} type
+ * @returns {Record<OwnFigure, number | null>}
+ */
+export const usualOf = (type) => ({
+  battery_wh: type?.battery_wh ?? null,
+  mass_kg: type?.mass_kg ?? (type?.battery_wh ? IRIS.mass_kg : null),
+  reserve_percent: type?.reserve_percent ?? USUAL_RESERVE_PERCENT,
+  max_airspeed_mps: type?.max_airspeed_mps ?? null,
+});
 
-/** The bounds in another unit, of so many of the stored ones, to a tenth inwards. */
-export const boundsIn = (name, unit) =>
-  unit === 1
+/**
+ * The bounds in another unit, of so many of the stored ones, to a tenth inwards.
+ *
+ * @param {keyof typeof BOUNDS} name
+ * @param {number} unit
+ */
+export function boundsIn(name, unit) {
+  const { min, max } = BOUNDS[name];
+  return unit === 1
     ? BOUNDS[name]
-    : { min: Math.ceil((BOUNDS[name].min / unit) * 10) / 10, max: Math.floor((BOUNDS[name].max / unit) * 10) / 10 };
+    : { min: Math.ceil((min / unit) * 10) / 10, max: Math.floor((max / unit) * 10) / 10 };
+}

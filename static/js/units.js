@@ -16,6 +16,7 @@ const preferences = globalThis.document?.documentElement.dataset ?? {};
 export const isImperial = preferences.units === "imperial";
 const zone = preferences.timeZone ? { timeZone: preferences.timeZone } : {};
 
+/** @param {number} value @param {number} [digits] after the decimal sign */
 function grouped(value, digits = 0) {
   return value
     .toLocaleString(LOCALE, { minimumFractionDigits: digits, maximumFractionDigits: digits })
@@ -25,8 +26,10 @@ function grouped(value, digits = 0) {
 /** A bare figure, grouped as the reader is used to. */
 export const numberText = grouped;
 
+/** @param {string} figure @param {string} unit */
 const withUnit = (figure, unit) => `${figure}${SPACE}${unit}`;
 
+/** @param {number | null | undefined} length_m */
 export function lengthText(length_m) {
   if (length_m === null || length_m === undefined) return "—";
   if (isImperial) {
@@ -44,13 +47,20 @@ export function lengthText(length_m) {
 export const LONG_UNIT = isImperial ? { unit: "mi", metres: MILE_M } : { unit: "km", metres: 1000 };
 /** What heights and short distances are typed in. */
 export const SHORT_UNIT = isImperial ? { unit: "ft", metres: FOOT_M } : { unit: "m", metres: 1 };
+/** @param {number} celsius */
+const fahrenheit = (celsius) => (celsius * 9) / 5 + 32;
+/** @param {number} typed */
+const fromFahrenheit = (typed) => ((typed - 32) * 5) / 9;
+/** @param {number} figure */
+const same = (figure) => figure;
 /** What temperatures are typed in: `typed` from degrees Celsius, `celsius` back. */
 export const TEMPERATURE_UNIT = isImperial
-  ? { unit: "°F", typed: (celsius) => (celsius * 9) / 5 + 32, celsius: (typed) => ((typed - 32) * 5) / 9 }
-  : { unit: "°C", typed: (celsius) => celsius, celsius: (typed) => typed };
+  ? { unit: "°F", typed: fahrenheit, celsius: fromFahrenheit }
+  : { unit: "°C", typed: same, celsius: same };
 /** What speeds are typed in. */
 export const SPEED_UNIT = isImperial ? { unit: "mph", mps: MPH_MPS } : { unit: "m/s", mps: 1 };
 
+/** @param {number} area_m2 */
 export function areaText(area_m2) {
   if (isImperial) {
     const area_mi2 = area_m2 / MILE_M ** 2;
@@ -63,6 +73,7 @@ export function areaText(area_m2) {
   return withUnit(grouped(area_km2, area_km2 < 10 ? 2 : area_km2 < 999.95 ? 1 : 0), "km²");
 }
 
+/** @param {number | null | undefined} duration_s */
 export function durationText(duration_s) {
   if (duration_s === null || duration_s === undefined) return "—";
   const minutes = Math.round(duration_s / 60);
@@ -72,125 +83,143 @@ export function durationText(duration_s) {
   return `${withUnit(grouped(Math.floor(minutes / 60)), "h")}${rest ? ` ${withUnit(`${rest}`, "min")}` : ""}`;
 }
 
+/** @param {number} height_m */
 export function heightText(height_m) {
   return isImperial
     ? withUnit(grouped(Math.round(height_m / FOOT_M)), "ft")
     : withUnit(grouped(Math.round(height_m)), "m");
 }
 
-/** To a tenth where there is one: for what was measured or typed. */
+/** To a tenth where there is one: for what was measured or typed. @param {number} height_m */
 export function exactHeightText(height_m) {
   const figure = Math.round((height_m / SHORT_UNIT.metres) * 10) / 10;
   return withUnit(grouped(figure, Number.isInteger(figure) ? 0 : 1), SHORT_UNIT.unit);
 }
 
+/** @param {number} speed_mps */
 export function speedText(speed_mps) {
   if (isImperial) return withUnit(grouped(Math.round(speed_mps / MPH_MPS)), "mph");
   return withUnit(grouped(speed_mps, Number.isInteger(speed_mps) ? 0 : 1), "m/s");
 }
 
+/** @param {number} temperature_c */
 export function temperatureText(temperature_c) {
   return withUnit(grouped(Math.round(TEMPERATURE_UNIT.typed(temperature_c))), TEMPERATURE_UNIT.unit);
 }
 
+/** @param {number | null | undefined} energy_wh */
 export function energyText(energy_wh) {
   if (energy_wh === null || energy_wh === undefined) return "—";
   return withUnit(grouped(Math.round(energy_wh)), "Wh");
 }
 
-/** To a tenth where there is one: of a battery, as it was typed. */
+/** To a tenth where there is one: of a battery, as it was typed. @param {number} energy_wh */
 export function exactEnergyText(energy_wh) {
   const figure = Math.round(energy_wh * 10) / 10;
   return withUnit(grouped(figure, Number.isInteger(figure) ? 0 : 1), "Wh");
 }
 
+/** @param {number} power_w */
 export function powerText(power_w) {
   return withUnit(grouped(Math.round(power_w)), "W");
 }
 
+/** @param {number} percent */
 export function percentText(percent) {
   return withUnit(grouped(Math.round(percent)), "%");
 }
 
+/** @param {number} voltage_kv */
 export function voltageText(voltage_kv) {
   return withUnit(grouped(voltage_kv, Number.isInteger(voltage_kv) ? 0 : 1), "kV");
 }
 
-/** People read latitude first; everything else in the program has longitude first. The decimal sign is a point in every language: it is typed and copied. */
+/**
+ * People read latitude first; everything else in the program has longitude first. The decimal sign is a point in every language: it is
+ * typed and copied.
+ *
+ * @param {readonly number[]} position longitude, latitude
+ */
 export function coordinateText([longitude, latitude]) {
   return [latitude, longitude].map((degrees) => degrees.toFixed(4).replace("-", "−")).join(", ");
 }
 
-/** countText(3, "target") → "3 targets". The catalogue holds the noun as [one, other]. */
+/** countText(3, "target") → "3 targets". The catalogue holds the noun as [one, other]. @param {number} count @param {string} singular @param {string} [plural] */
 export function countText(count, singular, plural = `${singular}s`) {
   return tn(count, `{count} ${singular}`, `{count} ${plural}`);
 }
 
+/** @param {Date} date */
 const partsOf = (date) =>
   new Intl.DateTimeFormat("en-CA", { ...zone, year: "numeric", month: "2-digit", day: "2-digit" }).format(date);
 
+/** @param {string} iso */
 export function clockText(iso) {
   return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit" });
 }
 
-/** With seconds: live pages and logs alone. */
+/** With seconds: live pages and logs alone. @param {string} iso */
 export function exactClockText(iso) {
   return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit", second: "2-digit" });
 }
 
-/** "10 Sep 2026". */
+/** "10 Sep 2026". @param {string} iso */
 export function dateText(iso) {
   return new Date(iso).toLocaleDateString(LOCALE, { ...zone, day: "numeric", month: "short", year: "numeric" });
 }
 
-/** "now", "today, 11:40", "yesterday, 09:12", "10 Sep", "10 Sep 2025". */
+/** "now", "today, 11:40", "yesterday, 09:12", "10 Sep", "10 Sep 2025". @param {string} iso @param {Date} [now] */
 export function whenText(iso, now = new Date()) {
   const then = new Date(iso);
-  if (now - then < 60_000 && now >= then) return t("now");
+  if (now.getTime() - then.getTime() < 60_000 && now >= then) return t("now");
   if (partsOf(then) === partsOf(now)) return t("today, {time}", { time: clockText(iso) });
-  if (partsOf(then) === partsOf(new Date(now - 86_400_000))) return t("yesterday, {time}", { time: clockText(iso) });
+  if (partsOf(then) === partsOf(new Date(now.getTime() - 86_400_000)))
+    return t("yesterday, {time}", { time: clockText(iso) });
   return dayText(iso, now);
 }
 
-/** "10 Sep", with the year where it is another one. */
+/** "10 Sep", with the year where it is another one. @param {string} iso @param {Date} [now] */
 export function dayText(iso, now = new Date()) {
   const then = new Date(iso);
+  /** @type {Intl.DateTimeFormatOptions} */
   const parts = { ...zone, day: "numeric", month: "short" };
   if (partsOf(then).slice(0, 4) !== partsOf(now).slice(0, 4)) parts.year = "numeric";
   return then.toLocaleDateString(LOCALE, parts);
 }
 
-/** "21 November", with the year where it is another one. */
+/** "21 November", with the year where it is another one. @param {string} iso @param {Date} [now] */
 export function longDayText(iso, now = new Date()) {
   const then = new Date(iso);
+  /** @type {Intl.DateTimeFormatOptions} */
   const parts = { ...zone, day: "numeric", month: "long" };
   if (partsOf(then).slice(0, 4) !== partsOf(now).slice(0, 4)) parts.year = "numeric";
   return then.toLocaleDateString(LOCALE, parts);
 }
 
-/** Day, time and the zone's name in full: for tooltips. */
+/** Day, time and the zone's name in full: for tooltips. @param {string} iso */
 export function exactText(iso) {
   return new Date(iso).toLocaleString(LOCALE, { ...zone, dateStyle: "medium", timeStyle: "long" });
 }
 
-/** "+12:05", "+1:02:05": time since a departure that has no date. */
+/** "+12:05", "+1:02:05": time since a departure that has no date. @param {number} seconds */
 export function sinceText(seconds) {
   const whole = Math.max(0, Math.round(seconds));
+  /** @param {number} figure */
   const two = (figure) => `${figure}`.padStart(2, "0");
   const [hours, minutes] = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60];
   return hours ? `+${hours}:${two(minutes)}:${two(whole % 60)}` : `+${two(minutes)}:${two(whole % 60)}`;
 }
 
-/** Minutes by which the reader's clock is ahead of UTC at a moment [ms]. */
+/** Minutes by which the reader's clock is ahead of UTC at a moment [ms]. @param {number} moment */
 export function minutesAheadOfUtc(moment) {
   const part = new Intl.DateTimeFormat("en-US", { ...zone, timeZoneName: "longOffset" })
     .formatToParts(new Date(moment))
-    .find(({ type }) => type === "timeZoneName").value;
-  const [, sign, hours, minutes] = /GMT(?:([+-])(\d\d):(\d\d))?/.exec(part);
+    .find(({ type }) => type === "timeZoneName");
+  const [, sign, hours, minutes] = /GMT(?:([+-])(\d\d):(\d\d))?/.exec(part?.value ?? "") ?? [];
   return sign ? (sign === "-" ? -1 : 1) * (Number(hours) * 60 + Number(minutes)) : 0;
 }
 
-/** "Europe/Berlin, UTC+1": by which clock the reader's times are, at a moment. */
+/** "Europe/Berlin, UTC+1": by which clock the reader's times are, at a moment. @param {string} iso */
 export function zoneText(iso) {
   const name = preferences.timeZone || new Intl.DateTimeFormat().resolvedOptions().timeZone;
   const ahead = minutesAheadOfUtc(Date.parse(iso));
@@ -199,13 +228,18 @@ export function zoneText(iso) {
   return name === "UTC" ? "UTC" : `${name}, ${figure}`;
 }
 
-/** "2026-11-21T19:30": a moment by the reader's clock, as a field for date and time takes it. */
+/** "2026-11-21T19:30": a moment by the reader's clock, as a field for date and time takes it. @param {string} iso */
 export function typedMoment(iso) {
   const moment = Date.parse(iso);
   return new Date(moment + minutesAheadOfUtc(moment) * 60_000).toISOString().slice(0, 16);
 }
 
-/** The moment that a field for date and time says, by the reader's clock; an hour that a change of the clocks leaves out is the one after it. */
+/**
+ * Returns the moment that a field for date and time says, by the reader's clock, null where it says none. An hour that a change of
+ * the clocks leaves out is the one after it.
+ *
+ * @param {string} typed
+ */
 export function momentTyped(typed) {
   const asUtc = Date.parse(`${typed}Z`);
   if (!Number.isFinite(asUtc)) return null;
@@ -215,7 +249,7 @@ export function momentTyped(typed) {
   return new Date(isThere ? moment : Math.max(guess, moment)).toISOString();
 }
 
-/** "12 s ago", "4 min ago", then the time. */
+/** "12 s ago", "4 min ago", then the time. @param {number} seconds @param {string} iso */
 export function agoText(seconds, iso) {
   if (seconds < 60) return t("{count} s ago", { count: Math.max(0, Math.round(seconds)) });
   return seconds < 3_600 ? t("{count} min ago", { count: Math.round(seconds / 60) }) : whenText(iso);
