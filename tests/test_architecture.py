@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import unquote
 
+import networkx as nx
 import pytest
 from django.core.management import get_commands
 
@@ -143,6 +144,40 @@ def test_nothing_is_left_to_do_later() -> None:
     words = re.compile(r"\b(" + "|".join(["TO" + "DO", "FIX" + "ME", "X" + "XX", "HA" + "CK"]) + r")\b")
     sources = own_files("*.py", "*.js", "*.css", "*.html", "*.md", "run", "check", "scripts/*")
     assert [relative(path) for path in sources if words.search(path.read_text())] == []
+
+
+# --- the pages' scripts ------------------------------------------------------------------------------------------------------------
+
+SCRIPTS = ROOT / "static" / "js"
+SCRIPT_IMPORT = re.compile(r"""^(?:import|export)\s[^;]*?from "(\.[^"]+)";|^import "(\.[^"]+)";|\bimport\("(\.[^"]+)"\)""", re.M)
+
+
+def script_folder(path: Path) -> str:
+    """The folder below static/js that a script belongs to; empty for a root module."""
+    return path.relative_to(SCRIPTS).parts[0] if path.parent != SCRIPTS else ""
+
+
+def folder_imports() -> nx.DiGraph:
+    graph = nx.DiGraph()
+    for path in own_files("static/js/*.js"):
+        for names in SCRIPT_IMPORT.findall(re.sub(r"/\*.*?\*/", "", path.read_text(), flags=re.S)):
+            target = (path.parent / next(filter(None, names))).resolve()
+            assert target.is_file(), f"{relative(path)} imports {relative(target)}, which does not exist"
+            if script_folder(target) != script_folder(path):
+                graph.add_edge(script_folder(path), script_folder(target), files=f"{relative(path)} → {relative(target)}")
+    return graph
+
+
+def test_folders_of_scripts_do_not_import_each_other_in_a_circle() -> None:
+    graph = folder_imports()
+    assert graph.number_of_edges() > 50
+    graph.remove_node("")
+    assert [" → ".join(cycle) for cycle in nx.simple_cycles(graph)] == []
+
+
+def test_domain_scripts_know_no_page_and_no_map() -> None:
+    graph = folder_imports()
+    assert set(graph.successors("domain")) <= {""}
 
 
 # --- documents ---------------------------------------------------------------------------------------------------------------------

@@ -2,9 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-
+import { distance_m, measure, ringArea_m2, towards } from "../../static/js/domain/geodesy.js";
 import { createSteps } from "../../static/js/draw/history.js";
-import { distance_m, measure, ringArea_m2, towards } from "../../static/js/draw/measure.js";
 import * as shapes from "../../static/js/draw/shape.js";
 import { faultsOf } from "../../static/js/draw/validity.js";
 

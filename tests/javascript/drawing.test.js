@@ -2,10 +2,9 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-
+import { continuous, distance_m, measure } from "../../static/js/domain/geodesy.js";
 import * as drawings from "../../static/js/draw/drawing.js";
 import { createSteps } from "../../static/js/draw/history.js";
-import { continuous, distance_m, measure } from "../../static/js/draw/measure.js";
 import * as shapes from "../../static/js/draw/shape.js";
 import { faultsOf } from "../../static/js/draw/validity.js";
 

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import * as flying from "../../static/js/mission/flying.js";
+import * as flying from "../../static/js/domain/flying.js";
 
 const route = (uav, more = {}) => ({ uav: `UAV ${uav}`, uav_id: uav, geometry: {}, length_m: 1000, ...more });
 const mission = (state, more = {}) => ({

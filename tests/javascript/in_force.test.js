@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { isInForce, sunEvent } from "../../static/js/zones/in_force.js";
+import { isInForce, sunEvent } from "../../static/js/domain/zones_in_force.js";
 
 const COLUMBUS = [-83, 39.96];
 const at = (iso) => Date.parse(iso);

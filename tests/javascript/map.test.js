@@ -1,11 +1,11 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-
+import { nearestOnLine } from "../../static/js/domain/geodesy.js";
+import { routeLetter, routeNumber } from "../../static/js/domain/palette.js";
 import { hashOf, showsAnything, viewOf } from "../../static/js/map/address.js";
-import { firstInOrder, nearestOnLine } from "../../static/js/map/click_router.js";
+import { firstInOrder } from "../../static/js/map/click_router.js";
 import { distinct } from "../../static/js/map/furniture.js";
 import { graticuleLines, graticuleStep } from "../../static/js/map/layers/graticule.js";
-import { routeLetter, routeNumber } from "../../static/js/map/palette.js";
 import { mergeDarts, mergedLabel, mergePills, pillWidth } from "../../static/js/map/pills.js";
 import { plainWords } from "../../static/js/map/tips.js";
 import { fitTo } from "../../static/js/missions/sketch.js";

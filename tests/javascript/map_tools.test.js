@@ -1,8 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-
+import { readPalette } from "../../static/js/domain/palette.js";
 import { bearing_deg, measured, measureWords } from "../../static/js/map/measure_tool.js";
-import { readPalette } from "../../static/js/map/palette.js";
 import { filterOf } from "../../static/js/map/shown.js";
 import { BANDS, bandOf, GROUPS, mapStyle, voltageBand } from "../../static/js/map/style.js";
 

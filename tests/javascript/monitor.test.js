@@ -1,11 +1,11 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { distance_m } from "../../static/js/mission/span_strip.js";
+import { certaintyOf, ESTIMATED, LOST, MEASURED, standsAt } from "../../static/js/domain/certainty.js";
+import { distance_m } from "../../static/js/domain/geodesy.js";
+import { flyingUavs, inAir } from "../../static/js/domain/in_air.js";
 import { newAlerts } from "../../static/js/monitor/alarm.js";
 import { boardRows } from "../../static/js/monitor/board.js";
-import { certaintyOf, ESTIMATED, LOST, MEASURED, standsAt } from "../../static/js/monitor/certainty.js";
 import { eventsOf } from "../../static/js/monitor/event_log.js";
-import { flyingUavs, inAir } from "../../static/js/monitor/in_air.js";
 import { progressOf } from "../../static/js/monitor/live_strip.js";
 import { ellipseRing, metresPerPixel } from "../../static/js/monitor/map/ellipse.js";
 import { between } from "../../static/js/monitor/map/glide.js";

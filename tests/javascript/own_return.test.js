@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { returnLines, returnOf, returnSaid } from "../../static/js/mission/own_return.js";
+import { returnLines, returnOf, returnSaid } from "../../static/js/domain/own_return.js";
 
 const check = (state, warnings = []) => ({ place: 1, state, warnings, height_m: 30, read_at: "2027-05-04T09:00:00Z" });
 

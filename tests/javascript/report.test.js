@@ -1,10 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { labelsOf, waypointName } from "../../static/js/report/labels.js";
-import { createPlayer } from "../../static/js/report/player.js";
-import { factsOf, figuresOf, sentenceOf } from "../../static/js/report/sentence.js";
-import { spread } from "../../static/js/report/strip.js";
+import { labelsOf, waypointName } from "../../static/js/record/labels.js";
+import { createPlayer } from "../../static/js/record/player.js";
+import { factsOf, figuresOf, sentenceOf } from "../../static/js/record/sentence.js";
 import {
   eventFrom,
   eventsOf,
@@ -13,7 +12,7 @@ import {
   scaleOf,
   spanOf,
   ticksOf,
-} from "../../static/js/report/timeline.js";
+} from "../../static/js/record/timeline.js";
 import {
   estimatesOf,
   flightsOf,
@@ -24,7 +23,8 @@ import {
   silenceOf_ms,
   trackOf,
   tracksOf,
-} from "../../static/js/report/track.js";
+} from "../../static/js/record/track.js";
+import { spread } from "../../static/js/report/strip.js";
 
 const T0 = Date.parse("2026-09-10T09:10:00Z");
 const at = (seconds) => ({ at_ms: T0 + seconds * 1000 });

@@ -1,7 +1,9 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { axisTicks, distance_m, layOut, positionAt, profileOf } from "../../static/js/mission/span_strip.js";
+import { distance_m } from "../../static/js/domain/geodesy.js";
+import { positionAt, profileOf } from "../../static/js/domain/route_profile.js";
+import { axisTicks, layOut } from "../../static/js/mission/span_strip.js";
 
 const EDGE = 10;
 const waypoint = (longitude, kind, rest = {}) => ({

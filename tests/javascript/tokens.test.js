@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import test from "node:test";
 
-import { contrast, readPalette } from "../../static/js/map/palette.js";
+import { contrast, readPalette } from "../../static/js/domain/palette.js";
 import { mapStyle, PICKABLE, voltageColour } from "../../static/js/map/style.js";
 
 const css = readFileSync(new URL("../../static/css/tokens.css", import.meta.url), "utf8").replace(

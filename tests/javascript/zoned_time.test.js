@@ -2,8 +2,8 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 globalThis.document = { documentElement: { lang: "en", dataset: { timeZone: "Europe/Berlin" } } };
-const { scheduleText } = await import("../../static/js/zones/schedule_words.js");
-const { fromField, toField, weekOf } = await import("../../static/js/zones/schedule.js");
+const { scheduleText } = await import("../../static/js/domain/schedule_words.js");
+const { fromField, toField, weekOf } = await import("../../static/js/domain/schedule.js");
 const { momentTyped, typedMoment, zoneText } = await import("../../static/js/units.js");
 
 test("a moment is typed by the clock of the reader's zone, which is named with its offset", () => {

@@ -2,9 +2,8 @@
 
 import assert from "node:assert/strict";
 import { test } from "node:test";
-
-import { heightsText } from "../../static/js/zones/heights.js";
-import { fromField, newPeriod, timeFromField, timeToField, toField, weekOf } from "../../static/js/zones/schedule.js";
+import { fromField, newPeriod, timeFromField, timeToField, toField, weekOf } from "../../static/js/domain/schedule.js";
+import { heightsText } from "../../static/js/domain/zone_heights.js";
 
 const entry = (rest) => ({ day: ["MON"], startTime: null, startEvent: null, endTime: null, endEvent: null, ...rest });
 const week = (...schedule) => weekOf({ startDateTime: null, endDateTime: null, schedule });

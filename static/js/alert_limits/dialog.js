@@ -2,7 +2,7 @@
 
 import { ApiError, get, put } from "../api.js";
 import { h } from "../dom.js";
-import { numberField } from "../fleet/fields.js";
+import { numberField } from "../page/fields.js";
 import { open } from "../page/keyboard.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
@@ -71,14 +71,12 @@ export async function openAlertLimits({ address, title, hint, onSaved = () => {}
   function tellWrongWay(stated) {
     const faults = wrongWayRound(stated, data.usual);
     for (const [upper, lower] of faults)
-      fields
-        .get(upper)
-        .tell(
-          t("Not below “{other}” ({figure}). Raise this one, or lower the other.", {
-            other: labelOf(lower),
-            figure: numberText((stated[lower] ?? data.usual[lower]) / factorOf(lower), 0),
-          }),
-        );
+      fields.get(upper).tell(
+        t("Not below “{other}” ({figure}). Raise this one, or lower the other.", {
+          other: labelOf(lower),
+          figure: numberText((stated[lower] ?? data.usual[lower]) / factorOf(lower), 0),
+        }),
+      );
     if (faults.length) fields.get(faults[0][0]).input.focus();
     return faults.length > 0;
   }

@@ -1,9 +1,9 @@
 /** What stands beside a drawing: tools, how long or large it is, what is wrong, and its vertices as a table for keys and screen readers. */
 
 import { h, icon } from "../dom.js";
+import { measure } from "../domain/geodesy.js";
 import { t, tn } from "../text.js";
 import { areaText, lengthText } from "../units.js";
-import { measure } from "./measure.js";
 import { circleOf, positionAt, removeRing as removeRingOf, removeVertex, verticesOf } from "./shape.js";
 
 const MOST_ROWS = 200;

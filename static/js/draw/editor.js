@@ -1,9 +1,9 @@
 /** Drawing and editing one shape on the map, with pointer, touch and keys. What a click means is decided in drawing.js. */
 
+import { beside } from "../domain/geodesy.js";
 import * as drawings from "./drawing.js";
 import { createSteps } from "./history.js";
 import { addTo, handlesOf, recolour, show, showNext, showSnap } from "./layers.js";
-import { beside } from "./measure.js";
 import * as shapes from "./shape.js";
 import { exact, forgetShapes, snap } from "./snapping.js";
 import { faultsOf } from "./validity.js";

@@ -1,6 +1,6 @@
 /** What is being drawn, on the map: fill, sides, vertices and middles as handles, and what is wrong in red. */
 
-import { circleRing, continuous } from "./measure.js";
+import { circleRing, continuous } from "../domain/geodesy.js";
 import { circleOf, middlesOf, radiusHandle, verticesOf } from "./shape.js";
 
 const NOTHING = { type: "FeatureCollection", features: [] };

@@ -6,7 +6,7 @@
  * its holes, none of them repeating the first position; a circle has its centre and `radius_m`.
  */
 
-import { beside, distance_m, towards } from "./measure.js";
+import { beside, distance_m, towards } from "../domain/geodesy.js";
 
 const LEAST = { point: 1, line: 2, area: 3, circle: 1 };
 

@@ -1,9 +1,8 @@
 /** Where a vertex is meant to be when it comes near to what is there already: vertices first, then the sides of lines. */
 
 import { get } from "../api.js";
-import { nearestOnLine } from "../map/click_router.js";
+import { distance_m, nearestOnLine } from "../domain/geodesy.js";
 import { TILES } from "../map/style.js";
-import { distance_m } from "./measure.js";
 
 const REACH_PX = matchMedia("(pointer: coarse)").matches ? 18 : 11;
 const LAYERS = ["towers", "towers-high", "towers-ring", "lines", "lines-unknown", "railways", "bridges"];

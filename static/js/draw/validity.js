@@ -1,7 +1,7 @@
 /** What is wrong with a shape while it is being drawn: said at once; the server has the last word before anything is stored. */
 
+import { continuous } from "../domain/geodesy.js";
 import { t } from "../text.js";
-import { continuous } from "./measure.js";
 import { isInside, leastOf } from "./shape.js";
 
 export const MOST_CHECKED = 2_000; // vertices; of more the server says whether they cross

@@ -1,10 +1,10 @@
 /** The forms of a UAV, a type and a base. */
 
 import { h, icon } from "../dom.js";
+import { choiceField, numberField, switchField, textField } from "../page/fields.js";
 import { t } from "../text.js";
 import { BOUNDS, boundsIn, IRIS, USUAL_RESERVE_PERCENT, usualOf } from "../uav_figures.js";
 import { coordinateText, LONG_UNIT, lengthText, SPEED_UNIT, speedText } from "../units.js";
-import { choiceField, numberField, switchField, textField } from "./fields.js";
 import { ENDS, LINKS } from "./words.js";
 
 const pair = (...fields) =>

@@ -16,15 +16,13 @@ export function mountBringIn({ userId, onStarted }) {
   const remembered = createRememberedUploads(userId);
   const input = byId("choose-file");
   const drop = byId("file-drop");
-  let items = remembered
-    .all()
-    .map((entry) => ({
-      ...blank(entry.name, entry.size),
-      ...entry,
-      file: null,
-      phase: "lost",
-      received: entry.received ?? 0,
-    }));
+  let items = remembered.all().map((entry) => ({
+    ...blank(entry.name, entry.size),
+    ...entry,
+    file: null,
+    phase: "lost",
+    received: entry.received ?? 0,
+  }));
 
   const cards = new Map();
   const acts = {

@@ -147,23 +147,17 @@ export function createChangesLayer({ map, view }) {
       map
         .getSource(SOURCE)
         .setData({ type: "FeatureCollection", features: drawn.map((change) => feature(change, change.geometry)) });
-      map
-        .getSource(SIGNS)
-        .setData({
-          type: "FeatureCollection",
-          features: drawn.map((change) =>
-            feature(change, { type: "Point", coordinates: placeOfSign(change.geometry) }),
-          ),
-        });
+      map.getSource(SIGNS).setData({
+        type: "FeatureCollection",
+        features: drawn.map((change) => feature(change, { type: "Point", coordinates: placeOfSign(change.geometry) })),
+      });
       const moved = changes.filter(
         (change) => change.properties.action !== "vanished" && isGeometry(change.properties.before?.geometry),
       );
-      map
-        .getSource(BEFORE)
-        .setData({
-          type: "FeatureCollection",
-          features: moved.map((change) => feature(change, change.properties.before.geometry)),
-        });
+      map.getSource(BEFORE).setData({
+        type: "FeatureCollection",
+        features: moved.map((change) => feature(change, change.properties.before.geometry)),
+      });
       filter();
     },
     /** The id of the change under a point of the screen, or null. */

@@ -32,28 +32,6 @@ export function firstInOrder(features, kinds = null) {
   };
 }
 
-/** The point of a drawn line nearest to a place, both lon lat; lengths are compared on the local plane. */
-export function nearestOnLine(geometry, [longitude, latitude]) {
-  const shrink = Math.cos((latitude * Math.PI) / 180);
-  const parts = geometry.type === "MultiLineString" ? geometry.coordinates : [geometry.coordinates];
-  let best = null;
-  for (const part of parts) {
-    for (let index = 1; index < part.length; index += 1) {
-      const [ax, ay] = [part[index - 1][0] * shrink, part[index - 1][1]];
-      const [bx, by] = [part[index][0] * shrink, part[index][1]];
-      const [dx, dy] = [bx - ax, by - ay];
-      const square = dx * dx + dy * dy;
-      const share = square
-        ? Math.min(1, Math.max(0, ((longitude * shrink - ax) * dx + (latitude - ay) * dy) / square))
-        : 0;
-      const [x, y] = [ax + share * dx, ay + share * dy];
-      const distance = (x - longitude * shrink) ** 2 + (y - latitude) ** 2;
-      if (!best || distance < best.distance) best = { distance, position: [x / shrink, y] };
-    }
-  }
-  return best?.position.map((degrees) => Number(degrees.toFixed(7))) ?? null;
-}
-
 /** All pieces of what was met that the map has loaded: a tile holds a line only as far as its own edge. */
 export function piecesOf(map, thing) {
   if (thing.geometry.type === "Point") return [thing.geometry];

@@ -1,10 +1,10 @@
 /** The map itself: made once, coloured again when the theme changes, with its camera. */
 
+import { readPalette } from "../domain/palette.js";
 import { hashOf, showsAnything, viewOf } from "./address.js";
 import { provideImages } from "./images.js";
 import * as graticule from "./layers/graticule.js";
 import { maplibre } from "./maplibre.js";
-import { readPalette } from "./palette.js";
 import { mapStyle, repaint } from "./style.js";
 
 const WORLD = [-12, 25, 40, 62]; // where nothing is known of the ground

@@ -1,7 +1,7 @@
 /** Measuring on the map: points are clicked, lengths stand at them; three points or more also have an area. */
 
 import { h } from "../dom.js";
-import { distance_m, pathLength_m, ringArea_m2 } from "../draw/measure.js";
+import { distance_m, pathLength_m, ringArea_m2 } from "../domain/geodesy.js";
 import { isTyping } from "../page/keyboard.js";
 import { say } from "../page/toast.js";
 import { t } from "../text.js";

@@ -1,7 +1,7 @@
 /** What of the ground the map shows: kinds, voltages, zones out of force. Zones that rest are drawn as such. */
 
+import { isInForce } from "../domain/zones_in_force.js";
 import { t } from "../text.js";
-import { isInForce } from "../zones/in_force.js";
 import { BANDS, bandOf, GROUPS, TILES } from "./style.js";
 
 const LOOK_AGAIN_MS = 60_000;

@@ -1,11 +1,11 @@
 /** What the tooltip of the map says of an asset or a zone. A zone's times and source are asked for when it is looked at. */
 
 import { h, icon } from "../dom.js";
+import { scheduleText } from "../domain/schedule_words.js";
+import { bandDrawing, heightsText } from "../domain/zone_heights.js";
+import { isInForce } from "../domain/zones_in_force.js";
 import { t } from "../text.js";
 import { lengthText, whenText } from "../units.js";
-import { bandDrawing, heightsText } from "../zones/heights.js";
-import { isInForce } from "../zones/in_force.js";
-import { scheduleText } from "../zones/schedule_words.js";
 import { zoneDetails, zoneDetailsKept } from "./zone_details.js";
 
 const KIND_WORDS = () => ({

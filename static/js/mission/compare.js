@@ -1,7 +1,8 @@
 /** Two plans of one mission against each other: what each UAV flies more or less, and which targets changed hands. */
 
+import { distance_m } from "../domain/geodesy.js";
+import { profileOf } from "../domain/route_profile.js";
 import { keyOf, wishesOf } from "./selection.js";
-import { distance_m, profileOf } from "./span_strip.js";
 
 /** A plan on the page in the short shape that the server remembers of the one before: see LastPlanSerializer. */
 export function summaryOfPlan({ result, targets }) {

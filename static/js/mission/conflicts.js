@@ -1,11 +1,11 @@
 /** Somebody else has saved: what goes together comes together by itself, and where both changed the same the operator decides. */
 
 import { get, post } from "../api.js";
+import { isFrozen } from "../domain/flying.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { clockText } from "../units.js";
 import { whoseSave } from "./draft.js";
-import { isFrozen } from "./flying.js";
 import { isAlike, merged, wordsOfChange } from "./merge.js";
 import { isUnsaved } from "./plan_view.js";
 import * as picks from "./selection.js";

@@ -1,6 +1,6 @@
 /** Fleet and mission together, as values. */
 
-import { routeLetter } from "../map/palette.js";
+import { routeLetter } from "../domain/palette.js";
 import { t, tn } from "../text.js";
 import { exactEnergyText, lengthText, speedText } from "../units.js";
 

@@ -1,13 +1,13 @@
 /** What an operator does with a mission once it is planned: approve, send, steer, abort. Each asks first; the panels listen to the store. */
 
 import { ApiError, get, post, signInAddress } from "../api.js";
+import { LATE, questionOf, WHY } from "../domain/command_questions.js";
+import { flyersOf, isFrozen, isOnItsWay, isOpen, KINDS } from "../domain/flying.js";
+import { returnLines, returnOf } from "../domain/own_return.js";
+import { confirmAct } from "../page/confirm.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { lengthText } from "../units.js";
-import { LATE, questionOf, WHY } from "./command_questions.js";
-import { flyersOf, isFrozen, isOnItsWay, isOpen, KINDS } from "./flying.js";
-import { returnLines, returnOf } from "./own_return.js";
-import { confirmAct } from "./panels/confirm.js";
 
 const POLL_MS = 2000;
 const CONNECTIONS_EVERY_MS = 20_000;

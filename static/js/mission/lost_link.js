@@ -1,7 +1,7 @@
 /** What UAVs do when their link is lost, where they may land then, and what the server's check of it means. Values in, values out. */
 
-import { distance_m } from "../draw/measure.js";
-import { routeLetter } from "../map/palette.js";
+import { distance_m } from "../domain/geodesy.js";
+import { routeLetter } from "../domain/palette.js";
 import { language, localeOf, t, tn } from "../text.js";
 import { durationText, exactHeightText, numberText } from "../units.js";
 

@@ -284,15 +284,13 @@ export function mountMap(store, actions, page, { askForUav }) {
     const routes = planning?.best
       ? tn(flown.length, "{count} route so far", "{count} routes so far")
       : tn(flown.length, "{count} route", "{count} routes");
-    map
-      .getCanvas()
-      .setAttribute(
-        "aria-label",
-        t("Map, {targets}, {routes}", {
-          targets: tn(selection.targets.length, "{count} target", "{count} targets"),
-          routes,
-        }),
-      );
+    map.getCanvas().setAttribute(
+      "aria-label",
+      t("Map, {targets}, {routes}", {
+        targets: tn(selection.targets.length, "{count} target", "{count} targets"),
+        routes,
+      }),
+    );
   });
 
   /** Routes, targets and rally points; UAVs only as long as nothing says which of them fly. */

@@ -1,7 +1,7 @@
 /** What a click on an asset picks, by the tool in hand; where it may mean several things, a small choice beside it. */
 
 import { h, icon } from "../dom.js";
-import { nearestOnLine } from "../map/click_router.js";
+import { nearestOnLine } from "../domain/geodesy.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { lengthText } from "../units.js";

@@ -1,13 +1,13 @@
 /** What a plan means for the page: letters, numbers, sentences. Values in, values out. */
 
-import { routeLetter } from "../map/palette.js";
+import { routeLetter } from "../domain/palette.js";
+import { positionAt, profileOf } from "../domain/route_profile.js";
 import { t, tn } from "../text.js";
 import { durationText, energyText, lengthText, numberText } from "../units.js";
 import { changesOf } from "./hand_route.js";
 import { ordersOf, wishedOrders } from "./locks.js";
 import { inWords } from "./plan_words.js";
 import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";
-import { positionAt, profileOf } from "./span_strip.js";
 
 const REASONS = {
   no_path: t("No way along the network leads there."),

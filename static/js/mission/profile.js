@@ -2,13 +2,14 @@
 
 import { post } from "../api.js";
 import { h, svg } from "../dom.js";
+import { profileOf } from "../domain/route_profile.js";
+import { heightsText } from "../domain/zone_heights.js";
 import { rulesOf } from "../terrain/profile_chart.js";
 import { t } from "../text.js";
 import { heightText, lengthText, percentText } from "../units.js";
-import { heightsText } from "../zones/heights.js";
 import { timeAt } from "./flight_options.js";
 import { staysOf, stayText } from "./route_times.js";
-import { profileOf, scaleOf } from "./span_strip.js";
+import { scaleOf } from "./span_strip.js";
 import { passedZones, zoneWords } from "./zones_passed.js";
 
 export const PROFILE_HEIGHT_PX = 96;

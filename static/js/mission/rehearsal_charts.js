@@ -1,7 +1,7 @@
 /** Height and battery of one rehearsed route over time: what was planned dashed, what was flown in simulation solid. */
 
 import { h, svg } from "../dom.js";
-import { routeNumber } from "../map/palette.js";
+import { routeNumber } from "../domain/palette.js";
 import { t } from "../text.js";
 import { durationText, heightText, percentText, SHORT_UNIT } from "../units.js";
 import { curvesOf, rulesUpTo } from "./rehearsal.js";

@@ -1,12 +1,12 @@
 /** The span strip: a route pulled straight. Distance runs to the right, ticks are towers, circles are targets, pills several of them. */
 
 import { h, svg } from "../dom.js";
+import { profileOf } from "../domain/route_profile.js";
 import { staticAddress } from "../static_address.js";
 import { t } from "../text.js";
 import { LONG_UNIT, lengthText, numberText } from "../units.js";
 import { zoneWords } from "./zones_passed.js";
 
-const EARTH_RADIUS_M = 6_371_008.8; // IUGG mean radius
 const TICK_SPACING_PX = 3.5;
 const TARGET_SPACING_PX = 19;
 const LETTER_PX = 7;
@@ -14,45 +14,6 @@ const MOST_PUSHED_PX = 14; // from the true place; more, and neighbours become o
 const HEIGHT_PX = 34;
 const MIDDLE_PX = 18;
 const EDGE_PX = 10;
-
-/** Great-circle distance between two lon lat positions, for drawing; figures come from the server. */
-export function distance_m([lon1, lat1], [lon2, lat2]) {
-  const rad = Math.PI / 180;
-  const half = (degrees) => Math.sin((degrees * rad) / 2) ** 2;
-  return (
-    2 *
-    EARTH_RADIUS_M *
-    Math.asin(Math.sqrt(half(lat2 - lat1) + Math.cos(lat1 * rad) * Math.cos(lat2 * rad) * half(lon2 - lon1)))
-  );
-}
-
-/** Along a route's waypoints: where each stands, which legs leave the network, where targets are. All in metres flown. */
-export function profileOf(waypoints, length_m) {
-  const along = waypoints.length ? [0] : [];
-  for (let index = 1; index < waypoints.length; index += 1)
-    along.push(along[index - 1] + distance_m(waypoints[index - 1].position, waypoints[index].position));
-  const scale = along.at(-1) > 0 ? length_m / along.at(-1) : 1; // the server's geodesic length is the true one
-  const places = along.map((distance) => distance * scale);
-  const isOff = (waypoint) => waypoint.kind === "start" || waypoint.kind === "end" || waypoint.asset === null;
-  const legs = [];
-  for (let index = 1; index < waypoints.length; index += 1) {
-    if (places[index] === places[index - 1]) continue;
-    const offNetwork = isOff(waypoints[index - 1]) || isOff(waypoints[index]);
-    const last = legs.at(-1);
-    if (last && last.offNetwork === offNetwork) last.to = places[index];
-    else legs.push({ from: places[index - 1], to: places[index], offNetwork });
-  }
-  const targets = [];
-  waypoints.forEach((waypoint, index) => {
-    if (waypoint.kind === "target") targets.push({ target: waypoint.target, at: places[index] });
-  });
-  return {
-    places,
-    legs,
-    targets,
-    ticks: places.filter((_, index) => waypoints[index].kind !== "start" && waypoints[index].kind !== "end"),
-  };
-}
 
 /** The axis that strips and the profile share: distance flown [m] to px, and back. */
 export function scaleOf(longest_m, width_px) {
@@ -133,16 +94,6 @@ function keepApart(pills, start_px, end_px, width_px) {
       : Math.min(Math.max(end_px, start_px + pills[index].width / 2), width_px - pills[index].width / 2);
     pills[index].x = Math.min(pills[index].x, most);
   }
-}
-
-/** Position on the route's waypoints at a distance from its start, lon lat. */
-export function positionAt(waypoints, places, distance) {
-  const next = places.findIndex((place) => place >= distance);
-  if (next <= 0) return waypoints[next === 0 ? 0 : waypoints.length - 1].position;
-  const span = places[next] - places[next - 1];
-  const share = span > 0 ? (distance - places[next - 1]) / span : 0;
-  const [from, to] = [waypoints[next - 1].position, waypoints[next].position];
-  return [from[0] + (to[0] - from[0]) * share, from[1] + (to[1] - from[1]) * share];
 }
 
 /** Round figures for the axis, in the reader's long unit (km): at most six. */

@@ -1,8 +1,8 @@
 /** What the zones beside a route are to it: in its way, at another height, passed by, or not in force when the UAV comes by. */
 
+import { isInForce } from "../domain/zones_in_force.js";
 import { t } from "../text.js";
 import { durationText, heightText } from "../units.js";
-import { isInForce } from "../zones/in_force.js";
 
 const STEP_MS = 60_000;
 const NO_MARGINS = { time_s: 0, height_m: 0, terrain_m: 0 };

@@ -1,7 +1,7 @@
 /** One row of the list: drawing, name to be changed in its place, figures, and what can be done. */
 
 import { h, icon } from "../dom.js";
-import { routeLetter, routeNumber } from "../map/palette.js";
+import { routeLetter, routeNumber } from "../domain/palette.js";
 import { menuOf, toggleMenu } from "../page/chrome.js";
 import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";

@@ -1,7 +1,7 @@
 /** A small drawing of a mission's routes over the lines round them, without a map. */
 
 import { h, icon, svg } from "../dom.js";
-import { routeNumber } from "../map/palette.js";
+import { routeNumber } from "../domain/palette.js";
 import { t } from "../text.js";
 
 const WIDTH_PX = 112;

@@ -1,8 +1,8 @@
 /** The board: every target of the missions on the page with its state and time. Values in, values out. */
 
-import { routeLetter } from "../map/palette.js";
+import { inAir } from "../domain/in_air.js";
+import { routeLetter } from "../domain/palette.js";
 import { t } from "../text.js";
-import { inAir } from "./in_air.js";
 import { isHeld } from "./uav_words.js";
 
 export const STATES = {

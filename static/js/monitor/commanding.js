@@ -1,16 +1,16 @@
 /** What an operator tells UAVs from the live page. Each asks first; nothing acts at once. */
 
 import { ApiError, get, post } from "../api.js";
-import { routeLetter } from "../map/palette.js";
-import { LATE, questionOf } from "../mission/command_questions.js";
-import { KINDS } from "../mission/flying.js";
-import { returnOf } from "../mission/own_return.js";
-import { confirmAct } from "../mission/panels/confirm.js";
+import { certaintyOf, MEASURED } from "../domain/certainty.js";
+import { LATE, questionOf } from "../domain/command_questions.js";
+import { KINDS } from "../domain/flying.js";
+import { flyingUavs } from "../domain/in_air.js";
+import { returnOf } from "../domain/own_return.js";
+import { routeLetter } from "../domain/palette.js";
+import { confirmAct } from "../page/confirm.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
-import { certaintyOf, MEASURED } from "./certainty.js";
-import { flyingUavs } from "./in_air.js";
 import { unheardLines } from "./unheard.js";
 
 const AGAIN = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;

@@ -1,6 +1,6 @@
 /** What has happened: commands, alerts and states of targets and missions, the newest first. Values in, values out. */
 
-import { KINDS } from "../mission/flying.js";
+import { KINDS } from "../domain/flying.js";
 import { t } from "../text.js";
 import { reasonWords, STATES } from "./board.js";
 

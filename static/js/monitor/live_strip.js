@@ -1,8 +1,9 @@
 /** The span strip of a flight: what is flown thick, the rest pale, the UAV on it with the bracket in which it is 95 of 100 times. */
 
 import { svg } from "../dom.js";
-import { layOut, profileOf, scaleOf } from "../mission/span_strip.js";
-import { MEASURED } from "./certainty.js";
+import { MEASURED } from "../domain/certainty.js";
+import { profileOf } from "../domain/route_profile.js";
+import { layOut, scaleOf } from "../mission/span_strip.js";
 
 const HEIGHT_PX = 34;
 const MIDDLE_PX = 18;

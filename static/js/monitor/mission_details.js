@@ -1,7 +1,7 @@
 /** What the feed does not tell: plans of missions, and the line flown so far. Read once, and again when a mission changes. */
 
 import { ApiError, get } from "../api.js";
-import { inAir } from "./in_air.js";
+import { inAir } from "../domain/in_air.js";
 
 const MOST_RECORDS = 900;
 const GAP_S = 45; // no line is drawn over a longer silence: nobody knows what was flown

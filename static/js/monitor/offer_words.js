@@ -1,6 +1,6 @@
 /** An offer of another plan in words: why, and what would change for each UAV and target. Values in, words out. */
 
-import { routeLetter } from "../map/palette.js";
+import { routeLetter } from "../domain/palette.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
 

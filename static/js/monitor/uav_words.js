@@ -1,5 +1,7 @@
 /** What a live page says of one UAV: its state, the age of its report, four figures, the estimate. Values in, words out. */
 
+import { ESTIMATED, isLate, isSilent, LOST, MEASURED, reportAge_s, withinOf_m } from "../domain/certainty.js";
+import { inAir } from "../domain/in_air.js";
 import { t } from "../text.js";
 import {
   clockText,
@@ -11,8 +13,6 @@ import {
   percentText,
   speedText,
 } from "../units.js";
-import { ESTIMATED, isLate, isSilent, LOST, MEASURED, reportAge_s, withinOf_m } from "./certainty.js";
-import { inAir } from "./in_air.js";
 
 const AMBER = "warning";
 const MODES = [

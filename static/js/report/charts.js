@@ -1,8 +1,8 @@
 /** One value of all UAVs over the time of a replay: what was flown, what was planned, and a dot at the cursor. */
 
 import { svg } from "../dom.js";
-import { routeNumber } from "../map/palette.js";
-import { rulesOf } from "./timeline.js";
+import { routeNumber } from "../domain/palette.js";
+import { rulesOf } from "../record/timeline.js";
 
 const TOP_PX = 6;
 const BOTTOM_PX = 3;

@@ -1,7 +1,9 @@
 /** The dock: strips and charts on one time axis, one cursor through all of them, figures at the cursor beside them. */
 
 import { byId, h, svg } from "../dom.js";
-import { routeLetter, routeNumber } from "../map/palette.js";
+import { routeLetter, routeNumber } from "../domain/palette.js";
+import { hasLanded, plannedHeights, scaleOf, ticksOf } from "../record/timeline.js";
+import { ESTIMATED, linesOf, MEASURED, momentOf, SILENT } from "../record/track.js";
 import { t } from "../text.js";
 import {
   clockText,
@@ -18,8 +20,6 @@ import {
 } from "../units.js";
 import { drawChart } from "./charts.js";
 import { drawStrip } from "./strip.js";
-import { hasLanded, plannedHeights, scaleOf, ticksOf } from "./timeline.js";
-import { ESTIMATED, linesOf, MEASURED, momentOf, SILENT } from "./track.js";
 
 const MOST_READINGS = 6; // beside a chart; of more UAVs only the chosen one is read
 const MINUTE_MS = 60_000;

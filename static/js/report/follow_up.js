@@ -2,8 +2,8 @@
 
 import { post } from "../api.js";
 import { byId } from "../dom.js";
+import { isOver } from "../record/sentence.js";
 import { t } from "../text.js";
-import { isOver } from "./sentence.js";
 
 let key = null; // of the asking: the same until it is answered, so that there is one draft
 

@@ -1,12 +1,12 @@
 /** Legs, alerts, commands and results, each a list that can be unfolded. */
 
 import { h, icon } from "../dom.js";
-import { routeLetter, routeNumber } from "../map/palette.js";
-import { commandWords, timesOf } from "../mission/flying.js";
+import { commandWords, timesOf } from "../domain/flying.js";
+import { routeLetter, routeNumber } from "../domain/palette.js";
+import { waypointName } from "../record/labels.js";
 import { simulatedMark } from "../simulated.js";
 import { t } from "../text.js";
 import { clockText, exactClockText, exactHeightText, exactText, lengthText } from "../units.js";
-import { waypointName } from "./labels.js";
 import { fold } from "./side.js";
 
 const LEVELS = {

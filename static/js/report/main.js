@@ -3,22 +3,22 @@
 import { signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { readPage, startChrome } from "../page/chrome.js";
+import { labelsOf } from "../record/labels.js";
+import { loadMission } from "../record/load.js";
+import { createPlayer, SPEEDS } from "../record/player.js";
+import { isOver, isUnderWay } from "../record/sentence.js";
+import { eventFrom, eventsOf, spanOf } from "../record/timeline.js";
+import { estimatesOf, silenceOf_ms, trackOf, tracksOf } from "../record/track.js";
 import { mountSceneOpener } from "../scene/opener.js";
 import { t } from "../text.js";
 import { numberText } from "../units.js";
 import { createDock } from "./dock.js";
 import { offerFollowUp } from "./follow_up.js";
-import { labelsOf } from "./labels.js";
 import { mountLayout } from "./layout.js";
 import { drawAlerts, drawCommands, drawLegs, drawResults } from "./lists.js";
-import { loadMission } from "./load.js";
-import { createPlayer, SPEEDS } from "./player.js";
 import { replayTables } from "./replay_tables.js";
 import { createReportMap } from "./report_map.js";
-import { isOver, isUnderWay } from "./sentence.js";
 import { drawHead, drawTargets } from "./side.js";
-import { eventFrom, eventsOf, spanOf } from "./timeline.js";
-import { estimatesOf, silenceOf_ms, trackOf, tracksOf } from "./track.js";
 
 const AGAIN_MS = 30_000;
 const KEY_STEPS = 100; // of the whole replay, by an arrow key

@@ -1,6 +1,6 @@
 /** What was flown over what was planned: measured solid, estimated dotted, and the leg that is looked at under both. */
 
-import { routeNumber } from "../map/palette.js";
+import { routeNumber } from "../domain/palette.js";
 
 const BEFORE = "line-labels";
 const NOTHING = { type: "FeatureCollection", features: [] };

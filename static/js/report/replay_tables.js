@@ -1,9 +1,9 @@
 /** What the strips and charts draw, as tables for those who do not see them. */
 
 import { h } from "../dom.js";
+import { MEASURED, momentOf } from "../record/track.js";
 import { t } from "../text.js";
 import { exactClockText, heightText, percentText, speedText } from "../units.js";
-import { MEASURED, momentOf } from "./track.js";
 
 const ROWS = 12;
 

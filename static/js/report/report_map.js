@@ -2,19 +2,19 @@
 
 import { get } from "../api.js";
 import { byId } from "../dom.js";
+import { routeLetter } from "../domain/palette.js";
 import { mountControls } from "../map/controls.js";
 import { createTip } from "../map/furniture.js";
 import * as routesLayer from "../map/layers/routes.js";
 import { boxAround, createMap } from "../map/map_view.js";
-import { routeLetter } from "../map/palette.js";
 import { showTipsOnly } from "../map/tips_only.js";
 import { rememberedUnder } from "../map/under.js";
 import { createTargetPills } from "../monitor/map/target_pills.js";
 import { createUavMarkers } from "../monitor/map/uav_markers.js";
+import { ESTIMATED, MEASURED, momentOf } from "../record/track.js";
 import { t, tn } from "../text.js";
 import { heightText } from "../units.js";
 import * as layers from "./record_layers.js";
-import { ESTIMATED, MEASURED, momentOf } from "./track.js";
 
 const REST = { light: 0.3, dark: 0.42 }; // of routes that are not looked at
 const NEAR_ZOOM = 14;

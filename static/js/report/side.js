@@ -1,12 +1,12 @@
 /** The side: what came of the mission in a sentence, in figures, and what became of each target. */
 
 import { byId, h, icon } from "../dom.js";
-import { routeNumber } from "../map/palette.js";
+import { routeNumber } from "../domain/palette.js";
 import { STATES as MISSION_STATES } from "../missions/rows.js";
 import { reasonWords, STATES } from "../monitor/board.js";
+import { factsOf, figuresOf, isOver, isUnderWay, sentenceOf, wasFlown } from "../record/sentence.js";
 import { t } from "../text.js";
 import { clockText, dateText, durationText, exactText, lengthText } from "../units.js";
-import { factsOf, figuresOf, isOver, isUnderWay, sentenceOf, wasFlown } from "./sentence.js";
 
 const HASH_LETTERS = 8;
 

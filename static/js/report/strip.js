@@ -1,7 +1,7 @@
 /** A UAV's flight pulled straight over time: measured solid, estimated dotted, silence empty, targets where it was at them, alerts above. */
 
 import { svg } from "../dom.js";
-import { routeNumber } from "../map/palette.js";
+import { routeNumber } from "../domain/palette.js";
 
 const HEIGHT_PX = 34;
 const MIDDLE_PX = 20;

@@ -1,6 +1,6 @@
 /** What can be done with the 3D view: cameras, UAVs, targets, time, a picture to keep and a link. Each says whether it was done. */
 
-import { routeLetter } from "../map/palette.js";
+import { routeLetter } from "../domain/palette.js";
 import { copyText } from "../page/clipboard.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";

@@ -1,7 +1,7 @@
 /** Cameras, UAVs and what else can be done with the picture, as buttons over it. */
 
 import { h, icon } from "../dom.js";
-import { routeLetter, routeNumber } from "../map/palette.js";
+import { routeLetter, routeNumber } from "../domain/palette.js";
 import { t } from "../text.js";
 
 export const CAMERA_WORDS = {

@@ -1,9 +1,9 @@
 /** Each picture of the view: where everything is at the moment, where the camera stands, what is written beside it. */
 
-import { routeLetter } from "../map/palette.js";
+import { routeLetter } from "../domain/palette.js";
+import { isInForce } from "../domain/zones_in_force.js";
 import { t, tn } from "../text.js";
 import { heightText } from "../units.js";
-import { isInForce } from "../zones/in_force.js";
 import { CAMERA_LONG } from "./camera_bar.js";
 import { between, lengthOf, minus } from "./cameras/vectors.js";
 import { nearestTower, nearestWire, nearestZone, roomRound } from "./instruments/distances.js";

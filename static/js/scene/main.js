@@ -5,7 +5,7 @@ import { byId, h, icon } from "../dom.js";
 import { openFeed } from "../live/feed.js";
 import { staleWords } from "../live/stale.js";
 import { readPage, startChrome } from "../page/chrome.js";
-import { loadMission } from "../report/load.js";
+import { loadMission } from "../record/load.js";
 import { t } from "../text.js";
 import { sceneKeys } from "./keys.js";
 import { readLink } from "./link.js";

@@ -1,6 +1,6 @@
 /** The tokens that the 3D view draws with, as they stand now: those of the map, and water for the sky. */
 
-import { readPalette } from "../map/palette.js";
+import { readPalette } from "../domain/palette.js";
 
 const MORE = {
   water: "--map-water",

@@ -2,9 +2,9 @@
 
 import { get, signInAddress } from "../api.js";
 import { h, icon } from "../dom.js";
-import { routeLetter } from "../map/palette.js";
+import { routeLetter } from "../domain/palette.js";
 import { onTheme } from "../page/theme.js";
-import { createPlayer } from "../report/player.js";
+import { createPlayer } from "../record/player.js";
 import { simulatedMark } from "../simulated.js";
 import { t } from "../text.js";
 import { createActs } from "./acts.js";

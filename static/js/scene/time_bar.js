@@ -1,9 +1,9 @@
 /** The time of the view: play, the events, and a slider that goes through them. The same player as of the record page. */
 
 import { h, icon, svg } from "../dom.js";
-import { routeNumber } from "../map/palette.js";
-import { SPEEDS } from "../report/player.js";
-import { eventFrom, ticksOf } from "../report/timeline.js";
+import { routeNumber } from "../domain/palette.js";
+import { SPEEDS } from "../record/player.js";
+import { eventFrom, ticksOf } from "../record/timeline.js";
 import { t } from "../text.js";
 import { clockText, dateText, exactClockText, minutesAheadOfUtc, numberText, sinceText } from "../units.js";
 
@@ -12,7 +12,7 @@ const NEAR_EVENT_MS = 2_000;
 const MINUTE_MS = 60_000;
 
 /**
- * player: of report/player.js; source; eventWords(event) → words. show() draws where the player stands.
+ * player: of record/player.js; source; eventWords(event) → words. show() draws where the player stands.
  * Times are those of the day; without a departure they are counted from it.
  */
 export function createTimeBar({ player, source, eventWords }) {

@@ -2,9 +2,9 @@
 
 import { get, post, remove } from "../api.js";
 import { byId, h } from "../dom.js";
+import { distance_m } from "../domain/geodesy.js";
 import { mountGroundPage } from "../ground/ground_page.js";
 import { boxAround } from "../map/map_view.js";
-import { distance_m } from "../mission/span_strip.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { countText } from "../units.js";

@@ -1,8 +1,8 @@
 /** The facts of a zone as fields. */
 
 import { h } from "../dom.js";
+import { limitField } from "../domain/zone_heights.js";
 import { t } from "../text.js";
-import { limitField } from "./heights.js";
 import { scheduleEditor } from "./schedule_editor.js";
 
 const RESTRICTIONS = ["PROHIBITED", "REQ_AUTHORISATION", "CONDITIONAL", "NO_RESTRICTION"];

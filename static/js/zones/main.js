@@ -1,14 +1,14 @@
 /** The page "No-fly zones": find, look, draw, correct; sets and their sources. */
 
 import { byId, h, icon } from "../dom.js";
+import { scheduleText } from "../domain/schedule_words.js";
+import { bandDrawing, heightsText } from "../domain/zone_heights.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { plainWords } from "../map/tips.js";
 import { t } from "../text.js";
 import { coordinateText, lengthText, minutesAheadOfUtc, whenText, zoneText } from "../units.js";
 import { zoneForm } from "./form.js";
-import { bandDrawing, heightsText } from "./heights.js";
 import { weekDrawing } from "./schedule_editor.js";
-import { scheduleText } from "./schedule_words.js";
 import { mountSetsPanel, validityText } from "./sets_panel.js";
 
 const PAGE = 60;

@@ -1,8 +1,6 @@
 /** Edits when a zone applies: periods with dates, days and times, and a week that shows them. */
 
 import { h, icon, svg } from "../dom.js";
-import { t } from "../text.js";
-import { minutesAheadOfUtc, zoneText } from "../units.js";
 import {
   DAYS,
   EVENTS,
@@ -13,7 +11,9 @@ import {
   timeToField,
   toField,
   weekOf,
-} from "./schedule.js";
+} from "../domain/schedule.js";
+import { t } from "../text.js";
+import { minutesAheadOfUtc, zoneText } from "../units.js";
 
 const offsetWords = () => {
   const minutes = minutesAheadOfUtc(Date.now());

@@ -1,6 +1,6 @@
 /** Routes: one colour per UAV, drawn on the right of the way, with arrows. */
 
-import { ROUTE_COUNT, routeNumber } from "../palette.js";
+import { ROUTE_COUNT, routeNumber } from "../../domain/palette.js";
 import { routeOpacity } from "../style.js";
 
 const LAYERS = {
@@ -30,16 +30,14 @@ export function update(map, routes) {
 
 /** Places where UAVs wait: [{ kind: "base" | "charging", position }]. */
 export function showStops(map, stops) {
-  map
-    .getSource("route-stops")
-    .setData({
-      type: "FeatureCollection",
-      features: stops.map(({ kind, position }) => ({
-        type: "Feature",
-        properties: { kind },
-        geometry: { type: "Point", coordinates: position },
-      })),
-    });
+  map.getSource("route-stops").setData({
+    type: "FeatureCollection",
+    features: stops.map(({ kind, position }) => ({
+      type: "Feature",
+      properties: { kind },
+      geometry: { type: "Point", coordinates: position },
+    })),
+  });
 }
 
 /** The best routes of a search that goes on: lines with the number of their UAV; null once there is a plan. */

@@ -1,9 +1,9 @@
 /** Target pills: HTML up to 200, a layer beyond. Pills of one UAV that would overlap are merged: "C3–4". */
 
 import { h } from "../../dom.js";
+import { routeNumber } from "../../domain/palette.js";
 import { t, tn } from "../../text.js";
 import { maplibre } from "../maplibre.js";
-import { routeNumber } from "../palette.js";
 import { mergePills } from "../pills.js";
 
 const MOST_MARKERS = 200;

@@ -4,9 +4,9 @@
  */
 
 import { h, svg } from "../../dom.js";
+import { routeNumber } from "../../domain/palette.js";
 import { t } from "../../text.js";
 import { maplibre } from "../maplibre.js";
-import { routeNumber } from "../palette.js";
 import { mergeDarts } from "../pills.js";
 
 const SQUARE_PX = 22;

@@ -1,11 +1,6 @@
 /** A mission that is approved: its stage, what each UAV has on board and was told, and the buttons for what can be done. */
 
 import { byId, h, icon } from "../../dom.js";
-import { routeNumber } from "../../map/palette.js";
-import { menuOf, toggleMenu } from "../../page/chrome.js";
-import { simulatedMark } from "../../simulated.js";
-import { t } from "../../text.js";
-import { exactClockText, exactText } from "../../units.js";
 import {
   boardOf,
   boardWords,
@@ -21,8 +16,13 @@ import {
   timesOf,
   whyNoStart,
   whyNotMoved,
-} from "../flying.js";
-import { returnOf, returnSaid } from "../own_return.js";
+} from "../../domain/flying.js";
+import { returnOf, returnSaid } from "../../domain/own_return.js";
+import { routeNumber } from "../../domain/palette.js";
+import { menuOf, toggleMenu } from "../../page/chrome.js";
+import { simulatedMark } from "../../simulated.js";
+import { t } from "../../text.js";
+import { exactClockText, exactText } from "../../units.js";
 
 const BESIDE = ["hold", "return", "land"];
 const MORE = [

@@ -2,10 +2,10 @@
 
 import { get, post } from "../../api.js";
 import { h } from "../../dom.js";
+import { scheduleText } from "../../domain/schedule_words.js";
 import { open } from "../../page/keyboard.js";
 import { t } from "../../text.js";
 import { zoneText } from "../../units.js";
-import { scheduleText } from "../../zones/schedule_words.js";
 import { departureText } from "../flight_options.js";
 import {
   betterWords,

@@ -1,7 +1,7 @@
 /** Under the strips: the flight of the route that is looked at from the side, with the figures at the pointer. */
 
 import { byId, h } from "../../dom.js";
-import { routeNumber } from "../../map/palette.js";
+import { routeNumber } from "../../domain/palette.js";
 import { t, tn } from "../../text.js";
 import { heightText, lengthText, percentText } from "../../units.js";
 import { timeAt } from "../flight_options.js";

@@ -1,7 +1,7 @@
 /** The panel of rehearsals: conditions, progress, and the verdict by route and by target. Everything in it is simulated, and says so. */
 
 import { byId, h, icon, refill } from "../../dom.js";
-import { routeLetter, routeNumber } from "../../map/palette.js";
+import { routeLetter, routeNumber } from "../../domain/palette.js";
 import { t } from "../../text.js";
 import { exactHeightText, heightText, numberText, percentText, SPEED_UNIT, speedText, whenText } from "../../units.js";
 import { isPlanCurrent, isUnsaved } from "../plan_view.js";

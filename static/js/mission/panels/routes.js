@@ -1,7 +1,8 @@
 /** The dock: the sentence, then a strip for each UAV, all on one axis; on request the strip of the plan before under each. */
 
 import { byId, h, icon } from "../../dom.js";
-import { routeNumber } from "../../map/palette.js";
+import { routeNumber } from "../../domain/palette.js";
+import { profileOf } from "../../domain/route_profile.js";
 import { t, tn } from "../../text.js";
 import { durationText, lengthText } from "../../units.js";
 import { counterpart, profileOfSummary } from "../compare.js";
@@ -23,7 +24,7 @@ import {
 import { GROUNDING } from "../plan_words.js";
 import { batteryOf, delayText, landing_s, separationOf, staysOf, staysText, stayText } from "../route_times.js";
 import { uavsByName } from "../selection.js";
-import { paleStrip, profileOf, spanStrip, stripAxis, stripTable } from "../span_strip.js";
+import { paleStrip, spanStrip, stripAxis, stripTable } from "../span_strip.js";
 import { createPillDrag } from "../strip_drag.js";
 import { passedZones } from "../zones_passed.js";
 

@@ -1,7 +1,7 @@
 /** The list of targets: pill, kind, name, second fact, task, remove; and what is done with several of them at once. */
 
 import { byId, h, icon, keyedList } from "../../dom.js";
-import { routeNumber } from "../../map/palette.js";
+import { routeNumber } from "../../domain/palette.js";
 import { toggleMenu } from "../../page/chrome.js";
 import { t, tn } from "../../text.js";
 import { lockOf, ordersOf } from "../locks.js";

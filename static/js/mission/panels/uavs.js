@@ -1,7 +1,7 @@
 /** The fleet to choose from: who flies in this mission, with letter, base, battery, range, sensors and how its flight ends. */
 
 import { byId, h, icon, keyedList } from "../../dom.js";
-import { routeNumber } from "../../map/palette.js";
+import { routeNumber } from "../../domain/palette.js";
 import { markSimulated } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { percentText } from "../../units.js";

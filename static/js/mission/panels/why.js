@@ -3,7 +3,7 @@
 
 import { post } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
-import { routeLetter, routeNumber } from "../../map/palette.js";
+import { routeLetter, routeNumber } from "../../domain/palette.js";
 import { t } from "../../text.js";
 import { isPlanCurrent, lastPlanOf } from "../plan_view.js";
 import { takesShortestWays } from "../plan_words.js";

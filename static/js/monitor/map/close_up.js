@@ -1,12 +1,12 @@
 /** A small map round the chosen UAV while its ring would be too small to read on the large one. */
 
 import { h, icon } from "../../dom.js";
+import { ESTIMATED, withinOf_m } from "../../domain/certainty.js";
 import { provideImages } from "../../map/images.js";
 import { boxAround, tellFaults } from "../../map/map_view.js";
 import { maplibre } from "../../map/maplibre.js";
 import { mapStyle, repaint } from "../../map/style.js";
 import { t } from "../../text.js";
-import { ESTIMATED, withinOf_m } from "../certainty.js";
 import { ellipseRing, metresPerPixel } from "./ellipse.js";
 import * as flightLayers from "./flight_layers.js";
 import { createUavMarkers } from "./uav_markers.js";

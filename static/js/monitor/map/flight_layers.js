@@ -1,6 +1,6 @@
 /** What is flown, where the last report was, and the ellipse of an estimate: layers between routes and labels. */
 
-import { routeNumber } from "../../map/palette.js";
+import { routeNumber } from "../../domain/palette.js";
 import { ellipseRing, metresPerPixel } from "./ellipse.js";
 
 const BEFORE = "line-labels";

@@ -1,17 +1,17 @@
 /** The live map: what the store knows is drawn, what the pointer picks goes to the store. */
 
 import { byId } from "../../dom.js";
+import { certaintyOf, LOST, MEASURED, standsAt } from "../../domain/certainty.js";
+import { routeLetter, routeNumber } from "../../domain/palette.js";
 import { mountControls } from "../../map/controls.js";
 import { createTip } from "../../map/furniture.js";
 import * as routesLayer from "../../map/layers/routes.js";
 import { boxAround, createMap } from "../../map/map_view.js";
-import { routeLetter, routeNumber } from "../../map/palette.js";
 import { showTipsOnly } from "../../map/tips_only.js";
 import { rememberedUnder } from "../../map/under.js";
 import { t, tn } from "../../text.js";
 import { exactClockText } from "../../units.js";
 import { numbersOf, pillOf } from "../board.js";
-import { certaintyOf, LOST, MEASURED, standsAt } from "../certainty.js";
 import { mapFact } from "../uav_words.js";
 import { createCloseUp } from "./close_up.js";
 import * as flightLayers from "./flight_layers.js";

@@ -1,8 +1,8 @@
 /** Targets of what flies, by their state: complete filled, failed red, skipped dashed, the rest open. */
 
 import { h } from "../../dom.js";
+import { routeNumber } from "../../domain/palette.js";
 import { maplibre } from "../../map/maplibre.js";
-import { routeNumber } from "../../map/palette.js";
 import { mergePills } from "../../map/pills.js";
 import { t } from "../../text.js";
 import { STATES } from "../board.js";

@@ -1,8 +1,8 @@
 /** UAVs on the map: a filled dart where one is measured, a hollow one where it is estimated, grey in a dotted ring where it is lost. */
 
 import { h, svg } from "../../dom.js";
+import { routeNumber } from "../../domain/palette.js";
 import { maplibre } from "../../map/maplibre.js";
-import { routeNumber } from "../../map/palette.js";
 import { markSimulated } from "../../simulated.js";
 import { t } from "../../text.js";
 import { between, GLIDE_MS } from "./glide.js";

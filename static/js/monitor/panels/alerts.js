@@ -2,8 +2,8 @@
 
 import { ApiError, get, post } from "../../api.js";
 import { byId, h, icon, keyedList } from "../../dom.js";
-import { confirmAct } from "../../mission/panels/confirm.js";
 import { toggleMenu } from "../../page/chrome.js";
+import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";

@@ -1,7 +1,7 @@
 /** The board and the log of events, one of them at a time. */
 
 import { byId, h, icon, keyedList } from "../../dom.js";
-import { routeNumber } from "../../map/palette.js";
+import { routeNumber } from "../../domain/palette.js";
 import { simulatedMark } from "../../simulated.js";
 import { t } from "../../text.js";
 import { clockText, exactClockText, exactText } from "../../units.js";

@@ -1,14 +1,14 @@
 /** The fleet: a card for each UAV. Parts that a second changes are renewed in place, so that focus and pointer stay. */
 
 import { byId, h, icon, keyedList, refill } from "../../dom.js";
-import { routeLetter, routeNumber } from "../../map/palette.js";
-import { commandWords, isOpen, timesOf } from "../../mission/flying.js";
-import { profileOf } from "../../mission/span_strip.js";
+import { certaintyOf, MEASURED } from "../../domain/certainty.js";
+import { commandWords, isOpen, timesOf } from "../../domain/flying.js";
+import { routeLetter, routeNumber } from "../../domain/palette.js";
+import { profileOf } from "../../domain/route_profile.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, lengthText, numberText } from "../../units.js";
 import { numbersOf, pillOf } from "../board.js";
-import { certaintyOf, MEASURED } from "../certainty.js";
 import { rateOf, rateWords } from "../clock_rate.js";
 import { liveStrip, progressOf } from "../live_strip.js";
 import { alertsInOrder, inOrder, isOpenAlert } from "../order.js";

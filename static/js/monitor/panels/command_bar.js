@@ -1,10 +1,10 @@
 /** Commands for the chosen UAV, over the map's lower edge; on a phone at thumb height. */
 
 import { byId, h, icon } from "../../dom.js";
-import { routeLetter, routeNumber } from "../../map/palette.js";
-import { KINDS } from "../../mission/flying.js";
+import { KINDS } from "../../domain/flying.js";
+import { flyingUavs } from "../../domain/in_air.js";
+import { routeLetter, routeNumber } from "../../domain/palette.js";
 import { t } from "../../text.js";
-import { flyingUavs } from "../in_air.js";
 import { isHeld } from "../uav_words.js";
 
 const BUTTONS = [

@@ -2,8 +2,8 @@
 
 import { ApiError, get, post } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
-import { routeNumber } from "../../map/palette.js";
-import { confirmAct } from "../../mission/panels/confirm.js";
+import { routeNumber } from "../../domain/palette.js";
+import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { clockText } from "../../units.js";

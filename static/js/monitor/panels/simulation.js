@@ -2,8 +2,8 @@
 
 import { ApiError, get, patch, post, remove } from "../../api.js";
 import { byId, h, icon, keyedList, refill } from "../../dom.js";
-import { routeLetter, routeNumber } from "../../map/palette.js";
-import { confirmAct } from "../../mission/panels/confirm.js";
+import { routeLetter, routeNumber } from "../../domain/palette.js";
+import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { SPEED_UNIT } from "../../units.js";

@@ -1,7 +1,7 @@
 /** The instruments on the page: whose they are, and figures that change in place. */
 
 import { h } from "../../dom.js";
-import { routeLetter, routeNumber } from "../../map/palette.js";
+import { routeLetter, routeNumber } from "../../domain/palette.js";
 import { markSimulated } from "../../simulated.js";
 import { t } from "../../text.js";
 import { certaintyText } from "./readings.js";

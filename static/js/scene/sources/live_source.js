@@ -1,8 +1,8 @@
 /** A mission as it flies: the feed's word of each UAV, and between two words a glide. */
 
-import { certaintyOf, MEASURED as HEARD, LOST as UNHEARD } from "../../monitor/certainty.js";
-import { inAir } from "../../monitor/in_air.js";
-import { tracksOf } from "../../report/track.js";
+import { certaintyOf, MEASURED as HEARD, LOST as UNHEARD } from "../../domain/certainty.js";
+import { inAir } from "../../domain/in_air.js";
+import { tracksOf } from "../../record/track.js";
 import { completed, ESTIMATED, LOST, MEASURED, momentOf } from "./pieces.js";
 import { plannedOf, targetsOf } from "./plan_source.js";
 

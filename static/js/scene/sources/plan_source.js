@@ -1,6 +1,6 @@
 /** A mission's plan as the view flies it: nothing has flown, UAVs are where they are meant to be. */
 
-import { labelsOf } from "../../report/labels.js";
+import { labelsOf } from "../../record/labels.js";
 import { completed, PLANNED } from "./pieces.js";
 
 /** The first moment where a mission has no departure: what is shown then is the time since departure. */

@@ -6,7 +6,7 @@
  */
 
 import { get } from "../../api.js";
-import { loadMission } from "../../report/load.js";
+import { loadMission } from "../../record/load.js";
 import { liveSource } from "./live_source.js";
 import { planSource } from "./plan_source.js";
 import { recordSource } from "./record_source.js";

@@ -1,8 +1,8 @@
 /** A mission's record as the view shows it: what was measured, and in the silence what was estimated. */
 
-import { isOver, isUnderWay } from "../../report/sentence.js";
-import { eventsOf, spanOf } from "../../report/timeline.js";
-import { estimatesOf, silenceOf_ms, trackOf, tracksOf } from "../../report/track.js";
+import { isOver, isUnderWay } from "../../record/sentence.js";
+import { eventsOf, spanOf } from "../../record/timeline.js";
+import { estimatesOf, silenceOf_ms, trackOf, tracksOf } from "../../record/track.js";
 import { completed, ESTIMATED, MEASURED } from "./pieces.js";
 import { targetsOf } from "./plan_source.js";
 

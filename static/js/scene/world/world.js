@@ -1,6 +1,6 @@
 /** The world of the 3D view: everything that stands on the ground, with sun and sky. Its interface is told in docs/scene.md. */
 
-import { isInForce } from "../../zones/in_force.js";
+import { isInForce } from "../../domain/zones_in_force.js";
 import { bridgeSolid } from "../geometry/bridges.js";
 import { countedAir } from "../geometry/counted.js";
 import { foldsOf } from "../geometry/folds.js";

@@ -62,3 +62,25 @@ export function measure(shape) {
 /** A circle as a closed ring, to be drawn. */
 export const circleRing = (centre, radius_m) =>
   Array.from({ length: CIRCLE_CORNERS + 1 }, (_, index) => towards(centre, (index * 360) / CIRCLE_CORNERS, radius_m));
+
+/** The point of a drawn line nearest to a place, both lon lat; lengths are compared on the local plane. */
+export function nearestOnLine(geometry, [longitude, latitude]) {
+  const shrink = Math.cos((latitude * Math.PI) / 180);
+  const parts = geometry.type === "MultiLineString" ? geometry.coordinates : [geometry.coordinates];
+  let best = null;
+  for (const part of parts) {
+    for (let index = 1; index < part.length; index += 1) {
+      const [ax, ay] = [part[index - 1][0] * shrink, part[index - 1][1]];
+      const [bx, by] = [part[index][0] * shrink, part[index][1]];
+      const [dx, dy] = [bx - ax, by - ay];
+      const square = dx * dx + dy * dy;
+      const share = square
+        ? Math.min(1, Math.max(0, ((longitude * shrink - ax) * dx + (latitude - ay) * dy) / square))
+        : 0;
+      const [x, y] = [ax + share * dx, ay + share * dy];
+      const distance = (x - longitude * shrink) ** 2 + (y - latitude) ** 2;
+      if (!best || distance < best.distance) best = { distance, position: [x / shrink, y] };
+    }
+  }
+  return best?.position.map((degrees) => Number(degrees.toFixed(7))) ?? null;
+}

@@ -1,8 +1,8 @@
 /** A question before an act that moves a UAV or binds a mission: what will happen, what then stays undone, and buttons that name the act. */
 
-import { h, icon } from "../../dom.js";
-import { open } from "../../page/keyboard.js";
-import { t } from "../../text.js";
+import { h, icon } from "../dom.js";
+import { t } from "../text.js";
+import { open } from "./keyboard.js";
 
 const EDGE_PX = 12;
 

@@ -1,8 +1,8 @@
 /** A mission on its way: what its UAVs were told, what became of it, and what can be done next. Values in, values out. */
 
-import { routeLetter } from "../map/palette.js";
 import { t } from "../text.js";
 import { agoText, clockText } from "../units.js";
+import { routeLetter } from "./palette.js";
 
 export const KINDS = {
   "upload-mission": t("Send the mission"),

@@ -1,6 +1,6 @@
 /** Names of targets as the other stages have them: the UAV's letter and the place on its route. */
 
-import { routeLetter } from "../map/palette.js";
+import { routeLetter } from "../domain/palette.js";
 
 /** Map of target → { label, place, number, position }. */
 export function labelsOf(routes) {

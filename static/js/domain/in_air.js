@@ -1,6 +1,6 @@
 /** Whether a UAV is in the air, by what it told and by what its link knows: true, false, or null where nobody has said. */
 
-import { isOnItsWay } from "../mission/flying.js";
+import { isOnItsWay } from "./flying.js";
 
 const HEARD_WITHIN_MS = 3_600_000;
 

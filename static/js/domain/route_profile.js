@@ -1,0 +1,41 @@
+/** A route as distances flown: where its waypoints, legs and targets are along it. */
+
+import { distance_m } from "./geodesy.js";
+
+/** Along a route's waypoints: where each stands, which legs leave the network, where targets are. All in metres flown. */
+export function profileOf(waypoints, length_m) {
+  const along = waypoints.length ? [0] : [];
+  for (let index = 1; index < waypoints.length; index += 1)
+    along.push(along[index - 1] + distance_m(waypoints[index - 1].position, waypoints[index].position));
+  const scale = along.at(-1) > 0 ? length_m / along.at(-1) : 1; // the server's geodesic length is the true one
+  const places = along.map((distance) => distance * scale);
+  const isOff = (waypoint) => waypoint.kind === "start" || waypoint.kind === "end" || waypoint.asset === null;
+  const legs = [];
+  for (let index = 1; index < waypoints.length; index += 1) {
+    if (places[index] === places[index - 1]) continue;
+    const offNetwork = isOff(waypoints[index - 1]) || isOff(waypoints[index]);
+    const last = legs.at(-1);
+    if (last && last.offNetwork === offNetwork) last.to = places[index];
+    else legs.push({ from: places[index - 1], to: places[index], offNetwork });
+  }
+  const targets = [];
+  waypoints.forEach((waypoint, index) => {
+    if (waypoint.kind === "target") targets.push({ target: waypoint.target, at: places[index] });
+  });
+  return {
+    places,
+    legs,
+    targets,
+    ticks: places.filter((_, index) => waypoints[index].kind !== "start" && waypoints[index].kind !== "end"),
+  };
+}
+
+/** Position on the route's waypoints at a distance from its start, lon lat. */
+export function positionAt(waypoints, places, distance) {
+  const next = places.findIndex((place) => place >= distance);
+  if (next <= 0) return waypoints[next === 0 ? 0 : waypoints.length - 1].position;
+  const span = places[next] - places[next - 1];
+  const share = span > 0 ? (distance - places[next - 1]) / span : 0;
+  const [from, to] = [waypoints[next - 1].position, waypoints[next].position];
+  return [from[0] + (to[0] - from[0]) * share, from[1] + (to[1] - from[1]) * share];
+}
