@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
 from workspace.models import Job, JobState
@@ -20,6 +21,16 @@ class ErrorSerializer(serializers.Serializer):
     error = ErrorDetailSerializer()
 
 
+class JobErrorSerializer(serializers.Serializer):
+    code = serializers.CharField(help_text="for programs: stays the same")
+    message = serializers.CharField(help_text="for people: one sentence")
+
+
+@extend_schema_field(JobErrorSerializer(allow_null=True))
+class JobErrorField(serializers.JSONField):
+    """Why a job failed, as it is stored."""
+
+
 class JobSerializer(serializers.ModelSerializer):
     """Work that takes longer than a request. `result` is there once the state is `done`, `error` once it is `failed`.
 
@@ -28,6 +39,7 @@ class JobSerializer(serializers.ModelSerializer):
     """
 
     state = serializers.ChoiceField(choices=JobState.choices)
+    error = JobErrorField(allow_null=True, read_only=True)
 
     class Meta:
         model = Job

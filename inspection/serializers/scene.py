@@ -15,7 +15,7 @@ from inspection.scene.supports import DrawnSpan, DrawnSupport
 from inspection.selectors import asset_label
 from inspection.selectors.scene import Scene, SceneBridge, SceneZone
 from inspection.serializers.terrain import PositionField
-from inspection.serializers.zones import LimitSerializer, limit_json, schedule_words
+from inspection.serializers.zones import LimitSerializer, ScheduleField, limit_json, schedule_words
 
 DEGREE_DIGITS, METRE_DIGITS = 7, 2
 OPEN_TOP_AGL_M = 180.0  # a zone without an upper limit is drawn as high: half as much again as anything flies
@@ -115,7 +115,7 @@ class SceneZoneSerializer(serializers.Serializer):
     upper = SceneLimitSerializer()
     lower_limit = LimitSerializer(allow_null=True)
     upper_limit = LimitSerializer(allow_null=True)
-    schedule = serializers.JSONField(allow_null=True)
+    schedule = ScheduleField(allow_null=True)
     schedule_words = serializers.CharField()
 
 

@@ -9,7 +9,7 @@ from rest_framework import serializers
 from inspection.selectors.terrain_models import TerrainModel
 from inspection.selectors.zones_along import ZoneStretch
 from inspection.serializers.features import GeometrySerializer
-from inspection.serializers.zones import LimitSerializer, limit_json
+from inspection.serializers.zones import LimitSerializer, ScheduleField, limit_json
 from inspection.services.facts import geojson
 from inspection.terrain.heights import REFERENCES
 
@@ -87,7 +87,7 @@ class ZoneAlongSerializer(serializers.Serializer):
     to_m = serializers.FloatField()
     lower_limit = LimitSerializer(allow_null=True, help_text="null: not stated")
     upper_limit = LimitSerializer(allow_null=True, help_text="null: not stated")
-    schedule = serializers.JSONField(allow_null=True, help_text="when it applies, as stored, in UTC; null: always")
+    schedule = ScheduleField(allow_null=True, help_text="when it applies, as stored, in UTC; null: always")
     is_crossed = serializers.BooleanField(help_text="false: the line only passes near it there")
 
 

@@ -3,13 +3,35 @@
 import json
 from typing import Any
 
+from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
 from inspection.models import HeightReference, NoFlyZone
 from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
 from inspection.serializers.schedule_words import schedule_sentence
 from inspection.zones.geometry_gate import GeometryFault
-from inspection.zones.schedule import checked_schedule
+from inspection.zones.schedule import DAYS, EVENTS, checked_schedule
+
+
+class ScheduleEntrySerializer(serializers.Serializer):
+    """Hours of some days of the week, UTC. At each end a time, an event of the sun, or neither for the whole day."""
+
+    day = serializers.ListField(child=serializers.ChoiceField(choices=[*DAYS, "ANY"]))
+    startTime = serializers.CharField(allow_null=True, help_text="08:00:00Z")  # noqa: N815 - as ED-318 writes it
+    startEvent = serializers.ChoiceField(choices=EVENTS, allow_null=True)  # noqa: N815
+    endTime = serializers.CharField(allow_null=True)  # noqa: N815
+    endEvent = serializers.ChoiceField(choices=EVENTS, allow_null=True)  # noqa: N815
+
+
+class SchedulePeriodSerializer(serializers.Serializer):
+    startDateTime = serializers.DateTimeField(allow_null=True)  # noqa: N815
+    endDateTime = serializers.DateTimeField(allow_null=True)  # noqa: N815
+    schedule = ScheduleEntrySerializer(many=True, help_text="empty: all the time")
+
+
+@extend_schema_field(SchedulePeriodSerializer(many=True))
+class ScheduleField(serializers.JSONField):
+    """When a zone applies, as it is stored: see inspection/zones/schedule.py."""
 
 
 class LimitSerializer(serializers.Serializer):
@@ -32,7 +54,7 @@ class ZonePropertiesSerializer(serializers.Serializer):
     circle = serializers.DictField(
         allow_null=True, help_text="centre and radius_m, where the source gives a circle; the polygon encloses it"
     )
-    schedule = serializers.JSONField(allow_null=True, help_text="when it applies: periods as ED-318 writes them; null = always")
+    schedule = ScheduleField(allow_null=True, help_text="when it applies: periods as ED-318 writes them; null = always")
     schedule_words = serializers.CharField(help_text="the same for people")
     updated_at = serializers.DateTimeField()
     source = SourceSerializer(allow_null=True)

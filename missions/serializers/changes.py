@@ -1,5 +1,6 @@
 """What goes out: what has changed since a mission was planned."""
 
+from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
 from missions.fields import PositionField
@@ -29,17 +30,22 @@ class StaleCauseSerializer(serializers.Serializer):
         }
 
 
+@extend_schema_field({"oneOf": [{"type": "number"}, {"type": "string"}, {"type": "boolean"}]})
+class FigureField(serializers.JSONField):
+    """A UAV's figure or choice, as the field of this name has it."""
+
+
 class FigureChangeSerializer(serializers.Serializer):
     name = serializers.ChoiceField(choices=FIGURES)
-    kept = serializers.JSONField(allow_null=True, help_text="as the mission plans with it")
-    now = serializers.JSONField(allow_null=True, help_text="as it is in the fleet")
+    kept = FigureField(allow_null=True, help_text="as the mission plans with it")
+    now = FigureField(allow_null=True, help_text="as it is in the fleet")
 
 
 class SaidFigureSerializer(serializers.Serializer):
     name = serializers.ChoiceField(choices=FIGURES)
-    said = serializers.JSONField(allow_null=True, help_text="for this mission alone")
-    then = serializers.JSONField(allow_null=True, help_text="in the fleet when that was said")
-    now = serializers.JSONField(allow_null=True, help_text="in the fleet now")
+    said = FigureField(allow_null=True, help_text="for this mission alone")
+    then = FigureField(allow_null=True, help_text="in the fleet when that was said")
+    now = FigureField(allow_null=True, help_text="in the fleet now")
 
 
 class UavChangeSerializer(serializers.Serializer):

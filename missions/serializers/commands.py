@@ -3,6 +3,7 @@
 from typing import Any
 
 from django.utils.translation import gettext_lazy
+from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
@@ -91,6 +92,19 @@ class CommandInputSerializer(WhyInputSerializer):
     parameters = CommandParametersSerializer(required=False)
 
 
+class GivenParametersSerializer(serializers.Serializer):
+    """Those of its kind alone."""
+
+    speed_mps = serializers.FloatField(required=False)
+    altitude_relative_m = serializers.FloatField(required=False)
+    flight = serializers.IntegerField(required=False, help_text="number of the flight whose mission is sent, from 1")
+
+
+@extend_schema_field(GivenParametersSerializer)
+class CommandParametersField(serializers.JSONField):
+    """A command's parameters as they are stored."""
+
+
 class CommandUavSerializer(serializers.Serializer):
     id = serializers.IntegerField()
     name = serializers.CharField()
@@ -110,7 +124,7 @@ class CommandSerializer(serializers.Serializer):
     sequence = serializers.IntegerField(help_text="of the UAV's commands, in the order in which they were given")
     kind = serializers.ChoiceField(choices=CommandKind.choices)
     priority = serializers.ChoiceField(choices=PRIORITIES)
-    parameters = serializers.JSONField()
+    parameters = CommandParametersField()
     state = serializers.ChoiceField(choices=CommandState.choices)
     link = serializers.ChoiceField(choices=LinkKind.choices)
     created_by = serializers.CharField(allow_null=True)

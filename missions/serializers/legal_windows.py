@@ -10,6 +10,7 @@ from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
 from inspection.serializers.schedule_words import schedule_sentence
+from inspection.serializers.zones import ScheduleField
 from inspection.zones.activity import Span
 from missions.fields import PositionField
 from missions.flight_plan.clearance import FlownRoute
@@ -106,7 +107,7 @@ class BlockingZoneSerializer(serializers.Serializer):
     name = serializers.CharField()
     blocked = TimeSpanSerializer(many=True, help_text="departures at which the mission would meet it")
     legs = MetLegSerializer(many=True, help_text="that meet it in space and height")
-    schedule = serializers.JSONField(allow_null=True, help_text="as stored, in UTC; null: always")
+    schedule = ScheduleField(allow_null=True, help_text="as stored, in UTC; null: always")
     schedule_in_words = serializers.CharField(help_text="the same for people, in UTC")
 
 

@@ -494,7 +494,7 @@ export interface components {
             /** @description that meet it in space and height */
             legs: components["schemas"]["MetLeg"][];
             /** @description as stored, in UTC; null: always */
-            schedule: unknown;
+            schedule: components["schemas"]["SchedulePeriod"][] | null;
             /** @description the same for people, in UTC */
             schedule_in_words: string;
         };
@@ -573,7 +573,7 @@ export interface components {
             sequence: number;
             kind: components["schemas"]["CommandKind"];
             priority: components["schemas"]["CommandPriority"];
-            parameters: unknown;
+            parameters: components["schemas"]["GivenParameters"];
             state: components["schemas"]["CommandState"];
             link: components["schemas"]["LinkKind"];
             created_by: string | null;
@@ -609,7 +609,7 @@ export interface components {
             sequence: number;
             kind: components["schemas"]["CommandKind"];
             priority: components["schemas"]["CommandPriority"];
-            parameters: unknown;
+            parameters: components["schemas"]["GivenParameters"];
             state: components["schemas"]["CommandState"];
             link: components["schemas"]["LinkKind"];
             created_by: string | null;
@@ -755,6 +755,18 @@ export interface components {
             next: string | null;
         };
         /**
+         * @description * `MON` - MON
+         *     * `TUE` - TUE
+         *     * `WED` - WED
+         *     * `THU` - THU
+         *     * `FRI` - FRI
+         *     * `SAT` - SAT
+         *     * `SUN` - SUN
+         *     * `ANY` - ANY
+         * @enum {string}
+         */
+        DayEnum: "MON" | "TUE" | "WED" | "THU" | "FRI" | "SAT" | "SUN" | "ANY";
+        /**
          * @description * `tag` - tag
          *     * `layer` - layer
          * @enum {string}
@@ -791,6 +803,14 @@ export interface components {
          */
         EndActionEnum: "hover" | "return" | "land" | "base";
         /**
+         * @description * `BMCT` - BMCT
+         *     * `SR` - SR
+         *     * `SS` - SS
+         *     * `EECT` - EECT
+         * @enum {string}
+         */
+        EndEventEnum: "BMCT" | "SR" | "SS" | "EECT";
+        /**
          * @description * `flown` - flown
          *     * `failed` - failed
          * @enum {string}
@@ -820,6 +840,33 @@ export interface components {
             rms_m: number | null;
             /** Format: double */
             max_m: number | null;
+        };
+        EstimateArrival: {
+            waypoint_sequence: number;
+            /** @description place in the mission */
+            target: number | null;
+            /** Format: date-time */
+            at: string | null;
+            /** Format: date-time */
+            earliest: string | null;
+            /** Format: date-time */
+            latest: string | null;
+        };
+        /** @description Half axes of the ellipse in which the UAV is 95 of 100 times, and bounds of height and speed. */
+        EstimateBound: {
+            /** Format: double */
+            along_m: number;
+            /** Format: double */
+            across_m: number;
+            /**
+             * Format: double
+             * @description of the half axis `along`
+             */
+            bearing_deg: number;
+            /** Format: double */
+            height_m: number;
+            /** Format: double */
+            speed_mps: number;
         };
         EstimateCollection: {
             type: components["schemas"]["FeatureCollectionType"];
@@ -883,6 +930,44 @@ export interface components {
             bound_height_m: number;
             /** Format: double */
             bound_speed_mps: number;
+        };
+        /** @description What telemetry/estimation/as_json.py writes. */
+        EstimateShape: {
+            /** Format: date-time */
+            at: string;
+            /** Format: date-time */
+            report_at: string;
+            /**
+             * @description lon, lat [deg], WGS84
+             * @example [
+             *       9.52,
+             *       47.14
+             *     ]
+             */
+            position: number[];
+            /** Format: double */
+            altitude_relative_m: number | null;
+            /** Format: double */
+            altitude_amsl_m: number | null;
+            /** Format: double */
+            speed_mps: number;
+            /** Format: double */
+            heading_deg: number | null;
+            bound: components["schemas"]["EstimateBound"];
+            is_measured: boolean;
+            is_lost: boolean;
+            waypoint_sequence: number | null;
+            /** Format: double */
+            along_route_m: number | null;
+            /** Format: double */
+            to_go_m: number | null;
+            arrivals: components["schemas"]["EstimateArrival"][];
+            /** Format: date-time */
+            ends_at: string | null;
+            /** Format: date-time */
+            contact_expected_at: string | null;
+            /** Format: double */
+            report_interval_s: number | null;
         };
         /** @description How good the estimates between reports were, by what was measured of the same moments. */
         Estimates: {
@@ -988,9 +1073,9 @@ export interface components {
         FigureChange: {
             name: components["schemas"]["UavFigure"];
             /** @description as the mission plans with it */
-            kept: unknown;
+            kept: (number | string | boolean) | null;
             /** @description as it is in the fleet */
-            now: unknown;
+            now: (number | string | boolean) | null;
         };
         Finding: {
             level: components["schemas"]["VerdictLevel"];
@@ -1265,6 +1350,15 @@ export interface components {
             route: components["schemas"]["GivenRoute"] | null;
             /** @description the most urgent first */
             commands: components["schemas"]["WaitingCommand"][];
+        };
+        /** @description Those of its kind alone. */
+        GivenParameters: {
+            /** Format: double */
+            speed_mps?: number;
+            /** Format: double */
+            altitude_relative_m?: number;
+            /** @description number of the flight whose mission is sent, from 1 */
+            flight?: number;
         };
         GivenRoute: {
             /**
@@ -1602,13 +1696,19 @@ export interface components {
             /** @description the best found so far, while it runs */
             readonly best: unknown;
             readonly result: unknown;
-            readonly error: unknown;
+            readonly error: components["schemas"]["JobError"] | null;
             /** Format: date-time */
             readonly created_at: string;
             /** Format: date-time */
             readonly started_at: string | null;
             /** Format: date-time */
             readonly finished_at: string | null;
+        };
+        JobError: {
+            /** @description for programs: stays the same */
+            code: string;
+            /** @description for people: one sentence */
+            message: string;
         };
         JobLink: {
             /**
@@ -1863,7 +1963,7 @@ export interface components {
              */
             readonly progress: number;
             readonly message: string;
-            readonly error: unknown;
+            readonly error: components["schemas"]["JobError"] | null;
             /** Format: date-time */
             readonly created_at: string;
             /** Format: date-time */
@@ -1971,7 +2071,7 @@ export interface components {
             link: components["schemas"]["LiveLink"];
             measured: components["schemas"]["Measured"] | null;
             /** @description where it is by now, and how sure that is; null: it flies no mission */
-            estimated: unknown;
+            estimated: components["schemas"]["EstimateShape"] | null;
             rhythm: components["schemas"]["Rhythm"];
             is_simulated: boolean;
         };
@@ -4433,11 +4533,11 @@ export interface components {
         SaidFigure: {
             name: components["schemas"]["UavFigure"];
             /** @description for this mission alone */
-            said: unknown;
+            said: (number | string | boolean) | null;
             /** @description in the fleet when that was said */
-            then: unknown;
+            then: (number | string | boolean) | null;
             /** @description in the fleet now */
-            now: unknown;
+            now: (number | string | boolean) | null;
         };
         Scene: {
             /** @description west, south, east, north */
@@ -4531,8 +4631,25 @@ export interface components {
             upper: components["schemas"]["SceneLimit"];
             lower_limit: components["schemas"]["Limit"] | null;
             upper_limit: components["schemas"]["Limit"] | null;
-            schedule: unknown;
+            schedule: components["schemas"]["SchedulePeriod"][] | null;
             schedule_words: string;
+        };
+        /** @description Hours of some days of the week, UTC. At each end a time, an event of the sun, or neither for the whole day. */
+        ScheduleEntry: {
+            day: components["schemas"]["DayEnum"][];
+            /** @description 08:00:00Z */
+            startTime: string | null;
+            startEvent: (components["schemas"]["StartEventEnum"] | components["schemas"]["NullEnum"]) | null;
+            endTime: string | null;
+            endEvent: (components["schemas"]["EndEventEnum"] | components["schemas"]["NullEnum"]) | null;
+        };
+        SchedulePeriod: {
+            /** Format: date-time */
+            startDateTime: string | null;
+            /** Format: date-time */
+            endDateTime: string | null;
+            /** @description empty: all the time */
+            schedule: components["schemas"]["ScheduleEntry"][];
         };
         SecondFactorRule: {
             /** @description of everybody in the organisation, from their next sign-in on */
@@ -4909,6 +5026,14 @@ export interface components {
          * @enum {string}
          */
         StaleCauseWhatEnum: "zone" | "uav" | "base" | "asset" | "terrain" | "elsewhere";
+        /**
+         * @description * `BMCT` - BMCT
+         *     * `SR` - SR
+         *     * `SS` - SS
+         *     * `EECT` - EECT
+         * @enum {string}
+         */
+        StartEventEnum: "BMCT" | "SR" | "SS" | "EECT";
         /** @description Every record of the batch is stored, known or refused: none of them needs to be sent again as it is. */
         StoredReports: {
             /** @description new ones */
@@ -6164,7 +6289,7 @@ export interface components {
             /** @description null: not stated */
             upper_limit: components["schemas"]["Limit"] | null;
             /** @description when it applies, as stored, in UTC; null: always */
-            schedule: unknown;
+            schedule: components["schemas"]["SchedulePeriod"][] | null;
             /** @description false: the line only passes near it there */
             is_crossed: boolean;
         };
@@ -6220,7 +6345,7 @@ export interface components {
                 [key: string]: unknown;
             } | null;
             /** @description when it applies: periods as ED-318 writes them; null = always */
-            schedule: unknown;
+            schedule: components["schemas"]["SchedulePeriod"][] | null;
             /** @description the same for people */
             schedule_words: string;
             /** Format: date-time */
@@ -6307,7 +6432,7 @@ export interface components {
                 [key: string]: unknown;
             } | null;
             /** @description when it applies: periods as ED-318 writes them; null = always */
-            schedule: unknown;
+            schedule: components["schemas"]["SchedulePeriod"][] | null;
             /** @description the same for people */
             schedule_words: string;
             /** Format: date-time */
@@ -6469,20 +6594,25 @@ export type Credential = components['schemas']['Credential'];
 export type CredentialInputRequest = components['schemas']['CredentialInputRequest'];
 export type CredentialKind = components['schemas']['CredentialKind'];
 export type CredentialPage = components['schemas']['CredentialPage'];
+export type DayEnum = components['schemas']['DayEnum'];
 export type DeckSourceEnum = components['schemas']['DeckSourceEnum'];
 export type DismissRequest = components['schemas']['DismissRequest'];
 export type DispatchInputRequest = components['schemas']['DispatchInputRequest'];
 export type DrawnAreaRequest = components['schemas']['DrawnAreaRequest'];
 export type DrawnAreaTypeEnum = components['schemas']['DrawnAreaTypeEnum'];
 export type EndActionEnum = components['schemas']['EndActionEnum'];
+export type EndEventEnum = components['schemas']['EndEventEnum'];
 export type EndedFlightOutcomeEnum = components['schemas']['EndedFlightOutcomeEnum'];
 export type EndedFlightRequest = components['schemas']['EndedFlightRequest'];
 export type Error = components['schemas']['Error'];
 export type ErrorDetail = components['schemas']['ErrorDetail'];
 export type ErrorOfLine = components['schemas']['ErrorOfLine'];
+export type EstimateArrival = components['schemas']['EstimateArrival'];
+export type EstimateBound = components['schemas']['EstimateBound'];
 export type EstimateCollection = components['schemas']['EstimateCollection'];
 export type EstimateFeature = components['schemas']['EstimateFeature'];
 export type EstimateProperties = components['schemas']['EstimateProperties'];
+export type EstimateShape = components['schemas']['EstimateShape'];
 export type Estimates = components['schemas']['Estimates'];
 export type Example = components['schemas']['Example'];
 export type ExplainedRoute = components['schemas']['ExplainedRoute'];
@@ -6517,6 +6647,7 @@ export type GeometryCheckRequest = components['schemas']['GeometryCheckRequest']
 export type GeometryType = components['schemas']['GeometryType'];
 export type GeometryVerdict = components['schemas']['GeometryVerdict'];
 export type Given = components['schemas']['Given'];
+export type GivenParameters = components['schemas']['GivenParameters'];
 export type GivenRoute = components['schemas']['GivenRoute'];
 export type GraphSummary = components['schemas']['GraphSummary'];
 export type Ground = components['schemas']['Ground'];
@@ -6545,6 +6676,7 @@ export type Invitation = components['schemas']['Invitation'];
 export type InvitationInputRequest = components['schemas']['InvitationInputRequest'];
 export type InvitationPage = components['schemas']['InvitationPage'];
 export type Job = components['schemas']['Job'];
+export type JobError = components['schemas']['JobError'];
 export type JobLink = components['schemas']['JobLink'];
 export type JobPage = components['schemas']['JobPage'];
 export type JobState = components['schemas']['JobState'];
@@ -6737,6 +6869,8 @@ export type SceneBridgeHeightSourceEnum = components['schemas']['SceneBridgeHeig
 export type SceneLimit = components['schemas']['SceneLimit'];
 export type SceneRules = components['schemas']['SceneRules'];
 export type SceneZone = components['schemas']['SceneZone'];
+export type ScheduleEntry = components['schemas']['ScheduleEntry'];
+export type SchedulePeriod = components['schemas']['SchedulePeriod'];
 export type SecondFactorRule = components['schemas']['SecondFactorRule'];
 export type SecondFactorRuleRequest = components['schemas']['SecondFactorRuleRequest'];
 export type Selection = components['schemas']['Selection'];
@@ -6763,6 +6897,7 @@ export type Span = components['schemas']['Span'];
 export type SpeedEnum = components['schemas']['SpeedEnum'];
 export type StaleCause = components['schemas']['StaleCause'];
 export type StaleCauseWhatEnum = components['schemas']['StaleCauseWhatEnum'];
+export type StartEventEnum = components['schemas']['StartEventEnum'];
 export type StoredReports = components['schemas']['StoredReports'];
 export type StoredResults = components['schemas']['StoredResults'];
 export type Straight = components['schemas']['Straight'];

@@ -1,5 +1,6 @@
 """What live pages show, in the shapes of the API; read and put together in telemetry/live."""
 
+from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
 from missions.fields import PositionField
@@ -78,6 +79,51 @@ class RhythmSerializer(serializers.Serializer):
     silent_after_s = serializers.FloatField(help_text="from which age on it counts as silent")
 
 
+class EstimateBoundSerializer(serializers.Serializer):
+    """Half axes of the ellipse in which the UAV is 95 of 100 times, and bounds of height and speed."""
+
+    along_m = serializers.FloatField()
+    across_m = serializers.FloatField()
+    bearing_deg = serializers.FloatField(help_text="of the half axis `along`")
+    height_m = serializers.FloatField()
+    speed_mps = serializers.FloatField()
+
+
+class EstimateArrivalSerializer(serializers.Serializer):
+    waypoint_sequence = serializers.IntegerField()
+    target = serializers.IntegerField(allow_null=True, help_text="place in the mission")
+    at = serializers.DateTimeField(allow_null=True)
+    earliest = serializers.DateTimeField(allow_null=True)
+    latest = serializers.DateTimeField(allow_null=True)
+
+
+class EstimateShapeSerializer(serializers.Serializer):
+    """What telemetry/estimation/as_json.py writes."""
+
+    at = serializers.DateTimeField()
+    report_at = serializers.DateTimeField()
+    position = PositionField()
+    altitude_relative_m = serializers.FloatField(allow_null=True)
+    altitude_amsl_m = serializers.FloatField(allow_null=True)
+    speed_mps = serializers.FloatField()
+    heading_deg = serializers.FloatField(allow_null=True)
+    bound = EstimateBoundSerializer()
+    is_measured = serializers.BooleanField()
+    is_lost = serializers.BooleanField()
+    waypoint_sequence = serializers.IntegerField(allow_null=True)
+    along_route_m = serializers.FloatField(allow_null=True)
+    to_go_m = serializers.FloatField(allow_null=True)
+    arrivals = EstimateArrivalSerializer(many=True)
+    ends_at = serializers.DateTimeField(allow_null=True)
+    contact_expected_at = serializers.DateTimeField(allow_null=True)
+    report_interval_s = serializers.FloatField(allow_null=True)
+
+
+@extend_schema_field(EstimateShapeSerializer(allow_null=True))
+class EstimateField(serializers.JSONField):
+    """An estimate as it is stored."""
+
+
 class LiveUavSerializer(serializers.Serializer):
     id = serializers.IntegerField()
     name = serializers.CharField()
@@ -85,7 +131,7 @@ class LiveUavSerializer(serializers.Serializer):
     place = serializers.IntegerField(allow_null=True, help_text="in that mission; it gives its letter")
     link = LiveLinkSerializer()
     measured = MeasuredSerializer(allow_null=True)
-    estimated = serializers.JSONField(allow_null=True, help_text="where it is by now, and how sure that is; null: it flies no mission")
+    estimated = EstimateField(allow_null=True, help_text="where it is by now, and how sure that is; null: it flies no mission")
     rhythm = RhythmSerializer()
     is_simulated = serializers.BooleanField()
 
