@@ -2,43 +2,70 @@
 
 import { inAir } from "./in_air.js";
 
+/** @import { EstimateShape, LiveUav } from "../api_types.d.ts" */
+
 export const FRESH_S = 3; // a report that is no older is shown as it is: one a second may well be two seconds on its way
 const RENEWED_S = 10; // an estimate that is older is of a watch that is gone
+
+/** @typedef {"measured" | "estimated" | "lost"} Certainty */
 
 export const MEASURED = "measured";
 export const ESTIMATED = "estimated";
 export const LOST = "lost";
 
-/** Age of the last report [s]; null where there was none. */
+/**
+ * Age of the last report [s]; null where there was none.
+ *
+ * @param {Pick<LiveUav, "measured">} uav
+ * @param {number} now_ms
+ */
 export function reportAge_s({ measured }, now_ms) {
   return measured ? Math.max(0, (now_ms - Date.parse(measured.measured_at)) / 1000) : null;
 }
 
-/** Whether its next report should have come, by how often they come and by the limits that alerts keep to: not of one that has landed. */
+/**
+ * Whether its next report should have come, by how often they come and by the limits that alerts keep to: not of one that has landed.
+ *
+ * @param {LiveUav} uav
+ * @param {number} now_ms
+ */
 export const isLate = (uav, now_ms) =>
   inAir(uav) !== false && (reportAge_s(uav, now_ms) ?? 0) >= uav.rhythm.late_after_s;
 
-/** Whether so many have not come that it counts as silent. */
+/** Whether so many have not come that it counts as silent. @param {LiveUav} uav @param {number} now_ms */
 export const isSilent = (uav, now_ms) => (reportAge_s(uav, now_ms) ?? Infinity) >= uav.rhythm.silent_after_s;
 
-const isRenewed = ({ estimated }, now_ms) => estimated !== null && now_ms - Date.parse(estimated.at) < RENEWED_S * 1000;
+/** @param {EstimateShape | null} estimated @param {number} now_ms @returns {estimated is EstimateShape} */
+const isRenewed = (estimated, now_ms) => estimated !== null && now_ms - Date.parse(estimated.at) < RENEWED_S * 1000;
 
-/** MEASURED, ESTIMATED or LOST; null for a UAV that was never seen. */
+/**
+ * MEASURED, ESTIMATED or LOST; null for a UAV that was never seen.
+ *
+ * @param {LiveUav} uav
+ * @param {number} now_ms
+ * @returns {Certainty | null}
+ */
 export function certaintyOf(uav, now_ms) {
   const { measured, estimated } = uav;
   if (!measured?.position && !estimated) return null;
   if (measured?.position && inAir(uav) === false) return MEASURED; // it stands where it said, switched off perhaps
   const age_s = reportAge_s(uav, now_ms);
   const isFresh = !isSilent(uav, now_ms);
-  if (isRenewed(uav, now_ms)) {
+  if (isRenewed(estimated, now_ms)) {
     if (estimated.is_lost) return LOST;
-    if (age_s !== null && age_s < FRESH_S && measured.position) return MEASURED;
+    if (age_s !== null && age_s < FRESH_S && measured?.position) return MEASURED;
     return estimated.is_measured && isFresh ? MEASURED : estimated.is_measured ? LOST : ESTIMATED;
   }
-  return isFresh && measured.position ? MEASURED : LOST;
+  return isFresh && measured?.position ? MEASURED : LOST;
 }
 
-/** Where it is drawn, lon lat, with its heading: { position, heading_deg }; null for a UAV that was never seen. */
+/**
+ * Where it is drawn, lon lat, with its heading: { position, heading_deg }; null for a UAV that was never seen.
+ *
+ * @param {Pick<LiveUav, "measured" | "estimated">} uav
+ * @param {Certainty | null} certainty
+ * @returns {{ position: number[], heading_deg: number | null } | null}
+ */
 export function standsAt({ measured, estimated }, certainty) {
   if (certainty === null) return null;
   const estimate = estimated && { position: estimated.position, heading_deg: estimated.heading_deg };
@@ -46,5 +73,5 @@ export function standsAt({ measured, estimated }, certainty) {
   return certainty === MEASURED ? (report ?? estimate) : (estimate ?? report);
 }
 
-/** Radius [m] in which it is 95 of 100 times. */
+/** Radius [m] in which it is 95 of 100 times. @param {EstimateShape} estimated */
 export const withinOf_m = ({ bound }) => Math.max(bound.along_m, bound.across_m);

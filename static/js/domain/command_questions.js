@@ -4,9 +4,47 @@ import { t } from "../text.js";
 import { durationText, lengthText, speedText } from "../units.js";
 import { returnLines } from "./own_return.js";
 
+/** @import { CommandKind, ReturnCheck, Route } from "../api_types.d.ts" */
+
+/**
+ * A field of a question.
+ *
+ * @typedef {object} QuestionField
+ * @property {string} name
+ * @property {string} label
+ * @property {"text" | "number"} [type]
+ * @property {string | number} [value]
+ * @property {number} [min]
+ * @property {number} [max]
+ * @property {number | "any"} [step]
+ * @property {boolean} [isNeeded]
+ */
+/**
+ * A question before an act; page/confirm.js asks it.
+ *
+ * @typedef {object} Question
+ * @property {string} title
+ * @property {(string | null | false | undefined)[]} lines
+ * @property {string} act the words of the button
+ * @property {string} [keep] the words of the way out
+ * @property {QuestionField | null} [field]
+ * @property {boolean} [isDanger]
+ * @property {boolean} [isBack] whether the act can be taken back: then it has the focus, else the way out
+ * @property {string | null} [image] name of an icon
+ * @property {HTMLElement | null} [opener] the button out of which the question grows
+ */
+
 export const LATE = t("If it cannot be reached in time, the command expires and is not carried out later.");
 export const WHY = { name: "why", label: t("Why (kept in the history)") };
 
+/**
+ * A UAV of whose flight is asked, as far as the command needs it.
+ *
+ * @typedef {{ name: string, route: Pick<Route, "length_m" | "duration_s">, speed_mps: number, returns?: ReturnCheck | null }} AskedFlyer
+ */
+/** @typedef {Partial<AskedFlyer> & { name: string }} AskedOf */
+
+/** @type {Record<Exclude<CommandKind, "upload-mission" | "clear-mission">, (flyer: AskedFlyer) => Omit<Question, "opener">>} */
 const ASKED = {
   start: ({ name, route }) => ({
     title: t("Start {name}?", { name }),
@@ -118,5 +156,10 @@ const ASKED = {
   }),
 };
 
-/** What confirmAct asks. flyer: { name, route, speed_mps, returns }, as far as the command needs it. */
-export const questionOf = (kind, flyer) => ASKED[kind](flyer);
+/**
+ * What confirmAct asks.
+ *
+ * @param {keyof typeof ASKED} kind
+ * @param {AskedOf} flyer
+ */
+export const questionOf = (kind, flyer) => ASKED[kind](/** @type {AskedFlyer} */ (flyer));

@@ -4,6 +4,12 @@ import { t } from "../text.js";
 import { agoText, clockText } from "../units.js";
 import { routeLetter } from "./palette.js";
 
+/** @import { Command, CommandKind, CommandState, Mission, MissionState, UavConnection } from "../api_types.d.ts" */
+
+/** @typedef {ReturnType<typeof flyersOf>[number]} Flyer */
+/** @typedef {{ words: string, image: string, level?: string | null }} Said */
+
+/** @type {Record<CommandKind, string>} */
 export const KINDS = {
   "upload-mission": t("Send the mission"),
   "clear-mission": t("Take the mission off"),
@@ -19,6 +25,7 @@ export const KINDS = {
   "change-speed": t("Change speed"),
 };
 
+/** @type {Record<CommandState, { words: string, image: string }>} */
 const STATES = {
   queued: { words: t("waiting"), image: "timer" },
   sent: { words: t("sent"), image: "send" },
@@ -30,12 +37,20 @@ const STATES = {
 
 const ON_ITS_WAY = ["dispatched", "active"];
 
+/** @param {{ state: MissionState }} mission */
 export const isFrozen = (mission) => !["draft", "planned"].includes(mission.state);
+/** @param {{ state: MissionState }} mission */
 export const isOnItsWay = (mission) => ON_ITS_WAY.includes(mission.state);
+/** @param {{ state: CommandState }} command */
 export const isOpen = ({ state }) => ["queued", "sent", "acknowledged"].includes(state);
+/** @param {{ kind: CommandKind }} command */
 const isOfMission = ({ kind }) => kind === "upload-mission" || kind === "clear-mission";
 
-/** UAVs that fly a route, in the order of the mission: [{ place, letter, name, uav, flights, flown, hasFailed }]. */
+/**
+ * UAVs that fly a route, in the order of the mission: [{ place, letter, name, uav, flights, flown, hasFailed }].
+ *
+ * @param {Pick<Mission, "approval" | "plan">} mission
+ */
 export function flyersOf(mission) {
   const flights = new Map((mission.approval?.flights ?? []).map((entry) => [entry.uav, entry]));
   return (mission.plan?.routes ?? [])
@@ -52,32 +67,47 @@ export function flyersOf(mission) {
     .filter(({ route }) => route.geometry);
 }
 
-/** The last word about what the UAV is to have on board; `commands` the newest first. */
+/**
+ * The last word about what the UAV is to have on board; `commands` the newest first.
+ *
+ * @param {readonly Command[]} commands
+ * @param {number | null} uav
+ */
 export function boardOf(commands, uav) {
   return commands.find((command) => command.uav.id === uav && isOfMission(command)) ?? null;
 }
 
-/** The last word about how it flies. */
+/** The last word about how it flies. @param {readonly Command[]} commands @param {number | null} uav */
 export function flightOf(commands, uav) {
   return commands.find((command) => command.uav.id === uav && !isOfMission(command)) ?? null;
 }
 
-/** A mix is what nobody approved: it is said loudest. */
+/** A mix is what nobody approved: it is said loudest. @param {Command} command */
 export const isMixed = ({ state, outcome_code }) => state === "failed" && outcome_code.includes("mix");
 
+/** @type {Record<string, string>} */
 const DOUBTS = {
   rebooted: t("it has booted since"),
   "other-station": t("another ground station has changed its lists since"),
   "other-length": t("its list has another length since"),
 };
 
-/** Whether what was brought by this upload is what was read back from the UAV last; `connection` is null while that is not known here. */
+/**
+ * Whether what was brought by this upload is what was read back from the UAV last; `connection` is null while that is not known here.
+ *
+ * @param {Command} command
+ * @param {UavConnection | null} connection
+ */
 const isSeenThere = ({ approval, finished_at }, connection) =>
   !connection ||
-  Date.parse(connection.server_time) < Date.parse(finished_at) ||
+  Date.parse(connection.server_time) < Date.parse(finished_at ?? "") ||
   connection.loaded_approval === approval;
 
-/** "read back 3 min ago", and what speaks for something else by now: { words, isDoubted }. */
+/**
+ * "read back 3 min ago", and what speaks for something else by now: { words, isDoubted }.
+ *
+ * @param {UavConnection & { loaded_read_at: string }} connection
+ */
 function readBack({ loaded_read_at, loaded_doubt, server_time }) {
   const ago = agoText((Date.parse(server_time) - Date.parse(loaded_read_at)) / 1000, loaded_read_at);
   return loaded_doubt
@@ -85,7 +115,13 @@ function readBack({ loaded_read_at, loaded_doubt, server_time }) {
     : { words: t("read back {ago}", { ago }), isDoubted: false };
 }
 
-/** What is on board, in words: { words, image, level, share }. share: 0 to 1 of an upload that is under way. */
+/**
+ * What is on board, in words: { words, image, level, share }. share: 0 to 1 of an upload that is under way.
+ *
+ * @param {Command | null} command
+ * @param {UavConnection | null} [connection]
+ * @returns {Said & { share?: number }}
+ */
 export function boardWords(command, connection = null) {
   if (!command) return { words: t("Not sent yet"), image: "circle-dashed" };
   const { kind, state, progress, outcome, parameters } = command;
@@ -107,7 +143,8 @@ export function boardWords(command, connection = null) {
         image: "triangle-alert",
         level: "warning",
       };
-    const read = connection?.loaded_read_at ? readBack(connection) : null;
+    const { loaded_read_at } = connection ?? {};
+    const read = connection && loaded_read_at ? readBack({ ...connection, loaded_read_at }) : null;
     const words = read ? t("{what}, {read}", { what, read: read.words }) : what;
     if (read?.isDoubted)
       return { words: outcome ? `${words} – ${outcome}` : words, image: "triangle-alert", level: "warning" };
@@ -128,7 +165,12 @@ export function boardWords(command, connection = null) {
     : { words: t("Sending"), image: "loader-circle", share: 0 };
 }
 
-/** "Hold: done 14:05", with the reason where it did not come to that: { words, image, level }. */
+/**
+ * "Hold: done 14:05", with the reason where it did not come to that: { words, image, level }.
+ *
+ * @param {Command} command
+ * @returns {Said}
+ */
 export function commandWords(command) {
   const { words, image } = STATES[command.state];
   const at = command.finished_at ?? command.acknowledged_at ?? command.sent_at ?? command.created_at;
@@ -152,38 +194,54 @@ export function commandWords(command) {
   };
 }
 
-/** Its times, one after the other: "given 14:02:10, sent 14:02:11". */
+/**
+ * Its times, one after the other: "given 14:02:10, sent 14:02:11".
+ *
+ * @param {Command} command
+ * @param {(iso: string) => string} timeText
+ */
 export function timesOf({ created_at, sent_at, acknowledged_at, finished_at, state }, timeText) {
+  /** @type {[string, string | null][]} */
   const steps = [
     [t("given"), created_at],
     [t("sent"), sent_at],
     [t("acknowledged"), acknowledged_at],
     [STATES[state].words, finished_at],
   ];
-  return steps
-    .filter(([, at]) => at)
-    .map(([word, at]) => `${word} ${timeText(at)}`)
-    .join(", ");
+  return steps.flatMap(([word, at]) => (at ? [`${word} ${timeText(at)}`] : [])).join(", ");
 }
 
 const IN_MOTION = ["arm", "take-off", "start", "resume"];
 
-/** Why a UAV is not set in motion by this command; empty where it is, and for commands that stop it or bring it back. */
+/**
+ * Why a UAV is not set in motion by this command; empty where it is, and for commands that stop it or bring it back.
+ *
+ * @param {CommandKind} kind
+ * @param {Mission} mission
+ * @param {Pick<Flyer, "uav" | "name" | "hasFailed">} flyer
+ * @param {readonly Command[]} commands
+ */
 export function whyNotMoved(kind, mission, { uav, name, hasFailed }, commands) {
   if (!IN_MOTION.includes(kind)) return "";
   if (!isOnItsWay(mission) || !mission.approval) return t("{name} has no mission.", { name });
   if (mission.approval.revoke_requested_at) return t("The approval is being taken back.");
   if (hasFailed) return t("A flight of {name} has failed: it does not fly on in this mission.", { name });
+  const { id } = mission.approval;
   const wasStarted = commands.some(
-    (command) =>
-      command.kind === "start" && command.uav.id === uav && command.sent_at && command.approval === mission.approval.id,
+    (command) => command.kind === "start" && command.uav.id === uav && command.sent_at && command.approval === id,
   );
   return kind === "resume" && !(mission.state === "active" && wasStarted)
     ? t("{name} has not started its mission: there is nothing to go on with.", { name })
     : "";
 }
 
-/** Why a UAV cannot be started; empty where it can. */
+/**
+ * Why a UAV cannot be started; empty where it can.
+ *
+ * @param {Mission} mission
+ * @param {Flyer} flyer
+ * @param {readonly Command[]} commands
+ */
 export function whyNoStart(mission, flyer, commands) {
   const { uav, name, flown } = flyer;
   const unmoved = whyNotMoved("start", mission, flyer, commands);
@@ -204,7 +262,14 @@ export function whyNoStart(mission, flyer, commands) {
   return started ? t("{name} is flying.", { name }) : "";
 }
 
-/** What could be sent to a UAV now: the number of a flight, null where nothing is to be sent. */
+/**
+ * What could be sent to a UAV now: the number of a flight, null where nothing is to be sent.
+ *
+ * @param {Pick<Flyer, "uav" | "flights" | "flown">} flyer
+ * @param {readonly Command[]} commands
+ * @param {UavConnection | null} [connection]
+ * @returns {number | null}
+ */
 export function flightToSend({ uav, flights, flown }, commands, connection = null) {
   const board = boardOf(commands, uav);
   const next = flown + 1;
@@ -216,7 +281,7 @@ export function flightToSend({ uav, flights, flown }, commands, connection = nul
   return isThere ? null : next;
 }
 
-/** Why the mission can be neither changed nor, perhaps, sent; a sentence. */
+/** Why the mission can be neither changed nor, perhaps, sent; a sentence. @param {Mission} mission */
 export function stageWords(mission) {
   const { approval, state } = mission;
   if (state === "completed") return t("Flown to its end. Save a copy to fly it again.");
@@ -237,7 +302,12 @@ export function stageWords(mission) {
   return `${by} ${how}`;
 }
 
-/** Which buttons of the mission there are: { send, revoke, abort } with true, false, or the reason why not now. */
+/**
+ * Which buttons of the mission there are: { send, revoke, abort } with true, false, or the reason why not now.
+ *
+ * @param {Mission} mission
+ * @param {readonly Command[]} commands
+ */
 export function stageActs(mission, commands) {
   const isBeingRevoked = Boolean(mission.approval?.revoke_requested_at);
   const toSend = flyersOf(mission).filter((flyer) => flightToSend(flyer, commands) !== null);

@@ -4,13 +4,29 @@ const EARTH_RADIUS_M = 6_371_008.8; // IUGG mean radius
 const RADIANS = Math.PI / 180;
 const CIRCLE_CORNERS = 96;
 
+/** @typedef {{ type: "LineString", coordinates: number[][] } | { type: "MultiLineString", coordinates: number[][][] }} Line in GeoJSON */
+/**
+ * What can be drawn: polygons of open rings. A line is the only ring of the only part; a point and the centre of a circle are the first
+ * position of such a ring.
+ *
+ * @typedef {{ kind: "point" | "line" | "area" | "circle", parts: number[][][][], radius_m: number | null }} Shape
+ */
+
+/** @param {readonly number[]} from longitude, latitude @param {readonly number[]} to @returns {number} */
 export function distance_m([lon1, lat1], [lon2, lat2]) {
   const [a, b] = [lat1 * RADIANS, lat2 * RADIANS];
   const half = Math.sin((b - a) / 2) ** 2 + Math.cos(a) * Math.cos(b) * Math.sin(((lon2 - lon1) * RADIANS) / 2) ** 2;
   return 2 * EARTH_RADIUS_M * Math.asin(Math.min(1, Math.sqrt(half)));
 }
 
-/** The position at a bearing (degrees from north) and a distance. */
+/**
+ * The position at a bearing (degrees from north) and a distance.
+ *
+ * @param {readonly number[]} from longitude, latitude
+ * @param {number} bearing_deg
+ * @param {number} far_m
+ * @returns {[number, number]}
+ */
 export function towards([longitude, latitude], bearing_deg, far_m) {
   const [angle, bearing, lat] = [far_m / EARTH_RADIUS_M, bearing_deg * RADIANS, latitude * RADIANS];
   const north = Math.asin(Math.sin(lat) * Math.cos(angle) + Math.cos(lat) * Math.sin(angle) * Math.cos(bearing));
@@ -21,11 +37,22 @@ export function towards([longitude, latitude], bearing_deg, far_m) {
   return [longitude + east / RADIANS, north / RADIANS];
 }
 
-/** The longitude as it is named nearest to another one: -179 beside 180 is 181. */
+/**
+ * The longitude as it is named nearest to another one: -179 beside 180 is 181.
+ *
+ * @param {number} other
+ * @param {number} longitude
+ */
 export const beside = (other, longitude) =>
   Math.abs(longitude - other) <= 180 ? longitude : longitude + 360 * Math.round((other - longitude) / 360);
 
-/** A path over the 180th meridian without its jump: longitudes go on beyond ±180. It starts beside `start`. */
+/**
+ * A path over the 180th meridian without its jump: longitudes go on beyond ±180. It starts beside `start`.
+ *
+ * @param {readonly (readonly number[])[]} path
+ * @param {number} [start]
+ * @returns {[number, number][]}
+ */
 export function continuous(path, start = path[0]?.[0]) {
   let last = start;
   return path.map(([longitude, latitude]) => {
@@ -34,10 +61,11 @@ export function continuous(path, start = path[0]?.[0]) {
   });
 }
 
+/** @param {readonly (readonly number[])[]} path */
 export const pathLength_m = (path) =>
   path.slice(1).reduce((sum, position, index) => sum + distance_m(path[index], position), 0);
 
-/** Of a ring that does not repeat its first position. */
+/** Of a ring that does not repeat its first position. @param {readonly (readonly number[])[]} ring */
 export function ringArea_m2(ring) {
   let sum = 0;
   ring.forEach(([longitude, latitude], index) => {
@@ -50,20 +78,32 @@ export function ringArea_m2(ring) {
   return Math.abs((sum * EARTH_RADIUS_M ** 2) / 2);
 }
 
-/** { length_m, area_m2 }: what there is of them. */
+/** { length_m, area_m2 }: what there is of them. @param {Shape} shape */
 export function measure(shape) {
   if (shape.kind === "line") return { length_m: pathLength_m(shape.parts[0][0]), area_m2: null };
-  if (shape.kind === "circle") return { length_m: null, area_m2: Math.PI * shape.radius_m ** 2 };
+  if (shape.kind === "circle") return { length_m: null, area_m2: Math.PI * (shape.radius_m ?? 0) ** 2 };
   if (shape.kind !== "area") return { length_m: null, area_m2: null };
-  const ofPart = ([outer, ...holes]) => ringArea_m2(outer) - holes.reduce((sum, hole) => sum + ringArea_m2(hole), 0);
+  /** @param {number[][][]} rings the outline, then its holes */
+  const ofPart = ([outer, ...holes]) => holes.reduce((sum, hole) => sum - ringArea_m2(hole), ringArea_m2(outer));
   return { length_m: null, area_m2: shape.parts.reduce((sum, part) => sum + ofPart(part), 0) };
 }
 
-/** A circle as a closed ring, to be drawn. */
+/**
+ * A circle as a closed ring, to be drawn.
+ *
+ * @param {readonly number[]} centre longitude, latitude
+ * @param {number} radius_m
+ */
 export const circleRing = (centre, radius_m) =>
   Array.from({ length: CIRCLE_CORNERS + 1 }, (_, index) => towards(centre, (index * 360) / CIRCLE_CORNERS, radius_m));
 
-/** The point of a drawn line nearest to a place, both lon lat; lengths are compared on the local plane. */
+/**
+ * The point of a drawn line nearest to a place, both lon lat; lengths are compared on the local plane.
+ *
+ * @param {Line} geometry
+ * @param {readonly number[]} place longitude, latitude
+ * @returns {number[] | null}
+ */
 export function nearestOnLine(geometry, [longitude, latitude]) {
   const shrink = Math.cos((latitude * Math.PI) / 180);
   const parts = geometry.type === "MultiLineString" ? geometry.coordinates : [geometry.coordinates];

@@ -2,21 +2,32 @@
 
 import { isOnItsWay } from "./flying.js";
 
+/** @import { LiveLink, LiveMission, LiveUav, Measured } from "../api_types.d.ts" */
+
 const HEARD_WITHIN_MS = 3_600_000;
 
-/** A flight that was told to be over is, though no report has said so. */
+/**
+ * A flight that was told to be over is, though no report has said so.
+ *
+ * @param {{ measured?: Pick<Measured, "is_in_air"> | null, link?: Pick<LiveLink, "is_in_air"> | null }} uav
+ */
 export const inAir = ({ measured, link }) =>
   link?.is_in_air === false ? false : (measured?.is_in_air ?? link?.is_in_air ?? null);
 
-const wasHeard = ({ link }, now_ms) => Boolean(link?.heard_at) && now_ms - Date.parse(link.heard_at) < HEARD_WITHIN_MS;
+/** @param {Pick<LiveUav, "link">} uav @param {number} now_ms */
+const wasHeard = ({ link }, now_ms) => (link?.heard_at ? now_ms - Date.parse(link.heard_at) < HEARD_WITHIN_MS : false);
 
 /**
  * UAVs that can be told something: on a mission that is on its way and not known to stand on the ground, or still in the air after it, as
  * far as they were heard within the hour.
+ *
+ * @param {{ uavs: LiveUav[], missions: LiveMission[], now_ms: number }} live
  */
 export function flyingUavs({ uavs, missions, now_ms }) {
   const onItsWay = new Set(missions.filter(isOnItsWay).map(({ id }) => id));
   return uavs.filter((uav) =>
-    onItsWay.has(uav.mission) ? inAir(uav) !== false : inAir(uav) === true && wasHeard(uav, now_ms),
+    uav.mission !== null && onItsWay.has(uav.mission)
+      ? inAir(uav) !== false
+      : inAir(uav) === true && wasHeard(uav, now_ms),
   );
 }

@@ -3,16 +3,27 @@
 import { t } from "../text.js";
 import { clockText, heightText } from "../units.js";
 
-/** Of answers of the API; undefined while they are not there. */
+/** @import { ReturnCheck } from "../api_types.d.ts" */
+
+/**
+ * Of answers of the API; undefined while they are not there.
+ *
+ * @param {ReturnCheck[] | null | undefined} returns
+ * @param {number} place of the UAV in the mission
+ */
 export const returnOf = (returns, place) => returns?.find((check) => check.place === place);
 
-/** Sentences for a question before Return or Abort: never none. */
+/** Sentences for a question before Return or Abort: never none. @param {ReturnCheck | null | undefined} check */
 export function returnLines(check) {
   if (!check) return [t("Its way home has not been checked: it flies straight, at a height of its own.")];
   return check.state === "clear" ? [clearText(check)] : check.warnings;
 }
 
-/** Under its name on the panel: { words, image, level }; null while nothing is known. */
+/**
+ * Under its name on the panel: { words, image, level }; null while nothing is known.
+ *
+ * @param {ReturnCheck | null | undefined} check
+ */
 export function returnSaid(check) {
   if (!check) return null;
   if (check.state === "clear") return { words: clearText(check), image: "rotate-ccw", level: null };
@@ -23,7 +34,8 @@ export function returnSaid(check) {
   };
 }
 
+/** @param {ReturnCheck} check */
 function clearText({ height_m, read_at }) {
-  const values = { height: heightText(height_m), time: clockText(read_at) };
+  const values = { height: heightText(height_m ?? 0), time: read_at ? clockText(read_at) : "—" };
   return t("Return and Abort: nothing in the way home, {height} above its take-off (read {time}).", values);
 }

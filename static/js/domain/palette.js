@@ -27,21 +27,26 @@ const NAMES = {
   font: "--font",
 };
 
-/** Place in the row of route colours, 1 to 8; a ninth UAV starts again. */
+/** @typedef {{ [Name in keyof typeof NAMES]: string } & { routes: string[], fonts: string[], isDark: boolean }} Palette */
+
+/** Place in the row of route colours, 1 to 8; a ninth UAV starts again. @param {number} sequence */
 export function routeNumber(sequence) {
   return (sequence % ROUTE_COUNT) + 1;
 }
 
+/** @param {number} sequence */
 export function routeLetter(sequence) {
   return sequence < 26
     ? String.fromCharCode(65 + sequence)
     : `${String.fromCharCode(64 + Math.floor(sequence / 26))}${String.fromCharCode(65 + (sequence % 26))}`;
 }
 
+/** @param {(token: string) => string} [read] @returns {Palette} */
 export function readPalette(
   read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim(),
 ) {
-  const palette = Object.fromEntries(Object.entries(NAMES).map(([name, token]) => [name, read(token)]));
+  const names = Object.fromEntries(Object.entries(NAMES).map(([name, token]) => [name, read(token)]));
+  const palette = /** @type {Palette} */ (/** @type {unknown} */ (names));
   palette.routes = Array.from({ length: ROUTE_COUNT }, (_, index) => read(`--route-${index + 1}`));
   palette.fonts = palette.font
     .split(",")
@@ -51,7 +56,7 @@ export function readPalette(
   return palette;
 }
 
-/** Relative luminance of #rrggbb, WCAG 2.x. */
+/** Relative luminance of #rrggbb, WCAG 2.x. @param {string} hex */
 export function luminance(hex) {
   const [red, green, blue] = [1, 3, 5].map((start) => {
     const share = parseInt(hex.slice(start, start + 2), 16) / 255;
@@ -60,7 +65,7 @@ export function luminance(hex) {
   return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
 }
 
-/** Contrast of two colours, WCAG 2.x, 1 to 21. */
+/** Contrast of two colours, WCAG 2.x, 1 to 21. @param {string} a @param {string} b */
 export function contrast(a, b) {
   const [dark, light] = [luminance(a), luminance(b)].sort((first, second) => first - second);
   return (light + 0.05) / (dark + 0.05);

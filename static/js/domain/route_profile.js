@@ -2,14 +2,25 @@
 
 import { distance_m } from "./geodesy.js";
 
-/** Along a route's waypoints: where each stands, which legs leave the network, where targets are. All in metres flown. */
+/** @import { Waypoint } from "../api_types.d.ts" */
+
+/**
+ * Along a route's waypoints: where each stands, which legs leave the network, where targets are. All in metres flown.
+ *
+ * @param {readonly Waypoint[]} waypoints
+ * @param {number} length_m
+ */
 export function profileOf(waypoints, length_m) {
+  /** @type {number[]} */
   const along = waypoints.length ? [0] : [];
   for (let index = 1; index < waypoints.length; index += 1)
     along.push(along[index - 1] + distance_m(waypoints[index - 1].position, waypoints[index].position));
-  const scale = along.at(-1) > 0 ? length_m / along.at(-1) : 1; // the server's geodesic length is the true one
+  const drawn_m = along.at(-1) ?? 0;
+  const scale = drawn_m > 0 ? length_m / drawn_m : 1; // the server's geodesic length is the true one
   const places = along.map((distance) => distance * scale);
+  /** @param {Waypoint} waypoint */
   const isOff = (waypoint) => waypoint.kind === "start" || waypoint.kind === "end" || waypoint.asset === null;
+  /** @type {{ from: number, to: number, offNetwork: boolean }[]} */
   const legs = [];
   for (let index = 1; index < waypoints.length; index += 1) {
     if (places[index] === places[index - 1]) continue;
@@ -18,6 +29,7 @@ export function profileOf(waypoints, length_m) {
     if (last && last.offNetwork === offNetwork) last.to = places[index];
     else legs.push({ from: places[index - 1], to: places[index], offNetwork });
   }
+  /** @type {{ target: number | null, at: number }[]} */
   const targets = [];
   waypoints.forEach((waypoint, index) => {
     if (waypoint.kind === "target") targets.push({ target: waypoint.target, at: places[index] });
@@ -30,7 +42,14 @@ export function profileOf(waypoints, length_m) {
   };
 }
 
-/** Position on the route's waypoints at a distance from its start, lon lat. */
+/**
+ * Position on the route's waypoints at a distance from its start, lon lat.
+ *
+ * @param {readonly Pick<Waypoint, "position">[]} waypoints
+ * @param {readonly number[]} places
+ * @param {number} distance [m]
+ * @returns {number[]}
+ */
 export function positionAt(waypoints, places, distance) {
   const next = places.findIndex((place) => place >= distance);
   if (next <= 0) return waypoints[next === 0 ? 0 : waypoints.length - 1].position;

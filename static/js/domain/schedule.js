@@ -3,6 +3,12 @@
 import { t } from "../text.js";
 import { momentTyped, typedMoment } from "../units.js";
 
+/** @import { ScheduleEntry, SchedulePeriod } from "../api_types.d.ts" */
+
+/** @typedef {NonNullable<ScheduleEntry["startEvent"]>} SunEvent */
+/** @typedef {{ day: number, from_h: number, to_h: number, softStart: boolean, softEnd: boolean }} Stretch day 0 is Monday */
+
+/** @type {[string, string][]} */
 export const DAYS = [
   ["MON", t("Mon")],
   ["TUE", t("Tue")],
@@ -12,6 +18,7 @@ export const DAYS = [
   ["SAT", t("Sat")],
   ["SUN", t("Sun")],
 ];
+/** @type {[SunEvent, string][]} */
 export const EVENTS = [
   ["BMCT", t("morning twilight")],
   ["SR", t("sunrise")],
@@ -19,8 +26,10 @@ export const EVENTS = [
   ["EECT", t("end of evening twilight")],
 ];
 // Where an event is drawn on the week bar: it moves with place and season, so its edge is drawn soft.
+/** @type {Record<SunEvent, number>} */
 const USUAL_H = { BMCT: 5.5, SR: 6, SS: 18, EECT: 18.5 };
 
+/** @returns {ScheduleEntry} */
 export const newEntry = () => ({
   day: ["MON", "TUE", "WED", "THU", "FRI"],
   startTime: "08:00:00Z",
@@ -28,18 +37,27 @@ export const newEntry = () => ({
   endTime: "18:00:00Z",
   endEvent: null,
 });
+/** @returns {SchedulePeriod} */
 export const newPeriod = () => ({ startDateTime: null, endDateTime: null, schedule: [newEntry()] });
 
+/** @param {string} time */
 const hour = (time) => Number(time.slice(0, 2)) + Number(time.slice(3, 5)) / 60;
 
-/** Stretches of one week: [{ day: 0 to 6, from_h, to_h, softStart, softEnd }]; one that goes past midnight is two. ahead_h: by how much
- * the clock that is drawn is ahead of UTC. */
+/**
+ * Stretches of one week: [{ day: 0 to 6, from_h, to_h, softStart, softEnd }]; one that goes past midnight is two. ahead_h: by how much
+ * the clock that is drawn is ahead of UTC.
+ *
+ * @param {SchedulePeriod} period
+ * @param {number} [ahead_h]
+ * @returns {Stretch[]}
+ */
 export function weekOf(period, ahead_h = 0) {
   return ahead_h ? weekOf(period).flatMap((stretch) => movedOn(stretch, ahead_h)) : weekInUtc(period);
 }
 
 const WEEK_H = 168;
 
+/** @param {Stretch} stretch @param {number} ahead_h @returns {Stretch[]} */
 function movedOn({ day, from_h, to_h, softStart, softEnd }, ahead_h) {
   const start_h = (day * 24 + from_h + ahead_h + WEEK_H) % WEEK_H;
   const [on, length_h] = [Math.floor(start_h / 24), to_h - from_h];
@@ -51,6 +69,7 @@ function movedOn({ day, from_h, to_h, softStart, softEnd }, ahead_h) {
   ];
 }
 
+/** @param {SchedulePeriod} period @returns {Stretch[]} */
 function weekInUtc(period) {
   const entries = period.schedule.length
     ? period.schedule
@@ -75,8 +94,15 @@ function weekInUtc(period) {
   });
 }
 
-/** "2026-12-31T18:00:00Z" ↔ what <input type="datetime-local"> has, by the reader's clock. */
+/**
+ * "2026-12-31T18:00:00Z" ↔ what <input type="datetime-local"> has, by the reader's clock.
+ *
+ * @param {string | null | undefined} moment
+ */
 export const toField = (moment) => (moment ? typedMoment(moment) : "");
+/** @param {string} value */
 export const fromField = (value) => (value ? (momentTyped(value)?.replace(/\.\d+Z$/, "Z") ?? null) : null);
+/** @param {string | null | undefined} time */
 export const timeToField = (time) => (time ? (time.startsWith("24") ? "23:59" : time.slice(0, 5)) : "");
+/** @param {string} value */
 export const timeFromField = (value) => (value ? `${value}:00Z` : null);

@@ -4,6 +4,11 @@ import { h, svg } from "../dom.js";
 import { t } from "../text.js";
 import { heightText } from "../units.js";
 
+/** @import { Limit } from "../api_types.d.ts" */
+
+/** @typedef {{ lower_limit: Limit | null, upper_limit: Limit | null }} Limits */
+
+/** @type {[string, string][]} */
 export const REFERENCES = [
   ["AGL", t("above ground")],
   ["AMSL", t("above sea level")],
@@ -14,6 +19,7 @@ const WORDS = Object.fromEntries(REFERENCES);
 const FOOT_M = 0.3048;
 const FLIGHT_LEVEL_M = 100 * FOOT_M;
 
+/** @param {Limit | null} limit @param {"lower" | "upper"} side */
 export function limitText(limit, side) {
   if (!limit) return side === "lower" ? t("lower limit not stated") : t("upper limit not stated");
   if (limit.reference === "STD") return `FL\u00a0${Math.round(limit.value_m / FLIGHT_LEVEL_M)}`;
@@ -21,7 +27,7 @@ export function limitText(limit, side) {
   return `${heightText(limit.value_m)} ${WORDS[limit.reference] ?? ""}`.trim();
 }
 
-/** What is known of both limits, in one sentence. */
+/** What is known of both limits, in one sentence. @param {Limits} zone */
 export function heightsText({ lower_limit: lower, upper_limit: upper }) {
   if (lower && upper)
     return t("From {low} to {high}", { low: limitText(lower, "lower"), high: limitText(upper, "upper") });
@@ -29,7 +35,7 @@ export function heightsText({ lower_limit: lower, upper_limit: upper }) {
   return lower ? t("From {low}, upper limit not stated", { low: limitText(lower, "lower") }) : t("Heights not stated");
 }
 
-/** A column of air with the band in it; what is not stated is open, drawn as a dashed end. */
+/** A column of air with the band in it; what is not stated is open, drawn as a dashed end. @param {Limits} zone */
 export function bandDrawing({ lower_limit: lower, upper_limit: upper }) {
   const [width, height, ground] = [34, 64, 58];
   const top = upper ? 16 : 4;
@@ -63,7 +69,13 @@ export function bandDrawing({ lower_limit: lower, upper_limit: upper }) {
   );
 }
 
-/** { element, read() } for one limit; read gives { value_m, reference } or null for "not stated". */
+/**
+ * { element, read() } for one limit; read gives { value_m, reference } or null for "not stated".
+ *
+ * @param {"lower" | "upper"} side
+ * @param {string} words
+ * @param {Limit | null} limit
+ */
 export function limitField(side, words, limit) {
   const isLevel = limit?.reference === "STD";
   const value = h("input", {

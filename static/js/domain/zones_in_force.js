@@ -1,7 +1,10 @@
 /** Whether a zone applies at a moment, by the schedule that its source gives. Values in, values out; days and times are UTC. */
 
+/** @import { ScheduleEntry, SchedulePeriod } from "../api_types.d.ts" */
+
 const DAY_MS = 86_400_000;
 const RADIANS = Math.PI / 180;
+/** @type {ScheduleEntry["day"]} */
 const DAYS = ["SUN", "MON", "TUE", "WED", "THU", "FRI", "SAT"];
 // Height of the sun's middle above the horizon: at sunrise and sunset with refraction and half a disc, at civil twilight.
 const EVENTS = {
@@ -14,6 +17,10 @@ const EVENTS = {
 /**
  * The moment of an event on the day that begins at `day` (ms, UTC) as people at [lon, lat] count it, within some two minutes; null where
  * the sun does not rise or set. Source: the sunrise equation, with the mean anomaly and ecliptic longitude of the Astronomical Almanac.
+ *
+ * @param {keyof typeof EVENTS} name
+ * @param {number} day
+ * @param {readonly number[]} place
  */
 export function sunEvent(name, day, [longitude, latitude]) {
   const { height_deg, side } = EVENTS[name];
@@ -31,6 +38,7 @@ export function sunEvent(name, day, [longitude, latitude]) {
   return Date.UTC(2000, 0, 1, 12) + (transit + side * half) * DAY_MS;
 }
 
+/** @param {ScheduleEntry} entry @param {"start" | "end"} side @param {number} day @param {readonly number[]} place */
 function timeOf(entry, side, day, place) {
   const event = entry[`${side}Event`];
   if (event) return sunEvent(event, day, place);
@@ -40,7 +48,13 @@ function timeOf(entry, side, day, place) {
   return day + ((hours * 60 + minutes) * 60 + (seconds || 0)) * 1000;
 }
 
-/** true, false, or null where the sun has no say: then it is not known. */
+/**
+ * true, false, or null where the sun has no say: then it is not known.
+ *
+ * @param {ScheduleEntry} entry
+ * @param {number} now
+ * @param {readonly number[]} place
+ */
 function entryHolds(entry, now, place) {
   let isUnknown = false;
   const today = Math.floor(now / DAY_MS) * DAY_MS;
@@ -53,10 +67,17 @@ function entryHolds(entry, now, place) {
   return isUnknown ? null : false;
 }
 
-/** schedule: the stored periods, or null for always. What cannot be read is not known, and counts like a zone in force. */
+/**
+ * schedule: the stored periods, or null for always. What cannot be read is not known, and counts like a zone in force.
+ *
+ * @param {SchedulePeriod[] | null} schedule
+ * @param {number} now [ms]
+ * @param {readonly number[]} place longitude, latitude
+ */
 export function isInForce(schedule, now, place) {
   if (!schedule) return true;
   try {
+    /** @type {boolean | null} */
     let answer = false;
     for (const period of schedule) {
       if (
