@@ -188,9 +188,7 @@ const pause = (ms, signal) =>
  */
 export async function follow(jobId, { onProgress, signal, every_ms = 700 } = {}) {
   for (;;) {
-    const { data: job } = /** @type {Answer<Job & { error: { code?: string, message?: string } | null }>} */ (
-      await get(`/jobs/${jobId}`, { signal })
-    );
+    const { data: job } = /** @type {Answer<Job>} */ (await get(`/jobs/${jobId}`, { signal }));
     if (job.state === "failed")
       throw new ApiError(job.error?.message ?? t("The job failed."), { status: 500, code: job.error?.code ?? "" });
     if (job.state === "done" || job.state === "cancelled") return job;

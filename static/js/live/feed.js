@@ -4,6 +4,12 @@ import { get as ask } from "../api.js";
 import { serverClock } from "./server_clock.js";
 import { applyChanges, nothingShown, shownAfterSnapshot } from "./shown.js";
 
+/** @import { Answer, ApiError } from "../api.js" */
+/** @import { Live, LiveAnswer } from "../api_types.d.ts" */
+/** @import { Changes, Touched } from "./shown.js" */
+
+/** @typedef {"live" | "asked" | "connecting" | "signed-out" | "gone"} FeedState */
+
 export const LIVE = "live"; // told of each change at once
 export const ASKED = "asked"; // by HTTP, every two seconds
 export const CONNECTING = "connecting"; // neither: what is shown is as old as its times say
@@ -18,180 +24,252 @@ const FIRST_PAUSE_MS = 500;
 const LONGEST_PAUSE_MS = 5_000;
 const RESTARTS = 1012; // the code of a websocket whose program is being stopped
 
-/** How long to wait before the nth try in a row: longer each time, and not all pages at once. */
+/**
+ * A message of the server: a snapshot, changes, or that it is still there.
+ *
+ * @typedef {{ type: string, sequence: number, server_time: string, live: Live } & Changes} Message
+ */
+/**
+ * @typedef {object} FeedOptions
+ * @property {string | null} [mission] without it the feed is the whole organisation's
+ * @property {(touched: Touched | null) => void} [onChange] called after each message; null where everything may be another
+ * @property {(state: { state: FeedState, since_ms: number }) => void} [onState] how the page is told from now on
+ * @property {typeof WebSocket} [Socket]
+ * @property {typeof ask} [get]
+ * @property {ReturnType<typeof serverClock>} [clock]
+ * @property {() => number} [random] 0 to 1
+ */
+
+/**
+ * How long to wait before the nth try in a row [ms]: longer each time, and not all pages at once.
+ *
+ * @param {number} failures
+ * @param {() => number} [random]
+ */
 export function pauseBefore_ms(failures, random = Math.random) {
   return Math.min(FIRST_PAUSE_MS * 2 ** Math.min(failures, 10), LONGEST_PAUSE_MS) * (0.5 + random() / 2);
 }
 
+/** @param {string | null} mission */
 function socketAddress(mission) {
   const { protocol, host } = globalThis.location;
   return `${protocol === "https:" ? "wss:" : "ws:"}//${host}/ws/${mission ? `missions/${mission}/` : ""}live`;
 }
 
 /**
- * const feed = openFeed({ mission, onChange, onState }); feed.shown.uavs is a Map by id, feed.now_ms() the server's time, feed.close() the end.
+ * Opens a feed: feed.shown.uavs is a Map by id, feed.now_ms() the server's time, feed.close() the end.
  *
- * onChange(touched) after each word: touched is { uavs: Set of ids, … }, or null where everything may be another. onState({ state, since_ms })
- * says how the page is told from now on, since_ms by the server's clock. Without `mission` it is the whole organisation's.
+ * @param {FeedOptions} [options]
  */
-export function openFeed({
-  mission = null,
-  onChange = () => {},
-  onState = () => {},
-  Socket = globalThis.WebSocket,
-  get = ask,
-  clock = serverClock(),
-  random = Math.random,
-} = {}) {
-  const feed = { shown: nothingShown(), state: null, since_ms: 0, now_ms: clock.now_ms, close };
-  const address = `/live${mission ? `?mission=${mission}` : ""}`;
-  let socket = null;
-  let sequence = 0; // of the last word; 0: everything is waited for
-  let failures = 0;
-  let etag = null;
-  let asking = null;
-  let isOver = false;
-  const timers = { silence: 0, first: 0, connect: 0, ask: 0 };
+export const openFeed = (options) => new Feed(options);
 
-  function become(state) {
-    if (feed.state === state) return;
-    feed.state = state;
-    feed.since_ms = clock.now_ms();
-    onState({ state, since_ms: feed.since_ms });
+class Feed {
+  #mission;
+  #onChange;
+  #onState;
+  #Socket;
+  #get;
+  #clock;
+  #random;
+  /** @type {WebSocket | null} */
+  #socket = null;
+  #sequence = 0; // of the last message; 0: everything is waited for
+  #failures = 0;
+  /** @type {string | null} */
+  #etag = null;
+  /** @type {AbortController | null} */
+  #asking = null;
+  #isOver = false;
+  /** @type {Partial<Record<"silence" | "first" | "connect" | "ask", ReturnType<typeof setTimeout>>>} */
+  #timers = {};
+
+  shown = nothingShown();
+  /** @type {FeedState | null} */
+  state = null;
+  since_ms = 0; // by the server's clock
+
+  /** @param {FeedOptions} [options] */
+  constructor({
+    mission = null,
+    onChange = () => {},
+    onState = () => {},
+    Socket = globalThis.WebSocket,
+    get = ask,
+    clock = serverClock(),
+    random = Math.random,
+  } = {}) {
+    this.#mission = mission;
+    this.#onChange = onChange;
+    this.#onState = onState;
+    this.#Socket = Socket;
+    this.#get = get;
+    this.#clock = clock;
+    this.#random = random;
+    this.now_ms = clock.now_ms;
+    this.#become(CONNECTING);
+    this.#connect();
+    if (!Socket) this.#startAsking();
   }
 
-  function showEverything(live) {
-    feed.shown = shownAfterSnapshot(live);
-    onChange(null);
+  close() {
+    this.#isOver = true;
+    this.#hangUp();
+    this.#stopAsking();
   }
 
-  // The websocket
-
-  function connect() {
-    if (!Socket || isOver) return;
-    sequence = 0;
-    const opened = (socket = new Socket(socketAddress(mission)));
-    const isCurrent = () => socket === opened && !isOver;
-    opened.addEventListener("message", ({ data }) => isCurrent() && hear(JSON.parse(data)));
-    opened.addEventListener(
-      "close",
-      (event) => isCurrent() && (event?.code === RESTARTS && feed.state === LIVE ? comeBack() : lose()),
-    );
-    expectWord();
-    timers.first = setTimeout(startAsking, FIRST_WORD_MS);
+  /** @param {FeedState} state */
+  #become(state) {
+    if (this.state === state) return;
+    this.state = state;
+    this.since_ms = this.#clock.now_ms();
+    this.#onState({ state, since_ms: this.since_ms });
   }
 
-  function expectWord() {
-    clearTimeout(timers.silence);
-    timers.silence = setTimeout(lose, SILENT_MS);
+  /** @param {FeedState} state */
+  #end(state) {
+    this.close();
+    this.#become(state);
   }
 
-  function hear(word) {
-    expectWord();
-    clock.heard(word.server_time);
+  /** @param {Live} live */
+  #showEverything(live) {
+    this.shown = shownAfterSnapshot(live);
+    this.#onChange(null);
+  }
+
+  // --- the websocket
+
+  #connect() {
+    if (!this.#Socket || this.#isOver) return;
+    this.#sequence = 0;
+    const opened = new this.#Socket(socketAddress(this.#mission));
+    this.#socket = opened;
+    const isCurrent = () => this.#socket === opened && !this.#isOver;
+    opened.addEventListener("message", ({ data }) => {
+      if (isCurrent()) this.#receive(JSON.parse(data));
+    });
+    opened.addEventListener("close", (event) => {
+      if (!isCurrent()) return;
+      if (event?.code === RESTARTS && this.state === LIVE) this.#reconnect();
+      else this.#lose();
+    });
+    this.#expectMessage();
+    this.#timers.first = setTimeout(() => this.#startAsking(), FIRST_WORD_MS);
+  }
+
+  #expectMessage() {
+    clearTimeout(this.#timers.silence);
+    this.#timers.silence = setTimeout(() => this.#lose(), SILENT_MS);
+  }
+
+  /** @param {Message} message */
+  #receive(message) {
+    this.#expectMessage();
+    this.#clock.heard(message.server_time);
     try {
-      if (word.type === "snapshot") begin(word);
-      else if (word.sequence !== sequence + (word.type === "changes")) askAgain(word);
-      else if (word.type === "changes") {
-        sequence = word.sequence;
-        onChange(applyChanges(feed.shown, word));
+      if (message.type === "snapshot") this.#begin(message);
+      else if (message.sequence !== this.#sequence + (message.type === "changes" ? 1 : 0)) this.#askAgain(message);
+      else if (message.type === "changes") {
+        this.#sequence = message.sequence;
+        this.#onChange(applyChanges(this.shown, message));
       }
     } finally {
-      if (word.type !== "still-there") say({ type: "have", sequence: word.sequence }); // the next but one comes after it
+      // the next but one comes after it
+      if (message.type !== "still-there") this.#send({ type: "have", sequence: message.sequence });
     }
   }
 
-  function begin(word) {
-    sequence = word.sequence;
-    failures = 0;
-    stopAsking();
-    become(LIVE);
-    showEverything(word.live);
+  /** @param {Message} snapshot */
+  #begin(snapshot) {
+    this.#sequence = snapshot.sequence;
+    this.#failures = 0;
+    this.#stopAsking();
+    this.#become(LIVE);
+    this.#showEverything(snapshot.live);
   }
 
-  function askAgain(word) {
-    if (sequence || word.type === "still-there") say({ type: "again" }); // once; words between here and the answer are of no use
-    sequence = 0;
+  /** Asks for everything once: messages between here and the answer are of no use. @param {Message} message */
+  #askAgain(message) {
+    if (this.#sequence || message.type === "still-there") this.#send({ type: "again" });
+    this.#sequence = 0;
   }
 
-  function say(word) {
-    if (socket?.readyState === Socket.OPEN) socket.send(JSON.stringify(word));
+  /** @param {object} message */
+  #send(message) {
+    if (this.#socket?.readyState === this.#Socket.OPEN) this.#socket.send(JSON.stringify(message));
   }
 
-  function lose() {
-    hangUp();
-    if (feed.state !== ASKED) become(CONNECTING);
-    timers.connect = setTimeout(connect, pauseBefore_ms(failures++, random));
-    startAsking();
+  #lose() {
+    this.#hangUp();
+    if (this.state !== ASKED) this.#become(CONNECTING);
+    const pause_ms = pauseBefore_ms(this.#failures, this.#random);
+    this.#failures += 1;
+    this.#timers.connect = setTimeout(() => this.#connect(), pause_ms);
+    this.#startAsking();
   }
 
   /** Its program is being stopped, and has told its pages one by one: another one is there. */
-  function comeBack() {
-    hangUp();
-    connect();
+  #reconnect() {
+    this.#hangUp();
+    this.#connect();
   }
 
-  function hangUp() {
-    const lost = socket;
-    socket = null;
-    for (const name of ["silence", "first", "connect"]) clearTimeout(timers[name]);
+  #hangUp() {
+    const lost = this.#socket;
+    this.#socket = null;
+    clearTimeout(this.#timers.silence);
+    clearTimeout(this.#timers.first);
+    clearTimeout(this.#timers.connect);
     if (!lost) return;
-    if (lost.readyState === Socket.CONNECTING)
+    if (lost.readyState === this.#Socket.CONNECTING)
       lost.addEventListener("open", () => lost.close()); // closing one that is not open yet is a fault
     else lost.close();
   }
 
-  // Asking
+  // --- asking by HTTP
 
-  function startAsking() {
-    if (!asking) askOnce();
+  #startAsking() {
+    if (!this.#asking) this.#askOnce();
   }
 
-  function stopAsking() {
-    clearTimeout(timers.first);
-    clearTimeout(timers.ask);
-    asking?.abort();
-    asking = etag = null;
+  #stopAsking() {
+    clearTimeout(this.#timers.first);
+    clearTimeout(this.#timers.ask);
+    this.#asking?.abort();
+    this.#asking = null;
+    this.#etag = null;
   }
 
-  async function askOnce() {
-    const own = (asking = new AbortController());
+  async #askOnce() {
+    const own = new AbortController();
+    this.#asking = own;
     const late = setTimeout(() => own.abort(), ASK_WITHIN_MS);
+    const address = `/live${this.#mission ? `?mission=${this.#mission}` : ""}`;
+    const headers = this.#etag ? { "If-None-Match": this.#etag } : undefined;
     try {
-      const answer = await get(address, { signal: own.signal, headers: etag ? { "If-None-Match": etag } : {} });
-      if (own !== asking) return;
-      etag = answer.etag;
+      const answer = /** @type {Answer<LiveAnswer>} */ (await this.#get(address, { signal: own.signal, headers }));
+      if (own !== this.#asking) return;
+      this.#etag = answer.etag;
       if (answer.status !== 304) {
-        clock.heard(answer.data.server_time);
-        showEverything(answer.data.live);
+        this.#clock.heard(answer.data.server_time);
+        this.#showEverything(answer.data.live);
       }
-      become(ASKED);
+      this.#become(ASKED);
     } catch (error) {
-      if (own !== asking) return;
-      if (error.status === 401 || error.status === 403) return end(SIGNED_OUT);
-      if (error.status === 404) return end(GONE);
-      become(CONNECTING);
+      if (own !== this.#asking) return;
+      const { status } = /** @type {Partial<ApiError>} */ (error);
+      if (status === 401 || status === 403) {
+        this.#end(SIGNED_OUT);
+        return;
+      }
+      if (status === 404) {
+        this.#end(GONE);
+        return;
+      }
+      this.#become(CONNECTING);
     } finally {
       clearTimeout(late);
     }
-    timers.ask = setTimeout(askOnce, ASK_EVERY_MS);
+    this.#timers.ask = setTimeout(() => this.#askOnce(), ASK_EVERY_MS);
   }
-
-  // The end
-
-  function end(state) {
-    close();
-    become(state);
-  }
-
-  function close() {
-    isOver = true;
-    hangUp();
-    stopAsking();
-  }
-
-  become(CONNECTING);
-  connect();
-  if (!Socket) startAsking();
-  return feed;
 }

@@ -5,9 +5,11 @@ const WINDOW_MS = 60_000;
 /** clock.heard("2026-…") with each word of the server; clock.now_ms() is its time by now, in milliseconds since 1970. */
 export function serverClock(ticks_ms = () => performance.now(), first_ms = Date.now()) {
   const guess_ms = first_ms - ticks_ms();
+  /** @type {{ at_ms: number, ahead_ms: number }[]} */
   let heard = []; // what the server's clock is ahead of ours, at least: a word takes its time to come, so the largest is the best
   const newest = () => heard.filter(({ at_ms }) => ticks_ms() - at_ms <= WINDOW_MS);
   return {
+    /** @param {string} serverTime */
     heard(serverTime) {
       const at_ms = ticks_ms();
       heard = [...newest(), { at_ms, ahead_ms: Date.parse(serverTime) - at_ms }];

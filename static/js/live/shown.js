@@ -1,22 +1,34 @@
 /** What a live page shows, by kind and id, kept by the server's words. */
 
+/** @import { Live } from "../api_types.d.ts" */
+
+/** @typedef {{ [Kind in keyof Live]: Map<Live[Kind][number]["id"], Live[Kind][number]> }} Shown */
+/** @typedef {{ [Kind in keyof Live]?: Set<number | string> }} Touched ids that came, changed or went */
+/** @typedef {Partial<Live> & { gone?: { [Kind in keyof Live]?: (number | string)[] } }} Changes */
+
+/** @type {(keyof Live)[]} */
 export const KINDS = ["uavs", "missions", "alerts", "commands", "offers"];
 
-export const nothingShown = () => Object.fromEntries(KINDS.map((kind) => [kind, new Map()]));
+/** The kinds of a live page as one loop sees them. @typedef {Record<keyof Live, Map<number | string, { id: number | string }>>} AnyShown */
 
-/** Everything anew: { uavs: [{ id, … }], … } → what is shown. */
+export const nothingShown = () => shownAfterSnapshot({});
+
+/** Everything anew: { uavs: [{ id, … }], … } → what is shown. @param {Partial<Live>} live */
 export function shownAfterSnapshot(live) {
-  return Object.fromEntries(KINDS.map((kind) => [kind, new Map((live[kind] ?? []).map((entry) => [entry.id, entry]))]));
+  const entries = KINDS.map((kind) => [kind, new Map((live[kind] ?? []).map((entry) => [entry.id, entry]))]);
+  return /** @type {Shown} */ (Object.fromEntries(entries));
 }
 
-/** Puts changes into what is shown. Returns the ids that came, changed or went, by kind. */
+/** Puts changes into what is shown. Returns the ids that came, changed or went, by kind. @param {Shown} shown @param {Changes} changes */
 export function applyChanges(shown, changes) {
+  const all = /** @type {AnyShown} */ (/** @type {unknown} */ (shown));
+  /** @type {Touched} */
   const touched = {};
   for (const kind of KINDS) {
     const came = changes[kind] ?? [];
     const gone = changes.gone?.[kind] ?? [];
-    for (const entry of came) shown[kind].set(entry.id, entry);
-    for (const id of gone) shown[kind].delete(id);
+    for (const entry of came) all[kind].set(entry.id, entry);
+    for (const id of gone) all[kind].delete(id);
     touched[kind] = new Set([...came.map(({ id }) => id), ...gone]);
   }
   return touched;

@@ -4,9 +4,16 @@ import { t } from "../text.js";
 import { exactClockText } from "../units.js";
 import { CONNECTING, GONE, SIGNED_OUT } from "./feed.js";
 
+/** @import { FeedState } from "./feed.js" */
+
 const GRACE_MS = 2500; // a page that has just been opened, or a wink of the network, is not called cut off
 
-/** link, since_ms: state of feed.js and since when, by the server's clock. → { words, rest, isBad, needsDoor } or null. */
+/**
+ * link, since_ms: state of feed.js and since when, by the server's clock. → { words, rest, isBad, needsDoor } or null.
+ *
+ * @param {{ link: FeedState | null, since_ms: number, now_ms: number }} feed
+ * @returns {{ words: string, rest?: string, isBad: boolean, needsDoor?: boolean } | null}
+ */
 export function staleWords({ link, since_ms, now_ms }) {
   if (link === SIGNED_OUT)
     return { words: t("You are signed out: nothing comes in any more."), isBad: true, needsDoor: true };

@@ -1,21 +1,29 @@
 /** The bar around every page: theme, keys, account. */
 
-import { byId, h, icon } from "../dom.js";
+import { byId, find, h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { listenToKeys, showKeys } from "./keyboard.js";
 import { watchSessionEnd } from "./session_end.js";
 import { askBeforeSigningOut } from "./signing_out.js";
 import { chosenTheme, nextTheme, onTheme, THEME_ICONS } from "./theme.js";
 
+/** @type {Record<string, string>} */
 const THEME_WORDS = { system: t("as the system"), light: t("light"), dark: t("dark") };
 
+/** @returns {any} what the server has written into the page for its script */
 export function readPage() {
-  return JSON.parse(byId("page").textContent);
+  return JSON.parse(byId("page").textContent ?? "");
 }
 
-/** Everywhere the same keys, and the page's own before them. */
+/** @import { Binding } from "./keyboard.js" */
+
+/** Everywhere the same keys, and the page's own before them. @param {{ bindings?: Binding[] }} [own] */
 export function startChrome({ bindings = [] } = {}) {
-  const go = (address) => () => void (location.href = address);
+  /** @param {string} address */
+  const go = (address) => () => {
+    location.href = address;
+  };
+  /** @type {Binding[]} */
   const all = [
     ...bindings,
     { keys: ["n"], words: readPage().canPlan ? t("New mission") : t("Go to the map"), act: go("/missions/new") },
@@ -35,7 +43,7 @@ export function startChrome({ bindings = [] } = {}) {
     themeButton.replaceChildren(icon(THEME_ICONS[theme]));
     themeButton.setAttribute("aria-label", t("Theme: {theme}", { theme: THEME_WORDS[theme] }));
     themeButton.title = t("Theme: {theme}", { theme: THEME_WORDS[theme] });
-    document.querySelectorAll("[data-theme-name]").forEach((place) => (place.textContent = THEME_WORDS[theme]));
+    for (const place of document.querySelectorAll("[data-theme-name]")) place.textContent = THEME_WORDS[theme];
   };
   themeButton.addEventListener("click", nextTheme);
   onTheme(label);
@@ -47,18 +55,29 @@ export function startChrome({ bindings = [] } = {}) {
   byId("open-more").addEventListener("click", () => toggleMenu(account, () => accountMenu(all)));
 }
 
+/** @param {Binding[]} bindings */
 function accountMenu(bindings) {
-  const menu = byId("account-menu").content.cloneNode(true).firstElementChild;
-  menu.querySelector("[data-theme-name]").textContent = THEME_WORDS[chosenTheme()];
-  menu.querySelector("[data-act=theme]").addEventListener("click", nextTheme);
-  askBeforeSigningOut(menu.querySelector("form"), readPage().userId);
-  menu.querySelector("[data-act=keys]").addEventListener("click", () => (closeMenu(), showKeys(bindings)));
+  const template = byId("account-menu", HTMLTemplateElement);
+  const menu = /** @type {HTMLElement} */ (document.importNode(template.content, true).firstElementChild);
+  find(menu, "[data-theme-name]").textContent = THEME_WORDS[chosenTheme()];
+  find(menu, "[data-act=theme]").addEventListener("click", nextTheme);
+  askBeforeSigningOut(find(menu, "form", HTMLFormElement), readPage().userId);
+  find(menu, "[data-act=keys]").addEventListener("click", () => {
+    closeMenu();
+    showKeys(bindings);
+  });
   return menu;
 }
 
+/** @type {{ opener: HTMLElement, menu: HTMLElement } | null} */
 let openMenu = null;
 
-/** A menu below its opener; Escape and a click elsewhere close it. */
+/**
+ * A menu below its opener; Escape and a click elsewhere close it.
+ *
+ * @param {HTMLElement} opener
+ * @param {() => HTMLElement} make
+ */
 export function toggleMenu(opener, make) {
   const wasOpen = openMenu?.opener === opener;
   closeMenu();
@@ -72,13 +91,15 @@ export function toggleMenu(opener, make) {
   menu.style.top = `${box.bottom + menu.offsetHeight + 12 > innerHeight ? Math.max(8, box.top + scrollY - menu.offsetHeight - 6) : below}px`;
   opener.setAttribute("aria-expanded", "true");
   openMenu = { opener, menu };
-  menu.querySelector("button, a, input")?.focus({ preventScroll: true });
+  const first = /** @type {HTMLElement | null} */ (menu.querySelector("button, a, input"));
+  first?.focus({ preventScroll: true });
   menu.addEventListener("keydown", (event) => {
-    const items = [...menu.querySelectorAll("button, a")];
-    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
-    if (step && items.includes(document.activeElement)) {
+    const items = /** @type {HTMLElement[]} */ ([...menu.querySelectorAll("button, a")]);
+    const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
+    const place = items.indexOf(/** @type {HTMLElement} */ (document.activeElement));
+    if (step && place >= 0) {
       event.preventDefault();
-      items[(items.indexOf(document.activeElement) + step + items.length) % items.length].focus();
+      items[(place + step + items.length) % items.length].focus();
     }
   });
 }
@@ -95,13 +116,16 @@ export function closeMenu() {
 }
 
 document.addEventListener("pointerdown", (event) => {
-  if (openMenu && !openMenu.menu.contains(event.target) && !openMenu.opener.contains(event.target)) closeMenu();
+  const target = /** @type {Node | null} */ (event.target);
+  if (openMenu && !openMenu.menu.contains(target) && !openMenu.opener.contains(target)) closeMenu();
 });
 document.addEventListener("keydown", (event) => {
   if (event.key === "Escape" && closeMenu()) event.preventDefault();
 });
 
-/** menuItems([{ icon, label, act }]) */
+/** @typedef {{ icon: string, label: string, act: () => unknown, reason?: string | null }} MenuItem `reason`: why it cannot be done now */
+
+/** A menu of buttons. @param {string} label @param {MenuItem[]} items */
 export function menuOf(label, items) {
   return h(
     "div",
@@ -113,7 +137,10 @@ export function menuOf(label, items) {
           type: "button",
           disabled: Boolean(item.reason),
           title: item.reason || null,
-          onclick: () => (closeMenu(), item.act()),
+          onclick: () => {
+            closeMenu();
+            item.act();
+          },
         },
         icon(item.icon),
         item.label,

@@ -1,6 +1,6 @@
 /** Text to the clipboard, also where the page is served without TLS and the browser keeps the clipboard to itself. */
 
-/** Resolves to whether the text was copied. */
+/** Resolves to whether the text was copied. @param {string} text */
 export async function copyText(text) {
   try {
     await navigator.clipboard.writeText(text);
@@ -10,6 +10,7 @@ export async function copyText(text) {
   }
 }
 
+/** @param {string} text */
 function copyBySelection(text) {
   const focused = document.activeElement;
   const field = document.createElement("textarea");
@@ -19,6 +20,6 @@ function copyBySelection(text) {
   field.select();
   const isCopied = document.execCommand("copy");
   field.remove();
-  focused?.focus?.();
+  if (focused instanceof HTMLElement) focused.focus();
   return isCopied;
 }

@@ -4,76 +4,76 @@ import { h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { open } from "./keyboard.js";
 
+/** @import { Question, QuestionField } from "../domain/command_questions.js" */
+
 const EDGE_PX = 12;
 
 /**
- * Resolves to what was filled in, null where it is not done. `field`: { name, label, type, value, min, max, step, isNeeded }.
- * isBack: whether the act can be taken back: then it has the focus, else the way out. opener: the button out of which the question grows.
+ * Asks, and resolves to what was filled in; null where the act is not to be done.
+ *
+ * @param {Question} question
+ * @returns {Promise<Record<string, any> | null>}
  */
-export function confirmAct({
-  title,
-  lines,
-  act,
-  keep = t("Not yet"),
-  field = null,
-  isDanger = false,
-  isBack = false,
-  image = null,
-  opener = null,
-}) {
+export function confirmAct(question) {
+  const { title, lines, act, keep = t("Not yet"), field = null, isDanger, isBack, image, opener } = question;
   return new Promise((resolve) => {
-    const input =
-      field &&
-      h("input", {
-        class: "input",
-        id: "confirm-field",
-        name: field.name,
-        type: field.type ?? "text",
-        value: field.value ?? "",
-        min: field.min,
-        max: field.max,
-        step: field.step,
-        maxlength: field.type === "number" ? null : 300,
-        required: field.isNeeded,
-      });
+    const input = field && fieldInput(field);
     const out = h(
       "button",
       { class: "button", value: "out", type: "button", onclick: () => dialog.close("out") },
       keep,
     );
     const go = h("button", { class: `button ${isDanger ? "danger filled" : "primary"}`, value: "go" }, act);
+    const form = h(
+      "form",
+      { method: "dialog" },
+      h(
+        "div",
+        { id: "confirm-lines", class: "confirm-lines" },
+        lines.filter(Boolean).map((line) => h("p", {}, line)),
+      ),
+      input && h("div", { class: "field" }, h("label", { for: "confirm-field" }, field.label), input),
+      h("div", { class: "acts" }, out, go),
+    );
+    /** @type {HTMLDialogElement} */
     const dialog = h(
       "dialog",
       { class: "confirm", "aria-labelledby": "confirm-title", "aria-describedby": "confirm-lines" },
       h("h2", { id: "confirm-title" }, image && icon(image), title),
-      h(
-        "form",
-        { method: "dialog" },
-        h(
-          "div",
-          { id: "confirm-lines", class: "confirm-lines" },
-          lines.filter(Boolean).map((line) => h("p", {}, line)),
-        ),
-        input && h("div", { class: "field" }, h("label", { for: "confirm-field" }, field.label), input),
-        h("div", { class: "acts" }, out, go),
-      ),
+      form,
     );
-    dialog.addEventListener("close", () =>
-      resolve(
-        dialog.returnValue === "go"
-          ? input
-            ? { [field.name]: field.type === "number" ? input.valueAsNumber : input.value.trim() }
-            : {}
-          : null,
-      ),
-    );
+    dialog.addEventListener("close", () => {
+      if (dialog.returnValue !== "go") resolve(null);
+      else resolve(input ? { [field.name]: field.type === "number" ? input.valueAsNumber : input.value.trim() } : {});
+    });
     open(dialog);
     if (opener) growFrom(dialog, opener);
-    (field?.isNeeded ? input : isBack ? go : out).focus();
+    (input && field.isNeeded ? input : isBack ? go : out).focus();
   });
 }
 
-/** Above its button where there is room, and never over the window's edge; a phone shows it in the middle. */
+/** @param {QuestionField} field */
+function fieldInput(field) {
+  return h("input", {
+    class: "input",
+    id: "confirm-field",
+    name: field.name,
+    type: field.type ?? "text",
+    value: field.value ?? "",
+    min: field.min,
+    max: field.max,
+    step: field.step,
+    maxlength: field.type === "number" ? null : 300,
+    required: field.isNeeded,
+  });
+}
+
+/**
+ * Above its button where there is room, and never over the window's edge; a phone shows it in the middle.
+ *
+ * @param {HTMLDialogElement} dialog
+ * @param {HTMLElement} opener
+ */
 function growFrom(dialog, opener) {
   if (matchMedia("(max-width: 720px)").matches) return;
   const box = opener.getBoundingClientRect();

@@ -4,14 +4,39 @@ import { h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { numberText } from "../units.js";
 
+/** @typedef {HTMLInputElement | HTMLSelectElement} Input */
+/**
+ * A field of a form.
+ *
+ * @template [Value=any]
+ * @template {Input} [Control=Input]
+ * @typedef {object} Field
+ * @property {string} name
+ * @property {string} label
+ * @property {HTMLElement} element
+ * @property {Control} input
+ * @property {() => Value} read its value as the API takes it
+ * @property {(fault: string) => void} tell shows what is wrong with it; "" clears it
+ */
+/** @typedef {{ unit?: string, hint?: string }} How */
+
 let made = 0;
 
-/** What a field is: { name, label, element, input, read(), tell(fault) }. */
+/**
+ * @template Value
+ * @template {Input} Control
+ * @param {string} name
+ * @param {string} label
+ * @param {Control} input
+ * @param {() => Value} read
+ * @param {How} [how]
+ * @returns {Field<Value, Control>}
+ */
 function fieldOf(name, label, input, read, { unit = "", hint = "" } = {}) {
   input.id = `fleet-field-${++made}`;
   const fault = h("p", { class: "field-error", id: `${input.id}-fault`, hidden: true });
   const help = hint && h("p", { class: "caption", id: `${input.id}-hint` }, hint);
-  const described = [help && help.id, fault.id].filter(Boolean).join(" ");
+  const described = [help ? help.id : "", fault.id].filter(Boolean).join(" ");
   input.setAttribute("aria-describedby", described);
   const element = h(
     "div",
@@ -21,6 +46,7 @@ function fieldOf(name, label, input, read, { unit = "", hint = "" } = {}) {
     help,
     fault,
   );
+  /** @param {string} words */
   const tell = (words) => {
     fault.hidden = !words;
     fault.replaceChildren(...(words ? [icon("circle-alert", "small"), words] : []));
@@ -31,13 +57,17 @@ function fieldOf(name, label, input, read, { unit = "", hint = "" } = {}) {
   input.addEventListener("invalid", (event) => {
     event.preventDefault();
     tell(faultWords(input));
-    if ([...input.form.elements].find(({ validity }) => validity?.valid === false) === input) input.focus();
+    const controls = /** @type {Input[]} */ ([...(input.form?.elements ?? [])]);
+    if (controls.find(({ validity }) => validity?.valid === false) === input) input.focus();
   });
   input.addEventListener("input", () => input.validity.valid && tell(""));
   return { name, label, element, input, read, tell };
 }
 
-function faultWords({ validity, min, max }) {
+/** @param {Input} input */
+function faultWords(input) {
+  const { validity } = input;
+  const { min, max } = input instanceof HTMLInputElement ? input : { min: "", max: "" };
   if (validity.badInput) return t("A number is wanted here.");
   if (validity.rangeUnderflow) return t("At least {least}.", { least: numberText(Number(min), digitsOf(min)) });
   if (validity.rangeOverflow) return t("At most {most}.", { most: numberText(Number(max), digitsOf(max)) });
@@ -45,8 +75,15 @@ function faultWords({ validity, min, max }) {
   return t("Something is wanted here.");
 }
 
+/** @param {string} figure */
 const digitsOf = (figure) => (figure.split(".")[1] ?? "").length;
 
+/**
+ * @param {string} name
+ * @param {string} label
+ * @param {string | null | undefined} value
+ * @param {{ required?: boolean, maxlength?: number } & How} [options]
+ */
 export function textField(name, label, value, { required = false, maxlength = 100, ...how } = {}) {
   const input = h("input", {
     class: "input",
@@ -60,15 +97,34 @@ export function textField(name, label, value, { required = false, maxlength = 10
   return fieldOf(name, label, input, () => input.value.trim(), how);
 }
 
-/** factor: how much of the stored unit one of the shown unit is. An empty field is null; what counts then stands in it in grey: `usual`. */
+/**
+ * @typedef {object} NumberHow
+ * @property {number} [factor]
+ * @property {number} [digits]
+ * @property {boolean} [required]
+ * @property {number} [min]
+ * @property {number} [max]
+ * @property {number | "any"} [step]
+ * @property {number | null} [usual]
+ */
+
+/**
+ * factor: how much of the stored unit one of the shown unit is. An empty field is null; what counts then stands in it in grey: `usual`.
+ *
+ * @param {string} name
+ * @param {string} label
+ * @param {number | null | undefined} value
+ * @param {NumberHow & How} [options]
+ */
 export function numberField(
   name,
   label,
   value,
   { factor = 1, digits = 3, required = false, min, max, step = "any", usual = null, ...how } = {},
 ) {
+  /** @param {number | null | undefined} stored */
   const shownOf = (stored) =>
-    stored === null || stored === undefined ? "" : Number((stored / factor).toFixed(digits));
+    stored === null || stored === undefined ? "" : `${Number((stored / factor).toFixed(digits))}`;
   const shown = shownOf(value);
   const input = h("input", {
     class: "input",
@@ -83,12 +139,26 @@ export function numberField(
   });
   const read = () => {
     if (!Number.isFinite(input.valueAsNumber)) return null;
-    return input.valueAsNumber === shown ? value : input.valueAsNumber * factor; // what was not touched stays to the last digit
+    return `${input.valueAsNumber}` === shown ? (value ?? null) : input.valueAsNumber * factor; // what was not touched stays to the last digit
   };
-  return { ...fieldOf(name, label, input, read, how), usual: (stored) => (input.placeholder = shownOf(stored)) };
+  return {
+    ...fieldOf(name, label, input, read, how),
+    /** @param {number | null | undefined} stored */
+    usual(stored) {
+      input.placeholder = shownOf(stored);
+    },
+  };
 }
 
-/** choices: [[value, words]]; values are texts, "" is null where `isNumber`. */
+/**
+ * choices: [[value, words]]; values are texts, "" is null where `isNumber`.
+ *
+ * @param {string} name
+ * @param {string} label
+ * @param {unknown} value
+ * @param {readonly (readonly [string | number, string])[]} choices
+ * @param {{ isNumber?: boolean } & How} [options]
+ */
 export function choiceField(name, label, value, choices, { isNumber = false, ...how } = {}) {
   const input = h(
     "select",
@@ -106,7 +176,15 @@ export function choiceField(name, label, value, choices, { isNumber = false, ...
   );
 }
 
-/** On or off, with what it means beside it. */
+/**
+ * On or off, with what it means beside it.
+ *
+ * @param {string} name
+ * @param {string} label
+ * @param {unknown} value
+ * @param {{ hint?: string, disabled?: boolean }} [options]
+ * @returns {Field<boolean, HTMLInputElement>}
+ */
 export function switchField(name, label, value, { hint = "", disabled = false } = {}) {
   const input = h("input", {
     class: "switch",
@@ -125,6 +203,7 @@ export function switchField(name, label, value, { hint = "", disabled = false } 
     h("div", { class: "switch-row" }, h("div", {}, h("label", { for: input.id }, label), help), input),
     fault,
   );
+  /** @param {string} words */
   const tell = (words) => {
     fault.hidden = !words;
     fault.replaceChildren(...(words ? [icon("circle-alert", "small"), words] : []));

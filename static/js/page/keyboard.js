@@ -3,6 +3,13 @@
 import { h } from "../dom.js";
 import { t } from "../text.js";
 
+/**
+ * What a key does. An act that returns false leaves the key to the browser.
+ *
+ * @typedef {{ keys: string[], words?: string, act: (event: KeyboardEvent) => unknown, whileTyping?: boolean }} Binding
+ */
+
+/** @type {Record<string, string>} */
 const NAMES = {
   mod: "Ctrl",
   shift: t("Shift"),
@@ -13,6 +20,7 @@ const NAMES = {
   arrowdown: "↓",
 };
 
+/** @param {EventTarget | null} target */
 export function isTyping(target) {
   return (
     target instanceof HTMLElement &&
@@ -21,7 +29,11 @@ export function isTyping(target) {
   );
 }
 
-/** "mod+shift+z", "/", "?" — a letter or sign names itself; Shift counts only with letters and with Ctrl. */
+/**
+ * "mod+shift+z", "/", "?" — a letter or sign names itself; Shift counts only with letters and with Ctrl.
+ *
+ * @param {KeyboardEvent} event
+ */
 export function keyName(event) {
   const key = event.key.toLowerCase();
   const parts = [];
@@ -31,7 +43,11 @@ export function keyName(event) {
   return [...parts, key].join("+");
 }
 
-/** Whether a single character, or several one after the other, is all it takes: what WCAG 2.1.4 wants to be switched off. */
+/**
+ * Whether a single character, or several one after the other, is all it takes: what WCAG 2.1.4 wants to be switched off.
+ *
+ * @param {string} keys
+ */
 export function isSingleKey(keys) {
   return keys.split(" ").every((key) => /^(shift\+)?.$/.test(key));
 }
@@ -40,7 +56,11 @@ function singleKeysAreOff() {
   return document.documentElement.dataset.singleKeys === "off";
 }
 
-/** bindings: [{ keys: ["p"], words: "Plan", act, whileTyping? }]. An act that returns false leaves the key to the browser. */
+/**
+ * Calls the acts of the keys that are pressed.
+ *
+ * @param {Binding[]} bindings
+ */
 export function listenToKeys(bindings) {
   let prefix = "";
   let prefixAt = 0;
@@ -68,12 +88,14 @@ export function listenToKeys(bindings) {
   });
 }
 
+/** @param {string} keys */
 function caps(keys) {
   return (keys.match(/[^+ ]+|\+$/g) ?? []).map((key) =>
     h("kbd", {}, NAMES[key] ?? (key.length === 1 ? key.toUpperCase() : key)),
   );
 }
 
+/** @param {Binding[]} bindings */
 export function showKeys(bindings) {
   const dialog = h(
     "dialog",
@@ -96,7 +118,11 @@ export function showKeys(bindings) {
   open(dialog);
 }
 
-/** Shows a dialog, takes it away when it closes, and gives focus back to where it was, unless something else has it by then: the event comes a frame late. */
+/**
+ * Shows a dialog, takes it away when it closes, and gives focus back to where it was, unless something else has it by then: the event comes a frame late.
+ *
+ * @param {HTMLDialogElement} dialog
+ */
 export function open(dialog) {
   const opener = document.activeElement;
   document.body.append(dialog);

@@ -2,20 +2,27 @@
 
 const DRAFT = /^spanwise\.([a-z]+-)?draft\./;
 
+/** @param {number | string} user */
 const isOf = (user) => {
   const own = new RegExp(`^spanwise\\.[a-z-]+\\.${user}(\\.|$)`);
-  return (key) => own.test(key);
+  return (/** @type {string} */ key) => own.test(key);
 };
 
+/** @param {Storage} storage */
 function keysOf(storage) {
   try {
-    return Array.from({ length: storage.length }, (_, place) => storage.key(place));
+    return Array.from({ length: storage.length }, (_, place) => storage.key(place) ?? "");
   } catch {
     return []; // closed
   }
 }
 
-/** How many drafts of the user are not saved on the server: pages drop a draft once it is. */
+/**
+ * How many drafts of the user are not saved on the server: pages drop a draft once it is.
+ *
+ * @param {number | string} user
+ * @param {Storage[]} [storages]
+ */
 export function draftsOf(user, storages = [globalThis.localStorage]) {
   return storages.flatMap((storage) =>
     keysOf(storage)
@@ -24,7 +31,12 @@ export function draftsOf(user, storages = [globalThis.localStorage]) {
   ).length;
 }
 
-/** Everything of the user, but the drafts where they are to stay. */
+/**
+ * Everything of the user, but the drafts where they are to stay.
+ *
+ * @param {number | string} user
+ * @param {{ keepsDrafts?: boolean, storages?: Storage[] }} [options]
+ */
 export function forget(
   user,
   { keepsDrafts = false, storages = [globalThis.localStorage, globalThis.sessionStorage] } = {},

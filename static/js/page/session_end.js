@@ -5,6 +5,11 @@ import { h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { clockText } from "../units.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { SessionTimes } from "../api_types.d.ts" */
+
+/** @typedef {{ ends_at_ms?: number, isOver?: boolean }} Ending */
+
 export const WARNS_S = 300;
 const ASKS_AGAIN_S = 30; // while it is about to end, or the server is away: somebody may be busy in another window
 const LONGEST_TIMER_S = 86_400;
@@ -12,6 +17,15 @@ const LONGEST_TIMER_S = 86_400;
 /**
  * Looks when the session is about to end, and no earlier. `ask()` and `stay()` answer in how many seconds it ends; `show` is told null,
  * { ends_at_ms } or { isOver: true }. Returns the functions of its two buttons: { look, keep }.
+ *
+ * @param {object} options
+ * @param {number} options.endsIn_s
+ * @param {() => Promise<number>} options.ask
+ * @param {() => Promise<number>} options.stay
+ * @param {(state: Ending | null) => void} options.show
+ * @param {(act: () => unknown, wait_ms: number) => any} [options.setTimer]
+ * @param {(timer: any) => void} [options.clearTimer]
+ * @param {() => number} [options.now_ms]
  */
 export function createSessionWatch({
   endsIn_s,
@@ -22,14 +36,19 @@ export function createSessionWatch({
   clearTimer = clearTimeout,
   now_ms = Date.now,
 }) {
+  /** @type {unknown} */
   let timer = 0;
+  /** @type {Ending | null} */
   let shown = null;
 
+  /** @param {Ending | null} state */
   function tell(state) {
     if (state === null && shown === null) return;
-    show((shown = state));
+    shown = state;
+    show(state);
   }
 
+  /** @param {number} left_s */
   function plan(left_s) {
     clearTimer(timer);
     const isSoon = left_s <= WARNS_S;
@@ -38,6 +57,7 @@ export function createSessionWatch({
     timer = setTimer(look, wait_s * 1_000);
   }
 
+  /** @param {() => Promise<number>} asked */
   async function by(asked) {
     try {
       plan(await asked());
@@ -54,10 +74,15 @@ export function createSessionWatch({
   return { look, keep: () => by(stay) };
 }
 
-/** On every page with the bar. A computer that slept asks as soon as somebody looks at the page again. */
+/** On every page with the bar. A computer that slept asks as soon as somebody looks at the page again. @param {number} endsIn_s */
 export function watchSessionEnd(endsIn_s) {
+  /** @type {HTMLElement | null} */
   let box = null;
-  const answered = (send) => async () => (await send("/account/session")).data.ends_in_s;
+  /** @param {typeof get | typeof post} send */
+  const answered = (send) => async () => {
+    const { data } = /** @type {Answer<SessionTimes>} */ (await send("/account/session"));
+    return data.ends_in_s;
+  };
   const watch = createSessionWatch({ endsIn_s, ask: answered(get), stay: answered(post), show });
   let hidden_ms = 0;
   document.addEventListener("visibilitychange", () => {
@@ -65,16 +90,18 @@ export function watchSessionEnd(endsIn_s) {
     else if (Date.now() - hidden_ms > ASKS_AGAIN_S * 1_000) watch.look();
   });
 
+  /** @param {Ending | null} state */
   function show(state) {
     box?.remove();
-    if (state === null) return (box = null);
+    box = null;
+    if (state === null) return;
     const act = state.isOver
       ? h("a", { class: "button primary", href: signInAddress() }, t("Sign in"))
       : h("button", { type: "button", class: "button primary", onclick: () => watch.keep() }, t("Stay signed in"));
     const why = state.isOver
       ? t("You are signed out, as nobody was here for a while. What is not saved is kept in this browser.")
       : t("You will be signed out at {time}, as nothing was done here. What is not saved is kept in this browser.", {
-          time: clockText(new Date(state.ends_at_ms).toISOString()),
+          time: clockText(new Date(state.ends_at_ms ?? 0).toISOString()),
         });
     box = h("div", { class: "session-word", role: "alert" }, icon("calendar-clock"), h("p", {}, why), act);
     document.body.append(box);

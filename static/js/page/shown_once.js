@@ -5,6 +5,7 @@ import { t } from "../text.js";
 import { copyText } from "./clipboard.js";
 import { say, toast } from "./toast.js";
 
+/** @param {{ title: string, secret: string, label: string, more?: import("../dom.js").Child }} what */
 export function shownOnce({ title, secret, label, more = null }) {
   const code = h("code", { tabindex: "0", role: "textbox", "aria-readonly": "true", "aria-label": label }, secret);
   const copy = h("button", { type: "button", class: "button" }, icon("copy", "small"), t("Copy"));
@@ -13,7 +14,7 @@ export function shownOnce({ title, secret, label, more = null }) {
       toast(t("Copied."));
       return;
     }
-    getSelection().selectAllChildren(code);
+    getSelection()?.selectAllChildren(code);
     say(t("It is selected. Copy it with Ctrl+C."));
   });
   return h(

@@ -9,12 +9,20 @@ import { draftsOf, forget } from "./left_behind.js";
 export const KEEP_NOW = "spanwise-keep-now";
 export const KEEP_NO_MORE = "spanwise-keep-no-more";
 
-/** The form of the menu: sent at once where nothing is unsaved. */
+/**
+ * The form of the menu: sent at once where nothing is unsaved.
+ *
+ * @param {HTMLFormElement} form
+ * @param {number | string} user
+ */
 export function askBeforeSigningOut(form, user) {
   form.addEventListener("submit", (event) => {
     dispatchEvent(new Event(KEEP_NOW));
     const drafts = draftsOf(user);
-    if (drafts === 0) return leave(user);
+    if (drafts === 0) {
+      leave(user);
+      return;
+    }
     event.preventDefault();
     ask(drafts, (keepsDrafts) => {
       leave(user, keepsDrafts);
@@ -25,13 +33,20 @@ export function askBeforeSigningOut(form, user) {
   });
 }
 
+/** @param {number | string} user @param {boolean} [keepsDrafts] */
 function leave(user, keepsDrafts = false) {
   dispatchEvent(new Event(KEEP_NO_MORE));
   forget(user, { keepsDrafts });
 }
 
+/** @param {number} drafts @param {(keepsDrafts: boolean) => void} signOut */
 function ask(drafts, signOut) {
-  const answer = (keepsDrafts) => () => (dialog.close(), signOut(keepsDrafts));
+  /** @param {boolean} keepsDrafts */
+  const answer = (keepsDrafts) => () => {
+    dialog.close();
+    signOut(keepsDrafts);
+  };
+  /** @type {HTMLDialogElement} */
   const dialog = h(
     "dialog",
     { "aria-labelledby": "drafts-title" },

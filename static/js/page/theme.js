@@ -4,14 +4,18 @@ import { patch } from "../api.js";
 
 const KEY = "spanwise.theme";
 const ORDER = ["system", "light", "dark"];
+/** @type {Record<string, string>} */
 export const THEME_ICONS = { system: "monitor", light: "sun", dark: "moon" };
+/** @type {Set<() => void>} */
 const listeners = new Set();
+/** @type {Promise<unknown>} */
 let kept = Promise.resolve();
 
 export function chosenTheme() {
   return document.documentElement.dataset.theme ?? "system";
 }
 
+/** @param {string} theme */
 export function chooseTheme(theme) {
   if (theme === "system") delete document.documentElement.dataset.theme;
   else document.documentElement.dataset.theme = theme;
@@ -24,19 +28,19 @@ export function chooseTheme(theme) {
   if (document.documentElement.dataset.themeOf === "account") {
     kept = kept.then(() => patch("/account", { theme })).catch(() => {}); // away: the choice lasts as long as the page
   }
-  listeners.forEach((tell) => tell());
+  for (const tell of listeners) tell();
 }
 
 export function nextTheme() {
   chooseTheme(ORDER[(ORDER.indexOf(chosenTheme()) + 1) % ORDER.length]);
 }
 
-/** Tells of each change, the system's own included. Returns a function that ends it. */
+/** Tells of each change, the system's own included. Returns a function that ends it. @param {() => void} tell */
 export function onTheme(tell) {
   listeners.add(tell);
   return () => listeners.delete(tell);
 }
 
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
-  if (chosenTheme() === "system") listeners.forEach((tell) => tell());
+  if (chosenTheme() === "system") for (const tell of listeners) tell();
 });

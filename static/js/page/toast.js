@@ -3,9 +3,15 @@
 import { byId, h } from "../dom.js";
 
 const STAYS_MS = 8000;
-let timer = 0;
+/** @type {ReturnType<typeof setTimeout> | undefined} */
+let timer;
 
-/** toast("3 targets removed.", { label: "Undo", act: undo }) */
+/**
+ * toast("3 targets removed.", { label: "Undo", act: undo })
+ *
+ * @param {string} sentence
+ * @param {{ label: string, act: () => unknown } | null} [action]
+ */
 export function toast(sentence, action = null) {
   const region = byId("toasts");
   const close = () => region.replaceChildren();
@@ -13,7 +19,11 @@ export function toast(sentence, action = null) {
     clearTimeout(timer);
     timer = setTimeout(close, STAYS_MS);
   };
-  const button = action && h("button", { type: "button", onclick: () => (close(), action.act()) }, action.label);
+  const act = () => {
+    close();
+    action?.act();
+  };
+  const button = action && h("button", { type: "button", onclick: act }, action.label);
   const box = h("div", { class: "toast" }, h("span", {}, sentence), button);
   for (const stay of ["pointerenter", "focusin"]) box.addEventListener(stay, () => clearTimeout(timer));
   for (const go of ["pointerleave", "focusout"]) box.addEventListener(go, wait);
@@ -21,7 +31,7 @@ export function toast(sentence, action = null) {
   wait();
 }
 
-/** For screen readers alone: what a sighted person sees happen anyway. */
+/** For screen readers alone: what a sighted person sees happen anyway. @param {string} sentence */
 export function say(sentence) {
   byId("spoken").textContent = sentence;
 }

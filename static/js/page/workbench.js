@@ -4,10 +4,15 @@ import { byId } from "../dom.js";
 import { t } from "../text.js";
 
 const HEIGHTS = ["low", "half", "full"];
+/** @type {Record<string, string>} */
 const HEIGHT_WORDS = { low: t("Panel height: low"), half: t("Panel height: half"), full: t("Panel height: full") };
 const phone = matchMedia("(max-width: 720px)");
 
-/** dockOnPhone: the element that takes the dock on a phone, first in the sheet; null on a page without a dock. */
+/**
+ * dockOnPhone: the element that takes the dock on a phone, first in the sheet; null on a page without a dock.
+ *
+ * @param {{ dockOnPhone: HTMLElement | null }} options
+ */
 export function mountWorkbench({ dockOnPhone }) {
   const workbench = byId("workbench");
   const dock = dockOnPhone && byId("dock");
@@ -35,13 +40,17 @@ export function mountWorkbench({ dockOnPhone }) {
   };
 }
 
+/** @param {HTMLElement} workbench @param {string} part */
 function toggle(workbench, part) {
   if (workbench.dataset[part] === "folded") delete workbench.dataset[part];
   else workbench.dataset[part] = "folded";
 }
 
+/** @param {HTMLElement} workbench @param {HTMLElement} handle */
 function dragSheet(workbench, handle) {
+  /** @type {{ y: number, height: number, moved: boolean } | null} */
   let from = null;
+  /** @param {string} name */
   const setHeight = (name) => {
     workbench.style.removeProperty("--sheet");
     workbench.dataset.sheet = name;
@@ -74,7 +83,7 @@ function dragSheet(workbench, handle) {
       delete handle.dataset.dragged; // the click that ends a drag
       return;
     }
-    setHeight(HEIGHTS[(HEIGHTS.indexOf(workbench.dataset.sheet) + 1) % HEIGHTS.length]);
+    setHeight(HEIGHTS[(HEIGHTS.indexOf(workbench.dataset.sheet ?? "") + 1) % HEIGHTS.length]);
   });
   return setHeight;
 }
