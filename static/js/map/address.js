@@ -1,13 +1,17 @@
 /** The view as part of the page's address, #map=zoom/latitude/longitude, and whether one is worth going to. Values in, values out. */
 
+/** @import { Box, Position } from "./types.d.ts" */
+
 const WORLD_PX = 512; // the whole world at zoom 0
 const LEAST_PX = 24; // an extent smaller than this on the screen shows nothing
 const NEAR_ZOOM = 12; // from here on even a single place is worth looking at
 
+/** @param {number} longitude */
 const toX = (longitude) => (longitude + 180) / 360;
+/** @param {number} latitude */
 const toY = (latitude) => (1 - Math.asinh(Math.tan((latitude * Math.PI) / 180)) / Math.PI) / 2;
 
-/** { zoom, centre: [lon, lat] } or null. */
+/** { zoom, centre: [lon, lat] } or null. @param {string} hash @returns {{ zoom: number, centre: Position } | null} */
 export function viewOf(hash) {
   const found = /[#&]map=([\d.]+)\/(-?[\d.]+)\/(-?[\d.]+)/.exec(hash);
   if (!found) return null;
@@ -16,12 +20,19 @@ export function viewOf(hash) {
   return isPlace ? { zoom, centre: [longitude, latitude] } : null;
 }
 
+/** @param {{ zoom: number, centre: readonly number[] }} view */
 export function hashOf({ zoom, centre: [longitude, latitude] }) {
   const digits = Math.max(2, Math.ceil((zoom * Math.LN2 + Math.log(WORLD_PX / 360 / 0.5)) / Math.LN10)); // half a pixel
   return `#map=${Number(zoom.toFixed(2))}/${latitude.toFixed(digits)}/${longitude.toFixed(digits)}`;
 }
 
-/** Whether [west, south, east, north] can be made out in a view of this size in px. Without an extent every view is as good. */
+/**
+ * Whether [west, south, east, north] can be made out in a view of this size in px. Without an extent every view is as good.
+ *
+ * @param {{ zoom: number, centre: Position }} view
+ * @param {[number, number]} size width, height [px]
+ * @param {Box | null | undefined} extent
+ */
 export function showsAnything({ zoom, centre: [longitude, latitude] }, [width_px, height_px], extent) {
   if (!extent) return true;
   const scale = WORLD_PX * 2 ** zoom;

@@ -2,6 +2,9 @@
 
 import { language, t } from "../text.js";
 
+/** @import { ThingProperties } from "./types.d.ts" */
+
+/** @type {Record<string, string>} */
 const KINDS = {
   Tower: t("Tower"),
   Line: t("Line"),
@@ -13,6 +16,7 @@ const KINDS = {
   Tramway: t("Tramway"),
   Subway: t("Subway"),
 };
+/** @type {Record<string, string>} */
 const DETAILS = {
   "voltage not stated": t("voltage not stated"),
   "carries a road and a railway": t("carries a road and a railway"),
@@ -24,7 +28,11 @@ const DETAILS = {
 };
 const MADE_NAME = new RegExp(`^(${Object.keys(KINDS).join("|")}) (?:(\\d+) of (\\d+)|([nwr]?\\d+))$`);
 
-/** "Tower 18 of 41" → "Mast 18 von 41"; a name that somebody gave stays. */
+/**
+ * "Tower 18 of 41" → "Mast 18 von 41"; a name that somebody gave stays.
+ *
+ * @param {Pick<ThingProperties, "label" | "ref" | "name" | "operator">} properties
+ */
 export function nameOf({ label, ref, name, operator }) {
   if (!label || label === ref || label === name) return label;
   if (operator && label === `${operator} railway`) return t("{operator} railway", { operator });
@@ -34,12 +42,18 @@ export function nameOf({ label, ref, name, operator }) {
   return place ? t("{kind} {place} of {places}", { kind: KINDS[kind], place, places }) : `${KINDS[kind]} ${id}`;
 }
 
+/** @param {string} detail */
 function detailOf(detail) {
-  const [, start, last] = /^(.*, )?(.*)$/.exec(detail);
+  const [, start, last] = /^(.*, )?(.*)$/.exec(detail) ?? ["", "", detail];
   return `${start ?? ""}${DETAILS[last] ?? last}`;
 }
 
-/** The properties of a thing of a tile, with label and detail for people. */
+/**
+ * The properties of a thing of a tile, with label and detail for people.
+ *
+ * @param {ThingProperties} properties
+ * @returns {ThingProperties}
+ */
 export function inWords(properties) {
   if (language === "en" || !properties.kind) return properties;
   return {

@@ -1,11 +1,18 @@
 /** What the pointer means on the map: the nearest thing within reach, in the order of picking. */
 
+import { h } from "../dom.js";
 import { inWords } from "./asset_names.js";
 import { swallowDrawnClick } from "./drawn_click.js";
 import { drawLassos } from "./lasso.js";
-import { PICKABLE, TILES } from "./style.js";
+import { PICKABLE, TILES } from "./voltages.js";
+
+/** @import { MapGeoJSONFeature } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { ClickHandlers, Geometry, MapLibreMap, MapThing, PickKind, Position, ScreenPoint, ThingProperties } from "./types.d.ts" */
 
 const REACH_PX = { fine: 6, coarse: 16 };
+/** @typedef {Pick<MapGeoJSONFeature, "layer" | "sourceLayer" | "properties" | "geometry">} PickedFeature */
+
+/** Kinds of things by their source layer. @type {Record<string, PickKind>} */
 const KINDS = {
   towers: "tower",
   bridges: "bridge",
@@ -15,36 +22,57 @@ const KINDS = {
   zones: "zone",
 };
 
-/** Of what lies under the pointer, the first in the order of picking: { kind, layer, id, properties, geometry } or null. */
+/**
+ * Of what lies under the pointer, the first in the order of picking: { kind, layer, id, properties, geometry } or null.
+ *
+ * @param {PickedFeature[]} features
+ * @param {string[] | null} [kinds]
+ * @returns {MapThing | null}
+ */
 export function firstInOrder(features, kinds = null) {
+  /** @param {PickedFeature} feature */
   const isIdle = (feature) => feature.properties.flyable === false; // underground, out of use: behind all that can be flown to
+  /** @param {PickedFeature} feature */
   const rank = (feature) => PICKABLE.indexOf(feature.layer.id) + (isIdle(feature) ? PICKABLE.length : 0);
+  /** @param {PickedFeature} feature */
   const isWanted = (feature) =>
-    PICKABLE.includes(feature.layer.id) && (!kinds || kinds.includes(KINDS[feature.sourceLayer]));
+    PICKABLE.includes(feature.layer.id) && (!kinds || kinds.includes(KINDS[feature.sourceLayer ?? ""]));
   const best = features.filter(isWanted).sort((a, b) => rank(a) - rank(b))[0];
   if (!best) return null;
   return {
-    kind: KINDS[best.sourceLayer],
-    layer: best.sourceLayer,
+    kind: KINDS[best.sourceLayer ?? ""],
+    layer: best.sourceLayer ?? "",
     id: best.properties.id,
-    properties: inWords(best.properties),
-    geometry: best.geometry,
+    properties: inWords(/** @type {ThingProperties} */ (best.properties)),
+    geometry: /** @type {Geometry} */ (best.geometry),
   };
 }
 
-/** All pieces of what was met that the map has loaded: a tile holds a line only as far as its own edge. */
+/**
+ * All pieces of what was met that the map has loaded: a tile holds a line only as far as its own edge.
+ *
+ * @param {MapLibreMap} map
+ * @param {MapThing} thing
+ * @returns {Geometry[]}
+ */
 export function piecesOf(map, thing) {
   if (thing.geometry.type === "Point") return [thing.geometry];
   const pieces = map
     .querySourceFeatures(TILES, { sourceLayer: thing.layer, filter: ["==", ["get", "id"], thing.id] })
-    .map((feature) => feature.geometry);
+    .map((feature) => /** @type {Geometry} */ (feature.geometry));
   return pieces.length ? pieces : [thing.geometry];
 }
 
-/** on: { click(thing, lngLat, point), hover(thing, point), box([west, south, east, north]), lasso?(ring), tool(), kinds(): those that count now, or null } */
+/**
+ * Calls `on` for clicks, hovering, boxes and lassos.
+ *
+ * @param {MapLibreMap} map
+ * @param {ClickHandlers} on
+ */
 export function routeClicks(map, on) {
   const canvas = map.getCanvasContainer();
   const reach = matchMedia("(pointer: coarse)").matches ? REACH_PX.coarse : REACH_PX.fine;
+  /** @param {ScreenPoint} point */
   const thingAt = (point) => {
     const layers = PICKABLE.filter((id) => map.getLayer(id));
     return firstInOrder(
@@ -66,7 +94,7 @@ export function routeClicks(map, on) {
     cancelAnimationFrame(frame);
     frame = requestAnimationFrame(() => {
       const thing = map.isMoving() ? null : thingAt(event.point);
-      canvas.classList.toggle("over-thing", Boolean(thing) && thing.kind !== "zone");
+      canvas.classList.toggle("over-thing", thing !== null && thing.kind !== "zone");
       on.hover(thing, event.point, [event.lngLat.lng, event.lngLat.lat]);
     });
   });
@@ -76,15 +104,23 @@ export function routeClicks(map, on) {
   });
 
   dragBoxes(map, canvas, on);
-  if (on.lasso) drawLassos(map, canvas, on);
+  if (on.lasso) drawLassos(map, canvas, { tool: on.tool, lasso: on.lasso });
 }
 
-/** Shift and drag, or the box tool and drag: a box in lon lat. */
+/**
+ * Shift and drag, or the box tool and drag: a box in lon lat.
+ *
+ * @param {MapLibreMap} map
+ * @param {HTMLElement} canvas
+ * @param {ClickHandlers} on
+ */
 function dragBoxes(map, canvas, on) {
   map.boxZoom.disable();
+  /** @type {Position | null} */
   let start = null;
-  let frame = null;
+  const frame = h("div", { class: "box-frame" });
   const click = swallowDrawnClick(canvas);
+  /** @param {PointerEvent} event @returns {Position} */
   const placeOf = (event) => {
     const box = canvas.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
@@ -99,8 +135,7 @@ function dragBoxes(map, canvas, on) {
       event.preventDefault();
       start = placeOf(event);
       map.dragPan.disable();
-      frame = document.createElement("div");
-      frame.className = "box-frame";
+      frame.setAttribute("style", "");
       canvas.append(frame);
       canvas.setPointerCapture(event.pointerId);
     },
@@ -113,6 +148,7 @@ function dragBoxes(map, canvas, on) {
     frame.style.width = `${Math.abs(x - start[0])}px`;
     frame.style.height = `${Math.abs(y - start[1])}px`;
   });
+  /** @param {PointerEvent} event */
   const end = (event) => {
     if (!start) return;
     const [from, to] = [start, placeOf(event)];

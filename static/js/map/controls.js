@@ -12,31 +12,42 @@ import { layersMenu } from "./layers_menu.js";
 import { mountLegend } from "./legend.js";
 import { createMeasure } from "./measure_tool.js";
 import { createShown } from "./shown.js";
-import { TILES } from "./style.js";
 import { rememberedUnder, rememberUnder, underChoices } from "./under.js";
+import { TILES } from "./voltages.js";
+
+/** @import { Palette } from "../domain/palette.js" */
+/** @import { Ground, MapControls, MapFault, MapLibreMap, MapPage, MapView, Position, SwitchedLayer } from "./types.d.ts" */
 
 const COPIED_DIGITS = 6; // some 0.1 m
 const ASK_AGAIN_MS = 8_000;
 
 /**
- * act: { fit(), recoloured(palette)?, isBusy()?: the pointer belongs to something else, measures(isOn)?,
- * layers()?: more of them for the menu }
- * Returns { hover(place), click(place): true where the click was for the measuring, setGround(ground), closeTop(), isMeasuring(), bindings }.
+ * What a page does with its map's controls.
+ *
+ * @typedef {object} ControlActs
+ * @property {() => unknown} fit
+ * @property {(palette: Palette) => void} [recoloured]
+ * @property {() => boolean} [isBusy] whether the pointer belongs to something else
+ * @property {(isOn: boolean) => void} [measures]
+ * @property {() => SwitchedLayer[]} [layers] more of them for the menu
+ */
+
+/**
+ * @param {MapView} view
+ * @param {MapPage} page
+ * @param {ControlActs} act
+ * @returns {MapControls}
  */
 export function mountControls(view, page, act) {
   const { map } = view;
   const container = byId("map");
-  const frame = container.parentElement;
-  let under = rememberedUnder(page);
+  const frame = /** @type {HTMLElement} */ (container.parentElement);
+  /** @type {Ground | null} */
   let ground = null;
+  /** @type {Position | null} */
   let pointer = null;
 
-  // The focus ring is for the keyboard: a click into the map gives it the focus too, and a key pressed later would show the ring.
-  container.addEventListener("pointerdown", () => (container.dataset.pointed = "true"));
-  container.addEventListener("focusout", () => delete container.dataset.pointed);
-  container.project = (position) => map.project(position); // screen place of a position, for tests
-  map.on("idle", () => (container.dataset.idle = "true"));
-  map.on("movestart", () => delete container.dataset.idle);
+  watchPointerAndIdle(map, container);
   mountScale(map);
   mountLegend(map);
   const showCoordinates = mountCoordinates();
@@ -53,59 +64,13 @@ export function mountControls(view, page, act) {
   const attribute = () =>
     setAttribution([
       ...(ground?.attribution ?? []),
-      under === "base-map" && page.baseMap.attribution,
-      under === "satellite" && page.satellite.attribution,
+      under.chosen() === "base-map" && page.baseMap.attribution,
+      under.chosen() === "satellite" && page.satellite.attribution,
     ]);
-
-  const layers = byId("open-layers");
-  const shown = createShown(map, () => {
-    layers.toggleAttribute("data-some-hidden", !shown.isWhole());
-    layers.setAttribute("aria-label", shown.isWhole() ? t("Layers") : t("Layers: some are hidden"));
-    layers.title = layers.getAttribute("aria-label");
-  });
-  const choices = {
-    choices: underChoices(page),
-    chosen: () => under,
-    choose(name) {
-      under = name;
-      view.putUnder(name);
-      attribute();
-      rememberUnder(name);
-    },
-  };
-  layers.addEventListener("click", () =>
-    toggleMenu(layers, () => layersMenu({ under: choices, shown, more: act.layers?.() })),
-  );
-
+  const under = chooseUnder(view, page, () => attribute());
+  mountLayersButton(map, under, act);
   const measure = createMeasure(map, frame, byId("measure"), { onSwitch: act.measures, isBusy: act.isBusy });
-  const middle = () => map.getCenter().toArray();
-
-  async function copyPlace(place) {
-    const text = [place[1], place[0]].map((degrees) => degrees.toFixed(COPIED_DIGITS)).join(", ");
-    toast((await copyText(text)) ? t("Copied: {coordinates}", { coordinates: text }) : text);
-  }
-
-  // The menu of a place: right click, or a long touch.
-  const anchor = h("span", { class: "map-anchor" });
-  frame.append(anchor);
-  map.on("contextmenu", ({ point, lngLat, originalEvent }) => {
-    if (act.isBusy?.()) return;
-    originalEvent.preventDefault();
-    const place = [lngLat.lng, lngLat.lat];
-    anchor.style.transform = `translate(${point.x}px, ${point.y}px)`;
-    closeMenu();
-    byId("map-tip").hidden = true;
-    toggleMenu(anchor, () => {
-      const menu = menuOf(t("This place"), [
-        { icon: "copy", label: t("Copy the coordinates"), act: () => copyPlace(place) },
-        { icon: "ruler", label: t("Measure from here"), act: () => (measure.end(), measure.start(place)) },
-      ]);
-      menu.prepend(h("p", { class: "caption" }, coordinateText(place)));
-      return menu;
-    });
-  });
-  map.on("movestart", closeMenu);
-
+  mountPlaceMenu(map, frame, measure, act);
   watchTiles(map, frame);
 
   return {
@@ -133,19 +98,120 @@ export function mountControls(view, page, act) {
       {
         keys: ["c"],
         words: t("Copy the coordinates at the pointer, or of the middle"),
-        act: () => copyPlace(pointer ?? middle()),
+        act: () => copyPlace(pointer ?? map.getCenter().toArray()),
       },
     ],
   };
 }
 
-/** Says so when the ground cannot be read, asks again by itself, and says nothing more once it can. */
+/**
+ * The focus ring is for the keyboard: a click into the map gives it the focus too, and a key pressed later would show the ring. Tests ask
+ * where a position is on the screen, and whether the map is at rest.
+ *
+ * @param {MapLibreMap} map
+ * @param {HTMLElement} container
+ */
+function watchPointerAndIdle(map, container) {
+  container.addEventListener("pointerdown", () => {
+    container.dataset.pointed = "true";
+  });
+  container.addEventListener("focusout", () => delete container.dataset.pointed);
+  Object.assign(container, { project: (/** @type {Position} */ position) => map.project(position) });
+  map.on("idle", () => {
+    container.dataset.idle = "true";
+  });
+  map.on("movestart", () => delete container.dataset.idle);
+}
+
+/**
+ * The choice of what lies under the map.
+ *
+ * @param {MapView} view
+ * @param {MapPage} page
+ * @param {() => void} onChange
+ */
+function chooseUnder(view, page, onChange) {
+  let under = rememberedUnder(page);
+  return {
+    choices: underChoices(page),
+    chosen: () => under,
+    /** @param {string} name */
+    choose(name) {
+      under = name;
+      view.putUnder(name);
+      onChange();
+      rememberUnder(name);
+    },
+  };
+}
+
+/** @param {MapLibreMap} map @param {ReturnType<typeof chooseUnder>} under @param {ControlActs} act */
+function mountLayersButton(map, under, act) {
+  const button = byId("open-layers");
+  const shown = createShown(map, () => {
+    const words = shown.isWhole() ? t("Layers") : t("Layers: some are hidden");
+    button.toggleAttribute("data-some-hidden", !shown.isWhole());
+    button.setAttribute("aria-label", words);
+    button.title = words;
+  });
+  button.addEventListener("click", () => toggleMenu(button, () => layersMenu({ under, shown, more: act.layers?.() })));
+}
+
+/** @param {readonly number[]} place */
+async function copyPlace(place) {
+  const text = [place[1], place[0]].map((degrees) => degrees.toFixed(COPIED_DIGITS)).join(", ");
+  toast((await copyText(text)) ? t("Copied: {coordinates}", { coordinates: text }) : text);
+}
+
+/**
+ * The menu of a place: right click, or a long touch.
+ *
+ * @param {MapLibreMap} map
+ * @param {HTMLElement} frame
+ * @param {ReturnType<typeof createMeasure>} measure
+ * @param {ControlActs} act
+ */
+function mountPlaceMenu(map, frame, measure, act) {
+  const anchor = h("span", { class: "map-anchor" });
+  frame.append(anchor);
+  map.on("contextmenu", ({ point, lngLat, originalEvent }) => {
+    if (act.isBusy?.()) return;
+    originalEvent.preventDefault();
+    /** @type {Position} */
+    const place = [lngLat.lng, lngLat.lat];
+    const measureFromHere = () => {
+      measure.end();
+      measure.start(place);
+    };
+    anchor.style.transform = `translate(${point.x}px, ${point.y}px)`;
+    closeMenu();
+    byId("map-tip").hidden = true;
+    toggleMenu(anchor, () => {
+      const menu = menuOf(t("This place"), [
+        { icon: "copy", label: t("Copy the coordinates"), act: () => copyPlace(place) },
+        { icon: "ruler", label: t("Measure from here"), act: measureFromHere },
+      ]);
+      menu.prepend(h("p", { class: "caption" }, coordinateText(place)));
+      return menu;
+    });
+  });
+  map.on("movestart", closeMenu);
+}
+
+/**
+ * Says so when the ground cannot be read, asks again by itself, and says nothing more once it can.
+ *
+ * @param {MapLibreMap} map
+ * @param {HTMLElement} frame
+ */
 function watchTiles(map, frame) {
-  let timer = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
+  /** @type {{ x: number, y: number, z: number }[]} */
   let failed = []; // tiles, since they were last asked for
   const again = () => {
     clearTimeout(timer);
-    timer = 0;
+    timer = undefined;
     const wanted = failed;
     failed = [];
     // by their names: MapLibre 6.17 leaves tiles that failed alone when it is asked for all
@@ -166,7 +232,8 @@ function watchTiles(map, frame) {
     h("button", { type: "button", class: "text-button", onclick: again }, t("Try now")),
   );
   frame.append(notice);
-  map.on("error", ({ sourceId, error, tile }) => {
+  map.on("error", (event) => {
+    const { sourceId, error, tile } = /** @type {MapFault} */ (event);
     if (sourceId !== TILES || error?.name === "AbortError") return;
     if (tile) failed.push(tile.tileID.canonical);
     notice.hidden = false;
@@ -175,5 +242,7 @@ function watchTiles(map, frame) {
   map.on("idle", () => {
     if (!failed.length) notice.hidden = true;
   });
-  addEventListener("online", () => notice.hidden || again());
+  addEventListener("online", () => {
+    if (!notice.hidden) again();
+  });
 }

@@ -1,6 +1,10 @@
 /** Coordinates as people write them: decimal degrees, degrees and minutes, degrees, minutes and seconds. Values in, values out. */
 
+/** @typedef {{ letter: string, degrees: number }} Angle */
+
+/** @type {Record<string, number>} */
 const SIGN = { N: 1, S: -1, E: 1, O: 1, W: -1 }; // O: Ost
+/** @param {string} letter */
 const isNorthSouth = (letter) => letter === "N" || letter === "S";
 
 /** One angle: degrees, minutes, seconds, with a letter before or behind. */
@@ -10,7 +14,11 @@ const ANGLES = [
   new RegExp(String.raw`()${FIGURES}(?:\s*([NSEWO]))?`, "y"),
 ];
 
-/** Signs of all keyboards to the plain ones; a decimal comma to a point, where the two figures are parted by something else. */
+/**
+ * Signs of all keyboards to the plain ones; a decimal comma to a point, where the two figures are parted by something else.
+ *
+ * @param {string} text
+ */
 function plain(text) {
   const signs = text
     .trim()
@@ -24,7 +32,11 @@ function plain(text) {
   return /^[^,]*\d,\d+\D*[\s;]+[^,]*\d,\d+\D*$/.test(signs) ? signs.replace(/(\d),(\d)/g, "$1.$2") : signs;
 }
 
-/** "39 57 36" is degrees, minutes, seconds too: with letters, blanks may stand where signs belong. */
+/**
+ * "39 57 36" is degrees, minutes, seconds too: with letters, blanks may stand where signs belong.
+ *
+ * @param {string} text
+ */
 function withSigns(text) {
   if (!/[NSEWO]/.test(text) || /[°'"]/.test(text)) return text;
   return text.replace(
@@ -33,6 +45,7 @@ function withSigns(text) {
   );
 }
 
+/** @param {string} words @param {number} at */
 function angleAt(words, at) {
   for (const pattern of ANGLES) {
     pattern.lastIndex = at;
@@ -42,6 +55,7 @@ function angleAt(words, at) {
   return { angle: null, end: at };
 }
 
+/** @param {RegExpExecArray} found @returns {Angle | null} */
 function angleOf([, before, degrees, minutes, seconds, after]) {
   if (Number(minutes ?? 0) >= 60 || Number(seconds ?? 0) >= 60) return null;
   if ((minutes || seconds) && degrees.includes(".")) return null;
@@ -54,9 +68,12 @@ function angleOf([, before, degrees, minutes, seconds, after]) {
 /**
  * { position: [lon, lat], order } or null where the text is no pair of coordinates. Without letters the latitude comes first; `order` says
  * what was taken for granted: "letters", "latitude first", or "longitude first" where the first figure can be no latitude.
+ *
+ * @param {string} text
  */
 export function positionIn(text) {
   const words = withSigns(plain(text));
+  /** @type {Angle[]} */
   const angles = [];
   for (let at = 0; at < words.length; ) {
     const { angle, end } = angleAt(words, at);
@@ -78,6 +95,7 @@ export function positionIn(text) {
     : placed([second, first], "latitude first");
 }
 
+/** @param {[Angle, Angle]} pair longitude, latitude @param {"letters" | "latitude first" | "longitude first"} order */
 function placed([longitude, latitude], order) {
   if (Math.abs(latitude.degrees) > 90 || Math.abs(longitude.degrees) > 180) return null;
   return { position: [longitude, latitude].map(({ degrees }) => Number(degrees.toFixed(7))), order };

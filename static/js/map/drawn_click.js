@@ -1,6 +1,10 @@
 /** The click that ends a drawing on the map, or drops it, picks nothing. */
 
-/** Returns { begins(), ends() }: a press that may become a drawing, and a drawing that has come to its end. */
+/**
+ * Returns { begins(), ends() }: a press that may become a drawing, and a drawing that has come to its end.
+ *
+ * @param {HTMLElement} canvas
+ */
 export function swallowDrawnClick(canvas) {
   let isDrawn = false;
   canvas.addEventListener(
@@ -11,5 +15,12 @@ export function swallowDrawnClick(canvas) {
     },
     true,
   );
-  return { begins: () => (isDrawn = false), ends: () => (isDrawn = true) };
+  return {
+    begins() {
+      isDrawn = false;
+    },
+    ends() {
+      isDrawn = true;
+    },
+  };
 }

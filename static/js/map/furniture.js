@@ -1,27 +1,30 @@
 /** What stands around the map: scale, coordinates, attribution, tooltip. */
 
-import { byId } from "../dom.js";
+import { byId, find } from "../dom.js";
 import { coordinateText, lengthText } from "../units.js";
+
+/** @import { MapLibreMap, Position, ScreenPoint, Tip } from "./types.d.ts" */
 
 const TIP_AFTER_MS = 300;
 const WIDEST_SCALE_PX = 90;
 
-/** The longest round distance that is at most 90 px: { length_m, width_px }. */
+/** The longest round distance that is at most 90 px: { length_m, width_px }. @param {number} metres_per_px */
 export function scaleOf(metres_per_px) {
   const most = metres_per_px * WIDEST_SCALE_PX;
   const power = 10 ** Math.floor(Math.log10(most));
-  const length_m = [5, 2, 1].map((factor) => factor * power).find((candidate) => candidate <= most);
+  const length_m = [5, 2].map((factor) => factor * power).find((candidate) => candidate <= most) ?? power;
   return { length_m, width_px: length_m / metres_per_px };
 }
 
+/** @param {MapLibreMap} map */
 export function mountScale(map) {
   const scale = byId("scale");
   const draw = () => {
     const latitude = map.getCenter().lat;
     const metres_per_px = (40_075_016.686 * Math.cos((latitude * Math.PI) / 180)) / (512 * 2 ** map.getZoom());
     const { length_m, width_px } = scaleOf(metres_per_px);
-    scale.querySelector("span").textContent = lengthText(length_m).replace(".0", "");
-    scale.querySelector("i").style.width = `${width_px}px`;
+    find(scale, "span").textContent = lengthText(length_m).replace(".0", "");
+    find(scale, "i").style.width = `${width_px}px`;
   };
   map.on("move", draw);
   draw();
@@ -29,25 +32,37 @@ export function mountScale(map) {
 
 export function mountCoordinates() {
   const place = byId("coordinates");
-  return (position) => (place.textContent = position ? coordinateText(position) : "");
+  /** @param {Position | null} position */
+  return (position) => {
+    place.textContent = position ? coordinateText(position) : "";
+  };
 }
 
-/** Each source once; "© X" is left out beside "© X, licence". */
+/** Each source once; "© X" is left out beside "© X, licence". @param {string[]} sources */
 export function distinct(sources) {
   const all = [...new Set(sources)];
   return all.filter((source) => !all.some((other) => other !== source && other.startsWith(`${source},`)));
 }
 
+/** @param {(string | false | null | undefined)[]} sources */
 export function setAttribution(sources) {
-  byId("attribution").textContent = distinct(sources.filter(Boolean)).join(" · ");
+  byId("attribution").textContent = distinct(sources.flatMap((source) => source || [])).join(" · ");
 }
 
-/** Shows words beside the pointer after 300 ms, at once with `soon`; null takes them away. What `make` is given shows other words later. */
+/**
+ * Shows words beside the pointer after 300 ms, at once with `soon`; null takes them away. What `make` is given shows other words later.
+ *
+ * @param {HTMLElement} frame
+ * @returns {Tip}
+ */
 export function createTip(frame) {
   const tip = byId("map-tip");
-  let timer = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
+  /** @type {string | null} */
   let current = null;
-  let at = null;
+  let at = { x: 0, y: 0 };
+  /** @param {ScreenPoint} point */
   const place = (point) => {
     at = point;
     const [width, height] = [tip.offsetWidth, tip.offsetHeight];
@@ -64,15 +79,19 @@ export function createTip(frame) {
     if (event.key === "Escape" && !tip.hidden) hide();
   });
   return (key, point, make, { soon = false } = {}) => {
-    if (key === null) return hide();
+    if (key === null || !point || !make) {
+      hide();
+      return;
+    }
     if (key === current && !soon) {
       if (tip.hidden) at = point;
       else place(point);
-      return undefined;
+      return;
     }
     hide();
     current = key;
     at = point;
+    /** @param {(Node | string)[]} content */
     const fill = (content) => {
       if (current !== key) return;
       tip.replaceChildren(...content);
@@ -80,6 +99,5 @@ export function createTip(frame) {
       place(at);
     };
     timer = setTimeout(() => fill(make(fill)), soon ? 0 : TIP_AFTER_MS);
-    return undefined;
   };
 }

@@ -1,20 +1,26 @@
 /** Hatch and arrows, drawn on a canvas in the palette's colours when the style first asks for them. */
 
+/** @import { Palette } from "../domain/palette.js" */
+/** @import { MapLibreMap } from "./types.d.ts" */
+
 const RATIO = 2;
 
+/** @param {number} size_px */
 function canvasOf(size_px) {
   const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = size_px * RATIO;
-  const pen = canvas.getContext("2d", { willReadFrequently: true });
+  canvas.width = size_px * RATIO;
+  canvas.height = size_px * RATIO;
+  const pen = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { willReadFrequently: true }));
   pen.scale(RATIO, RATIO);
   return pen;
 }
 
+/** @param {CanvasRenderingContext2D} pen */
 const pixels = (pen) => pen.getImageData(0, 0, pen.canvas.width, pen.canvas.height);
 
 const HATCH_PX = 8;
 
-/** 45 degrees; the corners are drawn too, so that the pattern meets itself. */
+/** 45 degrees; the corners are drawn too, so that the pattern meets itself. @param {Palette} palette */
 function hatch(palette) {
   const pen = canvasOf(HATCH_PX);
   pen.strokeStyle = palette.zone;
@@ -28,7 +34,7 @@ function hatch(palette) {
   return pixels(pen);
 }
 
-/** The same in strokes with gaps: a zone that applies at times. */
+/** The same in strokes with gaps: a zone that applies at times. @param {Palette} palette */
 function timedHatch(palette) {
   const pen = canvasOf(HATCH_PX);
   pen.strokeStyle = palette.zone;
@@ -40,6 +46,7 @@ function timedHatch(palette) {
   return pixels(pen);
 }
 
+/** @param {Palette} palette @param {string} colour */
 function arrow(palette, colour) {
   const pen = canvasOf(14);
   pen.fillStyle = colour;
@@ -57,7 +64,12 @@ function arrow(palette, colour) {
   return pixels(pen);
 }
 
-/** Where a UAV waits: a square for a base, a bolt on a disc for charging. */
+/**
+ * Where a UAV waits: a square for a base, a bolt on a disc for charging.
+ *
+ * @param {Palette} palette
+ * @param {string} kind
+ */
 function stop(palette, kind) {
   const pen = canvasOf(20);
   pen.fillStyle = palette.raised;
@@ -86,16 +98,22 @@ function stop(palette, kind) {
   return pixels(pen);
 }
 
+/** @param {string} id @param {Palette} palette */
 function draw(id, palette) {
   if (id === "hatch") return hatch(palette);
   if (id === "hatch-timed") return timedHatch(palette);
   const kind = /^stop-(base|charging)$/.exec(id)?.[1];
   if (kind) return stop(palette, kind);
   const number = /^arrow-(\d+)$/.exec(id)?.[1];
-  return number ? arrow(palette, palette.routes[number - 1] ?? palette.inkSecond) : null;
+  return number ? arrow(palette, palette.routes[Number(number) - 1] ?? palette.inkSecond) : null;
 }
 
-/** `palette()` gives the one in use. Returns a function that draws all again after a theme change. */
+/**
+ * `palette()` gives the one in use. Returns a function that draws all again after a theme change.
+ *
+ * @param {MapLibreMap} map
+ * @param {() => Palette} palette
+ */
 export function provideImages(map, palette) {
   const given = new Set();
   map.setMissingStyleImageResolver((id) => {
@@ -105,6 +123,9 @@ export function provideImages(map, palette) {
     map.addImage(id, image, { pixelRatio: RATIO });
   });
   return () => {
-    for (const id of given) if (map.hasImage(id)) map.updateImage(id, draw(id, palette()));
+    for (const id of given) {
+      const image = draw(id, palette());
+      if (image && map.hasImage(id)) map.updateImage(id, image);
+    }
   };
 }

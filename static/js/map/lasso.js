@@ -3,16 +3,26 @@
 import { svg } from "../dom.js";
 import { swallowDrawnClick } from "./drawn_click.js";
 
+/** @import { MapLibreMap, Position } from "./types.d.ts" */
+
 const STEP_PX = 4; // between kept points
 const LEAST_PX = 24; // a smaller drawing was a click
 
-/** on: { tool(), lasso([[lon, lat], …]) } */
+/**
+ * on: { tool(), lasso([[lon, lat], …]) }
+ *
+ * @param {MapLibreMap} map
+ * @param {HTMLElement} canvas
+ * @param {{ tool: () => string, lasso: (ring: Position[]) => unknown }} on
+ */
 export function drawLassos(map, canvas, on) {
+  /** @type {Position[] | null} */
   let points = null; // on the screen
-  let drawing = null;
-  let line = null;
+  const line = svg("polygon", {});
+  const drawing = svg("svg", { class: "lasso-frame", "aria-hidden": "true" }, line);
   const click = swallowDrawnClick(canvas);
 
+  /** @param {PointerEvent} event @returns {Position} */
   const placeOf = (event) => {
     const box = canvas.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
@@ -37,8 +47,7 @@ export function drawLassos(map, canvas, on) {
       event.preventDefault();
       map.dragPan.disable();
       points = [placeOf(event)];
-      line = svg("polygon", {});
-      drawing = svg("svg", { class: "lasso-frame", "aria-hidden": "true" }, line);
+      line.setAttribute("points", "");
       canvas.append(drawing);
       canvas.setPointerCapture(event.pointerId);
     },
@@ -47,7 +56,7 @@ export function drawLassos(map, canvas, on) {
   canvas.addEventListener("pointermove", (event) => {
     if (!points) return;
     const [x, y] = placeOf(event);
-    const [lastX, lastY] = points.at(-1);
+    const [lastX, lastY] = points[points.length - 1];
     if (Math.hypot(x - lastX, y - lastY) < STEP_PX) return;
     points.push([x, y]);
     line.setAttribute("points", points.map((point) => point.join(",")).join(" "));
@@ -59,11 +68,18 @@ export function drawLassos(map, canvas, on) {
     on.lasso(drawn.map((point) => map.unproject(point)).map(({ lng, lat }) => [lng, lat]));
   });
   canvas.addEventListener("pointercancel", stop);
-  addEventListener("keydown", (event) => event.key === "Escape" && stop() && click.ends(), true);
+  addEventListener(
+    "keydown",
+    (event) => {
+      if (event.key === "Escape" && stop()) click.ends();
+    },
+    true,
+  );
 }
 
-/** Whether a drawing is meant to go round something. */
+/** Whether a drawing is meant to go round something. @param {readonly (readonly number[])[]} points */
 export function isWide(points) {
+  /** @param {number[]} values */
   const spanOf = (values) => Math.max(...values) - Math.min(...values);
   return points.length > 2 && spanOf(points.map(([x]) => x)) + spanOf(points.map(([, y]) => y)) > LEAST_PX;
 }

@@ -1,14 +1,23 @@
 /** The layers menu: what lies under the map, what is shown of the ground, and the legend where the map has no room for it. */
 
-import { h } from "../dom.js";
+import { find, h, refill } from "../dom.js";
 import { t } from "../text.js";
 import { bandSample, legendItems } from "./legend.js";
 import { bandName, groupName } from "./shown.js";
-import { BANDS, GROUPS } from "./style.js";
+import { BANDS, GROUPS } from "./voltages.js";
 
-/** under: { choices: [{ value, words }], chosen(), choose(value) }; shown: createShown's; more: layers of the page: [{ words, isOn(), turn(isOn) }]. */
+/** @import { Shown } from "./shown.js" */
+/** @import { SwitchedLayer } from "./types.d.ts" */
+
+/**
+ * @param {object} parts
+ * @param {{ choices: { value: string, words: string }[], chosen: () => string, choose: (value: string) => void }} parts.under
+ * @param {Shown} parts.shown
+ * @param {SwitchedLayer[]} [parts.more] layers of the page
+ */
 export function layersMenu({ under, shown, more = [] }) {
   const menu = h("div", { class: "menu float layers-menu", role: "group", "aria-label": t("Layers") });
+  /** @param {string} words @param {boolean} isOn @param {(isOn: boolean) => void} turn @param {SVGElement | null} [drawing] */
   const check = (words, isOn, turn, drawing = null) =>
     h(
       "label",
@@ -17,21 +26,30 @@ export function layersMenu({ under, shown, more = [] }) {
         type: "checkbox",
         class: "check",
         checked: isOn,
-        onchange: (event) => (turn(event.target.checked), tellAll()),
+        onchange: (event) => {
+          turn(/** @type {HTMLInputElement} */ (event.target).checked);
+          tellAll();
+        },
       }),
       drawing,
       words,
     );
 
-  const all = h(
-    "button",
-    { type: "button", class: "button", onclick: () => (shown.showAll(), draw(), menu.querySelector("input").focus()) },
-    t("Show everything"),
-  );
-  const tellAll = () => (all.hidden = shown.isWhole());
+  const all = h("button", { type: "button", class: "button", onclick: showEverything }, t("Show everything"));
+  const tellAll = () => {
+    all.hidden = shown.isWhole();
+  };
 
+  function showEverything() {
+    shown.showAll();
+    draw();
+    find(menu, "input").focus();
+  }
+
+  let drawn = 0;
   function draw() {
-    const under_rows = under.choices.map(({ value, words }) =>
+    drawn += 1;
+    const underRows = under.choices.map(({ value, words }) =>
       h(
         "label",
         {},
@@ -46,8 +64,8 @@ export function layersMenu({ under, shown, more = [] }) {
         words,
       ),
     );
-    menu.replaceChildren(
-      ...(under.choices.length > 1 ? [h("h2", {}, t("Base map")), ...under_rows] : []),
+    refill(menu, String(drawn), () => [
+      ...(under.choices.length > 1 ? [h("h2", {}, t("Base map")), ...underRows] : []),
       h("h2", {}, t("Shown")),
       ...GROUPS.flatMap(({ key }) => [
         check(groupName(key), shown.hasGroup(key), (isOn) => shown.showGroup(key, isOn)),
@@ -65,12 +83,12 @@ export function layersMenu({ under, shown, more = [] }) {
             { class: "layers-more" },
             check(t("Also zones not in force now"), shown.hasResting(), shown.showResting),
           ),
-      ]).filter(Boolean),
+      ]),
       ...more.map(({ words, isOn, turn }) => check(words, isOn(), turn)),
       all,
       h("h2", { class: "legend-head" }, t("Legend")),
       h("ul", { class: "legend" }, legendItems()),
-    );
+    ]);
     tellAll();
   }
   draw();

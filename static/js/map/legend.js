@@ -3,16 +3,24 @@
 import { byId, h, svg } from "../dom.js";
 import { t } from "../text.js";
 import { bandName } from "./shown.js";
-import { voltageBand } from "./style.js";
+import { voltageBand } from "./voltages.js";
 
+/** @import { MapGeoJSONFeature } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { MapLibreMap } from "./types.d.ts" */
+
+/** @param {...SVGElement} drawing */
 const sample = (...drawing) =>
   svg("svg", { width: 26, height: 12, viewBox: "0 0 26 12", "aria-hidden": "true" }, drawing);
+/** @param {string} token @param {number} width @param {Record<string, string>} [rest] */
 const stroke = (token, width, rest = {}) =>
   svg("path", { d: "M1 6H25", stroke: `var(${token})`, "stroke-width": width, fill: "none", ...rest });
 
+/** @param {string} token @param {number} width @param {Record<string, string>} [rest] */
 const line = (token, width, rest) => () => sample(stroke(token, width, rest));
 
-/** Rows: the layer that shows it is in view, words, drawing. */
+/** @typedef {{ layer: string, words: string, draw: () => SVGElement, band?: string, kind?: string }} Row */
+
+/** Rows: the layer that shows it is in view, words, drawing. @type {Row[]} */
 const ROWS = [
   { layer: "lines", words: bandName("380"), band: "380", draw: line("--volt-400", 3) },
   { layer: "lines", words: bandName("200"), band: "200", draw: line("--volt-220", 2.2) },
@@ -174,22 +182,30 @@ const UAV_ROW = {
   },
 };
 
+/** @param {Pick<Row, "words" | "draw">[]} rows */
 const items = (rows) => rows.map(({ words, draw }) => h("li", {}, draw(), words));
 
 /** All rows, for where there is room. */
 export const legendItems = () => items([...ROWS, UAV_ROW]);
 
-/** The small drawing of a voltage band. */
-export const bandSample = (band) => ROWS.find((row) => row.band === band).draw();
+/** The small drawing of a voltage band. @param {string} band */
+export const bandSample = (band) => ROWS.find((row) => row.band === band)?.draw() ?? null;
 
+/** @param {Element} element @param {Element} frame */
 function isWithin(element, frame) {
   const [inner, outer] = [element.getBoundingClientRect(), frame.getBoundingClientRect()];
   return inner.right > outer.left && inner.left < outer.right && inner.bottom > outer.top && inner.top < outer.bottom;
 }
 
+/** @param {string} layer @param {string} [kind] */
 const keyOf = (layer, kind = "") => `${layer}/${kind}`;
 
-/** Which of a layer's rows shows a feature: its voltage, or whether a zone applies at times and rests now. */
+/**
+ * Which of a layer's rows shows a feature: its voltage, or whether a zone applies at times and rests now.
+ *
+ * @param {MapGeoJSONFeature} feature
+ * @returns {string}
+ */
 function kindOf({ layer, properties, state }) {
   if (layer.id === "lines") return voltageBand(properties.voltage);
   if (layer.id === "route-stops") return properties.kind;
@@ -197,7 +213,7 @@ function kindOf({ layer, properties, state }) {
   return state.resting ? "resting" : "timed";
 }
 
-/** A legend of what is in view. */
+/** A legend of what is in view. @param {MapLibreMap} map */
 export function mountLegend(map) {
   const legend = byId("legend");
   let shown = "";
@@ -207,7 +223,7 @@ export function mountLegend(map) {
     for (const feature of map.queryRenderedFeatures({ layers })) seen.add(keyOf(feature.layer.id, kindOf(feature)));
     const rows = ROWS.filter((row) => seen.has(keyOf(row.layer, row.kind ?? (row.layer === "lines" ? row.band : ""))));
     if ([...map.getContainer().querySelectorAll(".map-dart")].some((dart) => isWithin(dart, map.getContainer())))
-      rows.push(UAV_ROW);
+      rows.push({ layer: "", ...UAV_ROW });
     const words = rows.map((row) => row.words).join();
     if (words === shown) return;
     shown = words;

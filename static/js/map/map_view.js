@@ -7,13 +7,22 @@ import * as graticule from "./layers/graticule.js";
 import { maplibre } from "./maplibre.js";
 import { mapStyle, repaint } from "./style.js";
 
+/** @import { Box, MapFault, MapLibreMap, MapOptions, MapView } from "./types.d.ts" */
+
+/** @type {Box} */
 const WORLD = [-12, 25, 40, 62]; // where nothing is known of the ground
 
 const NEAREST_FIT = 15;
 const CONTROLS_PX = 68; // they stand at the right edge
 const FOOT_GAP_PX = 24;
 
-/** The map opens at the view in the page's address if that shows something of `extent`, else at `bounds`; both [west, south, east, north]. */
+/**
+ * The map opens at the view in the page's address if that shows something of `extent`, else at `bounds`.
+ *
+ * @param {HTMLElement} container
+ * @param {MapOptions} options
+ * @returns {MapView}
+ */
 export function createMap(container, { baseMap, satellite, under, describe, bounds, extent }) {
   const options = { tilesAddress: `${location.origin}/api/v1/tiles/{z}/{x}/{y}`, baseMap, satellite, under };
   let palette = readPalette();
@@ -52,41 +61,7 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
   });
   tellFaults(map);
 
-  let fitted = null; // the box that the map was brought to, until somebody moves it
-  let isFitting = false;
-  let footOfFit = 0;
-  let size = sizeOf(container);
-  map.on("movestart", () => {
-    const isResized = size !== sizeOf(container);
-    if (!isFitting && !isResized) fitted = null;
-  });
-  function fitTo(box, duration) {
-    fitted = box;
-    isFitting = true;
-    footOfFit = footOf(container);
-    map.fitBounds(
-      [
-        [box[0], box[1]],
-        [box[2], box[3]],
-      ],
-      { padding: paddingIn(container), maxZoom: NEAREST_FIT, duration },
-    );
-    isFitting = false;
-  }
-  // Legend and dock grow when routes come: what was fitted stays in view. A legend that shrinks is let be: its rows go by the zoom, and
-  // following it both ways could go on for ever.
-  function fitAgain() {
-    if (map.isMoving()) map.once("moveend", fitAgain);
-    else if (fitted && (size !== sizeOf(container) || footOf(container) > footOfFit)) {
-      const box = fitted; // a resize counts as a move
-      map.resize();
-      fitTo(box, 0);
-    }
-    size = sizeOf(container);
-  }
-  const watcher = new ResizeObserver(() => (fitted ? fitAgain() : (size = sizeOf(container))));
-  for (const element of [container, container.parentElement.querySelector(".map-edge")])
-    if (element) watcher.observe(element);
+  const fitTo = keepFitted(map, container);
 
   return {
     map,
@@ -118,24 +93,83 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
 }
 
 /**
+ * Fits boxes into what is visible of the map. What was fitted stays in view when legend and dock grow, until the map is moved. A legend
+ * that shrinks is let be: its rows go by the zoom, and following it both ways could go on for ever.
+ *
+ * @param {MapLibreMap} map
+ * @param {HTMLElement} container
+ * @returns {(box: Box, duration_ms: number) => void}
+ */
+function keepFitted(map, container) {
+  /** @type {Box | null} */
+  let fitted = null; // the box that the map was brought to, until somebody moves it
+  let isFitting = false;
+  let footOfFit = 0;
+  let size = sizeOf(container);
+  map.on("movestart", () => {
+    const isResized = size !== sizeOf(container);
+    if (!isFitting && !isResized) fitted = null;
+  });
+
+  /** @param {Box} box @param {number} duration_ms */
+  function fitTo(box, duration_ms) {
+    const [west, south, east, north] = box;
+    fitted = box;
+    isFitting = true;
+    footOfFit = footOf(container);
+    const how = { padding: paddingIn(container), maxZoom: NEAREST_FIT, duration: duration_ms };
+    map.fitBounds([west, south, east, north], how);
+    isFitting = false;
+  }
+
+  function fitAgain() {
+    if (map.isMoving()) map.once("moveend", fitAgain);
+    else if (fitted && (size !== sizeOf(container) || footOf(container) > footOfFit)) {
+      const box = fitted; // a resize counts as a move
+      map.resize();
+      fitTo(box, 0);
+    }
+    size = sizeOf(container);
+  }
+
+  const watcher = new ResizeObserver(() => {
+    if (fitted) fitAgain();
+    else size = sizeOf(container);
+  });
+  for (const element of [container, container.parentElement?.querySelector(".map-edge")]) {
+    if (element) watcher.observe(element);
+  }
+  return fitTo;
+}
+
+/**
  * What goes wrong in a map is told in the console, once in our words: every map needs this, or MapLibre tells it there as it is.
  *
  * A base map that cannot be reached is no fault of ours, the map is complete without it. Nor are tiles that were asked for when the network
  * went away, or the page: the page says so itself.
+ *
+ * @param {MapLibreMap} map
  */
 export function tellFaults(map) {
-  map.on("error", ({ error, sourceId }) => {
+  map.on("error", (event) => {
+    const { error, sourceId } = /** @type {MapFault} */ (event);
     if (sourceId === "base-map" || sourceId === "satellite") return;
     const isCutOff = error?.status === 0;
     if (error?.name !== "AbortError" && !isCutOff) console.warn(`map: ${error?.message ?? error}`);
   });
 }
 
+/** @param {HTMLElement} element */
 const sizeOf = ({ clientWidth, clientHeight }) => `${clientWidth} x ${clientHeight}`;
 
-const footOf = (container) => container.parentElement.querySelector(".map-edge")?.offsetHeight ?? 0;
+/** Height of the legend and attribution [px]. @param {HTMLElement} container */
+function footOf(container) {
+  /** @type {HTMLElement | null | undefined} */
+  const edge = container.parentElement?.querySelector(".map-edge");
+  return edge?.offsetHeight ?? 0;
+}
 
-/** Room for pills at the edges, for the controls on the right and for legend and attribution below. */
+/** Room for pills at the edges, for the controls on the right and for legend and attribution below. @param {HTMLElement} container */
 function paddingIn(container) {
   const { clientWidth: width, clientHeight: height } = container;
   const edge = Math.min(64, Math.min(width, height) / 6);
@@ -143,9 +177,10 @@ function paddingIn(container) {
   return { top: edge, bottom, left: edge, right: Math.min(Math.max(edge, CONTROLS_PX), width / 4) };
 }
 
-/** The box round positions, or null where there are none. */
+/** The box round positions, or null where there are none. @param {readonly (readonly number[])[]} positions @returns {Box | null} */
 export function boxAround(positions) {
   if (!positions.length) return null;
+  /** @type {Box} */
   const box = [Infinity, Infinity, -Infinity, -Infinity];
   for (const [longitude, latitude] of positions) {
     box[0] = Math.min(box[0], longitude);

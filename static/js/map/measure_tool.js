@@ -6,11 +6,19 @@ import { isTyping } from "../page/keyboard.js";
 import { say } from "../page/toast.js";
 import { t } from "../text.js";
 import { areaText, lengthText } from "../units.js";
+import { sourceOf } from "./style.js";
+
+/** @import { FeatureCollection, MapLibreMap, Position } from "./types.d.ts" */
 
 const NEAREST_M = 0.01;
 const RADIANS = Math.PI / 180;
 
-/** Direction of a leg at its beginning, degrees from north, 0 to 359. */
+/**
+ * Direction of a leg at its beginning, degrees from north, 0 to 359.
+ *
+ * @param {readonly number[]} from longitude, latitude
+ * @param {readonly number[]} to
+ */
 export function bearing_deg([lon1, lat1], [lon2, lat2]) {
   const [a, b, turn] = [lat1 * RADIANS, lat2 * RADIANS, (lon2 - lon1) * RADIANS];
   const angle = Math.atan2(
@@ -20,8 +28,14 @@ export function bearing_deg([lon1, lat1], [lon2, lat2]) {
   return (Math.round(angle / RADIANS) + 360) % 360;
 }
 
-/** What is drawn: the path, what the pointer would add, and points with the length as far as them. */
+/**
+ * What is drawn: the path, what the pointer would add, and points with the length as far as them.
+ *
+ * @param {Position[]} points
+ * @param {Position | null} [pointer]
+ */
 export function measured(points, pointer = null) {
+  /** @param {string} role @param {string} type @param {unknown} coordinates @param {string} [label] */
   const feature = (role, type, coordinates, label = "") => ({
     type: "Feature",
     properties: { role, label },
@@ -32,117 +46,152 @@ export function measured(points, pointer = null) {
   );
   if (points.length > 1) features.push(feature("path", "LineString", points));
   if (points.length && pointer) features.push(feature("next", "LineString", [points.at(-1), pointer]));
-  return { type: "FeatureCollection", features };
+  return /** @type {FeatureCollection} */ ({ type: "FeatureCollection", features });
 }
 
-/** The sentence of what has been measured. */
+/** The sentence of what has been measured. @param {Position[]} points @param {Position | null} [pointer] */
 export function measureWords(points, pointer = null) {
   const all = pointer && points.length ? [...points, pointer] : points;
   if (all.length < 2)
     return points.length
       ? t("Click the next point.")
       : t("Click where to measure from, or press Enter for the middle of the map.");
-  const leg = distance_m(all.at(-2), all.at(-1));
+  const [from, to] = all.slice(-2);
+  const leg = distance_m(from, to);
   const words = [lengthText(pathLength_m(all))];
   if (all.length > 2) words.push(t("last leg {length}", { length: lengthText(leg) }));
-  words.push(`${String(bearing_deg(all.at(-2), all.at(-1))).padStart(3, "0")}°`);
+  words.push(`${String(bearing_deg(from, to)).padStart(3, "0")}°`);
   if (all.length > 2) words.push(t("area {area}", { area: areaText(ringArea_m2(all)) }));
   return words.join(" · ");
 }
 
-/** frame: where the banner floats. button: switches it, unless the pointer belongs to something else. onSwitch(isOn) tells of both. */
-export function createMeasure(map, frame, button, { onSwitch = () => {}, isBusy = () => false } = {}) {
-  let points = null; // null while nothing is measured
-  let pointer = null;
-  let waits = false;
-  const words = h("span", { class: "measure-words" });
-  const undo = h("button", { type: "button", class: "text-button", onclick: () => back() }, t("Remove the last point"));
-  const banner = h(
-    "div",
-    { class: "map-banner measure-banner float", role: "group", "aria-label": t("Measuring"), hidden: true },
-    words,
-    undo,
-    h("button", { type: "button", class: "text-button", onclick: () => end() }, t("Done")),
-  );
-  frame.append(banner);
+/**
+ * @typedef {object} MeasureOptions
+ * @property {(isOn: boolean) => void} [onSwitch]
+ * @property {() => boolean} [isBusy] whether the pointer belongs to something else
+ */
 
-  function draw() {
-    waits = false;
-    map.getSource("measure")?.setData(points ? measured(points, pointer) : measured([]));
-    banner.hidden = points === null;
-    if (points === null) return;
-    words.textContent = measureWords(points, pointer);
-    undo.hidden = points.length === 0;
+/**
+ * @param {MapLibreMap} map
+ * @param {HTMLElement} frame where the banner floats
+ * @param {HTMLElement} button switches it
+ * @param {MeasureOptions} [options]
+ */
+export const createMeasure = (map, frame, button, options) => new Measure(map, frame, button, options);
+
+class Measure {
+  #map;
+  #frame;
+  #button;
+  #onSwitch;
+  #isBusy;
+  /** @type {Position[] | null} */
+  #points = null; // null while nothing is measured
+  /** @type {Position | null} */
+  #pointer = null;
+  #isDrawingDue = false;
+  #words = h("span", { class: "measure-words" });
+  #undo = h("button", { type: "button", class: "text-button" }, t("Remove the last point"));
+  #banner;
+
+  /** @param {MapLibreMap} map @param {HTMLElement} frame @param {HTMLElement} button @param {MeasureOptions} [options] */
+  constructor(map, frame, button, { onSwitch = () => {}, isBusy = () => false } = {}) {
+    this.#map = map;
+    this.#frame = frame;
+    this.#button = button;
+    this.#onSwitch = onSwitch;
+    this.#isBusy = isBusy;
+    this.#undo.addEventListener("click", () => this.#removeLast());
+    this.#banner = h(
+      "div",
+      { class: "map-banner measure-banner float", role: "group", "aria-label": t("Measuring"), hidden: true },
+      this.#words,
+      this.#undo,
+      h("button", { type: "button", class: "text-button", onclick: this.end }, t("Done")),
+    );
+    frame.append(this.#banner);
+    document.addEventListener("keydown", (event) => this.#press(event), true);
+    button.addEventListener("click", () => (this.isOn() ? this.end() : this.start()));
   }
 
-  function start(position = null) {
-    if (isBusy()) return;
-    points = position ? [position] : [];
-    pointer = null;
-    frame.dataset.measuring = "true";
-    button.setAttribute("aria-pressed", "true");
-    draw();
-    say(words.textContent);
-    onSwitch(true);
+  isOn = () => this.#points !== null;
+
+  /** @param {Position | null} [position] */
+  start(position = null) {
+    if (this.#isBusy()) return;
+    this.#points = position ? [position] : [];
+    this.#pointer = null;
+    this.#frame.dataset.measuring = "true";
+    this.#button.setAttribute("aria-pressed", "true");
+    this.#draw();
+    say(this.#words.textContent ?? "");
+    this.#onSwitch(true);
   }
 
-  function end() {
-    if (points === null) return false;
-    points = null;
-    delete frame.dataset.measuring;
-    button.setAttribute("aria-pressed", "false");
-    draw();
-    onSwitch(false);
+  /** Returns whether something was measured. */
+  end = () => {
+    if (this.#points === null) return false;
+    this.#points = null;
+    delete this.#frame.dataset.measuring;
+    this.#button.setAttribute("aria-pressed", "false");
+    this.#draw();
+    this.#onSwitch(false);
     return true;
-  }
+  };
 
-  function back() {
-    points.pop();
-    pointer = null;
-    draw();
-  }
-
-  const add = (position) => {
+  /** @param {Position} position */
+  add(position) {
+    const points = this.#points ?? [];
     const last = points.at(-1);
     if (last && last[0] === position[0] && last[1] === position[1]) return;
-    points.push(position);
-    pointer = null;
-    draw();
-    say(words.textContent);
-  };
+    this.#points = [...points, position];
+    this.#pointer = null;
+    this.#draw();
+    say(this.#words.textContent ?? "");
+  }
 
-  const acts = {
-    Escape: end,
-    Backspace: () => points.length > 0 && back(),
-    Delete: () => points.length > 0 && back(),
-    Enter: (target) => target.matches("canvas, body") && add(map.getCenter().toArray()),
-  };
-  document.addEventListener(
-    "keydown",
-    (event) => {
-      if (
-        points === null ||
-        event.defaultPrevented ||
-        isTyping(event.target) ||
-        document.querySelector("dialog[open], .menu")
-      )
-        return;
-      if (acts[event.key] && acts[event.key](event.target) !== false) event.preventDefault();
-    },
-    true,
-  );
-  button.addEventListener("click", () => (points === null ? start() : end()));
-  return {
-    isOn: () => points !== null,
-    start,
-    end,
-    add,
-    at(position) {
-      const last = points?.at(-1);
-      pointer = last && position && distance_m(last, position) < NEAREST_M ? null : position; // where the pointer was clicked is a point already
-      if (points === null || waits) return;
-      waits = true;
-      requestAnimationFrame(draw);
-    },
-  };
+  /** Where the pointer is; where it was clicked is a point already. @param {Position | null} position */
+  at(position) {
+    const last = this.#points?.at(-1);
+    this.#pointer = last && position && distance_m(last, position) < NEAREST_M ? null : position;
+    if (this.#points === null || this.#isDrawingDue) return;
+    this.#isDrawingDue = true;
+    requestAnimationFrame(() => this.#draw());
+  }
+
+  #draw() {
+    this.#isDrawingDue = false;
+    sourceOf(this.#map, "measure")?.setData(measured(this.#points ?? [], this.#points ? this.#pointer : null));
+    this.#banner.hidden = this.#points === null;
+    if (this.#points === null) return;
+    this.#words.textContent = measureWords(this.#points, this.#pointer);
+    this.#undo.hidden = this.#points.length === 0;
+  }
+
+  #removeLast() {
+    this.#points = (this.#points ?? []).slice(0, -1);
+    this.#pointer = null;
+    this.#draw();
+  }
+
+  /** @param {KeyboardEvent} event */
+  #press(event) {
+    if (this.#points === null || event.defaultPrevented || isTyping(event.target)) return;
+    if (document.querySelector("dialog[open], .menu")) return;
+    if (this.#actOf(event)) event.preventDefault();
+  }
+
+  /** Returns whether the key meant something. @param {KeyboardEvent} event */
+  #actOf({ key, target }) {
+    if (key === "Escape") return this.end();
+    if (key === "Backspace" || key === "Delete") {
+      if (!this.#points?.length) return false;
+      this.#removeLast();
+      return true;
+    }
+    if (key !== "Enter" || !(/** @type {Element} */ (target).matches("canvas, body"))) return false;
+    const { lng, lat } = this.#map.getCenter();
+    this.add([lng, lat]);
+    return true;
+  }
 }

@@ -11,17 +11,49 @@ const DART_PX = 28;
 const DART_LETTER_PX = 6;
 const DART_HEIGHT_PX = 16;
 
-/** How wide a pill with this label is drawn, about. */
+/**
+ * A target's pill at its place on the screen.
+ *
+ * @typedef {object} Pill
+ * @property {string} key
+ * @property {string} name
+ * @property {number | null} sequence of its UAV; null while it has none
+ * @property {string} letter
+ * @property {number} number
+ * @property {boolean} [isMissed]
+ * @property {number} x
+ * @property {number} y
+ */
+/** @typedef {{ id?: unknown, name: string, x: number, y: number }} Dart a UAV that is not of the mission, at its place on the screen */
+/**
+ * @template Item
+ * @typedef {{ members: Item[], x: number, y: number, label: string }} Group
+ */
+
+/** How wide a pill with this label is drawn, about. @param {string} label */
 export const pillWidth = (label) => Math.max(LEAST_WIDTH_PX, label.length * LETTER_PX + PADDING_PX);
 
+/** @param {Pick<Pill, "sequence" | "isMissed">} a @param {Pick<Pill, "sequence" | "isMissed">} b */
 const isSameKind = (a, b) => a.sequence === b.sequence && a.isMissed === b.isMissed;
 
-/** Groups of pills to draw, given their places on the screen: [{ members, x, y, label }]. Those of one UAV that would overlap become one. */
+/**
+ * Groups of pills to draw, given their places on the screen: [{ members, x, y, label }]. Those of one UAV that would overlap become one.
+ *
+ * @template {Pill} Item
+ * @param {Item[]} pills
+ * @returns {Group<Item>[]}
+ */
 export function mergePills(pills) {
   return merged(pills, groupLabel, (a, b) => isSameKind(a.members[0], b.members[0]) && overlap(a, b));
 }
 
-/** Groups of UAVs that would stand on each other or on each other's names: [{ members, x, y, label }]. x is where the mark stands, its label to the right. */
+/**
+ * Groups of UAVs that would stand on each other or on each other's names: [{ members, x, y, label }]. x is where the mark stands, its label to the right.
+ *
+ * @template {Dart} Item
+ * @param {Item[]} darts
+ * @returns {Group<Item>[]}
+ */
 export function mergeDarts(darts) {
   return merged(
     darts,
@@ -30,11 +62,20 @@ export function mergeDarts(darts) {
   );
 }
 
-/** A group stands where its first member does. */
+/**
+ * A group stands where its first member does.
+ *
+ * @template {{ x: number, y: number }} Item
+ * @param {Item[]} items
+ * @param {(members: Item[]) => string} labelOf
+ * @param {(a: Group<Item>, b: Group<Item>) => boolean} overlaps
+ * @returns {Group<Item>[]}
+ */
 function merged(items, labelOf, overlaps) {
   let groups = items.map((item) => ({ x: item.x, y: item.y, members: [item], label: labelOf([item]) }));
   for (let isMerged = true; isMerged; ) {
     isMerged = false;
+    /** @type {typeof groups} */
     const kept = [];
     for (const group of groups) {
       const near = kept.find((other) => overlaps(other, group));
@@ -49,13 +90,17 @@ function merged(items, labelOf, overlaps) {
   return groups;
 }
 
+/** @param {string} label */
 const dartWidth = (label) => DART_PX + label.length * DART_LETTER_PX;
+/** @param {Dart[]} members */
 const dartLabel = (members) => (members.length === 1 ? members[0].name : countText(members.length, "UAV"));
 
+/** @param {Group<Pill>} a @param {Group<Pill>} b */
 function overlap(a, b) {
   return Math.abs(a.x - b.x) < (pillWidth(a.label) + pillWidth(b.label)) / 2 && Math.abs(a.y - b.y) < HEIGHT_PX;
 }
 
+/** @param {Pill[]} members */
 function groupLabel(members) {
   const [first] = members;
   if (first.isMissed) return members.length === 1 ? "×" : `× ${countText(members.length, "target")}`;
@@ -65,12 +110,18 @@ function groupLabel(members) {
   );
 }
 
-/** "C3", "C3–4", "C1, 3–4": letter once, runs with a dash; "C, 12 targets" where that would be long. */
+/**
+ * "C3", "C3–4", "C1, 3–4": letter once, runs with a dash; "C, 12 targets" where that would be long.
+ *
+ * @param {string} letter
+ * @param {number[]} numbers
+ */
 export function mergedLabel(letter, numbers) {
+  /** @type {number[][]} */
   const runs = [];
   for (const number of [...numbers].sort((a, b) => a - b)) {
     const run = runs.at(-1);
-    if (run && number === run.at(-1) + 1) run.push(number);
+    if (run && number === run[run.length - 1] + 1) run.push(number);
     else runs.push([number]);
   }
   const label = letter + runs.map((run) => (run.length > 1 ? `${run[0]}–${run.at(-1)}` : `${run[0]}`)).join(", ");

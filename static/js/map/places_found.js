@@ -5,11 +5,22 @@ import { t } from "../text.js";
 import { coordinateText } from "../units.js";
 import { positionIn } from "./coordinates_read.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { ZoneCollection } from "../api_types.d.ts" */
+/** @import { Box, FoundPlace, MapLibreMap } from "./types.d.ts" */
+
+/** @typedef {{ name: string, position: number[], icon: string, detail: string }} NamedThing */
+
 const COORDINATES_ZOOM = 15;
 const MOST_ZONES = 4;
 const MOST_NAMED = 4;
 
-/** The place that coordinates name, as a list of one or none: [{ icon, label, detail, position, zoom }]. */
+/**
+ * The place that coordinates name, as a list of one or none: [{ icon, label, detail, position, zoom }].
+ *
+ * @param {string} text
+ * @returns {FoundPlace[]}
+ */
 export function coordinatesFound(text) {
   const found = positionIn(text);
   if (!found) return [];
@@ -29,7 +40,13 @@ export function coordinatesFound(text) {
   ];
 }
 
-/** Of [{ name, position, icon, detail }], those whose name holds the text; at most four. */
+/**
+ * Of [{ name, position, icon, detail }], those whose name holds the text; at most four.
+ *
+ * @param {string} text
+ * @param {NamedThing[]} things
+ * @returns {FoundPlace[]}
+ */
 export function namedFound(text, things) {
   const wanted = text.trim().toLocaleLowerCase();
   if (!wanted) return [];
@@ -39,9 +56,16 @@ export function namedFound(text, things) {
     .map(({ name, ...rest }) => ({ label: name, zoom: COORDINATES_ZOOM - 1, ...rest }));
 }
 
-/** Zones by name: [{ icon, label, detail, box }]. */
+/**
+ * Zones by name: [{ icon, label, detail, box }].
+ *
+ * @param {string} text
+ * @param {AbortSignal} [signal]
+ * @returns {Promise<FoundPlace[]>}
+ */
 async function zonesFound(text, signal) {
-  const { data } = await get(`/zones?text=${encodeURIComponent(text)}&limit=${MOST_ZONES}`, { signal });
+  const address = `/zones?text=${encodeURIComponent(text)}&limit=${MOST_ZONES}`;
+  const { data } = /** @type {Answer<ZoneCollection>} */ (await get(address, { signal }));
   return data.features.map(({ geometry, properties }) => ({
     icon: "zone",
     label: properties.name,
@@ -50,9 +74,11 @@ async function zonesFound(text, signal) {
   }));
 }
 
+/** @param {readonly unknown[]} coordinates @returns {Box} */
 function boxOf(coordinates) {
+  /** @type {Box} */
   const box = [Infinity, Infinity, -Infinity, -Infinity];
-  for (const [longitude, latitude] of coordinates.flat(2)) {
+  for (const [longitude, latitude] of /** @type {number[][]} */ (coordinates.flat(2))) {
     box[0] = Math.min(box[0], longitude);
     box[1] = Math.min(box[1], latitude);
     box[2] = Math.max(box[2], longitude);
@@ -64,6 +90,9 @@ function boxOf(coordinates) {
 /**
  * Places for a text: [{ icon, label, detail, and position with zoom, or box }]. A text that is a pair of coordinates names nothing else.
  * `things` are what the page knows by name, such as UAVs: [{ name, position, icon, detail }].
+ *
+ * @param {string} text
+ * @param {{ signal?: AbortSignal, things?: NamedThing[] }} [options]
  */
 export async function placesFound(text, { signal, things = [] } = {}) {
   const coordinates = coordinatesFound(text);
@@ -71,9 +100,20 @@ export async function placesFound(text, { signal, things = [] } = {}) {
   return [...namedFound(text, things), ...(await zonesFound(text.trim(), signal))];
 }
 
-/** Brings a found place into view. */
+/**
+ * Brings a found place into view.
+ *
+ * @param {MapLibreMap} map
+ * @param {FoundPlace} place
+ * @param {(box: Box) => void} fit
+ */
 export function goTo(map, place, fit) {
-  if (place.box) return fit(place.box);
+  if (place.box || !place.position) {
+    if (place.box) fit(place.box);
+    return;
+  }
   const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-  return map.easeTo({ center: place.position, zoom: Math.max(map.getZoom(), place.zoom), duration: calm ? 0 : 350 });
+  const [longitude, latitude] = place.position;
+  const zoom = Math.max(map.getZoom(), place.zoom ?? 0);
+  map.easeTo({ center: [longitude, latitude], zoom, duration: calm ? 0 : 350 });
 }

@@ -2,64 +2,89 @@
 
 import { isInForce } from "../domain/zones_in_force.js";
 import { t } from "../text.js";
-import { BANDS, bandOf, GROUPS, TILES } from "./style.js";
+import { BANDS, bandOf, GROUPS, TILES } from "./voltages.js";
+
+/** @import { FilterSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { MapLibreMap } from "./types.d.ts" */
+
+/** @typedef {ReturnType<typeof createShown>} Shown */
 
 const LOOK_AGAIN_MS = 60_000;
 const ZONE_LAYERS = ["zones", "zone_labels"];
 
-export const groupName = (key) =>
-  ({
-    lines: t("Power lines"),
-    towers: t("Towers"),
-    railways: t("Railways"),
-    bridges: t("Bridges"),
-    zones: t("No-fly zones"),
-  })[key];
+/** @type {Record<string, string>} */
+const GROUP_NAMES = {
+  lines: t("Power lines"),
+  towers: t("Towers"),
+  railways: t("Railways"),
+  bridges: t("Bridges"),
+  zones: t("No-fly zones"),
+};
+/** @param {string} key */
+export const groupName = (key) => GROUP_NAMES[key];
 
-export const bandName = (key) =>
-  ({
-    380: t("380 kV and over"),
-    200: t("200 to 379 kV"),
-    100: t("100 to 199 kV"),
-    50: t("50 to 99 kV"),
-    0: t("under 50 kV"),
-    none: t("Voltage not stated"),
-  })[key];
+/** @type {Record<string, string>} */
+const BAND_NAMES = {
+  380: t("380 kV and over"),
+  200: t("200 to 379 kV"),
+  100: t("100 to 199 kV"),
+  50: t("50 to 99 kV"),
+  0: t("under 50 kV"),
+  none: t("Voltage not stated"),
+};
+/** @param {string} key of BANDS */
+export const bandName = (key) => BAND_NAMES[key];
 
-/** Filter of a layer with some voltages and some zones left out; `own` is what the style says. Without anything left out it is `own`. */
+/**
+ * Filter of a layer with some voltages and some zones left out; `own` is what the style says. Without anything left out it is `own`.
+ *
+ * @param {FilterSpecification | null} own
+ * @param {{ group: string, bands: Set<string>, resting: number[] }} hidden
+ * @returns {FilterSpecification | null}
+ */
 export function filterOf(own, { group, bands, resting }) {
+  /** @type {unknown[]} */
   const more = [];
   if ((group === "lines" || group === "towers") && bands.size)
     more.push(["!", ["in", bandOf, ["literal", [...bands]]]]);
   if (group === "zones" && resting.length) more.push(["!", ["in", ["id"], ["literal", resting]]]);
-  return more.length ? ["all", ...(own ? [own] : []), ...more] : (own ?? null);
+  if (!more.length) return own ?? null;
+  return /** @type {FilterSpecification} */ (/** @type {unknown} */ (["all", ...(own ? [own] : []), ...more]));
 }
 
-/** onChange() is called when what is hidden changes. */
+/** onChange() is called when what is hidden changes. @param {MapLibreMap} map @param {() => void} [onChange] */
 export function createShown(map, onChange = () => {}) {
+  /** @type {Set<string>} */
   const groups = new Set(); // hidden ones
+  /** @type {Set<string>} */
   const bands = new Set(); // hidden ones
+  /** @type {Map<string, FilterSpecification | null>} */
   const own = new Map(); // layer → filter of the style
   let hidesResting = false;
+  /** @type {number[]} */
   let resting = [];
 
-  function filterLayers(only = null) {
+  /** @param {string} [only] key of a group */
+  function filterLayers(only) {
     for (const { key, layers } of GROUPS) {
       if (only && key !== only) continue;
       for (const id of layers) {
         if (!own.has(id)) own.set(id, map.getFilter(id) ?? null);
-        map.setFilter(id, filterOf(own.get(id), { group: key, bands, resting: hidesResting ? resting : [] }));
+        map.setFilter(id, filterOf(own.get(id) ?? null, { group: key, bands, resting: hidesResting ? resting : [] }));
       }
     }
   }
 
   /** Zones whose schedule says that they do not apply now, of those that the map has loaded. */
   function lookAtZones() {
+    /** @type {Map<number, boolean>} */
     const seen = new Map();
     for (const feature of map.querySourceFeatures(TILES, { sourceLayer: "zones", filter: ["has", "schedule"] })) {
-      if (seen.has(feature.id)) continue;
-      const [place] = feature.geometry.coordinates.flat(feature.geometry.type === "MultiPolygon" ? 2 : 1);
-      seen.set(feature.id, isInForce(JSON.parse(feature.properties.schedule), Date.now(), place) === false);
+      const id = Number(feature.id);
+      const { geometry } = feature;
+      if (seen.has(id) || !(geometry.type === "Polygon" || geometry.type === "MultiPolygon")) continue;
+      const place = geometry.type === "Polygon" ? geometry.coordinates[0][0] : geometry.coordinates[0][0][0];
+      seen.set(id, isInForce(JSON.parse(feature.properties.schedule), Date.now(), place) === false);
     }
     for (const [id, rests] of seen) {
       for (const sourceLayer of ZONE_LAYERS)
@@ -78,7 +103,9 @@ export function createShown(map, onChange = () => {}) {
 
   map.on("load", () => {
     let isDue = true;
-    map.on("sourcedata", ({ sourceId }) => (isDue ||= sourceId === TILES));
+    map.on("sourcedata", (event) => {
+      if ("sourceId" in event && event.sourceId === TILES) isDue = true;
+    });
     map.on("idle", () => {
       if (isDue) lookAtZones();
       isDue = false;
@@ -92,22 +119,27 @@ export function createShown(map, onChange = () => {}) {
   }
 
   return {
+    /** @param {string} key */
     hasGroup: (key) => !groups.has(key),
+    /** @param {string} key */
     hasBand: (key) => !bands.has(key),
     hasResting: () => !hidesResting,
     isWhole: () => !groups.size && !bands.size && !hidesResting,
+    /** @param {string} key @param {boolean} visible */
     showGroup(key, visible) {
       if (visible) groups.delete(key);
       else groups.add(key);
-      for (const id of GROUPS.find((group) => group.key === key).layers)
+      for (const id of GROUPS.find((group) => group.key === key)?.layers ?? [])
         map.setLayoutProperty(id, "visibility", visible ? "visible" : "none");
       onChange();
     },
+    /** @param {string} key @param {boolean} visible */
     showBand(key, visible) {
       if (visible) bands.delete(key);
       else bands.add(key);
       changed();
     },
+    /** @param {boolean} visible */
     showResting(visible) {
       hidesResting = !visible;
       changed();

@@ -8,6 +8,10 @@ import { t } from "../text.js";
 import { lengthText, whenText } from "../units.js";
 import { zoneDetails, zoneDetailsKept } from "./zone_details.js";
 
+/** @import { Limit, ZoneDetailProperties } from "../api_types.d.ts" */
+/** @import { MapThing, Position, ThingProperties } from "./types.d.ts" */
+
+/** @returns {Record<string, string>} */
 const KIND_WORDS = () => ({
   tower: t("Power tower"),
   line: t("Power line"),
@@ -21,7 +25,7 @@ const KIND_WORDS = () => ({
   subway: t("Subway"),
 });
 
-/** What the codes of ED-269 and ED-318 mean. */
+/** What the codes of ED-269 and ED-318 mean. @returns {Record<string, string>} */
 const CODES = () => ({
   PROHIBITED: t("prohibited"),
   REQ_AUTHORISATION: t("authorisation required"),
@@ -38,7 +42,11 @@ const CODES = () => ({
   OTHER: t("other"),
 });
 
-/** The words of a zone file's code: "AIR_TRAFFIC, NATURE" becomes "Air traffic, nature". Other texts stay as they are. */
+/**
+ * The words of a zone file's code: "AIR_TRAFFIC, NATURE" becomes "Air traffic, nature". Other texts stay as they are.
+ *
+ * @param {string} text
+ */
 export function plainWords(text) {
   if (!/^[A-Z][A-Z_]+(, ?[A-Z][A-Z_]+)*$/.test(text)) return text;
   const words = text
@@ -48,9 +56,19 @@ export function plainWords(text) {
   return words[0].toUpperCase() + words.slice(1);
 }
 
+/** @typedef {MapThing & { place?: Position | null }} PlacedThing with the place that was pointed at */
+/** @typedef {(content: (Node | string)[]) => void} Refresh */
+
+/** @param {string | false | null | undefined} words */
 const quiet = (words) => words && h("div", { class: "quiet-text" }, words);
 
-/** `refresh(content)` is called with more, once it is known. */
+/**
+ * `refresh(content)` is called with more, once it is known.
+ *
+ * @param {PlacedThing} thing
+ * @param {Refresh} refresh
+ * @returns {Node[]}
+ */
 export function tipOf(thing, refresh) {
   if (thing.kind === "zone") return zoneTip(thing, refresh);
   const { properties } = thing;
@@ -58,13 +76,18 @@ export function tipOf(thing, refresh) {
   const isSaid = !properties.voltages || `${properties.label} ${properties.detail ?? ""}`.includes(properties.voltages);
   return [
     h("strong", {}, properties.label),
-    h("div", {}, [KIND_WORDS()[properties.subtype] ?? KIND_WORDS()[thing.kind], length].filter(Boolean).join(", ")),
+    h(
+      "div",
+      {},
+      [KIND_WORDS()[properties.subtype ?? ""] ?? KIND_WORDS()[thing.kind], length].filter(Boolean).join(", "),
+    ),
     quiet(properties.detail),
     quiet(isSaid ? "" : properties.voltages),
     properties.flyable === false && quiet(t("Not part of the flying network")),
-  ].filter(Boolean);
+  ].filter((part) => part instanceof Node);
 }
 
+/** @param {PlacedThing} thing @param {Refresh} refresh */
 function zoneTip(thing, refresh) {
   const kept = zoneDetailsKept(thing.id);
   zoneDetails(thing.id).then(
@@ -74,23 +97,32 @@ function zoneTip(thing, refresh) {
   return zoneContent(thing, kept);
 }
 
+/** @param {number | null | undefined} value_m @param {string | undefined} reference @returns {Limit | null} */
 const limitOf = (value_m, reference) =>
-  value_m === undefined || value_m === null ? null : { value_m, reference: reference ?? "" };
+  value_m === undefined || value_m === null
+    ? null
+    : { value_m, reference: /** @type {Limit["reference"]} */ (reference ?? "") };
 
-/** Whether the zone applies now, in words; by the schedule in the tile. */
+/**
+ * Whether the zone applies now, in words; by the schedule in the tile.
+ *
+ * @param {ThingProperties} properties
+ * @param {Position} place
+ */
 function nowWords({ schedule }, place) {
   if (!schedule) return "";
-  return { true: t("In force now"), false: t("Not in force now"), null: t("Whether it is in force now is not known") }[
-    isInForce(JSON.parse(schedule), Date.now(), place)
-  ];
+  const holds = isInForce(JSON.parse(schedule), Date.now(), place);
+  if (holds === null) return t("Whether it is in force now is not known");
+  return holds ? t("In force now") : t("Not in force now");
 }
 
+/** @param {PlacedThing} thing @param {ZoneDetailProperties | null} details @param {string} [problem] */
 function zoneContent({ properties, place }, details, problem = "") {
   const limits = {
     lower_limit: limitOf(properties.lower_limit_m, properties.lower_reference),
     upper_limit: limitOf(properties.upper_limit_m, properties.upper_reference),
   };
-  const why = [properties.restriction, properties.reason].filter(Boolean).map(plainWords).join(" · ");
+  const why = [properties.restriction, properties.reason].flatMap((text) => (text ? plainWords(text) : [])).join(" · ");
   return [
     h("strong", {}, properties.name),
     h("span", { class: "zone-chip" }, icon("circle-alert", "small"), t("No-fly zone")),
@@ -117,10 +149,10 @@ function zoneContent({ properties, place }, details, problem = "") {
     why && h("div", {}, why),
     quiet(problem || (details ? sourceWords(details) : t("Reading times and source…"))),
     quiet(properties.schedule ? t("A plan with a departure counts it at its times, any other plan at all times.") : ""),
-  ].filter(Boolean);
+  ].filter((part) => part instanceof Node);
 }
 
-/** Where the zone is from, and how old what is known of it is. */
+/** Where the zone is from, and how old what is known of it is. @param {ZoneDetailProperties} details */
 function sourceWords({ zone_set, source, is_edited, updated_at }) {
   if (!source) return t("Drawn here, changed {when}", { when: whenText(updated_at) });
   const name = zone_set ?? source.file_name;

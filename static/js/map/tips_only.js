@@ -3,7 +3,14 @@
 import { routeClicks } from "./click_router.js";
 import { tipOf } from "./tips.js";
 
-/** controls: of mountControls; tip: of createTip. */
+/** @import { MapControls, MapLibreMap, MapThing, Tip } from "./types.d.ts" */
+
+/**
+ * controls: of mountControls; tip: of createTip.
+ *
+ * @param {MapLibreMap} map
+ * @param {{ controls: MapControls, tip: Tip }} parts
+ */
 export function showTipsOnly(map, { controls, tip }) {
   map.on("movestart", () => tip(null));
   routeClicks(map, {
@@ -11,17 +18,16 @@ export function showTipsOnly(map, { controls, tip }) {
     kinds: () => null,
     click: (thing, place) =>
       controls.click(place) ||
-      (thing &&
-        tip(`${thing.kind} ${thing.id}`, map.project(place), (refresh) => tipOf({ ...thing, place }, refresh), {
-          soon: true,
-        })),
+      (thing && tip(keyOf(thing), map.project(place), (fill) => tipOf({ ...thing, place }, fill), { soon: true })),
     hover(thing, point, place) {
       controls.hover(place);
-      tip(thing && !controls.isMeasuring() ? `${thing.kind} ${thing.id}` : null, point, (refresh) =>
-        tipOf({ ...thing, place }, refresh),
-      );
+      if (thing && !controls.isMeasuring()) tip(keyOf(thing), point, (fill) => tipOf({ ...thing, place }, fill));
+      else tip(null);
     },
     box: () => {},
     lasso: () => {},
   });
 }
+
+/** @param {MapThing} thing */
+const keyOf = ({ kind, id }) => `${kind} ${id}`;

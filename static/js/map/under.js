@@ -2,21 +2,21 @@
 
 import { t } from "../text.js";
 
+/** @import { MapPage } from "./types.d.ts" */
+
 const KEY = "spanwise.base-map";
 
-const offered = (page) =>
-  [
-    ["base-map", page.baseMap],
-    ["satellite", page.satellite],
-  ]
-    .filter(([, layer]) => layer.tiles)
-    .map(([name]) => name);
+/** @param {MapPage} page */
+const offered = (page) => [...(page.baseMap.tiles ? ["base-map"] : []), ...(page.satellite.tiles ? ["satellite"] : [])];
+/** @type {Record<string, string>} */
 const WORDS = { "base-map": t("Map"), satellite: t("Satellite") };
 
+/** @param {MapPage} page */
 export function underChoices(page) {
   return [{ value: "", words: t("None") }, ...offered(page).map((value) => ({ value, words: WORDS[value] }))];
 }
 
+/** @param {MapPage} page @returns {string} */
 export function rememberedUnder(page) {
   const names = offered(page);
   let remembered = null;
@@ -25,9 +25,10 @@ export function rememberedUnder(page) {
   } catch {
     /* storage is closed: the first one offered */
   }
-  return remembered === "" || names.includes(remembered) ? remembered : (names[0] ?? "");
+  return remembered !== null && ["", ...names].includes(remembered) ? remembered : (names[0] ?? "");
 }
 
+/** @param {string} name */
 export function rememberUnder(name) {
   try {
     localStorage.setItem(KEY, name);

@@ -2,16 +2,22 @@
 
 import { get } from "../api.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { ZoneDetailFeature, ZoneDetailProperties } from "../api_types.d.ts" */
+
 const KEPT_MS = 60_000;
+/** @type {Map<number, { at: number, properties: ZoneDetailProperties }>} */
 const known = new Map(); // zone → { at, properties }
 
-/** What was read of it last, however old; null where nothing was. */
+/** What was read of it last, however old; null where nothing was. @param {number} id */
 export const zoneDetailsKept = (id) => known.get(id)?.properties ?? null;
 
+/** @param {number} id */
 export async function zoneDetails(id) {
   const kept = known.get(id);
   if (kept && Date.now() - kept.at < KEPT_MS) return kept.properties;
-  const { properties } = (await get(`/zones/${id}`)).data;
+  const { data } = /** @type {Answer<ZoneDetailFeature>} */ (await get(`/zones/${id}`));
+  const { properties } = data;
   known.set(id, { at: Date.now(), properties });
   return properties;
 }

@@ -14,7 +14,7 @@ import * as zonesLayer from "../map/layers/zones.js";
 import { partOfLine } from "../map/line_part.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { goTo } from "../map/places_found.js";
-import { TILES } from "../map/style.js";
+import { TILES } from "../map/voltages.js";
 import { tipOf } from "../map/tips.js";
 import { rememberedUnder } from "../map/under.js";
 import { t, tn } from "../text.js";

@@ -1,6 +1,6 @@
 /** Which assets can be inspected, over their own drawing: filled where they can, hollow where not. Only what is loaded gets a state. */
 
-import { TILES } from "../style.js";
+import { TILES } from "../voltages.js";
 
 const SOURCE_LAYERS = ["lines", "railways", "bridges", "bridge_points", "towers"];
 const CODE = { yes: 1, partly: 2, no: 3 };

@@ -1,7 +1,7 @@
 /** Routes: one colour per UAV, drawn on the right of the way, with arrows. */
 
 import { ROUTE_COUNT, routeNumber } from "../../domain/palette.js";
-import { routeOpacity } from "../style.js";
+import { routeOpacity } from "../page_layers.js";
 
 const LAYERS = {
   "routes-casing": "line-opacity",

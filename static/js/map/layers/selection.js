@@ -1,6 +1,6 @@
 /** What is picked as a whole (lines), and what the pointer or a list row is at. */
 
-import { TILES } from "../style.js";
+import { TILES } from "../voltages.js";
 
 let lit = null; // the zone that is ringed
 

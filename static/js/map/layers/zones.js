@@ -1,6 +1,6 @@
 /** Zones that something on the page speaks of: a ring round each. */
 
-import { TILES } from "../style.js";
+import { TILES } from "../voltages.js";
 
 const SOURCE_LAYER = "zones";
 const litOn = new WeakMap(); // map → ids
