@@ -9,22 +9,28 @@ import { t } from "../text.js";
 import { numberText } from "../units.js";
 import { boundsIn, GROUPS, wrongWayRound } from "./words.js";
 
-/** address: of the limits in the API; title and hint in words. onSaved(stated) after each change that was kept. Rejects with ApiError. */
-export async function openAlertLimits({ address, title, hint, onSaved = () => {} }) {
-  const { data } = await get(address);
-  const fieldOf = ({ name, label, unit, factor }) => [
-    name,
-    numberField(name, label, data.stated[name], {
-      factor,
-      unit,
-      digits: 1,
-      usual: data.usual[name],
-      ...boundsIn(data.bounds[name], factor),
-    }),
-  ];
-  const groups = GROUPS.map(({ title: words, limits }) => ({ words, fields: limits.map(fieldOf) }));
-  const fields = new Map(groups.flatMap((group) => group.fields));
-  const labelOf = (name) => fields.get(name).label;
+/** @import { Answer } from "../api.js" */
+/** @import { AlertLimits } from "../api_types.d.ts" */
+/** @import { Figures, Limit } from "./words.js" */
+
+/** @typedef {ReturnType<typeof numberField>} NumberField */
+
+/**
+ * Opens the form. Rejects with ApiError.
+ *
+ * @param {object} options
+ * @param {string} options.address of the limits in the API
+ * @param {string} options.title
+ * @param {string} options.hint
+ * @param {(stated: Figures) => void} [options.onSaved] after each change that was kept
+ */
+export async function openAlertLimits({ address, title, hint, onSaved }) {
+  const { data } = /** @type {Answer<AlertLimits>} */ (await get(address));
+  const groups = GROUPS.map((group) => ({
+    words: group.title,
+    fields: group.limits.map((limit) => fieldOf(limit, data)),
+  }));
+  const fields = new Map(groups.flatMap((group) => group.fields).map((field) => [field.name, field]));
   const wrong = h("p", { class: "field-error", role: "alert", hidden: true });
   const save = h("button", { class: "button primary" }, t("Save"));
   const form = h(
@@ -36,7 +42,7 @@ export async function openAlertLimits({ address, title, hint, onSaved = () => {}
         "fieldset",
         { class: "limit-group" },
         h("legend", {}, words),
-        own.map(([, field]) => field.element),
+        own.map((field) => field.element),
       ),
     ),
     wrong,
@@ -48,11 +54,16 @@ export async function openAlertLimits({ address, title, hint, onSaved = () => {}
         {
           type: "button",
           class: "button quiet",
-          onclick: () => fields.forEach(({ input, tell }) => ((input.value = ""), tell(""))),
+          onclick: () => {
+            for (const { input, tell } of fields.values()) {
+              input.value = "";
+              tell("");
+            }
+          },
         },
         t("All as usual"),
       ),
-      h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
+      h("button", { type: "button", class: "button", onclick: () => void dialog.close() }, t("Cancel")),
       save,
     ),
   );
@@ -63,50 +74,70 @@ export async function openAlertLimits({ address, title, hint, onSaved = () => {}
     form,
   );
 
+  /** @param {string} words */
   function say(words) {
     wrong.hidden = !words;
     wrong.textContent = words;
   }
 
-  function tellWrongWay(stated) {
-    const faults = wrongWayRound(stated, data.usual);
-    for (const [upper, lower] of faults)
-      fields.get(upper).tell(
-        t("Not below “{other}” ({figure}). Raise this one, or lower the other.", {
-          other: labelOf(lower),
-          figure: numberText((stated[lower] ?? data.usual[lower]) / factorOf(lower), 0),
-        }),
-      );
-    if (faults.length) fields.get(faults[0][0]).input.focus();
-    return faults.length > 0;
-  }
-
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
     say("");
-    fields.forEach(({ tell }) => tell(""));
-    const stated = Object.fromEntries(
-      [...fields].map(([name, field]) => [name, field.read()]).filter(([, value]) => value !== null),
-    );
-    if (tellWrongWay(stated)) return;
+    /** @type {Figures} */
+    const stated = {};
+    for (const [name, field] of fields) {
+      field.tell("");
+      const value = field.read();
+      if (value !== null) stated[name] = value;
+    }
+    if (showWrongOrder(fields, stated, data.usual)) return;
     save.setAttribute("aria-busy", "true");
     try {
-      const { data: kept } = await put(address, stated);
+      const { data: kept } = /** @type {Answer<AlertLimits>} */ (await put(address, stated));
       dialog.close();
       toast(t("Saved. Alerts begin there from now on."));
-      onSaved(kept.stated);
+      onSaved?.(kept.stated);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       const [place] = Object.keys(error.details ?? {});
-      if (fields.has(place)) fields.get(place).tell(t("The server does not take this figure."));
+      fields.get(place)?.tell(t("The server does not take this figure."));
       say(error.isAway ? t("The server cannot be reached. What you typed stays here.") : error.message);
     } finally {
       save.removeAttribute("aria-busy");
     }
   });
   open(dialog);
-  fields.values().next().value.input.focus();
+  groups[0].fields[0].input.focus();
+}
+
+/** @param {Limit} limit @param {AlertLimits} known */
+const fieldOf = ({ name, label, unit, factor }, { stated, usual, bounds }) =>
+  numberField(name, label, stated[name], {
+    factor,
+    unit,
+    digits: 1,
+    usual: usual[name],
+    ...boundsIn(bounds[name], factor),
+  });
+
+/**
+ * Marks the fields of pairs that stand the wrong way round. Returns whether there are any.
+ *
+ * @param {Map<string, NumberField>} fields
+ * @param {Figures} stated
+ * @param {Figures} usual
+ */
+function showWrongOrder(fields, stated, usual) {
+  const faults = wrongWayRound(stated, usual);
+  for (const [upper, lower] of faults)
+    fields.get(upper)?.tell(
+      t("Not below “{other}” ({figure}). Raise this one, or lower the other.", {
+        other: fields.get(lower)?.label ?? lower,
+        figure: numberText((stated[lower] ?? usual[lower]) / (FACTORS.get(lower) ?? 1), 0),
+      }),
+    );
+  if (faults.length) fields.get(faults[0][0])?.input.focus();
+  return faults.length > 0;
 }
 
 const FACTORS = new Map(GROUPS.flatMap(({ limits }) => limits.map(({ name, factor }) => [name, factor])));
-const factorOf = (name) => FACTORS.get(name);

@@ -9,7 +9,10 @@ const SECONDS = { unit: "s", factor: 1 };
 const PERCENT = { unit: "%", factor: 1 };
 const BARE = { unit: "", factor: 1 };
 
-/** [{ title, limits: [{ name, label, unit, factor }] }]; names as the API has them. */
+/** @typedef {{ name: string, label: string, unit: string, factor: number }} Limit `factor`: stored units in one of the shown unit */
+/** @typedef {Record<string, number>} Figures by a limit's name */
+
+/** @type {{ title: string, limits: Limit[] }[]} names as the API has them */
 export const GROUPS = [
   {
     title: t("Link"),
@@ -72,19 +75,25 @@ const ORDERED = [
   ["height_off_m", "height_off_critical_m"],
 ];
 
-/** The upper ones of pairs that stand the wrong way round: [[its name, the lower one's name]]. What is not stated is as usual. */
+/**
+ * The upper ones of pairs that stand the wrong way round: [[its name, the lower one's name]]. What is not stated is as usual.
+ *
+ * @param {Figures} stated
+ * @param {Figures} usual
+ */
 export function wrongWayRound(stated, usual) {
+  /** @param {string} name */
   const inForce = (name) => stated[name] ?? usual[name];
   return ORDERED.filter(([lower, upper]) => inForce(lower) > inForce(upper)).map(([lower, upper]) => [upper, lower]);
 }
 
-/** Bounds in a shown unit, to a tenth inwards: { min, max }. */
+/** Bounds in a shown unit, to a tenth inwards: { min, max }. @param {readonly number[]} bounds @param {number} factor */
 export const boundsIn = ([least, most], factor) =>
   factor === 1
     ? { min: least, max: most }
     : { min: Math.ceil((least / factor) * 10) / 10, max: Math.floor((most / factor) * 10) / 10 };
 
-/** What is stated, in a few words each: [[label, figure]]. */
+/** What is stated, in a few words each: [[label, figure]]. @param {Figures} stated */
 export const statedLines = (stated) =>
   GROUPS.flatMap(({ title, limits }) =>
     limits

@@ -1,5 +1,10 @@
 /** What the list is asked for: from the page's address to a request and back. Values in, values out. */
 
+/** @typedef {"text" | "state" | "author" | "uav" | "changed" | "from" | "to" | "order"} TextName */
+/** @typedef {"stale" | "deleted"} FlagName */
+/** @typedef {Record<TextName, string> & Record<FlagName, boolean>} Asked */
+
+/** @type {Readonly<Asked>} */
 export const NOTHING = Object.freeze({
   text: "",
   state: "",
@@ -13,35 +18,40 @@ export const NOTHING = Object.freeze({
   order: "-changed",
 });
 export const PAGE_SIZE = 25;
+/** @type {Record<string, number>} */
 export const LAST_DAYS = { 1: 1, 7: 7, 30: 30 };
+/** @type {FlagName[]} */
 const FLAGS = ["stale", "deleted"];
+const NAMES = /** @type {(keyof Asked)[]} */ (Object.keys(NOTHING));
 
+/** @param {string} search of the page's address */
 export function askedOf(search) {
   const parameters = new URLSearchParams(search);
-  const asked = { ...NOTHING };
-  for (const name of Object.keys(NOTHING))
-    if (parameters.has(name))
-      asked[name] = FLAGS.includes(name) ? parameters.get(name) === "true" : parameters.get(name);
-  return asked;
+  return /** @type {Asked} */ ({
+    ...Object.fromEntries(NAMES.map((name) => [name, parameters.get(name) ?? NOTHING[name]])),
+    ...Object.fromEntries(FLAGS.map((name) => [name, parameters.get(name) === "true"])),
+  });
 }
 
-/** "?state=draft&order=name": what differs from nothing. */
+/** "?state=draft&order=name": what differs from nothing. @param {Asked} asked */
 export function searchOf(asked) {
   const parameters = new URLSearchParams();
-  for (const [name, value] of Object.entries(asked)) if (value !== NOTHING[name]) parameters.set(name, String(value));
+  for (const name of NAMES) if (asked[name] !== NOTHING[name]) parameters.set(name, String(asked[name]));
   const search = parameters.toString();
   return search ? `?${search}` : "";
 }
 
+/** @param {string} day "2026-11-30" */
 const startOf = (day, plusDays = 0) => {
   const [year, month, date] = day.split("-").map(Number);
   return new Date(year, month - 1, date + plusDays).toISOString();
 };
 
-/** The path and query of the API. Days are the reader's: the last one counts whole. */
+/** The path and query of the API. Days are the reader's: the last one counts whole. @param {Asked} asked @param {Date} [now] */
 export function requestOf(asked, now = new Date()) {
   const parameters = new URLSearchParams({ limit: String(PAGE_SIZE), order: asked.order });
-  for (const name of ["state", "author", "uav"]) if (asked[name]) parameters.set(name, asked[name]);
+  for (const name of /** @type {const} */ (["state", "author", "uav"]))
+    if (asked[name]) parameters.set(name, asked[name]);
   if (asked.text.trim()) parameters.set("text", asked.text.trim());
   for (const name of FLAGS) if (asked[name]) parameters.set(name, "true");
   if (LAST_DAYS[asked.changed]) {
@@ -56,14 +66,20 @@ export function requestOf(asked, now = new Date()) {
   return `/missions?${parameters}`;
 }
 
-/** How many of the fields behind "More filters" are set. */
-export function countOfFields(asked) {
-  return ["author", "uav", "changed", "stale", "deleted"].filter((name) => asked[name]).length;
+/** How many of the fields behind "More filters" are set. @param {Asked} asked */
+export function countOfFields({ author, uav, changed, stale, deleted }) {
+  return [author, uav, changed, stale, deleted].filter(Boolean).length;
 }
 
+/** @param {Asked} asked */
 export const isFiltered = (asked) => searchOf({ ...asked, order: NOTHING.order }) !== "";
 
-/** A click on a column: names and people up first, figures and times down first, then the other way. */
+/**
+ * A click on a column: names and people up first, figures and times down first, then the other way.
+ *
+ * @param {string} order
+ * @param {string} column
+ */
 export function nextOrder(order, column) {
   const first = ["name", "author", "state"].includes(column) ? column : `-${column}`;
   const other = first.startsWith("-") ? column : `-${column}`;

@@ -1,12 +1,25 @@
 /** One row of the list: drawing, name to be changed in its place, figures, and what can be done. */
 
-import { h, icon } from "../dom.js";
+import { find, h, icon } from "../dom.js";
 import { routeLetter, routeNumber } from "../domain/palette.js";
 import { menuOf, toggleMenu } from "../page/chrome.js";
 import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
 import { durationText, exactText, lengthText, whenText } from "../units.js";
 import { sketch } from "./sketch.js";
+
+/** @import { MissionSummary } from "../api_types.d.ts" */
+
+/**
+ * @typedef {object} RowActs
+ * @property {boolean} isChosen
+ * @property {(isChosen: boolean) => void} choose
+ * @property {(name: string) => unknown} rename
+ * @property {() => unknown} duplicate
+ * @property {() => unknown} remove
+ * @property {() => unknown} restore
+ * @property {() => unknown} copyAddress
+ */
 
 export const STATES = {
   draft: t("Draft"),
@@ -21,7 +34,7 @@ export const STATES = {
 const EDITABLE = ["draft", "planned"];
 const MOST_DOTS = 24;
 
-/** "39 of 46 targets" where a plan leaves some out. */
+/** "39 of 46 targets" where a plan leaves some out. @param {MissionSummary} mission */
 function reachedWords({ target_count, unassigned_count }) {
   if (!unassigned_count) return tn(target_count, "{count} target", "{count} targets");
   return tn(target_count, "{reached} of {count} target", "{reached} of {count} targets", {
@@ -29,9 +42,15 @@ function reachedWords({ target_count, unassigned_count }) {
   });
 }
 
-/** The name turned into a field: Enter keeps, Escape leaves it as it was. */
-export function editName(cell, mission, rename) {
-  const link = cell.querySelector("a, strong");
+/**
+ * Turns the name into a field: Enter keeps, Escape leaves it as it was.
+ *
+ * @param {HTMLElement} cell
+ * @param {MissionSummary} mission
+ * @param {RowActs["rename"]} rename
+ */
+function editName(cell, mission, rename) {
+  const link = find(cell, "a, strong", HTMLElement);
   const field = h("input", {
     class: "input",
     maxlength: "200",
@@ -39,6 +58,7 @@ export function editName(cell, mission, rename) {
     "aria-label": t("New name of {name}", { name: mission.name }),
   });
   let isDone = false;
+  /** @param {boolean} keep */
   const end = (keep) => {
     if (isDone) return;
     isDone = true;
@@ -58,6 +78,7 @@ export function editName(cell, mission, rename) {
   field.select();
 }
 
+/** @param {MissionSummary} mission */
 function staleMark({ has_other_uavs }) {
   const [words, title] = has_other_uavs
     ? [
@@ -71,16 +92,46 @@ function staleMark({ has_other_uavs }) {
   return h("span", { class: "stale", title }, icon("triangle-alert", "small"), words);
 }
 
-/** acts: { isChosen, choose, rename, duplicate, remove, restore }. */
+/**
+ * A row of the list.
+ *
+ * @param {MissionSummary} mission
+ * @param {{ canPlan: boolean, acts: RowActs }} how
+ */
 export function missionRow(mission, { canPlan, acts }) {
   const address = `/missions/${mission.id}`;
   const isDeleted = Boolean(mission.deleted_at);
-  const isPlanned = mission.total_length_m !== null && mission.total_length_m !== undefined;
-  const mayChange = canPlan && EDITABLE.includes(mission.state);
-  const name = h(
+  const isPlanned = mission.total_length_m !== null;
+  const name = nameCell(mission, address);
+  return h(
+    "tr",
+    {
+      dataset: { id: mission.id },
+      class: isDeleted ? "deleted" : null,
+      onclick: (event) => {
+        const at = /** @type {Element} */ (event.target);
+        if (!isDeleted && !at.closest("a, button, input, label, .choice")) location.href = address;
+      },
+    },
+    canPlan && choiceCell(mission, acts),
+    h("td", { class: "drawing" }, sketch(mission)),
+    name,
+    h("td", { class: "state" }, h("span", { class: `chip ${mission.state}` }, STATES[mission.state] ?? mission.state)),
+    targetsCell(mission),
+    uavsCell(mission),
+    h("td", { class: "number distance" }, lengthText(mission.total_length_m)),
+    h("td", { class: "number time" }, isPlanned ? durationText(mission.duration_s) : "—"),
+    h("td", { class: "changed", title: exactText(mission.updated_at) }, whenText(mission.updated_at)),
+    h("td", { class: "acts" }, isDeleted ? canPlan && restoreButton(acts) : actButtons(mission, canPlan, acts, name)),
+  );
+}
+
+/** @param {MissionSummary} mission @param {string} address */
+function nameCell(mission, address) {
+  return h(
     "td",
     { class: "name" },
-    isDeleted ? h("strong", { tabindex: "-1" }, mission.name) : h("a", { href: address }, mission.name),
+    mission.deleted_at ? h("strong", { tabindex: "-1" }, mission.name) : h("a", { href: address }, mission.name),
     h(
       "span",
       { class: "caption" },
@@ -89,18 +140,76 @@ export function missionRow(mission, { canPlan, acts }) {
       mission.is_stale && staleMark(mission),
     ),
   );
-  const quick = (label, image, act) =>
-    h(
-      "button",
-      {
-        type: "button",
-        class: "icon-button quick",
-        "aria-label": `${label}: ${mission.name}`,
-        title: label,
-        onclick: act,
-      },
-      icon(image),
-    );
+}
+
+/** @param {MissionSummary} mission @param {RowActs} acts */
+function choiceCell(mission, acts) {
+  const box = h("input", {
+    type: "checkbox",
+    class: "check",
+    checked: acts.isChosen,
+    "aria-label": t("Choose {name}", { name: mission.name }),
+  });
+  box.addEventListener("change", () => acts.choose(box.checked));
+  return h("td", { class: "choice" }, h("label", {}, box));
+}
+
+/** @param {MissionSummary} mission */
+function targetsCell(mission) {
+  const count = mission.target_count;
+  return h(
+    "td",
+    { class: "targets" },
+    count > 0 &&
+      count <= MOST_DOTS &&
+      h(
+        "div",
+        { class: "dots", "aria-hidden": "true" },
+        Array.from({ length: count }, (_, place) =>
+          h("i", { class: place < count - mission.unassigned_count ? null : "missed" }),
+        ),
+      ),
+    h("span", { class: "caption" }, reachedWords(mission)),
+  );
+}
+
+/** @param {MissionSummary} mission */
+function uavsCell({ uav_count: count }) {
+  return h(
+    "td",
+    { class: "uavs" },
+    count
+      ? h(
+          "span",
+          { class: "letters", role: "img", "aria-label": tn(count, "{count} UAV", "{count} UAVs") },
+          Array.from({ length: count }, (_, sequence) =>
+            h("span", { class: `letter route-${routeNumber(sequence)}`, "aria-hidden": "true" }, routeLetter(sequence)),
+          ),
+        )
+      : h("span", { class: "caption" }, t("none")),
+  );
+}
+
+/** @param {RowActs} acts */
+const restoreButton = (acts) =>
+  h(
+    "button",
+    { type: "button", class: "button", onclick: acts.restore },
+    icon("archive-restore", "small"),
+    t("Bring back"),
+  );
+
+/**
+ * The quick buttons and the menu with all acts.
+ *
+ * @param {MissionSummary} mission
+ * @param {boolean} canPlan
+ * @param {RowActs} acts
+ * @param {HTMLElement} name the cell in which it is renamed
+ */
+function actButtons(mission, canPlan, acts, name) {
+  const mayChange = canPlan && EDITABLE.includes(mission.state);
+  const edit = () => editName(name, mission, acts.rename);
   const more = h(
     "button",
     {
@@ -114,93 +223,32 @@ export function missionRow(mission, { canPlan, acts }) {
   );
   more.addEventListener("click", () =>
     toggleMenu(more, () =>
-      menuOf(
-        mission.name,
-        [
-          { icon: "map", label: t("Open"), act: () => void (location.href = address) },
-          mayChange && { icon: "pencil", label: t("Rename"), act: () => editName(name, mission, acts.rename) },
-          canPlan && { icon: "copy", label: t("Duplicate"), act: acts.duplicate },
-          { icon: "link", label: t("Copy the address"), act: acts.copyAddress },
-          mayChange && { icon: "trash-2", label: t("Delete"), act: acts.remove },
-        ].filter(Boolean),
-      ),
+      menuOf(mission.name, [
+        { icon: "map", label: t("Open"), act: () => location.assign(`/missions/${mission.id}`) },
+        ...(mayChange ? [{ icon: "pencil", label: t("Rename"), act: edit }] : []),
+        ...(canPlan ? [{ icon: "copy", label: t("Duplicate"), act: acts.duplicate }] : []),
+        { icon: "link", label: t("Copy the address"), act: acts.copyAddress },
+        ...(mayChange ? [{ icon: "trash-2", label: t("Delete"), act: acts.remove }] : []),
+      ]),
     ),
   );
-  const does = isDeleted
-    ? canPlan &&
-      h(
-        "button",
-        { type: "button", class: "button", onclick: acts.restore },
-        icon("archive-restore", "small"),
-        t("Bring back"),
-      )
-    : [
-        mayChange && quick(t("Rename"), "pencil", () => editName(name, mission, acts.rename)),
-        canPlan && quick(t("Duplicate"), "copy", acts.duplicate),
-        more,
-      ];
-  return h(
-    "tr",
-    {
-      dataset: { id: mission.id },
-      class: isDeleted ? "deleted" : null,
-      onclick: (event) => {
-        if (!isDeleted && !event.target.closest("a, button, input, label, .choice")) location.href = address;
-      },
-    },
-    canPlan &&
-      h(
-        "td",
-        { class: "choice" },
-        h(
-          "label",
-          {},
-          h("input", {
-            type: "checkbox",
-            class: "check",
-            checked: acts.isChosen,
-            "aria-label": t("Choose {name}", { name: mission.name }),
-            onchange: (event) => acts.choose(event.target.checked),
-          }),
-        ),
-      ),
-    h("td", { class: "drawing" }, sketch(mission)),
-    name,
-    h("td", { class: "state" }, h("span", { class: `chip ${mission.state}` }, STATES[mission.state] ?? mission.state)),
-    h(
-      "td",
-      { class: "targets" },
-      mission.target_count > 0 &&
-        mission.target_count <= MOST_DOTS &&
-        h(
-          "div",
-          { class: "dots", "aria-hidden": "true" },
-          Array.from({ length: mission.target_count }, (_, place) =>
-            h("i", { class: place < mission.target_count - mission.unassigned_count ? null : "missed" }),
-          ),
-        ),
-      h("span", { class: "caption" }, reachedWords(mission)),
-    ),
-    h(
-      "td",
-      { class: "uavs" },
-      mission.uav_count
-        ? h(
-            "span",
-            { class: "letters", role: "img", "aria-label": tn(mission.uav_count, "{count} UAV", "{count} UAVs") },
-            Array.from({ length: mission.uav_count }, (_, sequence) =>
-              h(
-                "span",
-                { class: `letter route-${routeNumber(sequence)}`, "aria-hidden": "true" },
-                routeLetter(sequence),
-              ),
-            ),
-          )
-        : h("span", { class: "caption" }, t("none")),
-    ),
-    h("td", { class: "number distance" }, isPlanned ? lengthText(mission.total_length_m) : "—"),
-    h("td", { class: "number time" }, isPlanned ? durationText(mission.duration_s) : "—"),
-    h("td", { class: "changed", title: exactText(mission.updated_at) }, whenText(mission.updated_at)),
-    h("td", { class: "acts" }, does),
-  );
+  return [
+    mayChange && quickButton(mission, t("Rename"), "pencil", edit),
+    canPlan && quickButton(mission, t("Duplicate"), "copy", acts.duplicate),
+    more,
+  ];
 }
+
+/** @param {MissionSummary} mission @param {string} label @param {string} image @param {() => unknown} act */
+const quickButton = (mission, label, image, act) =>
+  h(
+    "button",
+    {
+      type: "button",
+      class: "icon-button quick",
+      "aria-label": `${label}: ${mission.name}`,
+      title: label,
+      onclick: act,
+    },
+    icon(image),
+  );

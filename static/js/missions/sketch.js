@@ -9,7 +9,16 @@ const HEIGHT_PX = 56;
 const MARGIN_PX = 8;
 const LEAST_SPAN_DEG = 0.008; // of latitude: a single target is drawn with its surroundings
 
-/** From degrees to places in the drawing, shape kept, so that all of `places` fit. Longitudes shrink with the latitude. Null without places. */
+/** @import { MissionSummary } from "../api_types.d.ts" */
+
+/** @typedef {(place: readonly number[]) => [number, number]} Projection from longitude, latitude to pixels */
+
+/**
+ * From degrees to places in the drawing, shape kept, so that all of `places` fit. Longitudes shrink with the latitude. Null without places.
+ *
+ * @param {readonly (readonly number[])[]} places
+ * @returns {Projection | null}
+ */
 export function fitTo(places, width = WIDTH_PX, height = HEIGHT_PX, margin = MARGIN_PX, leastSpan = LEAST_SPAN_DEG) {
   if (!places.length) return null;
   const latitude = places.reduce((sum, [, lat]) => sum + lat, 0) / places.length;
@@ -25,6 +34,7 @@ export function fitTo(places, width = WIDTH_PX, height = HEIGHT_PX, margin = MAR
   return ([lon, lat]) => [lon * shrink * scale + offX, -lat * scale + offY];
 }
 
+/** @param {readonly (readonly number[])[]} line @param {Projection} place */
 const pathOf = (line, place) =>
   line
     .map(
@@ -35,7 +45,7 @@ const pathOf = (line, place) =>
     )
     .join("");
 
-/** { sketch, places, lines } of a mission in the list. */
+/** @param {Partial<Pick<MissionSummary, "sketch" | "places" | "lines">>} mission */
 export function sketch({ sketch: routes = [], places = [], lines = [] }) {
   const place = fitTo([...routes.flat(), ...places]);
   if (!place) return h("span", { class: "sketch none" }, icon("pencil", "small"), t("nothing picked"));
