@@ -1,10 +1,14 @@
-"""The demo region: a made valley with power lines, railways, bridges, zones, hills and UAV bases, the same for the same seed.
+"""Two made regions: Elme Valley, the demo region with zones, hills and UAV bases, and Quillmoor, mapped as real regions are.
 
-Nothing in it exists. Its files are read by the same importers as any other data.
+Nothing in them exists. The same seed gives the same region. Their files are read by the same importers as any other data.
 """
 
 from inspection.demo_region.osm_file import write_osm_file
 from inspection.demo_region.place import BASES, DEFAULT_SEED, REGION_NAME, Base, BasedUav
+from inspection.demo_region.quillmoor import QUILLMOOR_NAME, make_quillmoor
 from inspection.demo_region.region import DemoRegion, make_region
 
-__all__ = ["BASES", "DEFAULT_SEED", "REGION_NAME", "Base", "BasedUav", "DemoRegion", "make_region", "write_osm_file"]
+__all__ = [
+    "BASES", "DEFAULT_SEED", "QUILLMOOR_NAME", "REGION_NAME", "Base", "BasedUav", "DemoRegion", "make_quillmoor", "make_region",
+    "write_osm_file",
+]  # fmt: skip

@@ -1,11 +1,10 @@
-"""The demo region as an .osm.pbf file: the same region gives the same bytes."""
+"""A made region as an .osm.pbf file: the same region gives the same bytes."""
 
 from pathlib import Path
 
 import osmium
 
 from inspection.demo_region.osm_objects import OsmDrawing
-from inspection.demo_region.place import HALF_HEIGHT_M, HALF_WIDTH_M, lon_lat
 
 GENERATOR = "Spanwise synthetic demo region"
 TIMESTAMP = "2026-01-01T00:00:00Z"  # fixed, or two files of one region would differ
@@ -16,12 +15,7 @@ def write_osm_file(path: Path, drawing: OsmDrawing) -> None:
     header = osmium.io.Header()
     header.set("generator", GENERATOR)
     header.set("osmosis_replication_timestamp", TIMESTAMP)
-    header.add_box(
-        osmium.osm.Box(
-            osmium.osm.Location(*lon_lat(-HALF_WIDTH_M, -HALF_HEIGHT_M)),
-            osmium.osm.Location(*lon_lat(HALF_WIDTH_M, HALF_HEIGHT_M)),
-        )
-    )
+    header.add_box(osmium.osm.Box(*(osmium.osm.Location(*corner) for corner in drawing.corners())))
     with osmium.SimpleWriter(str(path), header=header, overwrite=True) as writer:
         for node in drawing.nodes:
             writer.add_node(

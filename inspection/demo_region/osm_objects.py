@@ -1,9 +1,9 @@
-"""OSM nodes and ways of the demo region while it is being drawn."""
+"""OSM nodes and ways of a made region while it is being drawn."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from inspection.demo_region.place import FloatArray, lon_lat
+from inspection.demo_region.place import HALF_HEIGHT_M, HALF_WIDTH_M, FloatArray, Point, lon_lat
 from inspection.geodesy import LonLat
 
 # OSM counts its ids upward and had reached about 1.4e10 for nodes in 2026. Made objects start far above, so that they never meet
@@ -29,18 +29,32 @@ class OsmWay:
 
 @dataclass
 class OsmDrawing:
-    """Collects nodes and ways and numbers them in the order in which they are drawn."""
+    """Collects nodes and ways and numbers them in the order in which they are drawn.
 
+    Points are east and north [m] of `centre`, which itself is east and north [m] of the centre of Elme Valley.
+    """
+
+    centre: Point = (0.0, 0.0)
+    half_size_m: Point = (HALF_WIDTH_M, HALF_HEIGHT_M)
+    first_id: int = FIRST_ID
     nodes: list[OsmNode] = field(default_factory=list)
     ways: list[OsmWay] = field(default_factory=list)
 
+    def position(self, east_m: float, north_m: float) -> LonLat:
+        return lon_lat(self.centre[0] + east_m, self.centre[1] + north_m)
+
+    def corners(self) -> tuple[LonLat, LonLat]:
+        """Return the south-west and the north-east corner of the region's box."""
+        east_m, north_m = self.half_size_m
+        return self.position(-east_m, -north_m), self.position(east_m, north_m)
+
     def add_node(self, at: Sequence[float] | FloatArray, tags: Tags | None = None) -> int:
-        node = OsmNode(FIRST_ID + len(self.nodes), lon_lat(float(at[0]), float(at[1])), dict(tags or {}))
+        node = OsmNode(self.first_id + len(self.nodes), self.position(float(at[0]), float(at[1])), dict(tags or {}))
         self.nodes.append(node)
         return node.id
 
     def add_way(self, node_ids: Iterable[int], tags: Tags) -> int:
-        way = OsmWay(FIRST_ID + len(self.ways), tuple(node_ids), dict(tags))
+        way = OsmWay(self.first_id + len(self.ways), tuple(node_ids), dict(tags))
         self.ways.append(way)
         return way.id
 
