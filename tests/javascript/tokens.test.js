@@ -3,8 +3,8 @@ import { readFileSync } from "node:fs";
 import test from "node:test";
 
 import { contrast, readPalette } from "../../static/js/domain/palette.js";
-import { mapStyle } from "../../static/js/map/style.js";
-import { PICKABLE, voltageColour } from "../../static/js/map/voltages.js";
+import { mapStyle } from "../../static/js/map/look/style.js";
+import { PICKABLE, voltageColour } from "../../static/js/map/look/voltages.js";
 
 const css = readFileSync(new URL("../../static/css/tokens.css", import.meta.url), "utf8").replace(
   /\/\*[\s\S]*?\*\//g,

@@ -2,7 +2,7 @@
 
 import { get } from "../api.js";
 import { distance_m, nearestOnLine } from "../domain/geodesy.js";
-import { TILES } from "../map/voltages.js";
+import { TILES } from "../map/look/voltages.js";
 
 const REACH_PX = matchMedia("(pointer: coarse)").matches ? 18 : 11;
 const LAYERS = ["towers", "towers-high", "towers-ring", "lines", "lines-unknown", "railways", "bridges"];

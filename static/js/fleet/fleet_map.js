@@ -4,7 +4,7 @@ import { byId, h, icon } from "../dom.js";
 import { setAttribution } from "../map/furniture.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { maplibre } from "../map/maplibre.js";
-import { rememberedUnder } from "../map/under.js";
+import { rememberedUnder } from "../map/look/under.js";
 import { onTheme } from "../page/theme.js";
 import { t } from "../text.js";
 

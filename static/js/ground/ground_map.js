@@ -7,7 +7,7 @@ import { createTip } from "../map/furniture.js";
 import * as selectionLayer from "../map/layers/selection.js";
 import { createMap } from "../map/map_view.js";
 import { tipOf } from "../map/tips.js";
-import { rememberedUnder } from "../map/under.js";
+import { rememberedUnder } from "../map/look/under.js";
 import { t } from "../text.js";
 
 const SETTLED_MS = 350;

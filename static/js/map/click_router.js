@@ -4,7 +4,7 @@ import { h } from "../dom.js";
 import { inWords } from "./asset_names.js";
 import { swallowDrawnClick } from "./drawn_click.js";
 import { drawLassos } from "./lasso.js";
-import { PICKABLE, TILES } from "./voltages.js";
+import { PICKABLE, TILES } from "./look/voltages.js";
 
 /** @import { MapGeoJSONFeature } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 /** @import { ClickHandlers, Geometry, MapLibreMap, MapThing, PickKind, Position, ScreenPoint, ThingProperties } from "./types.d.ts" */

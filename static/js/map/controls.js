@@ -8,12 +8,12 @@ import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { coordinateText } from "../units.js";
 import { mountCoordinates, mountScale, setAttribution } from "./furniture.js";
-import { layersMenu } from "./layers_menu.js";
-import { mountLegend } from "./legend.js";
+import { layersMenu } from "./look/layers_menu.js";
+import { mountLegend } from "./look/legend.js";
+import { createShown } from "./look/shown.js";
+import { rememberedUnder, rememberUnder, underChoices } from "./look/under.js";
+import { TILES } from "./look/voltages.js";
 import { createMeasure } from "./measure_tool.js";
-import { createShown } from "./shown.js";
-import { rememberedUnder, rememberUnder, underChoices } from "./under.js";
-import { TILES } from "./voltages.js";
 
 /** @import { Palette } from "../domain/palette.js" */
 /** @import { Ground, MapControls, MapFault, MapLibreMap, MapPage, MapView, Position, SwitchedLayer } from "./types.d.ts" */

@@ -41,7 +41,7 @@ function withSigns(text) {
   if (!/[NSEWO]/.test(text) || /[°'"]/.test(text)) return text;
   return text.replace(
     /(\d+)\s+(\d+(?:\.\d+)?)(?:\s+(\d+(?:\.\d+)?))?/g,
-    (whole, degrees, minutes, seconds) => `${degrees}°${minutes}'${seconds ? `${seconds}"` : ""}`,
+    (_whole, degrees, minutes, seconds) => `${degrees}°${minutes}'${seconds ? `${seconds}"` : ""}`,
   );
 }
 

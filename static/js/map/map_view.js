@@ -2,10 +2,10 @@
 
 import { readPalette } from "../domain/palette.js";
 import { hashOf, showsAnything, viewOf } from "./address.js";
-import { provideImages } from "./images.js";
 import * as graticule from "./layers/graticule.js";
+import { provideImages } from "./look/images.js";
+import { mapStyle, repaint } from "./look/style.js";
 import { maplibre } from "./maplibre.js";
-import { mapStyle, repaint } from "./style.js";
 
 /** @import { Box, MapFault, MapLibreMap, MapOptions, MapView } from "./types.d.ts" */
 

@@ -6,7 +6,7 @@ import { isTyping } from "../page/keyboard.js";
 import { say } from "../page/toast.js";
 import { t } from "../text.js";
 import { areaText, lengthText } from "../units.js";
-import { sourceOf } from "./style.js";
+import { sourceOf } from "./look/style.js";
 
 /** @import { FeatureCollection, MapLibreMap, Position } from "./types.d.ts" */
 

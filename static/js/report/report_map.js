@@ -8,7 +8,7 @@ import { createTip } from "../map/furniture.js";
 import * as routesLayer from "../map/layers/routes.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { showTipsOnly } from "../map/tips_only.js";
-import { rememberedUnder } from "../map/under.js";
+import { rememberedUnder } from "../map/look/under.js";
 import { createTargetPills } from "../monitor/map/target_pills.js";
 import { createUavMarkers } from "../monitor/map/uav_markers.js";
 import { ESTIMATED, MEASURED, momentOf } from "../record/track.js";

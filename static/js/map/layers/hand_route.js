@@ -1,16 +1,31 @@
 /** A route that is changed by hand: its points as handles, middles of its legs, and how each changed leg stands. */
 
+import { setPaint, sourceOf } from "../look/style.js";
+
+/** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { FeatureCollection, MapLibreMap, Position } from "../types.d.ts" */
+
+/** @type {FeatureCollection} */
 const NOTHING = { type: "FeatureCollection", features: [] };
+/** @typedef {{ position: Position, isByHand: boolean }} HandPoint */
+/** @typedef {{ chosen: number | null, stateOf: (leg: number) => string, isFree: (point: any) => boolean }} HandLook */
+
 const SOURCE = "hand-route";
 const LEAST_MIDDLE_PX = 44; // a shorter leg has no room for a handle
 
+/** @type {HandLook} */
+const NO_LOOK = { chosen: null, stateOf: () => "stored", isFree: () => false };
+
 const touch = matchMedia("(pointer: coarse)").matches;
+/** @param {string} token of the style sheet */
 const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
+/** @param {string} role */
 const isRole = (role) => ["==", ["get", "role"], role];
 
-/** Small from afar, where a route has hundreds. */
+/** Small from afar, where a route has hundreds. @param {number} px */
 const radius = (px) => ["case", ["get", "chosen"], touch ? 10 : 8, ["get", "fixed"], Math.min(3, px), px];
 
+/** @returns {LayerSpecification[]} */
 function layers() {
   const [ink, casing, raised, accent, critical, quiet] = [
     "--ink",
@@ -21,6 +36,7 @@ function layers() {
     "--ink-2",
   ].map(read);
   const round = { "line-cap": "round", "line-join": "round" };
+  /** @param {string} id @param {string} state @param {object} paint */
   const leg = (id, state, paint) => ({
     id,
     type: "line",
@@ -29,7 +45,7 @@ function layers() {
     layout: round,
     paint,
   });
-  return [
+  const layers = [
     {
       id: "hand-casing",
       type: "line",
@@ -68,16 +84,24 @@ function layers() {
       },
     },
   ];
+  return /** @type {LayerSpecification[]} */ (layers);
 }
 
+/** @param {string} role @param {string} type @param {unknown} coordinates @param {object} rest */
 const feature = (role, type, coordinates, rest) => ({
   type: "Feature",
   properties: { role, ...rest },
   geometry: { type, coordinates },
 });
 
-/** points, chosen: see hand_route.js; stateOf(leg): "stored", "clear", "bad" or "asked"; isFree(point). Null points take it away. */
-export function show(map, points, { chosen, stateOf, isFree } = {}) {
+/**
+ * points, chosen: see hand_route.js; stateOf(leg): "stored", "clear", "bad" or "asked"; isFree(point). Null points take it away.
+ *
+ * @param {MapLibreMap} map
+ * @param {HandPoint[] | null} points
+ * @param {HandLook} [look]
+ */
+export function show(map, points, { chosen, stateOf, isFree } = NO_LOOK) {
   if (!map.getSource(SOURCE)) {
     if (!points) return;
     map.addSource(SOURCE, { type: "geojson", data: NOTHING });
@@ -102,10 +126,17 @@ export function show(map, points, { chosen, stateOf, isFree } = {}) {
       byHand: point.isByHand,
     }),
   );
-  map.getSource(SOURCE).setData({ type: "FeatureCollection", features: [...legs, ...middles, ...dots] });
+  const features = [...legs, ...middles, ...dots];
+  sourceOf(map, SOURCE)?.setData(/** @type {FeatureCollection} */ ({ type: "FeatureCollection", features }));
 }
 
-/** Places at which a new point can be drawn out of a leg: [{ index, position }], of legs that are long enough on the screen. */
+/**
+ * Places at which a new point can be drawn out of a leg: [{ index, position }], of legs that are long enough on the screen.
+ *
+ * @param {MapLibreMap} map
+ * @param {readonly { position: Position }[]} points
+ * @returns {{ index: number, position: Position }[]}
+ */
 export function middlesOf(map, points) {
   return points.slice(1).flatMap(({ position }, index) => {
     const from = points[index].position;
@@ -115,8 +146,8 @@ export function middlesOf(map, points) {
   });
 }
 
+/** @param {MapLibreMap} map */
 export function recolour(map) {
   if (!map.getSource(SOURCE)) return;
-  for (const { id, paint } of layers())
-    for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
+  for (const layer of layers()) setPaint(map, layer);
 }

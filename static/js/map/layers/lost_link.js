@@ -2,18 +2,26 @@
 
 import { h } from "../../dom.js";
 import { t } from "../../text.js";
+import { setPaint, sourceOf } from "../look/style.js";
 import { maplibre } from "../maplibre.js";
 
+/** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { FeatureCollection, MapLibreMap, Position } from "../types.d.ts" */
+
 const SOURCE = "lost-link";
+/** @type {FeatureCollection} */
 const NOTHING = { type: "FeatureCollection", features: [] };
+/** @param {string} token of the style sheet */
 const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
+/** @param {string} type */
 const isKind = (type) => ["==", ["geometry-type"], type];
 
+/** @returns {LayerSpecification[]} */
 function layers() {
   const [critical, casing, quiet] = ["--critical", "--map-casing", "--ink-2"].map(read);
   const lit = ["get", "lit"];
   const fails = ["get", "fails"];
-  return [
+  const layers = [
     {
       id: "lost-link-quiet",
       type: "line",
@@ -53,15 +61,22 @@ function layers() {
       },
     },
   ];
+  return /** @type {LayerSpecification[]} */ (layers);
 }
 
+/** @param {string} type @param {unknown} coordinates @param {{ fails?: boolean, lit?: boolean }} how */
 const feature = (type, coordinates, { fails = false, lit = false }) => ({
   type: "Feature",
   properties: { fails, lit },
   geometry: { type, coordinates },
 });
 
-/** returns: [{ from, to, fails, lit }]; none takes them away. */
+/**
+ * returns: [{ from, to, fails, lit }]; none takes them away.
+ *
+ * @param {MapLibreMap} map
+ * @param {{ from: Position, to: Position, fails?: boolean, lit?: boolean }[]} returns
+ */
 export function showReturns(map, returns) {
   if (!map.getSource(SOURCE)) {
     if (!returns.length) return;
@@ -72,26 +87,32 @@ export function showReturns(map, returns) {
     feature("LineString", [from, to], how),
     ...(how.fails ? [feature("Point", from, how)] : []),
   ]);
-  map.getSource(SOURCE).setData({ type: "FeatureCollection", features });
+  sourceOf(map, SOURCE)?.setData(/** @type {FeatureCollection} */ ({ type: "FeatureCollection", features }));
 }
 
+/** @param {MapLibreMap} map */
 export function recolour(map) {
   if (!map.getSource(SOURCE)) return;
-  for (const { id, paint } of layers())
-    for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
+  for (const layer of layers()) setPaint(map, layer);
 }
 
-/** Marks of the rally points. onMove(index, position). */
+/**
+ * Marks of the rally points. onMove(index, position).
+ *
+ * @param {MapLibreMap} map
+ * @param {{ onMove: (index: number, position: Position) => void }} on
+ */
 export function createRallyPoints(map, { onMove }) {
+  /** @type {InstanceType<typeof maplibre.Marker>[]} */
   let marks = [];
   let drawn = "";
   return {
-    /** points: [{ name, position }] */
+    /** @param {{ name: string, position: Position }[]} points @param {boolean} canMove */
     update(points, canMove) {
       const now = JSON.stringify([points, canMove]);
       if (now === drawn) return;
       drawn = now;
-      marks.forEach((mark) => mark.remove());
+      for (const mark of marks) mark.remove();
       marks = points.map(({ name, position }, index) => {
         const words = t("Rally point {name}", { name });
         const element = h(

@@ -1,11 +1,18 @@
 /** What was flown in simulation over what was planned: dashed in ink, so that nobody takes it for a flight. */
 
+import { setPaint, sourceOf } from "../look/style.js";
+
+/** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { Palette } from "../../domain/palette.js" */
+/** @import { FeatureCollection, MapLibreMap } from "../types.d.ts" */
+
 const SOURCE = "rehearsed";
 const BEFORE = "line-labels";
 
+/** @param {Palette} palette @returns {LayerSpecification[]} */
 function layersOf(palette) {
   const joined = { "line-join": "round" };
-  return [
+  const layers = [
     {
       id: "rehearsed-casing",
       type: "line",
@@ -21,9 +28,16 @@ function layersOf(palette) {
       paint: { "line-color": palette.ink, "line-width": 1.75, "line-dasharray": [3, 2] },
     },
   ];
+  return /** @type {LayerSpecification[]} */ (layers);
 }
 
-/** routes: of a track, null takes them away. */
+/**
+ * routes: of a track, null takes them away.
+ *
+ * @param {MapLibreMap} map
+ * @param {Palette} palette
+ * @param {{ uav: number, flights: { position: number[][] }[] }[] | null} routes
+ */
 export function show(map, palette, routes) {
   if (!map.getSource(SOURCE)) {
     if (!routes) return;
@@ -39,11 +53,11 @@ export function show(map, palette, routes) {
         geometry: { type: "LineString", coordinates: position },
       })),
   );
-  map.getSource(SOURCE).setData({ type: "FeatureCollection", features });
+  sourceOf(map, SOURCE)?.setData(/** @type {FeatureCollection} */ ({ type: "FeatureCollection", features }));
 }
 
+/** @param {MapLibreMap} map @param {Palette} palette */
 export function recolour(map, palette) {
   if (!map.getSource(SOURCE)) return;
-  for (const { id, paint } of layersOf(palette))
-    for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
+  for (const layer of layersOf(palette)) setPaint(map, layer);
 }

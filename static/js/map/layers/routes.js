@@ -1,67 +1,105 @@
 /** Routes: one colour per UAV, drawn on the right of the way, with arrows. */
 
 import { ROUTE_COUNT, routeNumber } from "../../domain/palette.js";
-import { routeOpacity } from "../page_layers.js";
+import { routeOpacity } from "../look/page_layers.js";
+import { sourceOf } from "../look/style.js";
 
-const LAYERS = {
-  "routes-casing": "line-opacity",
-  routes: "line-opacity",
-  "routes-dashed": "line-opacity",
-  "routes-arrows": "icon-opacity",
-};
+/** @import { Palette } from "../../domain/palette.js" */
+/** @import { FeatureCollection, Geometry, MapLibreMap } from "../types.d.ts" */
 
-/** routes: [{ sequence, geometry }] */
+/** @param {object[]} features */
+const collection = (features) => /** @type {FeatureCollection} */ ({ type: "FeatureCollection", features });
+
+/** @type {[string, "line-opacity" | "icon-opacity"][]} */
+const LAYERS = [
+  ["routes-casing", "line-opacity"],
+  ["routes", "line-opacity"],
+  ["routes-dashed", "line-opacity"],
+  ["routes-arrows", "icon-opacity"],
+];
+
+/**
+ * routes: [{ sequence, geometry }]
+ *
+ * @param {MapLibreMap} map
+ * @param {{ sequence: number, geometry: Geometry | null }[]} routes
+ */
 export function update(map, routes) {
-  map.getSource("routes").setData({
-    type: "FeatureCollection",
-    features: routes
-      .filter((route) => route.geometry)
-      .map((route) => ({
-        type: "Feature",
-        properties: {
-          sequence: route.sequence,
-          route: routeNumber(route.sequence),
-          dashed: route.sequence >= ROUTE_COUNT,
-        },
-        geometry: route.geometry,
-      })),
-  });
+  sourceOf(map, "routes")?.setData(
+    collection(
+      routes
+        .filter((route) => route.geometry)
+        .map((route) => ({
+          type: "Feature",
+          properties: {
+            sequence: route.sequence,
+            route: routeNumber(route.sequence),
+            dashed: route.sequence >= ROUTE_COUNT,
+          },
+          geometry: route.geometry,
+        })),
+    ),
+  );
 }
 
-/** Places where UAVs wait: [{ kind: "base" | "charging", position }]. */
+/**
+ * Places where UAVs wait: [{ kind: "base" | "charging", position }].
+ *
+ * @param {MapLibreMap} map
+ * @param {{ kind: "base" | "charging", position: number[] }[]} stops
+ */
 export function showStops(map, stops) {
-  map.getSource("route-stops").setData({
-    type: "FeatureCollection",
-    features: stops.map(({ kind, position }) => ({
-      type: "Feature",
-      properties: { kind },
-      geometry: { type: "Point", coordinates: position },
-    })),
-  });
+  sourceOf(map, "route-stops")?.setData(
+    collection(
+      stops.map(({ kind, position }) => ({
+        type: "Feature",
+        properties: { kind },
+        geometry: { type: "Point", coordinates: position },
+      })),
+    ),
+  );
 }
 
-/** The best routes of a search that goes on: lines with the number of their UAV; null once there is a plan. */
+/**
+ * The best routes of a search that goes on: lines with the number of their UAV; null once there is a plan.
+ *
+ * @param {MapLibreMap} map
+ * @param {{ features: { geometry: Geometry, properties: { uav: number } }[] } | null} lines
+ */
 export function showSoFar(map, lines) {
-  map.getSource("routes-so-far").setData({
-    type: "FeatureCollection",
-    features: (lines?.features ?? []).map(({ geometry, properties }) => ({
-      type: "Feature",
-      properties: { route: routeNumber(properties.uav) },
-      geometry,
-    })),
-  });
+  sourceOf(map, "routes-so-far")?.setData(
+    collection(
+      (lines?.features ?? []).map(({ geometry, properties }) => ({
+        type: "Feature",
+        properties: { route: routeNumber(properties.uav) },
+        geometry,
+      })),
+    ),
+  );
 }
 
-/** Brings one route forward; null gives all of them back. */
+/**
+ * Brings one route forward; null gives all of them back.
+ *
+ * @param {MapLibreMap} map
+ * @param {Palette} palette
+ * @param {number | null} sequence
+ */
 export function lookAt(map, palette, sequence) {
   const opacity = routeOpacity(palette, sequence);
-  for (const [layer, property] of Object.entries(LAYERS)) map.setPaintProperty(layer, property, opacity);
+  for (const [layer, property] of LAYERS) map.setPaintProperty(layer, property, opacity);
 }
 
-/** The distance that the pointer shows in a strip, as a dot on the map; null takes it away. */
+/**
+ * The distance that the pointer shows in a strip, as a dot on the map; null takes it away.
+ *
+ * @param {MapLibreMap} map
+ * @param {number[] | null} position
+ */
 export function showPoint(map, position) {
-  map.getSource("strip-point")?.setData({
-    type: "FeatureCollection",
-    features: position ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: position } }] : [],
-  });
+  sourceOf(map, "strip-point")?.setData(
+    collection(
+      position ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: position } }] : [],
+    ),
+  );
 }

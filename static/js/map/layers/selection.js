@@ -1,28 +1,40 @@
 /** What is picked as a whole (lines), and what the pointer or a list row is at. */
 
-import { TILES } from "../voltages.js";
+import { sourceOf } from "../look/style.js";
+import { TILES } from "../look/voltages.js";
 
+/** @import { FeatureCollection, Geometry, MapLibreMap } from "../types.d.ts" */
+
+/** @type {number | null} */
 let lit = null; // the zone that is ringed
 
-const collection = (geometries) => ({
-  type: "FeatureCollection",
-  features: geometries.map((geometry) => ({ type: "Feature", properties: {}, geometry })),
-});
-
-export function update(map, geometries) {
-  map.getSource("picked-shapes").setData(collection(geometries));
+/** @param {Geometry[]} geometries */
+function collection(geometries) {
+  const features = geometries.map((geometry) => ({ type: "Feature", properties: {}, geometry }));
+  return /** @type {FeatureCollection} */ ({ type: "FeatureCollection", features });
 }
 
-/** Rings a zone of the tiles, whose pieces end at the edges of tiles; null takes the ring away. */
+/** @param {MapLibreMap} map @param {Geometry[]} geometries */
+export function update(map, geometries) {
+  sourceOf(map, "picked-shapes")?.setData(collection(geometries));
+}
+
+/**
+ * Rings a zone of the tiles, whose pieces end at the edges of tiles; null takes the ring away.
+ *
+ * @param {MapLibreMap} map
+ * @param {number | null} id
+ */
 export function showZone(map, id) {
   if (id === lit) return;
+  /** @param {number} of */
   const zone = (of) => ({ source: TILES, sourceLayer: "zones", id: of });
   if (lit !== null) map.setFeatureState(zone(lit), { lit: false });
   if (id !== null) map.setFeatureState(zone(id), { lit: true });
   lit = id;
 }
 
-/** Geometries to ring: a point, or all pieces of a line. */
+/** Geometries to ring: a point, or all pieces of a line. @param {MapLibreMap} map @param {Geometry[]} geometries */
 export function showHovered(map, geometries) {
-  map.getSource("selection").setData(collection(geometries));
+  sourceOf(map, "selection")?.setData(collection(geometries));
 }

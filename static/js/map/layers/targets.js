@@ -3,17 +3,23 @@
 import { h } from "../../dom.js";
 import { routeNumber } from "../../domain/palette.js";
 import { t, tn } from "../../text.js";
+import { sourceOf } from "../look/style.js";
 import { maplibre } from "../maplibre.js";
 import { mergePills } from "../pills.js";
+
+/** @import { Group, Pill } from "../pills.js" */
+/** @import { FeatureCollection, MapLibreMap, ScreenPoint } from "../types.d.ts" */
 
 const MOST_MARKERS = 200;
 const MOST_NAMES = 6;
 const REACH_PX = 4;
 const MISSED = -1; // instead of a route's number
 
+/** @param {Pick<Pill, "isMissed" | "sequence">} pill */
 const lookOf = (pill) =>
   pill.isMissed ? "missed" : pill.sequence === null ? "waiting" : `route-${routeNumber(pill.sequence)}`;
 
+/** @param {Pick<Pill, "name" | "isMissed">[]} members */
 function namesOf(members) {
   const names = members.slice(0, MOST_NAMES).map((pill) => pill.name);
   const rest = members.length - names.length;
@@ -21,14 +27,73 @@ function namesOf(members) {
   return `${names.join("; ")}${more}${members[0].isMissed ? `: ${t("not reached")}` : ""}`;
 }
 
-export function createTargets(map, { onPick, onHover }) {
-  let pills = [];
-  let markers = new Map(); // what a group says → { marker, members, element }
-  let lookedAt = null;
-  let chosen = "";
-  let hovered = null; // the element under the pointer: it may be taken away without the pointer leaving it
+/** @typedef {Omit<Pill, "x" | "y"> & { position: [number, number] }} TargetPill */
+/** @typedef {TargetPill & { x: number, y: number }} PlacedPill */
+/** @typedef {{ marker: InstanceType<typeof maplibre.Marker>, members: PlacedPill[], element: HTMLElement }} Drawn */
+/** @typedef {{ onPick: (key: string) => void, onHover: (key: string | null) => void }} TargetHandlers */
 
-  function elementOf({ members, label }) {
+/** @param {MapLibreMap} map @param {TargetHandlers} on */
+export const createTargets = (map, on) => new Targets(map, on);
+
+class Targets {
+  #map;
+  #on;
+  /** @type {TargetPill[]} */
+  #pills = [];
+  /** By what a group says. @type {Map<string, Drawn>} */
+  #drawn = new Map();
+  /** @type {number | null} */
+  #lookedAt = null;
+  #chosen = "";
+  /** The element under the pointer: it may be taken away without the pointer leaving it. @type {HTMLElement | null} */
+  #hovered = null;
+
+  /** @param {MapLibreMap} map @param {TargetHandlers} on */
+  constructor(map, on) {
+    this.#map = map;
+    this.#on = on;
+    map.on("zoomend", () => this.#draw());
+  }
+
+  /** @param {TargetPill[]} pills */
+  update(pills) {
+    this.#pills = pills;
+    const features = pills.length > MOST_MARKERS ? pills.map(featureOf) : [];
+    const collection = /** @type {FeatureCollection} */ ({ type: "FeatureCollection", features });
+    sourceOf(this.#map, "many-targets")?.setData(collection);
+    this.#draw();
+  }
+
+  /**
+   * The target of the layer at a place on the screen, where there are too many for markers: its key, or null.
+   *
+   * @param {ScreenPoint} place
+   * @returns {string | null}
+   */
+  at({ x, y }) {
+    if (this.#pills.length <= MOST_MARKERS) return null;
+    /** @type {[[number, number], [number, number]]} */
+    const box = [
+      [x - REACH_PX, y - REACH_PX],
+      [x + REACH_PX, y + REACH_PX],
+    ];
+    return this.#map.queryRenderedFeatures(box, { layers: ["many-targets"] })[0]?.properties.key ?? null;
+  }
+
+  /** @param {number | null} sequence */
+  lookAt(sequence) {
+    this.#lookedAt = sequence;
+    this.#mark();
+  }
+
+  /** @param {string | null} key */
+  choose(key) {
+    this.#chosen = key ?? "";
+    this.#mark();
+  }
+
+  /** @param {Group<PlacedPill>} group */
+  #elementOf({ members, label }) {
     const [first] = members;
     const names = namesOf(members);
     const element = h(
@@ -39,14 +104,17 @@ export function createTargets(map, { onPick, onHover }) {
         "aria-label": t("Target {label}: {names}", { label, names }),
         title: names,
         tabindex: "-1",
-        onclick: (event) => (event.stopPropagation(), onPick(first.key)),
+        onclick: (event) => {
+          event.stopPropagation();
+          this.#on.onPick(first.key);
+        },
         onpointerenter: () => {
-          hovered = element;
-          onHover(first.key);
+          this.#hovered = element;
+          this.#on.onHover(first.key);
         },
         onpointerleave: () => {
-          hovered = null;
-          onHover(null);
+          this.#hovered = null;
+          this.#on.onHover(null);
         },
       },
       h("span", { class: "pill" }, label),
@@ -55,79 +123,57 @@ export function createTargets(map, { onPick, onHover }) {
   }
 
   /** Markers that say the same as before stay, so that the pointer and the focus stay with them. */
-  function draw() {
+  #draw() {
+    /** @type {Map<string, Drawn>} */
     const next = new Map();
-    const placed = pills.length > MOST_MARKERS ? [] : pills.map((pill) => ({ ...pill, ...map.project(pill.position) }));
+    const isMany = this.#pills.length > MOST_MARKERS;
+    const placed = isMany ? [] : this.#pills.map((pill) => ({ ...pill, ...placeOf(this.#map, pill.position) }));
     for (const group of mergePills(placed)) {
       const [first] = group.members;
       const key = JSON.stringify([group.label, lookOf(first), first.position, group.members.map((pill) => pill.key)]);
-      const kept = markers.get(key);
-      const element = kept?.element ?? elementOf(group);
-      const marker =
-        kept?.marker ??
-        new maplibre.Marker({ element, subpixelPositioning: true }).setLngLat(first.position).addTo(map);
+      const { element, marker } = this.#drawn.get(key) ?? this.#markerOf(group);
       next.set(key, { marker, element, members: group.members });
     }
-    for (const [key, { marker, element }] of markers) {
+    for (const [key, { marker, element }] of this.#drawn) {
       if (next.has(key)) continue;
       marker.remove();
-      if (element === hovered) {
-        hovered = null;
-        onHover(null);
-      }
+      if (element !== this.#hovered) continue;
+      this.#hovered = null;
+      this.#on.onHover(null);
     }
-    markers = next;
-    mark();
+    this.#drawn = next;
+    this.#mark();
   }
 
-  function mark() {
-    for (const { element, members } of markers.values()) {
-      element.classList.toggle("far", lookedAt !== null && members[0].sequence !== lookedAt);
-      element.classList.toggle(
-        "chosen",
-        members.some((pill) => pill.key === chosen),
-      );
-    }
+  /** @param {Group<PlacedPill>} group */
+  #markerOf(group) {
+    const element = this.#elementOf(group);
+    const marker = new maplibre.Marker({ element, subpixelPositioning: true });
+    return { element, marker: marker.setLngLat(group.members[0].position).addTo(this.#map) };
   }
 
-  map.on("zoomend", draw);
-  return {
-    /** pills: [{ key, position, sequence or null, letter, number, name, isMissed }] */
-    update(next) {
-      pills = next;
-      const isMany = pills.length > MOST_MARKERS;
-      map.getSource("many-targets").setData({
-        type: "FeatureCollection",
-        features: isMany
-          ? pills.map((pill) => ({
-              type: "Feature",
-              properties: {
-                key: pill.key,
-                route: pill.isMissed ? MISSED : pill.sequence === null ? 0 : routeNumber(pill.sequence),
-                label: pill.isMissed ? "×" : `${pill.letter}${pill.number}`,
-              },
-              geometry: { type: "Point", coordinates: pill.position },
-            }))
-          : [],
-      });
-      draw();
-    },
-    /** The target of the layer at a place on the screen, where there are too many for markers: its key, or null. */
-    at({ x, y }) {
-      if (pills.length <= MOST_MARKERS) return null;
-      const box = [
-        [x - REACH_PX, y - REACH_PX],
-        [x + REACH_PX, y + REACH_PX],
-      ];
-      return map.queryRenderedFeatures(box, { layers: ["many-targets"] })[0]?.properties.key ?? null;
-    },
-    lookAt(sequence) {
-      lookedAt = sequence;
-      mark();
-    },
-    choose(key) {
-      chosen = key ?? "";
-      mark();
-    },
-  };
+  #mark() {
+    for (const { element, members } of this.#drawn.values()) {
+      const isChosen = members.some((pill) => pill.key === this.#chosen);
+      element.classList.toggle("far", this.#lookedAt !== null && members[0].sequence !== this.#lookedAt);
+      element.classList.toggle("chosen", isChosen);
+    }
+  }
 }
+
+/** @param {MapLibreMap} map @param {[number, number]} position */
+function placeOf(map, position) {
+  const { x, y } = map.project(position);
+  return { x, y };
+}
+
+/** @param {TargetPill} pill */
+const featureOf = (pill) => ({
+  type: "Feature",
+  properties: {
+    key: pill.key,
+    route: pill.isMissed ? MISSED : pill.sequence === null ? 0 : routeNumber(pill.sequence),
+    label: pill.isMissed ? "×" : `${pill.letter}${pill.number}`,
+  },
+  geometry: { type: "Point", coordinates: pill.position },
+});

@@ -1,11 +1,14 @@
 /** Zones that something on the page speaks of: a ring round each. */
 
-import { TILES } from "../voltages.js";
+import { TILES } from "../look/voltages.js";
+
+/** @import { MapLibreMap } from "../types.d.ts" */
 
 const SOURCE_LAYER = "zones";
+/** @type {WeakMap<MapLibreMap, number[]>} */
 const litOn = new WeakMap(); // map → ids
 
-/** ids: of zones; none takes the rings away. */
+/** ids: of zones; none takes the rings away. @param {MapLibreMap} map @param {number[]} ids */
 export function light(map, ids) {
   for (const id of litOn.get(map) ?? [])
     map.setFeatureState({ source: TILES, sourceLayer: SOURCE_LAYER, id }, { lit: false });

@@ -1,6 +1,6 @@
 /** Towers, poles and portals: outlines of all, and bracing, insulators and foundations of those near the camera. */
 
-import { voltageColour } from "../../map/voltages.js";
+import { voltageColour } from "../../map/look/voltages.js";
 import { FOUNDATION, INSULATOR, supportMembers } from "../geometry/towers.js";
 import { Color, Group } from "../three.js";
 import { memberMesh } from "./members.js";

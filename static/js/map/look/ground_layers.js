@@ -1,10 +1,10 @@
 /** Layers of the infrastructure and the zones, from the vector tiles. */
 
-import { t } from "../text.js";
+import { t } from "../../text.js";
 import { bandsOf, TILES, voltage } from "./voltages.js";
 
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
-/** @import { Palette } from "../domain/palette.js" */
+/** @import { Palette } from "../../domain/palette.js" */
 
 /** @param {number} yes @param {number} no */
 const whereResting = (yes, no) => ["case", ["boolean", ["feature-state", "resting"], false], yes, no]; // a zone that its schedule does not put in force now

@@ -5,8 +5,8 @@ import { measureLayers, routeLayers, selectionLayers } from "./page_layers.js";
 import { TILES } from "./voltages.js";
 
 /** @import { LayerSpecification, SourceSpecification, StyleSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
-/** @import { Palette } from "../domain/palette.js" */
-/** @import { GeoJSONSource, MapLibreMap, RasterMap, StyleOptions } from "./types.d.ts" */
+/** @import { Palette } from "../../domain/palette.js" */
+/** @import { GeoJSONSource, MapLibreMap, RasterMap, StyleOptions } from "../types.d.ts" */
 
 /** @type {SourceSpecification} */
 const EMPTY = { type: "geojson", data: { type: "FeatureCollection", features: [] } };

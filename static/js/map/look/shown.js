@@ -1,11 +1,11 @@
 /** What of the ground the map shows: kinds, voltages, zones out of force. Zones that rest are drawn as such. */
 
-import { isInForce } from "../domain/zones_in_force.js";
-import { t } from "../text.js";
+import { isInForce } from "../../domain/zones_in_force.js";
+import { t } from "../../text.js";
 import { BANDS, bandOf, GROUPS, TILES } from "./voltages.js";
 
 /** @import { FilterSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
-/** @import { MapLibreMap } from "./types.d.ts" */
+/** @import { MapLibreMap } from "../types.d.ts" */
 
 /** @typedef {ReturnType<typeof createShown>} Shown */
 
@@ -75,42 +75,9 @@ export function createShown(map, onChange = () => {}) {
     }
   }
 
-  /** Zones whose schedule says that they do not apply now, of those that the map has loaded. */
-  function lookAtZones() {
-    /** @type {Map<number, boolean>} */
-    const seen = new Map();
-    for (const feature of map.querySourceFeatures(TILES, { sourceLayer: "zones", filter: ["has", "schedule"] })) {
-      const id = Number(feature.id);
-      const { geometry } = feature;
-      if (seen.has(id) || !(geometry.type === "Polygon" || geometry.type === "MultiPolygon")) continue;
-      const place = geometry.type === "Polygon" ? geometry.coordinates[0][0] : geometry.coordinates[0][0][0];
-      seen.set(id, isInForce(JSON.parse(feature.properties.schedule), Date.now(), place) === false);
-    }
-    for (const [id, rests] of seen) {
-      for (const sourceLayer of ZONE_LAYERS)
-        map.setFeatureState({ source: TILES, sourceLayer, id }, { resting: rests });
-    }
-    const next = [
-      ...new Set([
-        ...resting.filter((id) => seen.get(id) !== false),
-        ...[...seen].filter(([, rests]) => rests).map(([id]) => id),
-      ]),
-    ].sort((a, b) => a - b);
-    if (next.join() === resting.join()) return;
+  watchRestingZones(map, (next) => {
     resting = next;
     if (hidesResting) filterLayers("zones");
-  }
-
-  map.on("load", () => {
-    let isDue = true;
-    map.on("sourcedata", (event) => {
-      if ("sourceId" in event && event.sourceId === TILES) isDue = true;
-    });
-    map.on("idle", () => {
-      if (isDue) lookAtZones();
-      isDue = false;
-    });
-    setInterval(lookAtZones, LOOK_AGAIN_MS);
   });
 
   function changed() {
@@ -152,4 +119,55 @@ export function createShown(map, onChange = () => {}) {
     },
     bands: () => BANDS.filter((key) => !bands.has(key)),
   };
+}
+
+/**
+ * Marks zones whose schedule says that they do not apply now, of those that the map has loaded.
+ *
+ * @param {MapLibreMap} map
+ * @param {(resting: number[]) => void} onChange called with their ids
+ */
+function watchRestingZones(map, onChange) {
+  /** @type {number[]} */
+  let resting = [];
+
+  function look() {
+    const seen = loadedZones(map);
+    for (const [id, rests] of seen) {
+      for (const sourceLayer of ZONE_LAYERS)
+        map.setFeatureState({ source: TILES, sourceLayer, id }, { resting: rests });
+    }
+    const stillResting = resting.filter((id) => seen.get(id) !== false);
+    const nowResting = [...seen].filter(([, rests]) => rests).map(([id]) => id);
+    const next = [...new Set([...stillResting, ...nowResting])].sort((a, b) => a - b);
+    if (next.join() === resting.join()) return;
+    resting = next;
+    onChange(resting);
+  }
+
+  map.on("load", () => {
+    let isDue = true;
+    map.on("sourcedata", (event) => {
+      if ("sourceId" in event && event.sourceId === TILES) isDue = true;
+    });
+    map.on("idle", () => {
+      if (isDue) look();
+      isDue = false;
+    });
+    setInterval(look, LOOK_AGAIN_MS);
+  });
+}
+
+/** Zones with a schedule that the map has loaded, and whether each rests now. @param {MapLibreMap} map */
+function loadedZones(map) {
+  /** @type {Map<number, boolean>} */
+  const seen = new Map();
+  for (const feature of map.querySourceFeatures(TILES, { sourceLayer: "zones", filter: ["has", "schedule"] })) {
+    const id = Number(feature.id);
+    const { geometry } = feature;
+    if (seen.has(id) || !(geometry.type === "Polygon" || geometry.type === "MultiPolygon")) continue;
+    const place = geometry.type === "Polygon" ? geometry.coordinates[0][0] : geometry.coordinates[0][0][0];
+    seen.set(id, isInForce(JSON.parse(feature.properties.schedule), Date.now(), place) === false);
+  }
+  return seen;
 }

@@ -1,7 +1,7 @@
 /** Hatch and arrows, drawn on a canvas in the palette's colours when the style first asks for them. */
 
-/** @import { Palette } from "../domain/palette.js" */
-/** @import { MapLibreMap } from "./types.d.ts" */
+/** @import { Palette } from "../../domain/palette.js" */
+/** @import { MapLibreMap } from "../types.d.ts" */
 
 const RATIO = 2;
 

@@ -1,6 +1,6 @@
 /** Voltage bands of lines and towers, and how they look; the names of the tiles and of the layers in them. */
 
-/** @import { Palette } from "../domain/palette.js" */
+/** @import { Palette } from "../../domain/palette.js" */
 
 export const TILES = "ground-tiles";
 

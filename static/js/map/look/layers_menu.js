@@ -1,13 +1,13 @@
 /** The layers menu: what lies under the map, what is shown of the ground, and the legend where the map has no room for it. */
 
-import { find, h, refill } from "../dom.js";
-import { t } from "../text.js";
+import { find, h, refill } from "../../dom.js";
+import { t } from "../../text.js";
 import { bandSample, legendItems } from "./legend.js";
 import { bandName, groupName } from "./shown.js";
 import { BANDS, GROUPS } from "./voltages.js";
 
 /** @import { Shown } from "./shown.js" */
-/** @import { SwitchedLayer } from "./types.d.ts" */
+/** @import { SwitchedLayer } from "../types.d.ts" */
 
 /**
  * @param {object} parts

@@ -1,8 +1,8 @@
 /** What lies under the map: which raster maps are offered, and which one somebody chose last. */
 
-import { t } from "../text.js";
+import { t } from "../../text.js";
 
-/** @import { MapPage } from "./types.d.ts" */
+/** @import { MapPage } from "../types.d.ts" */
 
 const KEY = "spanwise.base-map";
 

@@ -1,7 +1,7 @@
 /** Layers of what a page adds to the map: routes, targets, what is picked and what is measured. */
 
-/** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
-/** @import { Palette } from "../domain/palette.js" */
+/** @import { DataDrivenPropertyValueSpecification, LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { Palette } from "../../domain/palette.js" */
 
 /** @param {Palette} palette */
 const routeColour = (palette) => [
@@ -206,6 +206,7 @@ export function measureLayers(palette) {
  *
  * @param {Palette} palette
  * @param {number | null} lookedAt sequence of a route
+ * @returns {DataDrivenPropertyValueSpecification<number>}
  */
 export function routeOpacity(palette, lookedAt) {
   return lookedAt === null ? 1 : ["case", ["==", ["get", "sequence"], lookedAt], 1, palette.isDark ? 0.42 : 0.3];

@@ -1,12 +1,12 @@
 /** The legend: what is drawn how. On the map it says what is in view, in the layers menu all of it. */
 
-import { byId, h, svg } from "../dom.js";
-import { t } from "../text.js";
+import { byId, h, svg } from "../../dom.js";
+import { t } from "../../text.js";
 import { bandName } from "./shown.js";
 import { voltageBand } from "./voltages.js";
 
 /** @import { MapGeoJSONFeature } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
-/** @import { MapLibreMap } from "./types.d.ts" */
+/** @import { MapLibreMap } from "../types.d.ts" */
 
 /** @param {...SVGElement} drawing */
 const sample = (...drawing) =>
