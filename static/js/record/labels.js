@@ -2,8 +2,14 @@
 
 import { routeLetter } from "../domain/palette.js";
 
-/** Map of target → { label, place, number, position }. */
+/** @import { RecordRoute, WaypointKind } from "../api_types.d.ts" */
+
+/** @typedef {{ label: string, place: number, number: number, position: number[] }} TargetLabel place: of its UAV */
+/** @typedef {Map<number, TargetLabel>} Labels by target */
+
+/** @param {readonly Pick<RecordRoute, "place" | "waypoints">[]} routes */
 export function labelsOf(routes) {
+  /** @type {Labels} */
   const labels = new Map();
   for (const { place, waypoints } of routes) {
     let number = 0;
@@ -16,9 +22,17 @@ export function labelsOf(routes) {
   return labels;
 }
 
-/** "A2", "take-off", "end" or "point 7": a waypoint as an end of a leg. words: of the kinds start, end and base; otherwise(sequence). */
+/**
+ * "A2", "take-off", "end" or "point 7": a waypoint as an end of a leg.
+ *
+ * @param {Pick<RecordRoute, "waypoints">} route
+ * @param {number} sequence
+ * @param {ReadonlyMap<number, Pick<TargetLabel, "label">>} labels
+ * @param {{ [Kind in WaypointKind]?: string }} words of the kinds start, end and base
+ * @param {(sequence: number) => string} otherwise
+ */
 export function waypointName({ waypoints }, sequence, labels, words, otherwise) {
   const waypoint = waypoints.find((one) => one.sequence === sequence);
-  const target = labels.get(waypoint?.target)?.label;
-  return target ?? words[waypoint?.kind] ?? otherwise(sequence);
+  const target = labels.get(waypoint?.target ?? NaN)?.label;
+  return target ?? (waypoint && words[waypoint.kind]) ?? otherwise(sequence);
 }

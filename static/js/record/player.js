@@ -2,22 +2,32 @@
 
 export const SPEEDS = [0.5, 1, 5, 20, 60];
 
-/** onMove() is told of each change. now_ms, nextFrame: for tests. */
+/** @typedef {{ from_ms: number, to_ms: number }} TimeSpan since 1970 */
+/** @typedef {ReturnType<typeof createPlayer>} Player */
+
+/**
+ * onMove() is called at each change. now_ms, nextFrame: for tests.
+ *
+ * @param {{ onMove: () => void, now_ms?: () => number, nextFrame?: (act: () => void) => void }} options
+ */
 export function createPlayer({
   onMove,
   now_ms = () => performance.now(),
   nextFrame = (act) => requestAnimationFrame(act),
 }) {
+  /** @type {TimeSpan | null} */
   let span = null;
   let last_ms = 0;
-  const player = { at_ms: null, speed: 20, isPlaying: false };
+  /** at_ms: 0 until there is a span */
+  const state = { at_ms: 0, speed: 20, isPlaying: false };
 
-  const clamp = (at_ms) => Math.min(span.to_ms, Math.max(span.from_ms, at_ms));
+  /** @param {TimeSpan} span @param {number} at_ms */
+  const clamp = ({ from_ms, to_ms }, at_ms) => Math.min(to_ms, Math.max(from_ms, at_ms));
 
   function frame() {
-    if (!player.isPlaying) return;
+    if (!player.isPlaying || !span) return;
     const now = now_ms();
-    const at_ms = clamp(player.at_ms + (now - last_ms) * player.speed);
+    const at_ms = clamp(span, player.at_ms + (now - last_ms) * player.speed);
     last_ms = now;
     if (at_ms >= span.to_ms) player.isPlaying = false;
     player.at_ms = at_ms;
@@ -25,19 +35,20 @@ export function createPlayer({
     if (player.isPlaying) nextFrame(frame);
   }
 
-  return Object.assign(player, {
-    /** The first time at the beginning; later it stays, or goes with the end where it stood there. */
+  const player = Object.assign(state, {
+    /** The first time at the beginning; later it stays, or goes with the end where it stood there. @param {TimeSpan | null} next */
     setSpan(next) {
-      const wasAtEnd = span !== null && player.at_ms >= span.to_ms && span.to_ms < (next?.to_ms ?? 0);
-      const isFirst = span === null;
+      const before = span;
       span = next;
       if (!span) return;
-      player.at_ms = isFirst ? span.from_ms : wasAtEnd ? span.to_ms : clamp(player.at_ms);
+      const wasAtEnd = before !== null && player.at_ms >= before.to_ms && before.to_ms < span.to_ms;
+      player.at_ms = !before ? span.from_ms : wasAtEnd ? span.to_ms : clamp(span, player.at_ms);
     },
     span: () => span,
+    /** @param {number} at_ms */
     seek(at_ms) {
       if (!span) return;
-      player.at_ms = clamp(at_ms);
+      player.at_ms = clamp(span, at_ms);
       onMove();
     },
     /** From the beginning where it stands at the end. */
@@ -56,14 +67,16 @@ export function createPlayer({
       player.isPlaying = false;
       onMove();
     },
+    /** @param {number} speed */
     setSpeed(speed) {
       player.speed = speed;
       onMove();
     },
-    /** direction 1: faster, -1: slower. */
+    /** @param {1 | -1} direction 1: faster */
     changeSpeed(direction) {
       const at = SPEEDS.indexOf(player.speed) + direction;
       if (SPEEDS[at]) player.setSpeed(SPEEDS[at]);
     },
   });
+  return player;
 }

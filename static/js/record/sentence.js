@@ -3,16 +3,23 @@
 import { t, tn } from "../text.js";
 import { clockText, durationText, energyText, exactHeightText, lengthText, percentText } from "../units.js";
 
+/** @import { MissionRecord, MissionState, Totals } from "../api_types.d.ts" */
+
+/** @typedef {{ mission: { state: MissionState } }} InState */
+
 const UNDER_WAY = ["dispatched", "active"];
 const ENOUGH_TO_SHARE = 20; // estimates beside a measurement: of fewer a share says nothing
 const HURRIED = 0.75; // of the planned time: only who flies faster than real time is back so early
 const NOT_BEGUN = ["draft", "planned", "approved", "dispatched"];
 
+/** @param {InState} record */
 export const isUnderWay = ({ mission }) => UNDER_WAY.includes(mission.state);
+/** @param {InState} record */
 export const isOver = ({ mission }) => !isUnderWay({ mission }) && !NOT_BEGUN.includes(mission.state);
+/** @param {{ routes: readonly { flown: { reports: number } }[] }} record */
 export const wasFlown = ({ routes }) => routes.some(({ flown }) => flown.reports > 0);
 
-/** "11 of 12 targets complete", "Not flown yet." */
+/** "11 of 12 targets complete", "Not flown yet." @param {MissionRecord} record */
 export function sentenceOf(record) {
   const { targets } = record.summary;
   if (!wasFlown(record) && NOT_BEGUN.includes(record.mission.state)) return t("Not flown yet.");
@@ -21,7 +28,7 @@ export function sentenceOf(record) {
   return t("{done} of {all} targets complete", { done: targets.complete, all: targets.all });
 }
 
-/** What else has to be known at once. */
+/** What else has to be known at once. @param {MissionRecord} record */
 export function factsOf(record) {
   const { alerts, lowest_battery_percent: lowest } = record.summary;
   const all = alerts.critical + alerts.warning + alerts.advisory;
@@ -36,7 +43,7 @@ export function factsOf(record) {
   if (
     simulated.length &&
     wasFlown(record) &&
-    record.summary.flown.duration_s < HURRIED * record.summary.planned.duration_s
+    (record.summary.flown.duration_s ?? 0) < HURRIED * (record.summary.planned.duration_s ?? 0)
   )
     facts.push(t("Times are of the clock on the wall: it was flown faster than real time."));
   if (isUnderWay(record) && record.mission.started_at)
@@ -61,21 +68,28 @@ export function factsOf(record) {
   return facts.join(" ");
 }
 
+/** @param {number} value @param {(value: number) => string} text */
 const signed = (value, text) => `${value < 0 ? "−" : "+"}${text(Math.abs(value))}`;
 
-/** Rows of the table: [{ words, planned, flown, more }]; a figure that is not known is "—", one that has no meaning is empty. */
+/**
+ * Rows of the table; a figure that is not known is "—", one that has no meaning is empty.
+ *
+ * @param {Pick<MissionRecord, "mission" | "summary" | "routes">} record
+ */
 export function figuresOf(record) {
   const { planned, flown, across_rms_m, height_rms_m, estimates } = record.summary;
   const hasFlown = wasFlown(record);
-  const compared = (words, name, text) => ({
-    words,
-    planned: text(planned[name]),
-    flown: hasFlown ? text(flown[name]) : "—",
-    more:
-      hasFlown && !isUnderWay(record) && planned[name] !== null && flown[name] !== null
-        ? signed(flown[name] - planned[name], text)
-        : "",
-  });
+  /** @param {string} words @param {keyof Totals} name @param {(value: number | null) => string} text */
+  const compared = (words, name, text) => {
+    const [plan, flight] = [planned[name], flown[name]];
+    return {
+      words,
+      planned: text(plan),
+      flown: hasFlown ? text(flight) : "—",
+      more: hasFlown && !isUnderWay(record) && plan !== null && flight !== null ? signed(flight - plan, text) : "",
+    };
+  };
+  /** @param {number | null} value */
   const metres = (value) => (value === null ? "—" : exactHeightText(value));
   return [
     compared(t("Distance"), "length_m", lengthText),
@@ -88,7 +102,7 @@ export function figuresOf(record) {
           {
             words: t("Estimates inside bound"),
             planned: percentText(95),
-            flown: percentText(estimates.share_inside * 100),
+            flown: percentText((estimates.share_inside ?? 0) * 100),
             more: "",
           },
           { words: t("Estimates off, RMS"), planned: "", flown: metres(estimates.rms_m), more: "" },

@@ -1,5 +1,20 @@
 /** The time that a replay goes through: its span, its axis, and what happened in it. Values in, values out. */
 
+import { lastOf } from "./track.js";
+
+/** @import { Alert, RecordRoute, RecordTarget } from "../api_types.d.ts" */
+/** @import { TimeSpan } from "./player.js" */
+/** @import { TimedValue, Track } from "./track.js" */
+
+/** @typedef {ReturnType<typeof scaleOf>} Scale */
+/**
+ * What happened in a replay. place: of the UAV; target: its place.
+ *
+ * @typedef {{ at_ms: number, place: number | null } & (
+ *   { kind: "take-off" | "landing" } | { kind: "target", target: number } | { kind: "alert", alert: Alert }
+ * )} ReplayEvent
+ */
+
 const SECOND = 1_000;
 const MINUTE = 60 * SECOND;
 const HOUR = 60 * MINUTE;
@@ -23,35 +38,51 @@ const STEPS_MS = [
   12 * HOUR,
   24 * HOUR,
 ];
+const LONGEST_MS = STEPS_MS[STEPS_MS.length - 1];
 const TICK_PX = 84;
 const SAME_MS = 500; // an event that the cursor stands on
 
-/** From the first take-off to the last landing; of all that was heard where nothing says that it flew. null where nothing was. */
+/**
+ * From the first take-off to the last landing; of all that was heard where nothing says that it flew. null where nothing was.
+ *
+ * @param {Pick<Track, "flights" | "samples" | "estimated">[]} tracks
+ * @returns {TimeSpan | null}
+ */
 export function spanOf(tracks) {
   const flown = tracks.flatMap(({ flights }) => flights.flatMap(({ from_ms, to_ms }) => [from_ms, to_ms]));
-  const heard = tracks.flatMap(({ samples }) => (samples.length ? [samples[0].at_ms, samples.at(-1).at_ms] : []));
-  const estimated = tracks.flatMap(({ estimated: runs }) => runs.map((run) => run.at(-1).at_ms));
+  const heard = tracks.flatMap(({ samples }) =>
+    [...samples.slice(0, 1), ...samples.slice(-1)].map(({ at_ms }) => at_ms),
+  );
+  const estimated = tracks.flatMap(({ estimated: runs }) => runs.map((run) => lastOf(run).at_ms));
   const moments = flown.length ? [...flown, ...estimated] : heard;
   if (!moments.length) return null;
   const from_ms = Math.min(...moments);
   return { from_ms, to_ms: Math.max(...moments, from_ms + SECOND) };
 }
 
-/** x(at_ms) in pixels, and back. */
+/** x(at_ms) in pixels, and back. @param {TimeSpan} span @param {number} width_px */
 export function scaleOf({ from_ms, to_ms }, width_px) {
   const length_ms = to_ms - from_ms;
   return {
+    /** @param {number} at_ms */
     x: (at_ms) => ((at_ms - from_ms) / length_ms) * width_px,
+    /** @param {number} x */
     at_ms: (x) => from_ms + (Math.min(width_px, Math.max(0, x)) / Math.max(1, width_px)) * length_ms,
   };
 }
 
-/** Round moments by the reader's clock: { step_ms, moments }. ahead_min: of UTC. */
+/**
+ * Round moments by the reader's clock.
+ *
+ * @param {TimeSpan} span
+ * @param {number} width_px
+ * @param {number} ahead_min of UTC
+ */
 export function ticksOf({ from_ms, to_ms }, width_px, ahead_min) {
   const most = Math.max(1, Math.floor(width_px / TICK_PX));
   const step_ms =
     STEPS_MS.find((step) => (to_ms - from_ms) / step <= most) ??
-    STEPS_MS.at(-1) * Math.ceil((to_ms - from_ms) / STEPS_MS.at(-1) / most);
+    LONGEST_MS * Math.ceil((to_ms - from_ms) / LONGEST_MS / most);
   const ahead_ms = ahead_min * MINUTE;
   const moments = [];
   for (let at = Math.ceil((from_ms + ahead_ms) / step_ms) * step_ms - ahead_ms; at <= to_ms; at += step_ms)
@@ -59,23 +90,36 @@ export function ticksOf({ from_ms, to_ms }, width_px, ahead_min) {
   return { step_ms, moments };
 }
 
-/** Rules of a scale from 0: round figures, three at most, the last at or below the highest. */
+/** Rules of a scale from 0: round figures, three at most, the last at or below the highest. @param {number} highest */
 export function rulesOf(highest) {
   if (!(highest > 0)) return [];
   const power = 10 ** Math.floor(Math.log10(highest));
-  const step = [0.2, 0.5, 1, 2, 5].map((factor) => factor * power).find((candidate) => highest / candidate < 3.999);
+  const steps = [0.2, 0.5, 1, 2].map((factor) => factor * power);
+  const step = steps.find((candidate) => highest / candidate < 3.999) ?? 5 * power;
   return Array.from({ length: Math.floor(highest / step + 1e-9) }, (_, index) => (index + 1) * step);
 }
 
-/** Whether a UAV's flight of this index has ended, as far as anybody heard. */
+/**
+ * Whether a UAV's flight of this index has ended, as far as anybody heard.
+ *
+ * @param {Pick<Track, "flights" | "samples">} track
+ * @param {number} index
+ * @param {boolean} isOver whether the mission has ended
+ */
 export const hasLanded = (track, index, isOver) =>
-  isOver || index < track.flights.length - 1 || track.samples.at(-1).isInAir === false;
+  isOver || index < track.flights.length - 1 || track.samples.at(-1)?.isInAir === false;
 
 /**
- * What happened, in the order of time: [{ at_ms, kind, place?, target?, alert? }], kind one of take-off, target, alert, landing.
- * routes: [{ place, uav, track }]; targets and alerts as the API has them. isOver: the mission has ended.
+ * What happened, in the order of time.
+ *
+ * @param {object} flown
+ * @param {readonly { place: number, uav: number | null, track: Pick<Track, "flights" | "samples"> }[]} flown.routes
+ * @param {readonly Pick<RecordTarget, "place" | "uav" | "reached_at">[]} flown.targets
+ * @param {readonly Alert[]} flown.alerts
+ * @param {boolean} flown.isOver whether the mission has ended
  */
 export function eventsOf({ routes, targets, alerts, isOver }) {
+  /** @type {ReplayEvent[]} */
   const events = [];
   for (const { place, track } of routes) {
     track.flights.forEach(({ from_ms, to_ms }, index) => {
@@ -96,19 +140,32 @@ export function eventsOf({ routes, targets, alerts, isOver }) {
   return events.sort((a, b) => a.at_ms - b.at_ms);
 }
 
-/** The next event in a direction (1 or -1) from a moment; null where there is none. */
+/**
+ * The next event in a direction from a moment; null where there is none.
+ *
+ * @template {{ at_ms: number }} Timed
+ * @param {readonly Timed[]} events
+ * @param {number} at_ms
+ * @param {number} direction 1 or -1
+ */
 export function eventFrom(events, at_ms, direction) {
   if (direction > 0) return events.find((event) => event.at_ms > at_ms + SAME_MS) ?? null;
   return events.findLast((event) => event.at_ms < at_ms - SAME_MS) ?? null;
 }
 
-/** Heights of the plan by time, begun when the UAV took off: [{ at_ms, value }]; none where the plan has no times. */
+/**
+ * Heights of the plan by time, begun when the UAV took off; none where the plan has no times.
+ *
+ * @param {{ waypoints: readonly Pick<RecordRoute["waypoints"][number], "arrival_s" | "altitude_relative_m">[],
+ *   flown: Pick<RecordRoute["flown"], "began_at"> }} route
+ * @returns {TimedValue[]}
+ */
 export function plannedHeights({ waypoints, flown }) {
-  const [first] = waypoints;
-  if (!flown.began_at || !first || waypoints.some(({ arrival_s }) => arrival_s === null)) return [];
+  if (!flown.began_at) return [];
   const began_ms = Date.parse(flown.began_at);
-  return waypoints.map(({ arrival_s, altitude_relative_m }) => ({
-    at_ms: began_ms + (arrival_s - first.arrival_s) * SECOND,
-    value: altitude_relative_m,
-  }));
+  const timed = waypoints.flatMap(({ arrival_s, altitude_relative_m: value }) =>
+    arrival_s === null ? [] : [{ arrival_s, value }],
+  );
+  if (timed.length < waypoints.length) return [];
+  return timed.map(({ arrival_s, value }) => ({ at_ms: began_ms + (arrival_s - timed[0].arrival_s) * SECOND, value }));
 }
