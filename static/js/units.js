@@ -153,17 +153,17 @@ export function countText(count, singular, plural = `${singular}s`) {
 const partsOf = (date) =>
   new Intl.DateTimeFormat("en-CA", { ...zone, year: "numeric", month: "2-digit", day: "2-digit" }).format(date);
 
-/** @param {string} iso */
+/** @param {string | number} iso or milliseconds since 1970 */
 export function clockText(iso) {
   return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit" });
 }
 
-/** With seconds: live pages and logs alone. @param {string} iso */
+/** With seconds: live pages and logs alone. @param {string | number} iso or milliseconds since 1970 */
 export function exactClockText(iso) {
   return new Date(iso).toLocaleTimeString(LOCALE, { ...zone, hour: "2-digit", minute: "2-digit", second: "2-digit" });
 }
 
-/** "10 Sep 2026". @param {string} iso */
+/** "10 Sep 2026". @param {string | number} iso or milliseconds since 1970 */
 export function dateText(iso) {
   return new Date(iso).toLocaleDateString(LOCALE, { ...zone, day: "numeric", month: "short", year: "numeric" });
 }
