@@ -67,6 +67,11 @@ export function icon(name, size = "") {
   return svg("svg", { class: `icon ${size}`.trim(), "aria-hidden": "true" }, svg("use", { href: `${SPRITE}#${name}` }));
 }
 
+/** Puts children in the place of those that an element has. @param {Element} element @param {...Child} children */
+export function setChildren(element, ...children) {
+  element.replaceChildren(...shown(children));
+}
+
 /**
  * Puts children into an element only where they would be others than before: the pointer and the focus stay with the same ones.
  *
