@@ -13,6 +13,7 @@ from inspection.services import import_osm
 from workspace.models import AuditEntry, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
+REGIONS = ["quillmoor.osm.pbf", "liechtenstein-2021-infra.osm.pbf"]
 SQUARE = {"type": "Polygon", "coordinates": [[[9.5, 47.1], [9.6, 47.1], [9.6, 47.2], [9.5, 47.2], [9.5, 47.1]]]}
 BOWTIE = {"type": "Polygon", "coordinates": [[[9.5, 47.1], [9.6, 47.2], [9.6, 47.1], [9.5, 47.2], [9.5, 47.1]]]}
 
@@ -129,8 +130,9 @@ def test_an_older_change_is_not_undone_over_a_newer_one(cora: APIClient) -> None
     assert Asset.objects.get().ref == "19"
 
 
-def test_what_was_taken_off_by_hand_stays_off_over_the_next_import(cora: APIClient, shared_data: Callable[[str], Path]) -> None:
-    file = shared_data("osm/liechtenstein-2021-infra.osm.pbf")
+@pytest.mark.parametrize("name", REGIONS)
+def test_what_was_taken_off_by_hand_stays_off_over_the_next_import(name: str, cora: APIClient, region_file: Callable[[str], Path]) -> None:
+    file = region_file(name)
     import_osm(path=file)
     tower = Asset.objects.filter(kind="tower").first()
     address = f"/api/v1/assets/{tower.pk}"
@@ -141,10 +143,11 @@ def test_what_was_taken_off_by_hand_stays_off_over_the_next_import(cora: APIClie
     assert (back.status_code, back.data["properties"]["vanished_at"], back.data["properties"]["is_edited"]) == (200, None, False)
 
 
-def test_an_edit_that_says_again_what_the_source_says_is_no_edit(cora: APIClient, shared_data: Callable[[str], Path]) -> None:
-    import_osm(path=shared_data("osm/liechtenstein-2021-infra.osm.pbf"))
+@pytest.mark.parametrize("name", REGIONS)
+def test_an_edit_that_says_again_what_the_source_says_is_no_edit(name: str, cora: APIClient, region_file: Callable[[str], Path]) -> None:
+    import_osm(path=region_file(name))
     line = Asset.objects.filter(kind="line").first()
-    nodes, name = line.node_osm_ids, line.name
+    nodes, line_name = line.node_osm_ids, line.name
     address = f"/api/v1/assets/{line.pk}"
     moved = [[lon, lat + 0.001] for lon, lat in line.geometry.coords]
     edited = cora.patch(
@@ -154,7 +157,7 @@ def test_an_edit_that_says_again_what_the_source_says_is_no_edit(cora: APIClient
     followed = cora.post(f"{address}/follow-source", headers={"If-Match": "*"})
     assert followed.data["properties"]["is_edited"] is False
     line.refresh_from_db()
-    assert (line.name, line.node_osm_ids, line.source_facts) == (name, nodes, None)
+    assert (line.name, line.node_osm_ids, line.source_facts) == (line_name, nodes, None)
 
 
 @pytest.mark.parametrize(

@@ -29,10 +29,14 @@ def present():
 
 
 @pytest.mark.parametrize(
-    "name", ["liechtenstein-2021.osm.pbf", "columbus-ohio.osm.pbf", "nepal-power-2025.osm.pbf", "copenhagen-rail-2015.osm.gz"]
-)
-def test_the_same_file_again_changes_nothing(name, shared_data):
-    path = shared_data(f"osm/{name}")
+    "name",
+    [
+        "elme-valley.osm.pbf", "quillmoor.osm.pbf",
+        "liechtenstein-2021.osm.pbf", "columbus-ohio.osm.pbf", "nepal-power-2025.osm.pbf", "copenhagen-rail-2015.osm.gz",
+    ],
+)  # fmt: skip
+def test_the_same_file_again_changes_nothing(name, region_file):
+    path = region_file(name)
     first = import_osm(path=path)
     before, at_revision = rows(), revision()
     second = import_osm(path=path)
@@ -44,8 +48,9 @@ def test_the_same_file_again_changes_nothing(name, shared_data):
     assert (second.pk, DataImport.objects.count()) == (first.pk, 1)
 
 
-def test_rows_hold_what_the_records_say(shared_data):
-    path = shared_data("osm/columbus-ohio.osm.pbf")
+@pytest.mark.parametrize("name", ["quillmoor.osm.pbf", "columbus-ohio.osm.pbf"])
+def test_rows_hold_what_the_records_say(name, region_file):
+    path = region_file(name)
     import_osm(path=path)
     stored = {(row.kind, row.osm_type, row.osm_id): row for row in Asset.objects.all()}
     records = read_osm(path).records
@@ -115,10 +120,16 @@ def test_a_drawn_asset_never_vanishes(tmp_path):
     assert drawn.vanished_at is None
 
 
-def test_files_of_two_regions_do_not_mark_each_other(shared_data):
-    names = ["roenne-bornholm-2015.osm.gz", "copenhagen-rail-2015.osm.gz", "funen-power-nodes-2019.osm.pbf"]
+@pytest.mark.parametrize(
+    "names",
+    [
+        pytest.param(["elme-valley.osm.pbf", "quillmoor.osm.pbf"], id="generated"),
+        pytest.param(["roenne-bornholm-2015.osm.gz", "copenhagen-rail-2015.osm.gz", "funen-power-nodes-2019.osm.pbf"], id="real"),
+    ],
+)
+def test_files_of_several_regions_do_not_mark_each_other(names, region_file):
     for name in names + names:
-        import_osm(path=shared_data(f"osm/{name}"))
+        import_osm(path=region_file(name))
     assert not Asset.objects.exclude(vanished_at=None).exists()
 
 

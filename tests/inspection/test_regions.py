@@ -47,8 +47,9 @@ def test_a_box_is_counted_first_and_then_taken_off(client: Client) -> None:
     assert delete(client, bbox=box).json() == {"counts": {}}
 
 
-def test_an_import_is_taken_off_and_its_file_brings_everything_back(client: Client, shared_data: Callable[[str], Path]) -> None:
-    file = shared_data("osm/liechtenstein-2021-infra.osm.pbf")
+@pytest.mark.parametrize("name", ["quillmoor.osm.pbf", "liechtenstein-2021-infra.osm.pbf"])
+def test_an_import_is_taken_off_and_its_file_brings_everything_back(name: str, client: Client, region_file: Callable[[str], Path]) -> None:
+    file = region_file(name)
     first = import_osm(path=file)
     all_of_it = on_the_ground()
     assert sum(delete(client, import_id=first.pk).json()["counts"].values()) == all_of_it

@@ -114,10 +114,11 @@ def test_a_curators_change_of_a_line_or_support_numbers_again():
     assert places() == {1: (20, 1, 2), 2: None, 3: None}
 
 
-def test_real_supports_have_a_place_on_a_line_that_runs_over_them(shared_data):
-    import_osm(path=shared_data("osm/columbus-ohio.osm.pbf"))
+@pytest.mark.parametrize(("name", "supports"), [("elme-valley.osm.pbf", 3_065), ("quillmoor.osm.pbf", 457), ("columbus-ohio.osm.pbf", 500)])
+def test_supports_have_a_place_on_a_line_that_runs_over_them(name, supports, region_file):
+    import_osm(path=region_file(name))
     on_lines = Asset.objects.filter(line__isnull=False).select_related("line")
-    assert len(on_lines) > 500
+    assert len(on_lines) >= supports
     by_line = {}
     for row in on_lines:
         assert row.osm_id in row.line.node_osm_ids

@@ -78,8 +78,9 @@ def test_an_honest_blob_of_the_largest_size_passes_the_gate(tmp_path):
     assert examine(path) == "pbf"
 
 
-def test_a_real_file_cut_anywhere_is_refused_or_read_whole_blobs(tmp_path, shared_data):
-    data = shared_data("osm/liechtenstein-2021-infra.osm.pbf").read_bytes()
+@pytest.mark.parametrize("name", ["quillmoor.osm.pbf", "liechtenstein-2021-infra.osm.pbf"])
+def test_a_file_cut_anywhere_is_refused(name, tmp_path, region_file):
+    data = region_file(name).read_bytes()
     for length in range(1, len(data) - 1, len(data) // 40):
         path = tmp_path / "cut.osm.pbf"
         path.write_bytes(data[:length])
