@@ -1,12 +1,17 @@
-/** What stands beside a drawing: tools, how long or large it is, what is wrong, and its vertices as a table for keys and screen readers. */
+/** What stands beside a drawing: tools, how long or large it is, what is wrong, and its vertices as a table. */
 
 import { h, icon } from "../dom.js";
 import { measure } from "../domain/geodesy.js";
-import { t, tn } from "../text.js";
-import { areaText, lengthText } from "../units.js";
-import { circleOf, positionAt, removeRing as removeRingOf, removeVertex, verticesOf } from "./shape.js";
+import { t } from "../text.js";
+import { areaText, countText, lengthText } from "../units.js";
+import { circleOf, removeRing, removeVertex, verticesOf } from "./shape.js";
+import { createVertexTable } from "./vertex_table.js";
 
-const MOST_ROWS = 200;
+/** @import { Editor } from "./editor.js" */
+/** @import { EditorState, Fault, Shape, ShapeKind } from "./types.d.ts" */
+
+const MOST_FAULTS = 5;
+/** @type {Record<ShapeKind, string>} */
 const ASK = {
   point: t("Click where it stands."),
   line: t("Click along the line; Enter or a click on the last point ends it."),
@@ -14,6 +19,7 @@ const ASK = {
   circle: t("Click the centre, then how far it reaches."),
 };
 
+/** @type {Record<ShapeKind, string>} */
 const HINTS = {
   point: t("Drag it to its place, or write where it stands under Points."),
   line: t("Drag a point; drag the small one between two to add another."),
@@ -25,257 +31,161 @@ const HOLD = matchMedia("(pointer: coarse)").matches
   : ` ${t("Alt-click removes one; with Ctrl or Alt nothing snaps.")}`;
 const MOVING = t("Drag the whole shape, or move it with the arrow keys.");
 
+/** @param {string} words @param {string} name of an icon @param {() => unknown} act @param {Record<string, string>} [rest] */
 const button = (words, name, act, rest = {}) =>
   h("button", { type: "button", class: "button", onclick: act, ...rest }, icon(name, "small"), words);
+/** @param {string} words @param {string} name of an icon @param {() => unknown} act */
 const tool = (words, name, act) =>
   h("button", { type: "button", class: "icon-button", "aria-label": words, title: words, onclick: act }, icon(name));
 
-/** Returns { element, update(state), preview(shape), verdict(of the server) }; show(position) moves the map. */
-export function createDrawPanel(editor, { show }) {
-  const undo = tool(t("Undo (Ctrl+Z)"), "undo-2", () => editor.undo());
-  const redo = tool(t("Redo (Ctrl+Shift+Z)"), "redo-2", () => editor.redo());
-  const finish = button(t("Finish"), "check", () => editor.finish());
-  const hole = button(t("Hole"), "circle-dashed", () => editor.startHole(), { title: t("Draw a hole in the area") });
-  const part = button(t("Part"), "plus", () => editor.startPart(), { title: t("Draw another part of the area") });
-  const move = button(t("Move"), "hand", () => editor.moveWhole(!now.isMoving), {
-    title: t("Move the whole shape by dragging, or with the arrow keys"),
-  });
-  const remove = button(t("Remove point"), "trash-2", () => editor.removeChosen());
-  const removeRing = button(t("Remove hole"), "trash-2", () => editor.removeRing());
-  const ask = h("p", { class: "caption" });
-  const figures = h("p", { class: "draw-figures", role: "status" });
-  const coming = h("p", { class: "draw-figures", "aria-hidden": "true", hidden: true }); // follows the pointer: not read out
-  const faults = h("div", { class: "draw-faults" });
-  const rows = h("tbody", {});
-  const rest = h("p", { class: "caption", hidden: true });
-  const radius = h("input", {
-    class: "input",
-    id: "draw-radius",
-    type: "number",
-    min: 1,
-    max: 500_000,
-    step: 1,
-    onchange: (event) => editor.setRadius(Number(event.target.value)),
-  });
-  const radiusField = h(
+/** Lengths and areas as the server found them, on the ellipsoid. @typedef {{ length_m?: number | null, area_m2?: number | null }} Figures */
+/** @typedef {(position: number[]) => void} ShowPlace moves the map there */
+
+/** @param {Editor} editor @param {{ show: ShowPlace }} options */
+export const createDrawPanel = (editor, options) => new DrawPanel(editor, options.show);
+
+class DrawPanel {
+  #show;
+  #tools;
+  #vertices;
+  #ask = h("p", { class: "caption" });
+  #figures = h("p", { class: "draw-figures", role: "status" });
+  #coming = h("p", { class: "draw-figures", "aria-hidden": "true", hidden: true }); // follows the pointer: not read out
+  #faults = h("div", { class: "draw-faults" });
+  #radius = h("input", { class: "input", id: "draw-radius", type: "number", min: 1, max: 500_000, step: 1 });
+  #radiusField = h(
     "div",
     { class: "field" },
     h("label", { for: "draw-radius" }, t("Radius")),
-    h("div", { class: "with-unit" }, radius, h("span", { class: "unit" }, "m")),
+    h("div", { class: "with-unit" }, this.#radius, h("span", { class: "unit" }, "m")),
   );
-  const table = h(
-    "details",
-    { class: "draw-vertices" },
-    h("summary", {}, t("Points")),
-    h("p", { class: "caption" }, t("Choose a point by its number; the arrow keys then move it, Del removes it.")),
-    h(
-      "table",
-      {},
-      h("caption", { class: "unseen" }, t("Points with longitude and latitude in degrees")),
-      h(
-        "thead",
-        {},
-        h(
-          "tr",
-          {},
-          h("th", { scope: "col" }, t("Point")),
-          h("th", { scope: "col" }, t("Longitude")),
-          h("th", { scope: "col" }, t("Latitude")),
-        ),
-      ),
-      rows,
-    ),
-    rest,
-    h(
-      "button",
-      { type: "button", class: "text-button add-point", onclick: () => editor.addInMiddle() },
-      t("Add a point in the middle of the map"),
-    ),
-  );
-  const addPoint = table.querySelector(".add-point");
-  table.addEventListener("toggle", () => table.open && now?.shape && fill());
-  let now = null;
-  let told = null; // what the server says
+  /** @type {EditorState | null} */
+  #now = null;
+  /** What the server says. @type {Fault | null} */
+  #told = null;
 
-  function rowOf(index) {
-    const at = () => verticesOf(now.shape)[index].at;
-    const degrees = (axis) =>
-      h(
-        "td",
-        {},
-        h("input", {
-          class: "input",
-          type: "number",
-          step: "any",
-          "aria-label": axis
-            ? t("Latitude of point {number}", { number: index + 1 })
-            : t("Longitude of point {number}", { number: index + 1 }),
-          onchange: (event) => {
-            const position = [...positionAt(now.shape, at())];
-            const value = Number(event.target.value);
-            if (event.target.value === "" || !(Math.abs(value) <= (axis ? 90 : 180)))
-              event.target.value = String(position[axis]);
-            else editor.put(at(), axis ? [position[0], value] : [value, position[1]]);
-          },
-        }),
-      );
-    const choose = () => {
-      editor.choose(at());
-      show(positionAt(now.shape, at()));
-    };
-    return h(
-      "tr",
-      {},
-      h(
-        "th",
-        { scope: "row" },
-        h(
-          "button",
-          {
-            type: "button",
-            class: "text-button",
-            onclick: choose,
-            "aria-label": t("Point {number}", { number: index + 1 }),
-          },
-          String(index + 1),
-        ),
-      ),
-      degrees(0),
-      degrees(1),
-    );
-  }
-
-  /** Rows stay while there are as many: focus stays where it is. */
-  function fill() {
-    const vertices = verticesOf(now.shape);
-    const listed = vertices.slice(0, MOST_ROWS);
-    while (rows.rows.length > listed.length) rows.lastElementChild.remove();
-    while (rows.rows.length < listed.length) rows.append(rowOf(rows.rows.length));
-    listed.forEach(({ at, position }, index) => {
-      const row = rows.rows[index];
-      const isChosen = now.chosen?.join() === at.join();
-      row.classList.toggle("chosen", isChosen);
-      row.querySelector("button").setAttribute("aria-pressed", String(isChosen));
-      row.querySelectorAll("input").forEach((input, axis) => (input.value = String(position[axis])));
-    });
-    rest.hidden = vertices.length <= MOST_ROWS;
-    rest.textContent = tn(vertices.length - MOST_ROWS, "{count} more is on the map.", "{count} more are on the map.");
-  }
-
-  function draw() {
-    const { shape, isDrawing, chosen } = now;
-    if (!shape) return;
-    const isArea = shape.kind === "area";
-    undo.disabled = !now.canUndo;
-    redo.disabled = !now.canRedo;
-    finish.hidden = !isDrawing || shape.kind === "point" || shape.kind === "circle";
-    hole.hidden = part.hidden = !isArea || isDrawing;
-    move.hidden = isDrawing || shape.kind === "point" || shape.kind === "circle";
-    move.setAttribute("aria-pressed", String(now.isMoving));
-    remove.hidden = !chosen || isDrawing || removeVertex(shape, chosen) === shape;
-    removeRing.hidden = !chosen || isDrawing || removeRingOf(shape, chosen) === shape;
-    removeRing.lastChild.textContent = chosen?.[1] > 0 ? t("Remove hole") : t("Remove part");
-    addPoint.hidden = !isDrawing;
-    ask.textContent = isDrawing
-      ? ASK[shape.kind]
-      : now.isMoving
-        ? MOVING
-        : HINTS[shape.kind] + (["line", "area"].includes(shape.kind) ? HOLD : "");
-    figures.textContent = figuresOf(shape);
-    coming.hidden = true;
-    figures.hidden = false;
-    radiusField.hidden = !circleOf(shape);
-    if (document.activeElement !== radius) radius.value = String(shape.radius_m ?? "");
-    const wrong = isDrawing
-      ? now.faults.filter((fault) => fault.sides.length)
-      : now.faults.length
-        ? now.faults
-        : told
-          ? [told]
-          : [];
-    faults.replaceChildren(
-      ...wrong
-        .slice(0, 5)
-        .map((fault) =>
-          h(
-            "p",
-            { class: "field-error" },
-            icon("circle-alert", "small"),
-            h(
-              "span",
-              {},
-              fault.message,
-              " ",
-              fault.position &&
-                h(
-                  "button",
-                  { type: "button", class: "text-button", onclick: () => show(fault.position) },
-                  t("See the place"),
-                ),
-            ),
-          ),
-        ),
-    );
-    if (table.open) fill();
-  }
-
-  const figuresOf = (shape, exact = {}) => {
-    const rough = measure(shape);
-    const [length_m, area_m2] = [exact.length_m ?? rough.length_m, exact.area_m2 ?? rough.area_m2];
-    const number = verticesOf(shape).length;
-    return [
-      circleOf(shape) && t("{radius} radius", { radius: lengthText(shape.radius_m) }),
-      length_m && lengthText(length_m),
-      area_m2 && areaText(area_m2),
-      ["line", "area"].includes(shape.kind) && `${number} ${number === 1 ? "point" : "points"}`,
-    ]
-      .filter(Boolean)
-      .join(", ");
-  };
-
-  return {
-    element: h(
+  /** @param {Editor} editor @param {ShowPlace} show */
+  constructor(editor, show) {
+    this.#show = show;
+    this.#tools = toolsOf(editor);
+    this.#vertices = createVertexTable(editor, show);
+    this.#radius.addEventListener("change", () => editor.setRadius(Number(this.#radius.value)));
+    this.element = h(
       "div",
       { class: "draw-panel" },
-      h(
-        "div",
-        { class: "draw-tools", role: "toolbar", "aria-label": t("Drawing") },
-        undo,
-        redo,
-        finish,
-        hole,
-        part,
-        move,
-        remove,
-        removeRing,
-      ),
-      ask,
-      figures,
-      coming,
-      radiusField,
-      faults,
-      table,
-    ),
-    update(state) {
-      now = state;
-      told = null;
-      if (state.shape) draw();
-    },
-    /** Figures of what the shape would be with the pointer where it is. */
-    preview(shape) {
-      coming.textContent = figuresOf(shape);
-      coming.hidden = false;
-      figures.hidden = true;
-    },
-    /** { fault, length_m, area_m2 } as the server found them, on the ellipsoid. */
-    verdict({ fault, length_m, area_m2 }) {
-      told = fault && {
-        message: `${fault.message[0].toUpperCase()}${fault.message.slice(1)}.`,
-        position: fault.position,
-        sides: [],
-      };
-      draw();
-      figures.textContent = figuresOf(now.shape, { length_m, area_m2 });
-    },
+      h("div", { class: "draw-tools", role: "toolbar", "aria-label": t("Drawing") }, Object.values(this.#tools)),
+      this.#ask,
+      this.#figures,
+      this.#coming,
+      this.#radiusField,
+      this.#faults,
+      this.#vertices.element,
+    );
+  }
+
+  /** @param {EditorState} state */
+  update(state) {
+    this.#now = state;
+    this.#told = null;
+    this.#draw();
+  }
+
+  /** Shows figures of what the shape would be with the pointer where it is. @param {Shape} shape */
+  preview(shape) {
+    this.#coming.textContent = figuresOf(shape);
+    this.#coming.hidden = false;
+    this.#figures.hidden = true;
+  }
+
+  /** Shows what the server found. @param {{ fault: { message: string, position: number[] | null } | null } & Figures} found */
+  verdict({ fault, length_m, area_m2 }) {
+    this.#told = fault && {
+      message: `${fault.message[0].toUpperCase()}${fault.message.slice(1)}.`,
+      position: fault.position,
+      sides: [],
+    };
+    this.#draw();
+    if (this.#now?.shape) this.#figures.textContent = figuresOf(this.#now.shape, { length_m, area_m2 });
+  }
+
+  #draw() {
+    const state = this.#now;
+    if (!state?.shape) return;
+    const { shape, isDrawing, isMoving } = state;
+    showTools(this.#tools, state, shape);
+    const hold = shape.kind === "line" || shape.kind === "area" ? HOLD : "";
+    this.#ask.textContent = isDrawing ? ASK[shape.kind] : isMoving ? MOVING : HINTS[shape.kind] + hold;
+    this.#figures.textContent = figuresOf(shape);
+    this.#coming.hidden = true;
+    this.#figures.hidden = false;
+    this.#radiusField.hidden = !circleOf(shape);
+    if (document.activeElement !== this.#radius) this.#radius.value = String(shape.radius_m ?? "");
+    this.#faults.replaceChildren(
+      ...this.#wrong(state)
+        .slice(0, MOST_FAULTS)
+        .map((fault) => this.#faultLine(fault)),
+    );
+    this.#vertices.update(state);
+  }
+
+  /** @param {EditorState} state @returns {Fault[]} */
+  #wrong({ isDrawing, faults }) {
+    if (isDrawing) return faults.filter((fault) => fault.sides.length);
+    return faults.length || !this.#told ? faults : [this.#told];
+  }
+
+  /** @param {Fault} fault */
+  #faultLine({ message, position }) {
+    const see = position && (() => this.#show(position));
+    const link = see && h("button", { type: "button", class: "text-button", onclick: see }, t("See the place"));
+    return h("p", { class: "field-error" }, icon("circle-alert", "small"), h("span", {}, message, " ", link));
+  }
+}
+
+/** In the order in which they stand. @param {Editor} editor */
+function toolsOf(editor) {
+  const moving = { title: t("Move the whole shape by dragging, or with the arrow keys") };
+  return {
+    undo: tool(t("Undo (Ctrl+Z)"), "undo-2", editor.undo),
+    redo: tool(t("Redo (Ctrl+Shift+Z)"), "redo-2", editor.redo),
+    finish: button(t("Finish"), "check", editor.finish),
+    hole: button(t("Hole"), "circle-dashed", editor.startHole, { title: t("Draw a hole in the area") }),
+    part: button(t("Part"), "plus", editor.startPart, { title: t("Draw another part of the area") }),
+    move: button(t("Move"), "hand", () => editor.moveWhole(!editor.isMoving), moving),
+    remove: button(t("Remove point"), "trash-2", editor.removeChosen),
+    removeRing: button(t("Remove hole"), "trash-2", editor.removeRing),
   };
+}
+
+/** Shows the tools that do something now. @param {ReturnType<typeof toolsOf>} tools @param {EditorState} state @param {Shape} shape */
+function showTools(tools, { isDrawing, isMoving, chosen, canUndo, canRedo }, shape) {
+  const isWhole = shape.kind === "point" || shape.kind === "circle"; // drawn with one or two clicks, moved by its handle
+  const hasNoParts = shape.kind !== "area" || isDrawing;
+  tools.undo.disabled = !canUndo;
+  tools.redo.disabled = !canRedo;
+  tools.finish.hidden = !isDrawing || isWhole;
+  tools.hole.hidden = hasNoParts;
+  tools.part.hidden = hasNoParts;
+  tools.move.hidden = isDrawing || isWhole;
+  tools.move.setAttribute("aria-pressed", String(isMoving));
+  tools.remove.hidden = !chosen || isDrawing || removeVertex(shape, chosen) === shape;
+  tools.removeRing.hidden = !chosen || isDrawing || removeRing(shape, chosen) === shape;
+  const words = chosen && chosen[1] > 0 ? t("Remove hole") : t("Remove part");
+  if (tools.removeRing.lastChild) tools.removeRing.lastChild.textContent = words;
+}
+
+/** @param {Shape} shape @param {Figures} [exact] */
+function figuresOf(shape, exact = {}) {
+  const rough = measure(shape);
+  const [length_m, area_m2] = [exact.length_m ?? rough.length_m, exact.area_m2 ?? rough.area_m2];
+  const circle = circleOf(shape);
+  const hasPoints = shape.kind === "line" || shape.kind === "area";
+  return [
+    circle && t("{radius} radius", { radius: lengthText(circle.radius_m) }),
+    length_m && lengthText(length_m),
+    area_m2 && areaText(area_m2),
+    hasPoints && countText(verticesOf(shape).length, "point"),
+  ]
+    .filter(Boolean)
+    .join(", ");
 }

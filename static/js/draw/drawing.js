@@ -16,12 +16,27 @@ import {
   withoutStubs,
 } from "./shape.js";
 
-/** A shape that lacks vertices is drawn on, also one that was left in the middle. */
+/** @import { Drawing, Shape } from "./types.d.ts" */
+
+/**
+ * A shape that lacks vertices is drawn on, also one that was left in the middle.
+ *
+ * @param {Shape} shape
+ * @returns {Drawing}
+ */
 export const begin = (shape) => ({ shape, growing: stubOf(shape) });
 
+/** @param {Drawing} state @returns {number[][]} */
 export const growingRing = ({ shape, growing }) => (growing ? ringAt(shape, growing) : []);
 
-/** A click. `near`: "first" or "last" where it met that vertex of the growing ring. */
+/**
+ * A click. `near`: "first" or "last" where it met that vertex of the growing ring.
+ *
+ * @param {Drawing} state
+ * @param {number[]} position
+ * @param {"first" | "last" | null} [near]
+ * @returns {Drawing}
+ */
 export function placed(state, position, near = null) {
   const { shape, growing } = state;
   if (!growing) return state;
@@ -36,7 +51,12 @@ export function placed(state, position, near = null) {
   return { shape: append(shape, growing, position), growing };
 }
 
-/** The growing ring is whole; a hole or part of too few vertices is dropped, and a shape of too few goes on. */
+/**
+ * The growing ring is whole; a hole or part of too few vertices is dropped, and a shape of too few goes on.
+ *
+ * @param {Drawing} state
+ * @returns {Drawing}
+ */
 export function ended(state) {
   const { shape, growing } = state;
   if (!growing || shape.kind === "circle" || shape.kind === "point") return state;
@@ -44,7 +64,12 @@ export function ended(state) {
   return growing.join() === "0,0" ? state : { shape: withoutStubs(shape), growing: null };
 }
 
-/** Without the vertex that was placed last; a hole or part that has none is given up. */
+/**
+ * Without the vertex that was placed last; a hole or part that has none is given up.
+ *
+ * @param {Drawing} state
+ * @returns {Drawing}
+ */
 export function stepBack(state) {
   const { shape, growing } = state;
   if (!growing) return state;
@@ -52,13 +77,20 @@ export function stepBack(state) {
   return growing.join() === "0,0" ? state : { shape: withoutStubs(shape), growing: null };
 }
 
+/** @param {Drawing} state @param {number} [part] @returns {Drawing} */
 export const withHole = ({ shape }, part = 0) => ({
   shape: addHole(shape, part),
   growing: [part, shape.parts[part].length],
 });
+/** @param {Drawing} state @returns {Drawing} */
 export const withPart = ({ shape }) => ({ shape: addPart(shape), growing: [shape.parts.length, 0] });
 
-/** What it would be if the pointer were clicked: for measures and for a circle that is being drawn out. */
+/**
+ * What it would be if the pointer were clicked: for measures and for a circle that is being drawn out.
+ *
+ * @param {Drawing} state
+ * @param {number[] | null} position
+ */
 export function preview(state, position) {
   const { shape } = state;
   return position && state.growing && shape.kind !== "point" && growingRing(state).length

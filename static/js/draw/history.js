@@ -1,10 +1,24 @@
 /** Undo and redo of a value, without limit. */
 
+/**
+ * @template Value
+ * @param {Value} first
+ */
 export function createSteps(first) {
+  /** @type {Value[]} */
   const past = [];
+  /** @type {Value[]} */
   let future = [];
   let now = first;
+  /** @param {Value} a @param {Value} b */
   const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+  /** @param {Value[]} from @param {Value[]} to */
+  function step(from, to) {
+    if (!from.length) return false;
+    to.push(now);
+    now = /** @type {Value} */ (from.pop());
+    return true;
+  }
   return {
     get value() {
       return now;
@@ -15,7 +29,7 @@ export function createSteps(first) {
     get canRedo() {
       return future.length > 0;
     },
-    /** One step, unless it changes nothing. */
+    /** One step, unless it changes nothing. @param {Value} value */
     take(value) {
       if (isSame(value, now)) return false;
       past.push(now);
@@ -23,21 +37,15 @@ export function createSteps(first) {
       now = value;
       return true;
     },
-    /** Another value for the step that is under way, such as a drag that goes on. */
+    /** Another value for the step that is under way, such as a drag that goes on. @param {Value} value */
     amend(value) {
       now = value;
     },
     undo() {
-      if (!past.length) return false;
-      future.push(now);
-      now = past.pop();
-      return true;
+      return step(past, future);
     },
     redo() {
-      if (!future.length) return false;
-      past.push(now);
-      now = future.pop();
-      return true;
+      return step(future, past);
     },
   };
 }

@@ -1,19 +1,28 @@
 /** What is being drawn, on the map: fill, sides, vertices and middles as handles, and what is wrong in red. */
 
 import { circleRing, continuous } from "../domain/geodesy.js";
+import { setPaint, sourceOf } from "../map/look/style.js";
 import { circleOf, middlesOf, radiusHandle, verticesOf } from "./shape.js";
 
+/** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { FeatureCollection, MapLibreMap } from "../map/types.d.ts" */
+/** @import { Fault, Handle, Shape, VertexPath } from "./types.d.ts" */
+
+/** @type {FeatureCollection} */
 const NOTHING = { type: "FeatureCollection", features: [] };
 const MOST_MIDDLES = 400; // of a large ring, only vertices
 
+/** @param {string} token of the style sheet */
 const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
+/** @param {string} role */
 const isRole = (role) => ["==", ["get", "role"], role];
 const touch = matchMedia("(pointer: coarse)").matches;
 
+/** @returns {LayerSpecification[]} */
 function layers() {
   const [accent, casing, raised, critical] = ["--accent", "--map-casing", "--raised", "--critical"].map(read);
   const round = { "line-cap": "round", "line-join": "round" };
-  return [
+  const layers = [
     {
       id: "draw-fill",
       type: "fill",
@@ -91,28 +100,39 @@ function layers() {
       paint: { "circle-radius": 10, "circle-opacity": 0, "circle-stroke-color": accent, "circle-stroke-width": 2 },
     },
   ];
+  return /** @type {LayerSpecification[]} */ (layers);
 }
 
+/** @param {MapLibreMap} map */
 export function addTo(map) {
   for (const source of ["draw-shape", "draw-next", "draw-points", "draw-faults", "draw-snap"])
     map.addSource(source, { type: "geojson", data: NOTHING });
   for (const layer of layers()) map.addLayer(layer);
 }
 
+/** @param {MapLibreMap} map */
 export function recolour(map) {
-  for (const layer of layers()) {
-    for (const [name, value] of Object.entries(layer.paint)) map.setPaintProperty(layer.id, name, value);
-  }
+  for (const layer of layers()) setPaint(map, layer);
 }
 
+/** @param {string} role @param {string} type @param {unknown} coordinates @param {object} [rest] */
 const feature = (role, type, coordinates, rest = {}) => ({
   type: "Feature",
   properties: { role, ...rest },
   geometry: { type, coordinates },
 });
-const put = (map, source, features) => map.getSource(source).setData({ type: "FeatureCollection", features });
+/** @param {MapLibreMap} map @param {string} source @param {object[]} features */
+function put(map, source, features) {
+  sourceOf(map, source)?.setData(/** @type {FeatureCollection} */ ({ type: "FeatureCollection", features }));
+}
 
-/** shape null draws nothing. `growing`: the ring that is still open. */
+/**
+ * shape null draws nothing. `growing`: the ring that is still open.
+ *
+ * @param {MapLibreMap} map
+ * @param {Shape | null} shape
+ * @param {{ chosen?: VertexPath | null, faults?: Fault[], growing?: VertexPath | null, hasHandles?: boolean }} [how]
+ */
 export function show(map, shape, { chosen = null, faults = [], growing = null, hasHandles = true } = {}) {
   put(map, "draw-shape", shape ? shapeFeatures(shape, growing) : []);
   put(map, "draw-points", shape && hasHandles ? handleFeatures(shape, chosen, growing) : []);
@@ -126,15 +146,22 @@ export function show(map, shape, { chosen = null, faults = [], growing = null, h
   );
 }
 
-/** What the next click would add: the side to the pointer, or the circle round its centre. */
+/**
+ * What the next click would add: the side to the pointer, or the circle round its centre.
+ *
+ * @param {MapLibreMap} map
+ * @param {Shape | null} shape
+ */
 export function showNext(map, shape) {
   put(map, "draw-next", shape ? shapeFeatures(shape, null) : []);
 }
 
+/** @param {MapLibreMap} map @param {number[] | null} position */
 export function showSnap(map, position) {
   put(map, "draw-snap", position ? [feature("snap", "Point", position)] : []);
 }
 
+/** @param {Shape} shape @param {VertexPath | null} growing */
 function shapeFeatures(shape, growing) {
   const circle = circleOf(shape);
   if (circle) {
@@ -144,7 +171,9 @@ function shapeFeatures(shape, growing) {
   if (shape.kind === "point" || shape.kind === "circle") return [];
   const start = shape.parts[0][0][0]?.[0];
   const parts = shape.parts.map((part) => part.map((ring) => continuous(ring, start)));
+  /** @param {number} p @param {number} r */
   const isGrowing = (p, r) => growing !== null && growing[0] === p && growing[1] === r;
+  /** @param {number[][]} ring */
   const closed = (ring) => [...ring, ring[0]];
   const fills =
     shape.kind === "area"
@@ -161,19 +190,30 @@ function shapeFeatures(shape, growing) {
   ];
 }
 
-/** What can be taken hold of: { role, at, position }; `at` of a middle is the vertex before it. */
+/**
+ * What can be taken hold of: { role, at, position }; `at` of a middle is the vertex before it.
+ *
+ * @param {Shape} shape
+ * @returns {Handle[]}
+ */
 export function handlesOf(shape) {
+  /** @type {Handle[]} */
   const vertices = verticesOf(shape).map(({ at, position }) => ({ role: "vertex", at, position }));
   const radius = radiusHandle(shape);
+  /** @type {Handle[]} */
   const middles =
     vertices.length <= MOST_MIDDLES
       ? middlesOf(shape).map(({ after, position }) => ({ role: "middle", at: after, position }))
       : [];
-  return [...middles, ...vertices, ...(radius ? [{ role: "radius", at: null, position: radius }] : [])];
+  /** @type {Handle[]} */
+  const radii = radius ? [{ role: "radius", at: null, position: radius }] : [];
+  return [...middles, ...vertices, ...radii];
 }
 
+/** @param {Shape} shape @param {VertexPath | null} chosen @param {VertexPath | null} growing */
 function handleFeatures(shape, chosen, growing) {
-  const isChosen = ({ role, at }) => role === "vertex" && chosen !== null && at.join() === chosen.join();
+  /** @param {Handle} handle */
+  const isChosen = ({ role, at }) => role === "vertex" && chosen !== null && at?.join() === chosen.join();
   return handlesOf(shape)
     .filter(({ role }) => role === "vertex" || !growing)
     .map((handle) => feature(handle.role, "Point", handle.position, { chosen: isChosen(handle) }));

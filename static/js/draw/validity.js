@@ -4,7 +4,15 @@ import { continuous } from "../domain/geodesy.js";
 import { t } from "../text.js";
 import { isInside, leastOf } from "./shape.js";
 
+/** @import { Fault, Shape, VertexPath } from "./types.d.ts" */
+
 export const MOST_CHECKED = 2_000; // vertices; of more the server says whether they cross
+/** @typedef {{ from: number[], to: number[] }} Ends */
+/**
+ * @typedef {Ends & { part: number, ring: string, index: number, size: number, low: number, high: number }} Side
+ *   low and high are its longitudes, size the number of sides of its ring
+ */
+
 const MOST_FAULTS = 20;
 const WORDS = {
   point: t("Click where it stands."),
@@ -12,18 +20,27 @@ const WORDS = {
   area: t("An area needs three points."),
   circle: t("Click the centre, then how far it reaches."),
 };
+/** @type {WeakMap<Shape, Fault[]>} */
 const told = new WeakMap(); // shapes are values: what was found once holds
 
-/** [{ message, position, sides: [[from, to], …] }]; an empty list where nothing is wrong. Of a ring that is `growing` the side that closes it is not there yet. */
+/**
+ * [{ message, position, sides: [[from, to], …] }]; an empty list where nothing is wrong. Of a ring that is `growing` the side that closes it is not there yet.
+ *
+ * @param {Shape} shape
+ * @param {VertexPath | null} [growing]
+ * @returns {Fault[]}
+ */
 export function faultsOf(shape, growing = null) {
   if (growing) return found(shape, growing);
-  if (!told.has(shape)) told.set(shape, found(shape, null));
-  return told.get(shape);
+  const faults = told.get(shape) ?? found(shape, null);
+  told.set(shape, faults);
+  return faults;
 }
 
+/** @param {Shape} shape @param {VertexPath | null} growing @returns {Fault[]} */
 function found(shape, growing) {
   if (shape.kind === "circle")
-    return shape.parts[0][0].length && shape.radius_m > 0 ? [] : [{ message: WORDS.circle, position: null, sides: [] }];
+    return shape.parts[0][0].length && shape.radius_m ? [] : [{ message: WORDS.circle, position: null, sides: [] }];
   if (!growing && shape.parts.some(([outer]) => outer.length < leastOf(shape.kind)))
     return [{ message: WORDS[shape.kind], position: null, sides: [] }];
   const faults = [...repeated(shape), ...overTheDateLine(shape)];
@@ -35,7 +52,9 @@ function found(shape, growing) {
   return faults;
 }
 
+/** @param {Shape} shape @returns {Fault[]} */
 function repeated(shape) {
+  /** @param {number[]} a @param {number[]} b */
   const isSame = (a, b) => a[0] === b[0] && a[1] === b[1];
   return shape.parts
     .flat()
@@ -46,6 +65,7 @@ function repeated(shape) {
     );
 }
 
+/** @param {Shape} shape @returns {Fault[]} */
 function overTheDateLine(shape) {
   if (shape.kind !== "line") return [];
   const [path] = shape.parts[0];
@@ -61,14 +81,20 @@ function overTheDateLine(shape) {
     : [];
 }
 
-/** Sides of all rings, without jumps at the 180th meridian: { from, to, part, ring, index, size, low, high }. */
+/**
+ * Sides of all rings, without jumps at the 180th meridian: { from, to, part, ring, index, size, low, high }.
+ *
+ * @param {Shape} shape
+ * @param {VertexPath | null} growing
+ */
 function sidesOf(shape, growing) {
+  /** @type {Side[]} */
   const sides = [];
-  shape.parts.forEach((part, p) =>
-    part.forEach((positions, r) => {
+  for (const [p, part] of shape.parts.entries()) {
+    for (const [r, positions] of part.entries()) {
       const ring = continuous(positions, shape.parts[0][0][0]?.[0]);
       const isOpen = growing?.[0] === p && growing[1] === r;
-      ring.slice(0, isOpen ? -1 : undefined).forEach((from, index) => {
+      for (const [index, from] of ring.slice(0, isOpen ? -1 : undefined).entries()) {
         const to = ring[(index + 1) % ring.length];
         sides.push({
           from,
@@ -80,16 +106,18 @@ function sidesOf(shape, growing) {
           low: Math.min(from[0], to[0]),
           high: Math.max(from[0], to[0]),
         });
-      });
-    }),
-  );
+      }
+    }
+  }
   return sides;
 }
 
-/** Sweeps from west to east: only sides whose longitudes overlap are compared. */
+/** Sweeps from west to east: only sides whose longitudes overlap are compared. @param {Side[]} sides */
 function crossings(sides) {
+  /** @type {Fault[]} */
   const faults = [];
   const sorted = [...sides].sort((a, b) => a.low - b.low);
+  /** @type {Side[]} */
   let alive = [];
   for (const side of sorted) {
     alive = alive.filter((other) => other.high >= side.low);
@@ -111,30 +139,34 @@ function crossings(sides) {
   return faults;
 }
 
-/** Rings may touch each other in a point, one ring may not touch itself. */
+/** Rings may touch each other in a point, one ring may not touch itself. @param {Side} a @param {Side} b */
 function meetingPlace(a, b) {
   if (a.ring !== b.ring) return crossingOf(a, b) ?? overlapOf(a, b);
   return areNeighbours(a, b) ? overlapOf(a, b) : meetingOf(a, b);
 }
 
+/** @param {Side} a @param {Side} b */
 function meetingWords(a, b) {
   if (a.ring === b.ring) return t("The border crosses itself.");
   return a.part === b.part ? t("A hole crosses the border or another hole.") : t("Two parts cross each other.");
 }
 
+/** @param {Side} a @param {Side} b */
 function areNeighbours(a, b) {
   const gap = Math.abs(a.index - b.index);
   return gap === 1 || gap === a.size - 1;
 }
 
+/** @param {number[]} o @param {number[]} a @param {number[]} b */
 const cross = (o, a, b) => (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
+/** @param {number[]} p @param {number[]} a @param {number[]} b */
 const isBetween = (p, a, b) =>
   Math.min(a[0], b[0]) <= p[0] &&
   p[0] <= Math.max(a[0], b[0]) &&
   Math.min(a[1], b[1]) <= p[1] &&
   p[1] <= Math.max(a[1], b[1]);
 
-/** Where two sides cross, each within the other; null where they only touch. */
+/** Where two sides cross, each within the other; null where they only touch. @param {Ends} one @param {Ends} other */
 function crossingOf({ from: a, to: b }, { from: c, to: d }) {
   const [abc, abd, cda, cdb] = [cross(a, b, c), cross(a, b, d), cross(c, d, a), cross(c, d, b)];
   if (abc * abd >= 0 || cda * cdb >= 0) return null;
@@ -142,7 +174,7 @@ function crossingOf({ from: a, to: b }, { from: c, to: d }) {
   return [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
 }
 
-/** Where two sides meet, touching included; null where they do not. */
+/** Where two sides meet, touching included; null where they do not. @param {Ends} one @param {Ends} other */
 export function meetingOf(one, other) {
   const [{ from: a, to: b }, { from: c, to: d }] = [one, other];
   const crossing = crossingOf(one, other);
@@ -154,7 +186,12 @@ export function meetingOf(one, other) {
   return null;
 }
 
-/** A place of the stretch that two sides have in common; null where they have none, or only a point. */
+/**
+ * A place of the stretch that two sides have in common; null where they have none, or only a point.
+ *
+ * @param {Ends} one
+ * @param {Ends} other
+ */
 function overlapOf({ from: a, to: b }, { from: c, to: d }) {
   if (cross(a, b, c) !== 0 || cross(a, b, d) !== 0) return null;
   const axis = Math.abs(b[0] - a[0]) >= Math.abs(b[1] - a[1]) ? 0 : 1;
@@ -167,6 +204,7 @@ function overlapOf({ from: a, to: b }, { from: c, to: d }) {
   return begins[axis] < ends[axis] ? begins : null;
 }
 
+/** @param {Shape} shape @returns {Fault[]} */
 function strayRings(shape) {
   const holes = shape.parts.flatMap(([outer, ...rest]) =>
     rest
