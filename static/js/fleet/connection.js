@@ -6,21 +6,31 @@ import { t } from "../text.js";
 import { agoText, percentText } from "../units.js";
 import { LINKS } from "./words.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { UavConnection } from "../api_types.d.ts" */
+/** @import { Child } from "../dom.js" */
+
 const ASKED_EVERY_MS = 5_000;
 const LOST_AFTER_S = 11; // a UAV reports at least every ten seconds
 
-/** Of an answer of the API: one sentence, and whether it is heard at present. */
+/**
+ * One sentence, and whether it is heard at present.
+ *
+ * @param {Pick<UavConnection, "heard_at" | "heard_by" | "server_time">} connection
+ */
 export function heardWords({ heard_at, heard_by, server_time }) {
   if (!heard_at) return { words: t("It has never been heard."), isHeard: false };
   const seconds = (Date.parse(server_time) - Date.parse(heard_at)) / 1_000;
-  const door = LINKS[heard_by].by;
+  const door = heard_by ? LINKS[heard_by].by : "";
   return {
     words: t("Last heard {ago} {door}.", { ago: agoText(seconds, heard_at), door }),
     isHeard: seconds <= LOST_AFTER_S,
   };
 }
 
+/** @param {string} name @param {string} value @returns {Child} */
 const term = (name, value) => (value ? [h("dt", {}, name), h("dd", {}, value)] : []);
+/** @param {UavConnection} connection */
 const flightWords = ({ is_in_air, is_armed }) =>
   is_in_air ? t("in the air") : is_armed ? t("armed") : is_armed === false ? t("disarmed") : "";
 
@@ -30,7 +40,7 @@ const DOUBTS = {
   "other-length": t("not known since its list has another length"),
 };
 
-/** "flight 1 of an approved mission, read back 3 min ago". */
+/** "flight 1 of an approved mission, read back 3 min ago". @param {Pick<UavConnection, "loaded_flight" | "loaded_read_at" | "loaded_doubt" | "server_time">} loaded */
 export function loadedText({ loaded_flight, loaded_read_at, loaded_doubt, server_time }) {
   const what = t("flight {number} of an approved mission", { number: loaded_flight });
   if (!loaded_read_at) return what;
@@ -39,6 +49,7 @@ export function loadedText({ loaded_flight, loaded_read_at, loaded_doubt, server
   return loaded_doubt ? `${said}; ${DOUBTS[loaded_doubt]}` : said;
 }
 
+/** @param {UavConnection} connection */
 function drawing(connection) {
   const { words, isHeard } = heardWords(connection);
   const { mode, autopilot, firmware, battery_percent, loaded_approval } = connection;
@@ -56,10 +67,10 @@ function drawing(connection) {
   ];
 }
 
-/** Draws itself into `place` until that is taken off the page. */
+/** Draws itself into `place` until that is taken off the page. @param {HTMLElement} place @param {{ id: number }} uav */
 export async function mountConnection(place, uav) {
   const draw = async () => {
-    const { data } = await get(`/uavs/${uav.id}/connection`);
+    const { data } = /** @type {Answer<UavConnection>} */ (await get(`/uavs/${uav.id}/connection`));
     place.replaceChildren(...drawing(data));
   };
   await draw();

@@ -1,12 +1,18 @@
 /** What a UAV proves itself with: one token and one key, made, replaced and revoked; a secret is shown once. */
 
 import { ApiError, get, post, remove } from "../api.js";
-import { h, icon } from "../dom.js";
+import { find, h, icon } from "../dom.js";
 import { say, toast } from "../page/toast.js";
 import { t } from "../text.js";
 import { exactText, whenText } from "../units.js";
 import { CREDENTIALS } from "./words.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { Credential, CredentialKind, CredentialPage, NewCredential } from "../api_types.d.ts" */
+/** @import { Child } from "../dom.js" */
+/** @import { Uav } from "./types.d.ts" */
+
+const KINDS = /** @type {CredentialKind[]} */ (Object.keys(CREDENTIALS));
 const SECRET_WORDS = {
   "link-token": t("This is the token. It is shown only now: put it into the UAV's program."),
   "mavlink-key": t(
@@ -14,6 +20,7 @@ const SECRET_WORDS = {
   ),
 };
 
+/** @param {Credential | undefined} credential */
 function factsOf(credential) {
   if (!credential) return t("None: it cannot connect this way.");
   const made = t("Made {when} by {who}", {
@@ -23,6 +30,7 @@ function factsOf(credential) {
   return `${made} · ${credential.last_used_at ? t("used {when}", { when: whenText(credential.last_used_at) }) : t("not used yet")}`;
 }
 
+/** @param {string} text */
 async function copy(text) {
   try {
     await navigator.clipboard.writeText(text);
@@ -33,132 +41,159 @@ async function copy(text) {
   }
 }
 
-/** Draws itself into `place`; onChange() after each change. */
+/** @param {{ kind: CredentialKind, secret: string }} shown @param {() => unknown} onAway */
+const secretBox = ({ kind, secret }, onAway) =>
+  h(
+    "div",
+    { class: "secret" },
+    h("p", {}, SECRET_WORDS[kind]),
+    h("code", {}, secret),
+    h(
+      "div",
+      { class: "acts" },
+      h("button", { type: "button", class: "button", onclick: () => copy(secret) }, icon("copy", "small"), t("Copy")),
+      h("button", { type: "button", class: "button quiet", onclick: onAway }, t("Put it away")),
+    ),
+  );
+
+/** @param {string} name of the UAV @param {{ keep: () => unknown, revoke: () => unknown }} acts */
+const revokeQuestion = (name, { keep, revoke }) =>
+  h(
+    "div",
+    { class: "secret" },
+    h("p", {}, t("Revoke it? {name} is cut off at once and needs a new one to connect again.", { name })),
+    h(
+      "div",
+      { class: "acts" },
+      h("button", { type: "button", class: "button", onclick: keep }, t("Keep it")),
+      h("button", { type: "button", class: "button danger filled", onclick: revoke }, t("Revoke it")),
+    ),
+  );
+
+/**
+ * @param {CredentialKind} kind
+ * @param {Credential | undefined} credential
+ * @param {{ make?: (() => unknown) | null, ask?: (() => unknown) | null }} acts null: there is no such button
+ * @param {...Child} below
+ */
+const credentialRow = (kind, credential, { make, ask }, ...below) =>
+  h(
+    "li",
+    {},
+    h(
+      "div",
+      { class: "what" },
+      h("strong", {}, CREDENTIALS[kind]),
+      h("span", { class: "caption", title: credential && exactText(credential.created_at) }, factsOf(credential)),
+    ),
+    (make || ask) &&
+      h(
+        "div",
+        { class: "acts" },
+        make &&
+          h(
+            "button",
+            {
+              type: "button",
+              class: "button",
+              onclick: make,
+              "aria-label": `${credential ? t("Replace") : t("Make")}: ${CREDENTIALS[kind]}`,
+            },
+            credential ? t("Replace") : t("Make"),
+          ),
+        ask &&
+          h(
+            "button",
+            {
+              type: "button",
+              class: "icon-button",
+              onclick: ask,
+              "aria-label": `${t("Revoke")}: ${CREDENTIALS[kind]}`,
+              title: t("Revoke"),
+            },
+            icon("x"),
+          ),
+      ),
+    below,
+  );
+
+/**
+ * Draws itself into `place`; onChange() after each change.
+ *
+ * @param {HTMLElement} place
+ * @param {Uav} uav
+ * @param {{ canPlan: boolean, onChange: () => unknown }} how
+ */
 export async function mountCredentials(place, uav, { canPlan, onChange }) {
   const path = `/uavs/${uav.id}/credentials`;
-  let shown = null; // { kind, secret }
-  let asking = ""; // which kind is about to be revoked
+  /** @type {{ kind: CredentialKind, secret: string } | null} */
+  let shown = null;
+  /** @type {CredentialKind | null} */
+  let asking = null; // which kind is about to be revoked
 
-  const tell = (error) => {
-    if (!(error instanceof ApiError)) throw error;
-    toast(error.message);
-  };
-
-  async function make(kind) {
+  /** @param {() => Promise<unknown>} change */
+  async function attempt(change) {
     try {
-      const { data } = await post(path, { kind });
+      await change();
+      onChange();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      toast(error.message);
+    }
+  }
+
+  /** @param {CredentialKind} kind */
+  const make = (kind) =>
+    attempt(async () => {
+      const { data } = /** @type {Answer<NewCredential>} */ (await post(path, { kind }));
       shown = { kind, secret: data.secret };
       await draw();
-      place.querySelector(".secret button").focus();
-      onChange();
-    } catch (error) {
-      tell(error);
-    }
-  }
+      find(place, ".secret button", HTMLElement).focus();
+    });
 
-  async function revoke(credential) {
-    try {
+  /** @param {Credential} credential */
+  const revoke = (credential) =>
+    attempt(async () => {
       await remove(`${path}/${credential.id}`);
       if (shown?.kind === credential.kind) shown = null;
-      asking = "";
+      asking = null;
       toast(t("Revoked. {name} cannot connect with it any more.", { name: uav.name }));
       await draw();
-      onChange();
-    } catch (error) {
-      tell(error);
-    }
-  }
+    });
 
-  const ask = (kind) => async () => {
+  /** @param {CredentialKind | null} kind null: no longer */
+  async function ask(kind) {
     asking = kind;
     await draw();
-    place.querySelector(".secret .button")?.focus();
-  };
-
-  function secretBox({ kind, secret }) {
-    return h(
-      "div",
-      { class: "secret" },
-      h("p", {}, SECRET_WORDS[kind]),
-      h("code", {}, secret),
-      h(
-        "div",
-        { class: "acts" },
-        h("button", { type: "button", class: "button", onclick: () => copy(secret) }, icon("copy", "small"), t("Copy")),
-        h(
-          "button",
-          { type: "button", class: "button quiet", onclick: () => ((shown = null), draw()) },
-          t("Put it away"),
-        ),
-      ),
-    );
+    if (kind) /** @type {HTMLElement | null} */ (place.querySelector(".secret .button"))?.focus();
   }
 
-  function question(credential) {
-    return h(
-      "div",
-      { class: "secret" },
-      h("p", {}, t("Revoke it? {name} is cut off at once and needs a new one to connect again.", { name: uav.name })),
-      h(
-        "div",
-        { class: "acts" },
-        h("button", { type: "button", class: "button", onclick: () => ((asking = ""), draw()) }, t("Keep it")),
-        h(
-          "button",
-          { type: "button", class: "button danger filled", onclick: () => revoke(credential) },
-          t("Revoke it"),
-        ),
-      ),
-    );
-  }
-
+  /** @param {CredentialKind} kind @param {Credential | undefined} credential */
   function row(kind, credential) {
-    return h(
-      "li",
-      {},
-      h(
-        "div",
-        { class: "what" },
-        h("strong", {}, CREDENTIALS[kind]),
-        h("span", { class: "caption", title: credential && exactText(credential.created_at) }, factsOf(credential)),
-      ),
-      canPlan &&
-        h(
-          "div",
-          { class: "acts" },
-          uav.state !== "retired" &&
-            h(
-              "button",
-              {
-                type: "button",
-                class: "button",
-                onclick: () => make(kind),
-                "aria-label": `${credential ? t("Replace") : t("Make")}: ${CREDENTIALS[kind]}`,
-              },
-              credential ? t("Replace") : t("Make"),
-            ),
-          credential &&
-            h(
-              "button",
-              {
-                type: "button",
-                class: "icon-button",
-                onclick: ask(kind),
-                "aria-label": `${t("Revoke")}: ${CREDENTIALS[kind]}`,
-                title: t("Revoke"),
-              },
-              icon("x"),
-            ),
-        ),
-      asking === kind && credential && question(credential),
-      shown?.kind === kind && secretBox(shown),
+    const acts = {
+      make: canPlan && uav.state !== "retired" ? () => make(kind) : null,
+      ask: canPlan && credential ? () => ask(kind) : null,
+    };
+    const putAway = () => {
+      shown = null;
+      return draw();
+    };
+    return credentialRow(
+      kind,
+      credential,
+      acts,
+      asking === kind &&
+        credential &&
+        revokeQuestion(uav.name, { keep: () => ask(null), revoke: () => revoke(credential) }),
+      shown?.kind === kind && secretBox(shown, putAway),
     );
   }
 
   async function draw() {
-    const { data } = await get(path);
+    const { data } = /** @type {Answer<CredentialPage>} */ (await get(path));
+    /** @param {CredentialKind} kind */
     const inForce = (kind) => data.results.find((credential) => credential.kind === kind && !credential.revoked_at);
-    place.replaceChildren(...Object.keys(CREDENTIALS).map((kind) => row(kind, inForce(kind))));
+    place.replaceChildren(...KINDS.map((kind) => row(kind, inForce(kind))));
   }
 
   await draw();

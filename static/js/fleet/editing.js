@@ -3,44 +3,84 @@
 import { ApiError, patch, post } from "../api.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
-import { BLANK, bodies, createForm } from "./forms.js";
+import { blankBody, bodyOf } from "./bodies.js";
+import { createForm } from "./forms.js";
 import { KINDS } from "./kinds.js";
 import { conflictNotice } from "./panel.js";
+import { readRow } from "./words.js";
 
-const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
-const newKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
-export const ifUnchanged = (row) => ({ headers: { "If-Match": `"${row.revision}"` } });
-
-/** What a new row does not say is left to the server. */
-const stated = (body) => Object.fromEntries(Object.entries(body).filter(([, value]) => value !== null));
+/** @import { Answer, Options } from "../api.js" */
+/** @import { Panel } from "./panel.js" */
+/** @import { Body, FleetMap, FleetPage, FleetState, Form, KeptEdit, Position, Row, RowAnswer, Store, Tab } from "./types.d.ts" */
 
 /**
- * context: { store, page, panel, isWide(), open(), map(): the map or null, showMap(): a promise, turnTo(tab), choose(tab, id), close(), load(),
- * moment(): another number once something else was begun }.
+ * What the page around the edit does for it.
+ *
+ * @typedef {object} EditingContext
+ * @property {Store<FleetState>} store
+ * @property {FleetPage} page
+ * @property {Panel} panel
+ * @property {() => boolean} isWide
+ * @property {() => void} open
+ * @property {() => FleetMap | null} map
+ * @property {() => Promise<void>} showMap
+ * @property {(tab: Tab) => void} turnTo
+ * @property {(tab: Tab, id: number) => Promise<void>} choose
+ * @property {() => void} close
+ * @property {() => Promise<void>} load
+ * @property {() => number} moment another number once something else was begun
  */
-export function createEditing(context) {
-  const { store } = context;
-  let edit = null; // { tab, row or null, etag, form, began, key, isSaving }
+/**
+ * @typedef {object} Edit
+ * @property {Tab} tab
+ * @property {Row | null} row null: a new one
+ * @property {Form} form
+ * @property {Body} began
+ * @property {Options | undefined} etag
+ * @property {string} key
+ * @property {boolean} isSaving
+ */
 
-  /** Where a new one stands at first: the middle of the map. */
-  function placeOfNew() {
-    const { bases, uavs } = store.state;
-    const { extent } = context.page;
-    if (context.map()) return context.map().centre();
-    return (
-      bases?.[0]?.position ??
-      uavs?.[0]?.position ??
-      (extent ? [(extent[0] + extent[2]) / 2, (extent[1] + extent[3]) / 2] : [0, 0])
-    );
+/** @param {unknown} a @param {unknown} b */
+const isSame = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+const newKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
+/** @param {{ revision: number }} row @returns {Options} */
+export const ifUnchanged = (row) => ({ headers: { "If-Match": `"${row.revision}"` } });
+
+/** What a new row does not say is left to the server. @param {Body} body */
+const stated = (body) => Object.fromEntries(Object.entries(body).filter(([, value]) => value !== null));
+
+export class Editing {
+  /** @type {Edit | null} */
+  #edit = null;
+  #context;
+
+  /** @param {EditingContext} context */
+  constructor(context) {
+    this.#context = context;
   }
 
-  async function start(row, kept = null) {
-    const { tab, types, bases } = store.state;
+  get isOpen() {
+    return this.#edit !== null;
+  }
+
+  get isChanged() {
+    return Object.keys(this.#changes()).length > 0;
+  }
+
+  submit() {
+    this.#edit?.form.element.requestSubmit();
+  }
+
+  /** @param {Row | null} row null: a new one @param {KeptEdit | null} [kept] what was typed before */
+  async start(row, kept = null) {
+    const context = this.#context;
+    const { tab, types, bases } = context.store.state;
     context.open();
     await context.showMap();
-    const began = row ? bodies[tab](row) : bodies[tab](BLANK[tab]);
-    if ("position" in began && !began.position) began.position = placeOfNew();
-    const body = { ...began, ...kept?.body };
+    const began = row ? bodyOf(tab, row) : blankBody(tab);
+    if ("position" in began && !began.position) began.position = this.#placeOfNew();
+    const body = /** @type {Body} */ ({ ...began, ...kept?.body });
     const form = createForm({
       tab,
       body,
@@ -49,70 +89,85 @@ export function createEditing(context) {
       isNew: !row,
       isAdministrator: context.page.role === "administrator",
       onMove: (position) => context.map()?.movePin(position),
-      onSave: save,
-      onCancel: cancel,
+      onSave: () => this.#save(),
+      onCancel: () => this.cancel(),
     });
-    edit = { tab, row, form, began, etag: kept?.etag ?? (row && ifUnchanged(row)), key: newKey(), isSaving: false };
-    context.panel.edit(row ? t("Edit {name}", row) : KINDS[tab].one, form);
+    const etag = kept?.etag ?? (row ? ifUnchanged(row) : undefined);
+    this.#edit = { tab, row, form, began, etag, key: newKey(), isSaving: false };
+    context.panel.edit(row ? t("Edit {name}", { name: row.name }) : KINDS[tab].one, form);
     const map = context.map();
-    if (body.position) {
+    if ("position" in body && body.position) {
       map?.place(body.position, (position) => form.setPlace(position));
       map?.look(body.position);
     }
-    map?.show(store.state, store.state.chosen);
+    map?.show(context.store.state, context.store.state.chosen);
     form.first.focus({ preventScroll: context.isWide() });
   }
 
-  function changes() {
-    if (!edit) return {};
-    return Object.fromEntries(
-      Object.entries(edit.form.body()).filter(([name, value]) => !isSame(value, edit.began[name])),
+  /** Ends the edit, with a way back where something was changed. What is just being stored is stored all the same. */
+  leave() {
+    const left = this.#edit;
+    if (!left) return;
+    const kept = this.isChanged && !left.isSaving && { body: left.form.body(), etag: left.etag };
+    this.#end();
+    if (kept) toast(t("Your edit is dropped."), { label: t("Undo"), act: () => this.#reopen(left, kept) });
+  }
+
+  cancel() {
+    if (!this.#edit) return;
+    const { row, tab } = this.#edit;
+    this.leave();
+    if (row) this.#context.choose(tab, row.id);
+    else this.#context.close();
+  }
+
+  /** Where a new one stands at first: the middle of the map. @returns {Position} */
+  #placeOfNew() {
+    const { store, page, map } = this.#context;
+    const { bases, uavs } = store.state;
+    const { extent } = page;
+    return (
+      map()?.centre() ??
+      bases?.[0]?.position ??
+      uavs?.[0]?.position ??
+      (extent ? [(extent[0] + extent[2]) / 2, (extent[1] + extent[3]) / 2] : [0, 0])
     );
   }
 
-  const isChanged = () => Object.keys(changes()).length > 0;
-
-  function end() {
-    edit = null;
-    context.map()?.place(null);
+  #changes() {
+    if (!this.#edit) return {};
+    const began = new Map(Object.entries(this.#edit.began));
+    const body = Object.entries(this.#edit.form.body());
+    return Object.fromEntries(body.filter(([name, value]) => !isSame(value, began.get(name))));
   }
 
-  async function reopen({ tab, row }, kept) {
-    context.turnTo(tab);
-    store.update({ chosen: row && { tab, id: row.id } });
-    await start(row, kept);
+  #end() {
+    this.#edit = null;
+    this.#context.map()?.endPlacing();
   }
 
-  /** Ends the edit, with a way back where something was changed. What is just being stored is stored all the same. */
-  function leave() {
-    if (!edit) return;
-    const left = edit;
-    const kept = isChanged() && !left.isSaving && { body: left.form.body(), etag: left.etag };
-    end();
-    if (kept) toast(t("Your edit is dropped."), { label: t("Undo"), act: () => reopen(left, kept) });
+  /** @param {Edit} edit @param {KeptEdit} kept */
+  async #reopen({ tab, row }, kept) {
+    this.#context.turnTo(tab);
+    this.#context.store.update({ chosen: row && { tab, id: row.id } });
+    await this.start(row, kept);
   }
 
-  function cancel() {
-    const { row, tab } = edit;
-    leave();
-    if (row) context.choose(tab, row.id);
-    else context.close();
+  /** Unless something else was begun in the meantime. @param {Tab} tab @param {number} id */
+  async #showAsStored(tab, id) {
+    const { moment, load, choose } = this.#context;
+    const now = moment();
+    await load();
+    if (now === moment()) await choose(tab, id);
   }
 
-  /** Unless something else was begun in the meantime. */
-  async function showAsStored(tab, id) {
-    const moment = context.moment();
-    await context.load();
-    if (moment === context.moment()) await context.choose(tab, id);
-  }
-
-  async function save() {
-    if (edit.isSaving) return;
-    const mine = edit;
+  async #save() {
+    const mine = this.#edit;
+    if (!mine || mine.isSaving) return;
     const { tab, row, form, etag, key } = mine;
-    const kind = KINDS[tab];
-    if (row && !isChanged()) {
-      cancel();
+    const { path } = KINDS[tab];
+    if (row && !this.isChanged) {
+      this.cancel();
       return;
     }
     const body = form.body();
@@ -120,58 +175,60 @@ export function createEditing(context) {
     form.busy(true);
     mine.isSaving = true;
     try {
-      const { data } = row
-        ? await patch(`${kind.path}/${row.id}`, changes(), etag)
-        : await post(kind.path, stated(body), { headers: { "Idempotency-Key": key } });
-      toast(t("{name} is saved.", data.properties ?? data));
-      if (edit === mine) {
-        end();
-        await showAsStored(tab, data.id);
-      } else await context.load();
+      const { data } = /** @type {Answer<RowAnswer>} */ (
+        row
+          ? await patch(`${path}/${row.id}`, this.#changes(), etag)
+          : await post(path, stated(body), { headers: { "Idempotency-Key": key } })
+      );
+      toast(t("{name} is saved.", { name: readRow(data).name }));
+      if (this.#edit === mine) {
+        this.#end();
+        await this.#showAsStored(tab, data.id);
+      } else await this.#context.load();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      mine.isSaving = false;
-      if (!error.isAway) mine.key = newKey(); // an answer that was lost is asked for again under the same key
-      if (edit !== mine)
-        toast(t("Not saved: {message}", error), { label: t("Look"), act: () => reopen(mine, { body, etag }) });
-      else if (error.status === 412 && error.details?.current) settle(error.details, kind);
-      else
-        form.tell(
-          error.isAway ? t("The server cannot be reached. What you typed stays here.") : error.message,
-          error.details,
-        );
+      this.#failed(mine, error, { body, etag });
     } finally {
       form.busy(false);
     }
   }
 
-  function settle({ current, changed_by }, kind) {
-    const now = kind.read(current);
-    const { form, began } = edit;
+  /** @param {Edit} edit @param {ApiError} error @param {KeptEdit} kept */
+  #failed(edit, error, kept) {
+    edit.isSaving = false;
+    if (!error.isAway) edit.key = newKey(); // an answer that was lost is asked for again under the same key
+    if (this.#edit !== edit)
+      toast(t("Not saved: {message}", { message: error.message }), {
+        label: t("Look"),
+        act: () => this.#reopen(edit, kept),
+      });
+    else if (error.status === 412 && error.details?.current)
+      this.#settle(edit, readRow(error.details.current), error.details.changed_by);
+    else
+      edit.form.tell(
+        error.isAway ? t("The server cannot be reached. What you typed stays here.") : error.message,
+        error.details,
+      );
+  }
+
+  /** Asks what becomes of an edit after somebody else's. @param {Edit} edit @param {Row} now @param {string} who */
+  #settle(edit, now, who) {
+    const { tab, form, began } = edit;
     form.ask(
       conflictNotice({
-        who: changed_by,
+        who,
         seen: began,
-        theirs: bodies[kind.tab](now),
+        theirs: bodyOf(tab, now),
         form,
-        onTheirs() {
-          end();
-          return showAsStored(kind.tab, now.id);
+        onTheirs: () => {
+          this.#end();
+          return this.#showAsStored(tab, now.id);
         },
-        onMine() {
+        onMine: () => {
           edit.etag = ifUnchanged(now);
-          save();
+          return this.#save();
         },
       }),
     );
   }
-
-  return {
-    start,
-    leave,
-    cancel,
-    isOpen: () => edit !== null,
-    isChanged,
-    submit: () => edit.form.element.requestSubmit(),
-  };
 }

@@ -1,19 +1,31 @@
 /** What is looked at: the tab, the words, and a UAV's state, type and base. */
 
-import { byId, h } from "../dom.js";
+import { byId, find, h } from "../dom.js";
 import { t } from "../text.js";
 import { KINDS } from "./kinds.js";
 import { STATES } from "./words.js";
 
+/** @import { UavState } from "../api_types.d.ts" */
+/** @import { FleetState, Store, Tab } from "./types.d.ts" */
+
 const TYPING_MS = 250;
 export const IN_USE = ""; // all but the retired ones
+/** @type {("state" | "type" | "base")[]} */
+const SELECTS = ["state", "type", "base"];
 
-/** onTab(tab) and onChange() after the store has what was chosen. */
+/**
+ * Calls onTab(tab) and onChange() after the store has what was chosen.
+ *
+ * @param {Store<FleetState>} store
+ * @param {{ onTab: (tab: Tab) => unknown, onChange: () => unknown }} acts
+ */
 export function mountFilters(store, { onTab, onChange }) {
-  const text = byId("fleet-text");
-  let typing = 0;
+  const text = byId("fleet-text", HTMLInputElement);
+  const tabs = byId("fleet-tabs");
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let typing;
 
-  byId("fleet-tabs").append(
+  tabs.append(
     ...Object.values(KINDS).map(({ tab, words }) =>
       h(
         "label",
@@ -25,7 +37,7 @@ export function mountFilters(store, { onTab, onChange }) {
   );
 
   store.listen(["tab"], ({ tab }) => {
-    byId("fleet-tabs").querySelector(`input[value=${tab}]`).checked = true;
+    find(tabs, `input[value=${tab}]`, HTMLInputElement).checked = true;
     byId("of-uavs").hidden = tab !== "uavs";
     text.placeholder = KINDS[tab].hint;
   });
@@ -36,33 +48,37 @@ export function mountFilters(store, { onTab, onChange }) {
       types: types?.length,
       bases: bases?.length,
     };
-    for (const input of byId("fleet-tabs").querySelectorAll("input"))
-      input.parentElement.querySelector(".count").textContent = counts[input.value] ?? "";
+    for (const label of tabs.querySelectorAll("label")) {
+      const tab = /** @type {Tab} */ (find(label, "input", HTMLInputElement).value);
+      find(label, ".count").textContent = `${counts[tab] ?? ""}`;
+    }
   });
 
-  function options(name, chosen, choices) {
+  /** @param {(typeof SELECTS)[number]} name @param {string} chosen @param {(readonly [string | number, string])[]} choices */
+  function fillSelect(name, chosen, choices) {
     byId(`fleet-${name}`).replaceChildren(
       ...choices.map(([value, words]) => h("option", { value: `${value}`, selected: `${value}` === chosen }, words)),
     );
   }
 
-  store.listen(
-    ["numbers", "types", "bases", "state", "type", "base"],
-    ({ numbers, types, bases, state, type, base }) => {
-      const of = (...names) => (numbers ? ` (${names.reduce((sum, name) => sum + numbers[name], 0)})` : "");
-      options("state", state, [
-        [IN_USE, t("All but retired") + of("active", "maintenance")],
-        ...Object.entries(STATES).map(([value, { words }]) => [value, words + of(value)]),
-        ["all", t("All") + of("active", "maintenance", "retired")],
-      ]);
-      options("type", type, [["", t("Any type")], ...(types ?? []).map((row) => [row.id, row.name])]);
-      options("base", base, [["", t("Any base")], ...(bases ?? []).map((row) => [row.id, row.name])]);
-    },
-  );
+  store.listen(["numbers", "types", "bases", ...SELECTS], ({ numbers, types, bases, state, type, base }) => {
+    /** @param {...UavState} states */
+    const of = (...states) => (numbers ? ` (${states.reduce((sum, name) => sum + numbers[name], 0)})` : "");
+    fillSelect("state", state, [
+      [IN_USE, t("All but retired") + of("active", "maintenance")],
+      ["active", STATES.active.words + of("active")],
+      ["maintenance", STATES.maintenance.words + of("maintenance")],
+      ["retired", STATES.retired.words + of("retired")],
+      ["all", t("All") + of("active", "maintenance", "retired")],
+    ]);
+    fillSelect("type", type, [["", t("Any type")], ...named(types)]);
+    fillSelect("base", base, [["", t("Any base")], ...named(bases)]);
+  });
 
-  for (const name of ["state", "type", "base"]) {
-    byId(`fleet-${name}`).addEventListener("change", (event) => {
-      store.update({ [name]: event.target.value });
+  for (const name of SELECTS) {
+    const select = byId(`fleet-${name}`, HTMLSelectElement);
+    select.addEventListener("change", () => {
+      store.update({ [name]: select.value });
       onChange();
     });
   }
@@ -75,10 +91,13 @@ export function mountFilters(store, { onTab, onChange }) {
 
   return {
     focus: () => text.focus(),
-    /** values: those that are not to be empty. */
+    /** @param {Partial<Pick<FleetState, "state" | "type" | "base">>} values those that are not to be empty */
     set(values) {
       text.value = "";
       store.update({ text: "", state: IN_USE, type: "", base: "", ...values });
     },
   };
 }
+
+/** @param {readonly { id: number, name: string }[] | null} rows @returns {[number, string][]} */
+const named = (rows) => (rows ?? []).map(({ id, name }) => [id, name]);

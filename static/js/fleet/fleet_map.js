@@ -2,11 +2,15 @@
 
 import { byId, h, icon } from "../dom.js";
 import { setAttribution } from "../map/furniture.js";
+import { rememberedUnder } from "../map/look/under.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { maplibre } from "../map/maplibre.js";
-import { rememberedUnder } from "../map/look/under.js";
 import { onTheme } from "../page/theme.js";
 import { t } from "../text.js";
+
+/** @import { LngLat, Marker } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { Box, MapLibreMap } from "../map/types.d.ts" */
+/** @import { Chosen, FleetBase, FleetMap, FleetPage, Ground, Places, Position, Tab, Uav } from "./types.d.ts" */
 
 const ROUND_DEG = 0.02; // what is seen round a lone place
 const NEAR_ZOOM = 13;
@@ -14,25 +18,37 @@ const ROW_PX = 22;
 const SQUARE_PX = 26;
 const EDGE_PX = 56;
 
+/** @param {Box | null} box @returns {Box | null} */
 const around = (box) => box && [box[0] - ROUND_DEG, box[1] - ROUND_DEG, box[2] + ROUND_DEG, box[3] + ROUND_DEG];
+/** @param {LngLat} place @returns {Position} */
 const rounded = ({ lng, lat }) => [Number(lng.toFixed(6)), Number(lat.toFixed(6))];
 
-/** rows: { uavs, bases }; onChoose(tab, id) when one is clicked. */
+/** @param {Places} places */
+const boxOf = ({ uavs, bases }) => around(boxAround([...(uavs ?? []), ...(bases ?? [])].map((row) => row.position)));
+
+/**
+ * @param {object} options
+ * @param {FleetPage} options.page
+ * @param {Places} options.rows
+ * @param {Ground | null} options.ground
+ * @param {(tab: Tab, id: number) => unknown} options.onChoose when one is clicked
+ * @returns {FleetMap}
+ */
 export function createFleetMap({ page, rows, ground, onChoose }) {
-  const container = byId("fleet-map");
+  const container = /** @type {HTMLElement & { project?: MapLibreMap["project"] }} */ (byId("fleet-map"));
   const under = rememberedUnder(page);
-  const places = [...rows.uavs, ...rows.bases].map((row) => row.position);
   const view = createMap(container, {
     baseMap: page.baseMap,
     satellite: page.satellite,
     under,
     describe: t("Map of the fleet"),
-    bounds: around(boxAround(places)) ?? page.extent,
+    bounds: boxOf(rows) ?? page.extent,
     extent: page.extent,
   });
   const { map } = view;
+  const pin = createPin(map, container);
+  /** @type {Marker[]} */
   let markers = [];
-  let pin = null;
 
   setAttribution([
     ...(ground?.attribution ?? []),
@@ -42,85 +58,125 @@ export function createFleetMap({ page, rows, ground, onChoose }) {
   onTheme(() => requestAnimationFrame(view.recolour));
   new ResizeObserver(() => map.resize()).observe(container);
   container.project = (position) => map.project(position); // screen place of a position, for tests
-  map.on("idle", () => (container.dataset.idle = "true"));
-  map.on("click", ({ lngLat }) => pin && move(rounded(lngLat)));
-
-  function marker(row, tab, isChosen) {
-    const isBase = tab === "bases";
-    const name = h("span", { class: "dart-name", "aria-hidden": "true" }, row.name);
-    return h(
-      "button",
-      {
-        type: "button",
-        tabindex: "-1",
-        title: row.name,
-        "aria-label": isBase ? t("Base {name}", { name: row.name }) : t("UAV {name}", { name: row.name }),
-        class: `${isBase ? "fleet-square" : `fleet-dart ${row.state}`}${isChosen ? " chosen" : ""}`,
-        onclick: (event) => (event.stopPropagation(), onChoose(tab, row.id)),
-      },
-      isBase ? h("span", {}, icon("warehouse")) : icon("uav"),
-      isBase ? null : name,
-    );
-  }
-
-  function move(position) {
-    pin.marker.setLngLat(position);
-    pin.tell(position);
-  }
+  map.on("idle", () => {
+    container.dataset.idle = "true";
+  });
 
   return {
-    centre: () =>
-      map
-        .getCenter()
-        .toArray()
-        .map((degrees) => Number(degrees.toFixed(6))),
-
-    /** chosen: { tab, id } or null; the one that is edited is shown by the pin instead. */
-    show({ uavs, bases }, chosen) {
-      markers.forEach((known) => known.remove());
-      const standing = new Map();
-      const isChosen = (tab, row) => chosen?.tab === tab && chosen.id === row.id;
-      const isAside = (tab, row) => pin !== null && isChosen(tab, row);
-      markers = [];
-      for (const base of bases.filter((row) => !isAside("bases", row))) {
-        standing.set(base.position.join(), { base: true, rows: 0 });
-        markers.push(
-          new maplibre.Marker({ element: marker(base, "bases", isChosen("bases", base)) })
-            .setLngLat(base.position)
-            .addTo(map),
-        );
-      }
-      for (const uav of uavs.filter((row) => !isAside("uavs", row))) {
-        const before = standing.get(uav.position.join()) ?? { base: false, rows: 0 };
-        standing.set(uav.position.join(), { ...before, rows: before.rows + 1 });
-        const offset = [before.base ? SQUARE_PX / 2 : -14, before.rows * ROW_PX];
-        markers.push(
-          new maplibre.Marker({ element: marker(uav, "uavs", isChosen("uavs", uav)), anchor: "left", offset })
-            .setLngLat(uav.position)
-            .addTo(map),
-        );
-      }
+    centre() {
+      const { lng, lat } = map.getCenter();
+      return [Number(lng.toFixed(6)), Number(lat.toFixed(6))];
     },
-
-    /** Everything again. */
-    lookAtAll({ uavs, bases }) {
-      const box = around(boxAround([...uavs, ...bases].map((row) => row.position)));
+    show(places, chosen) {
+      for (const known of markers) known.remove();
+      markers = markersOf(places, chosen, { hidesChosen: pin.isShown(), onChoose });
+      for (const marker of markers) marker.addTo(map);
+    },
+    lookAtAll(places) {
+      const box = boxOf(places);
       map.resize();
-      if (box) map.fitBounds([box.slice(0, 2), box.slice(2)], { padding: EDGE_PX, duration: 0 });
+      if (box) map.fitBounds(box, { padding: EDGE_PX, duration: 0 });
     },
-
-    /** Brings a place into view. */
     look(position) {
       map.jumpTo({ center: position, zoom: Math.max(map.getZoom(), NEAR_ZOOM) });
     },
+    place: pin.show,
+    endPlacing: pin.remove,
+    movePin(position) {
+      pin.move(position);
+      if (pin.isShown() && !map.getBounds().contains(position)) map.jumpTo({ center: position });
+    },
+  };
+}
 
-    /** A pin to drag, or a click into the map; tell(position) on each change. null ends it. */
-    place(position, tell) {
-      pin?.marker.remove();
-      pin = null;
-      delete container.parentElement.dataset.placing;
-      if (!position) return;
-      container.parentElement.dataset.placing = "true";
+/**
+ * UAVs that stand at one place are put below each other.
+ *
+ * @param {Places} places
+ * @param {Chosen | null} chosen
+ * @param {{ hidesChosen: boolean, onChoose: (tab: Tab, id: number) => unknown }} how
+ */
+function markersOf({ uavs, bases }, chosen, { hidesChosen, onChoose }) {
+  /** @type {Map<string, { hasBase: boolean, rows: number }>} */
+  const standing = new Map();
+  /** @param {Tab} tab @param {{ id: number }} row */
+  const isChosen = (tab, row) => chosen?.tab === tab && chosen.id === row.id;
+  /** @type {Marker[]} */
+  const markers = [];
+  for (const base of bases ?? []) {
+    if (hidesChosen && isChosen("bases", base)) continue;
+    standing.set(base.position.join(), { hasBase: true, rows: 0 });
+    const element = baseMarker(base, isChosen("bases", base), () => onChoose("bases", base.id));
+    markers.push(new maplibre.Marker({ element }).setLngLat(base.position));
+  }
+  for (const uav of uavs ?? []) {
+    if (hidesChosen && isChosen("uavs", uav)) continue;
+    const { hasBase, rows } = standing.get(uav.position.join()) ?? { hasBase: false, rows: 0 };
+    standing.set(uav.position.join(), { hasBase, rows: rows + 1 });
+    const element = uavMarker(uav, isChosen("uavs", uav), () => onChoose("uavs", uav.id));
+    /** @type {[number, number]} */
+    const offset = [hasBase ? SQUARE_PX / 2 : -14, rows * ROW_PX];
+    markers.push(new maplibre.Marker({ element, anchor: "left", offset }).setLngLat(uav.position));
+  }
+  return markers;
+}
+
+/** @param {FleetBase} base @param {boolean} isChosen @param {() => unknown} choose */
+const baseMarker = ({ name }, isChosen, choose) =>
+  markerButton(name, t("Base {name}", { name }), `fleet-square${isChosen ? " chosen" : ""}`, choose, [
+    h("span", {}, icon("warehouse")),
+  ]);
+
+/** @param {Uav} uav @param {boolean} isChosen @param {() => unknown} choose */
+const uavMarker = ({ name, state }, isChosen, choose) =>
+  markerButton(name, t("UAV {name}", { name }), `fleet-dart ${state}${isChosen ? " chosen" : ""}`, choose, [
+    icon("uav"),
+    h("span", { class: "dart-name", "aria-hidden": "true" }, name),
+  ]);
+
+/** @param {string} title @param {string} label @param {string} kind @param {() => unknown} choose @param {Element[]} content */
+function markerButton(title, label, kind, choose, content) {
+  const button = h("button", { type: "button", tabindex: "-1", title, "aria-label": label, class: kind }, content);
+  button.addEventListener("click", (event) => {
+    event.stopPropagation();
+    choose();
+  });
+  return button;
+}
+
+/**
+ * The pin: dragged, or put by a click into the map.
+ *
+ * @param {MapLibreMap} map
+ * @param {HTMLElement} container
+ */
+function createPin(map, container) {
+  const frame = /** @type {HTMLElement} */ (container.parentElement);
+  /** @type {{ marker: Marker, tell: (position: Position) => void } | null} */
+  let pin = null;
+
+  map.on("click", ({ lngLat }) => {
+    if (!pin) return;
+    const position = rounded(lngLat);
+    pin.marker.setLngLat(position);
+    pin.tell(position);
+  });
+
+  function remove() {
+    pin?.marker.remove();
+    pin = null;
+    delete frame.dataset.placing;
+  }
+
+  return {
+    isShown: () => pin !== null,
+    remove,
+    /** @param {Position} position */
+    move: (position) => void pin?.marker.setLngLat(position),
+    /** @param {Position} position @param {(position: Position) => void} tell */
+    show(position, tell) {
+      remove();
+      frame.dataset.placing = "true";
       const element = h(
         "button",
         {
@@ -132,18 +188,9 @@ export function createFleetMap({ page, rows, ground, onChoose }) {
         },
         icon("map-pin"),
       );
-      pin = {
-        tell,
-        marker: new maplibre.Marker({ element, anchor: "bottom", draggable: true }).setLngLat(position).addTo(map),
-      };
-      pin.marker.on("dragend", () => pin.tell(rounded(pin.marker.getLngLat())));
-    },
-
-    /** The pin follows what was typed. */
-    movePin(position) {
-      pin?.marker.setLngLat(position);
-      const bounds = map.getBounds();
-      if (pin && !bounds.contains(position)) map.jumpTo({ center: position });
+      const marker = new maplibre.Marker({ element, anchor: "bottom", draggable: true }).setLngLat(position);
+      marker.addTo(map).on("dragend", () => tell(rounded(marker.getLngLat())));
+      pin = { marker, tell };
     },
   };
 }

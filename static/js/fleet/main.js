@@ -6,20 +6,28 @@ import { readPage, startChrome } from "../page/chrome.js";
 import { say, toast } from "../page/toast.js";
 import { createStore } from "../store.js";
 import { t } from "../text.js";
-import { createEditing, ifUnchanged } from "./editing.js";
+import { Editing, ifUnchanged } from "./editing.js";
 import { IN_USE, mountFilters } from "./filters.js";
 import { KINDS } from "./kinds.js";
 import { mountPanel } from "./panel.js";
 import { mountTable } from "./table.js";
 import { mountUnknownVehicles } from "./unknown_vehicles.js";
+import { flat, readRow } from "./words.js";
+
+/** @import { Answer } from "../api.js" */
+/** @import { BasePage, UavCollection, UavFeature, UavState, UavTypePage } from "../api_types.d.ts" */
+/** @import { FleetBase, FleetMap, FleetPage, FleetState, FleetType, Ground, Row, RowAnswer, Tab } from "./types.d.ts" */
 
 const PAGE = 100;
 const wide = matchMedia("(min-width: 1001px)");
 
+/** @type {FleetPage} */
 const page = readPage();
 const address = new URLSearchParams(location.search);
-const store = createStore({
-  tab: KINDS[address.get("tab")] ? address.get("tab") : "uavs",
+const tabAsked = address.get("tab") ?? "";
+/** @type {FleetState} */
+const initial = {
+  tab: tabAsked in KINDS ? /** @type {Tab} */ (tabAsked) : "uavs",
   uavs: null,
   types: null,
   bases: null,
@@ -31,13 +39,20 @@ const store = createStore({
   base: "",
   chosen: null,
   problem: null,
-});
+};
+const store = createStore(initial);
 let choosing = 0; // counts what was begun: an answer that comes after something else was begun is not shown
+/** @type {FleetMap | null} */
 let map = null;
+/** @type {Ground | null} */
 let ground = null;
 
-const chosenRow = () =>
-  store.state.chosen && (store.state[store.state.chosen.tab]?.find((row) => row.id === store.state.chosen.id) ?? null);
+/** @param {Tab} tab @returns {readonly Row[] | null} */
+const rowsOf = (tab) => store.state[tab];
+const chosenRow = () => {
+  const { chosen } = store.state;
+  return (chosen && rowsOf(chosen.tab)?.find((row) => row.id === chosen.id)) ?? null;
+};
 
 const filters = mountFilters(store, { onTab: turnTo, onChange: load });
 const table = mountTable({
@@ -58,7 +73,7 @@ const panel = mountPanel({
     showUavs,
   },
 });
-const editing = createEditing({
+const editing = new Editing({
   store,
   page,
   panel,
@@ -75,19 +90,21 @@ const editing = createEditing({
 
 // what went wrong, and what then
 
+/** @param {unknown} error @param {() => unknown} [again] */
 function tell(error, again = load) {
   if (!(error instanceof ApiError)) throw error;
   store.update({ problem: { error, again } });
 }
 
+/** @param {NonNullable<FleetState["problem"]>} problem */
 function problemNotice({ error, again }) {
+  const tryAgain = () => {
+    store.update({ problem: null });
+    return again();
+  };
   const way = error.isSignedOut
     ? h("a", { class: "text-button", href: signInAddress() }, t("Sign in"))
-    : h(
-        "button",
-        { type: "button", class: "text-button", onclick: () => (store.update({ problem: null }), again()) },
-        t("Try again"),
-      );
+    : h("button", { type: "button", class: "text-button", onclick: tryAgain }, t("Try again"));
   return h(
     "div",
     { class: "notice critical", role: "alert" },
@@ -104,7 +121,7 @@ store.listen(["problem"], ({ problem }) =>
 
 function uavsAddress() {
   const { text, state, type, base, tab } = store.state;
-  const query = new URLSearchParams({ limit: PAGE });
+  const query = new URLSearchParams({ limit: `${PAGE}` });
   for (const [name, value] of Object.entries({ text: tab === "uavs" ? text : "", state, type, base }))
     if (value) query.set(name, value);
   return `/uavs?${query}`;
@@ -114,18 +131,16 @@ let asked = 0;
 async function load() {
   const mine = ++asked;
   try {
-    const [uavs, types, bases] = await Promise.all([
-      get(uavsAddress()),
-      get("/uav-types?limit=1000"),
-      get("/bases?limit=1000"),
-    ]);
+    const [uavs, types, bases] = /** @type {[Answer<UavCollection>, Answer<UavTypePage>, Answer<BasePage>]} */ (
+      await Promise.all([get(uavsAddress()), get("/uav-types?limit=1000"), get("/bases?limit=1000")])
+    );
     if (mine !== asked) return;
     store.update({
-      uavs: uavs.data.features.map(KINDS.uavs.read),
+      uavs: uavs.data.features.map(flat),
       next: uavs.data.next,
       numbers: uavs.data.numbers,
-      types: types.data.results,
-      bases: bases.data.results,
+      types: /** @type {FleetType[]} */ (types.data.results),
+      bases: /** @type {FleetBase[]} */ (bases.data.results),
       problem: null,
     });
   } catch (error) {
@@ -134,20 +149,22 @@ async function load() {
 }
 
 async function loadMore() {
+  const { next } = store.state;
+  if (!next) return;
   try {
-    const { data } = await get(store.state.next);
-    store.update({ uavs: [...store.state.uavs, ...data.features.map(KINDS.uavs.read)], next: data.next });
+    const { data } = /** @type {Answer<UavCollection>} */ (await get(next));
+    store.update({ uavs: [...(store.state.uavs ?? []), ...data.features.map(flat)], next: data.next });
   } catch (error) {
     tell(error, loadMore);
   }
 }
 
-/** UAVs are filtered by the server; types and bases are few and all here. */
-function shownRows({ tab, text, ...state }) {
+/** UAVs are filtered by the server; types and bases are few and all here. @param {FleetState} state @returns {Row[] | null} */
+function shownRows({ tab, text, uavs, types, bases }) {
+  if (tab === "uavs") return uavs;
   const wanted = text.toLocaleLowerCase();
-  return tab === "uavs" || state[tab] === null
-    ? state[tab]
-    : state[tab].filter((row) => row.name.toLocaleLowerCase().includes(wanted));
+  const rows = tab === "types" ? types : bases;
+  return rows && /** @type {Row[]} */ (rows).filter((row) => row.name.toLocaleLowerCase().includes(wanted));
 }
 
 store.listen(["tab", "uavs", "types", "bases", "chosen", "text", "next"], (state) => {
@@ -171,6 +188,7 @@ function clearFilter() {
   filters.focus();
 }
 
+/** @param {Tab} tab */
 function turnTo(tab) {
   if (tab === store.state.tab) return;
   close();
@@ -179,6 +197,7 @@ function turnTo(tab) {
   if (store.state.text) load();
 }
 
+/** The UAVs of a type or a base. @param {Tab} tab @param {number} id */
 function showUavs(tab, id) {
   turnTo("uavs");
   filters.set({ state: "all", type: tab === "types" ? `${id}` : "", base: tab === "bases" ? `${id}` : "" });
@@ -188,7 +207,7 @@ function showUavs(tab, id) {
 /** The address says what is looked at: it can be passed on. */
 function remember() {
   const { tab, chosen } = store.state;
-  const query = new URLSearchParams({ ...(tab === "uavs" ? {} : { tab }), ...(chosen ? { id: chosen.id } : {}) });
+  const query = new URLSearchParams({ ...(tab === "uavs" ? {} : { tab }), ...(chosen ? { id: `${chosen.id}` } : {}) });
   history.replaceState(history.state, "", `${location.pathname}${query.size ? `?${query}` : ""}`);
 }
 
@@ -198,8 +217,15 @@ async function showMap() {
   const isSeen = wide.matches || byId("fleet-body").dataset.open;
   if (!isSeen || store.state.uavs === null) return;
   const { createFleetMap } = await import("./fleet_map.js");
-  const onChoose = (tab, id) => (turnTo(tab), choose(tab, id));
-  map ??= createFleetMap({ page, rows: store.state, ground, onChoose });
+  map ??= createFleetMap({
+    page,
+    rows: store.state,
+    ground,
+    onChoose(tab, id) {
+      turnTo(tab);
+      return choose(tab, id);
+    },
+  });
   map.show(store.state, store.state.chosen);
 }
 
@@ -214,14 +240,15 @@ function open() {
   byId("fleet-side").dataset.panel = "true";
 }
 
+/** @param {Tab} tab @param {number} id @param {{ keepFocus?: boolean }} [how] @returns {Promise<void>} */
 async function choose(tab, id, { keepFocus = false } = {}) {
   editing.leave();
   const mine = ++choosing;
   try {
-    const { data } = await get(`${KINDS[tab].path}/${id}`);
+    const { data } = /** @type {Answer<RowAnswer>} */ (await get(`${KINDS[tab].path}/${id}`));
     if (mine !== choosing) return;
-    const row = KINDS[tab].read(data);
-    const others = store.state[tab] ?? [];
+    const row = readRow(data);
+    const others = rowsOf(tab) ?? [];
     const isListed = others.some((known) => known.id === row.id);
     open();
     const shown = choosing;
@@ -234,11 +261,11 @@ async function choose(tab, id, { keepFocus = false } = {}) {
     remember();
     await showMap();
     if (shown !== choosing) return;
-    if (row.position) map?.look(row.position);
+    if ("position" in row) map?.look(row.position);
     if (!keepFocus) title.focus({ preventScroll: wide.matches });
     say(row.name);
   } catch (error) {
-    if (error.status === 404) toast(t("It is no longer there."));
+    if (error instanceof ApiError && error.status === 404) toast(t("It is no longer there."));
     else tell(error, () => choose(tab, id));
   }
 }
@@ -253,7 +280,9 @@ function close() {
   if (id) store.update({ chosen: null });
   if (wide.matches && store.state.uavs) map?.lookAtAll(store.state);
   remember();
-  if (id) byId("fleet-rows").querySelector(`a[href$="id=${id}"]`)?.focus({ preventScroll: true });
+  if (!id) return;
+  const link = /** @type {HTMLElement | null} */ (byId("fleet-rows").querySelector(`a[href$="id=${id}"]`));
+  link?.focus({ preventScroll: true });
 }
 
 function startNew() {
@@ -264,42 +293,52 @@ function startNew() {
 
 // change
 
-/** A refusal is told in a toast, with a way to what is there now where somebody was faster. */
+/**
+ * A refusal is told in a toast, with a way to what is there now where somebody was faster.
+ *
+ * @param {() => Promise<unknown>} change
+ */
 async function attempt(change) {
   try {
     await change();
   } catch (error) {
-    if (error.status === 412)
-      toast(error.message, { label: t("Look"), act: () => choose(store.state.tab, store.state.chosen.id) });
-    else if (error.status === 409) toast(error.message);
+    const status = error instanceof ApiError ? error.status : 0;
+    if (error instanceof ApiError && status === 412) toast(error.message, { label: t("Look"), act: lookAgain });
+    else if (error instanceof ApiError && status === 409) toast(error.message);
     else tell(error, () => attempt(change));
   }
 }
 
-/** The list and what is chosen, as they are now. */
+function lookAgain() {
+  const { chosen } = store.state;
+  return chosen && choose(chosen.tab, chosen.id);
+}
+
+/** The list and what is chosen, as they are now. @param {number} id */
 async function refresh(id) {
   const moment = choosing;
   await load();
-  if (moment === choosing && store.state.chosen?.id === id && !editing.isOpen())
+  if (moment === choosing && store.state.chosen?.id === id && !editing.isOpen)
     await choose(store.state.tab, id, { keepFocus: true });
 }
 
+/** Gives the chosen UAV another state. @param {UavState} state */
 function put(state) {
   const row = chosenRow();
+  if (!row || !("state" in row)) return;
+  const { name } = row;
   const words = {
-    active: t("{name} is in service.", row),
-    maintenance: t("{name} is in maintenance.", row),
-    retired: t("{name} is retired.", row),
+    active: t("{name} is in service.", { name }),
+    maintenance: t("{name} is in maintenance.", { name }),
+    retired: t("{name} is retired.", { name }),
   }[state];
   return attempt(async () => {
-    const { data } = await patch(`/uavs/${row.id}`, { state }, ifUnchanged(row));
+    const { data } = /** @type {Answer<UavFeature>} */ (await patch(`/uavs/${row.id}`, { state }, ifUnchanged(row)));
     const takeBack = () =>
-      attempt(
-        async () => (
-          await patch(`/uavs/${row.id}`, { state: row.state }, ifUnchanged(KINDS.uavs.read(data))),
-          await refresh(row.id)
-        ),
-      );
+      attempt(async () => {
+        await patch(`/uavs/${row.id}`, { state: row.state }, ifUnchanged(data.properties));
+        await refresh(row.id);
+      });
     toast(words, { label: t("Undo"), act: takeBack });
     await refresh(row.id);
   });
@@ -308,6 +347,7 @@ function put(state) {
 function takeOff() {
   const { tab } = store.state;
   const row = chosenRow();
+  if (!row) return;
   const { path, deleted } = KINDS[tab];
   return attempt(async () => {
     await remove(`${path}/${row.id}`, ifUnchanged(row));
@@ -316,17 +356,22 @@ function takeOff() {
     toast(deleted(row), {
       label: t("Undo"),
       act: () =>
-        attempt(
-          async () => (await post(`${path}/${row.id}/restore`), await load(), turnTo(tab), await choose(tab, row.id)),
-        ),
+        attempt(async () => {
+          await post(`${path}/${row.id}/restore`);
+          await load();
+          turnTo(tab);
+          await choose(tab, row.id);
+        }),
     });
   });
 }
 
 addEventListener("beforeunload", (event) => {
-  if (editing.isChanged()) event.preventDefault();
+  if (editing.isChanged) event.preventDefault();
 });
-document.addEventListener("visibilitychange", () => document.visibilityState === "visible" && load()); // positions grow old while nobody looks
+document.addEventListener("visibilitychange", () => {
+  if (document.visibilityState === "visible") load(); // positions grow old while nobody looks
+});
 document.getElementById("new-row")?.addEventListener("click", startNew);
 byId("fleet-more").addEventListener("click", loadMore);
 
@@ -339,26 +384,32 @@ startChrome({
     {
       keys: ["e"],
       words: t("Edit"),
-      act: () => (chosenRow() && !editing.isOpen() && page.canPlan ? void editing.start(chosenRow()) : false),
+      act: () => (chosenRow() && !editing.isOpen && page.canPlan ? void editing.start(chosenRow()) : false),
     },
-    { keys: ["mod+s"], words: t("Save"), whileTyping: true, act: () => (editing.isOpen() ? editing.submit() : false) },
+    { keys: ["mod+s"], words: t("Save"), whileTyping: true, act: () => (editing.isOpen ? editing.submit() : false) },
     {
       keys: ["escape"],
       words: t("A step back"),
       whileTyping: true,
-      act: () => (editing.isOpen() ? editing.cancel() : store.state.chosen ? close() : false),
+      act: () => (editing.isOpen ? editing.cancel() : store.state.chosen ? close() : false),
     },
   ],
 });
 
 async function start() {
   ground = await get("/ground").then(
-    ({ data }) => data,
+    ({ data }) => /** @type {Ground} */ (data),
     () => null,
   );
   await load();
   if (page.role === "administrator")
-    void mountUnknownVehicles({ onAdopted: async (id) => (await load(), turnTo("uavs"), choose("uavs", id)) });
+    void mountUnknownVehicles({
+      async onAdopted(id) {
+        await load();
+        turnTo("uavs");
+        await choose("uavs", id);
+      },
+    });
   if (/^\d+$/.test(address.get("id") ?? ""))
     await choose(store.state.tab, Number(address.get("id")), { keepFocus: true });
   document.documentElement.dataset.loaded = "true";

@@ -1,7 +1,7 @@
 /** What is chosen, in full: its facts, what can be done with it, a UAV's credentials and missions. */
 
 import { get } from "../api.js";
-import { byId, h, icon } from "../dom.js";
+import { byId, h, icon, setChildren } from "../dom.js";
 import { simulatedMark } from "../simulated.js";
 import { t, tn } from "../text.js";
 import { whenText } from "../units.js";
@@ -11,8 +11,131 @@ import { mountTypeAirframe } from "./type_airframe.js";
 import { mountTypeLimits } from "./type_limits.js";
 import { MISSION_STATES, stateChip } from "./words.js";
 
-/** acts: { back, edit, put(state), remove, refresh, showUavs } */
-export function mountPanel({ canPlan, acts }) {
+/** @import { Answer } from "../api.js" */
+/** @import { UavMission, UavMissionPage, UavState } from "../api_types.d.ts" */
+/** @import { Child } from "../dom.js" */
+/** @import { Body, FleetType, Form, Kind, Row, Tab, Uav } from "./types.d.ts" */
+
+/**
+ * @typedef {object} PanelActs
+ * @property {() => unknown} back
+ * @property {() => unknown} edit
+ * @property {(state: UavState) => unknown} put
+ * @property {() => unknown} remove
+ * @property {() => unknown} refresh
+ * @property {(error: unknown) => void} failed
+ * @property {(tab: Tab, id: number) => unknown} showUavs
+ */
+/** @typedef {{ canPlan: boolean, acts: PanelActs }} How */
+/** @typedef {ReturnType<typeof mountPanel>} Panel */
+
+/** @param {string} image @param {string} words @param {() => unknown} act */
+const button = (image, words, act) =>
+  h("button", { type: "button", class: "button", onclick: act }, icon(image, "small"), words);
+
+/** @param {Uav} uav @param {PanelActs} acts */
+function stateButtons(uav, acts) {
+  if (uav.state === "retired") return [button("archive-restore", t("Bring back"), () => acts.put("active"))];
+  return [
+    uav.state === "active"
+      ? button("wrench", t("Maintenance"), () => acts.put("maintenance"))
+      : button("check", t("Back in service"), () => acts.put("active")),
+    button("archive", t("Retire"), () => acts.put("retired")),
+  ];
+}
+
+/** @param {UavMission} mission */
+const missionRow = (mission) =>
+  h(
+    "li",
+    {},
+    h(
+      "div",
+      { class: "what" },
+      h("a", { href: `/missions/${mission.id}` }, mission.name),
+      h("span", { class: "caption" }, whenText(mission.updated_at)),
+    ),
+    h("span", { class: `chip ${mission.state}` }, MISSION_STATES[mission.state] ?? mission.state),
+  );
+
+/**
+ * The newest missions first; more on demand.
+ *
+ * @param {HTMLElement} list
+ * @param {HTMLElement} none shown where there are none
+ * @param {string} address
+ */
+async function fillMissions(list, none, address) {
+  const { data } = /** @type {Answer<UavMissionPage>} */ (await get(address));
+  list.append(...data.results.map(missionRow));
+  none.hidden = list.children.length > 0;
+  const { next } = data;
+  if (!next) return;
+  const more = h("li", {});
+  const showMore = () => {
+    more.remove();
+    return fillMissions(list, none, next);
+  };
+  more.append(h("button", { type: "button", class: "text-button", onclick: showMore }, t("Earlier missions")));
+  list.append(more);
+}
+
+/** What there is below the facts of a UAV; it fills itself. @param {Uav} uav @param {How} how @returns {Child} */
+function partsOfUav(uav, { canPlan, acts }) {
+  const connection = h("div", { class: "connection" });
+  const credentials = h("ul", { class: "plain-list" });
+  const missions = h("ul", { class: "plain-list" });
+  const none = h("p", { class: "quiet-text", hidden: true }, t("No mission uses it yet."));
+  mountConnection(connection, uav).catch(acts.failed);
+  mountCredentials(credentials, uav, { canPlan, onChange: acts.refresh }).catch(acts.failed);
+  fillMissions(missions, none, `/uavs/${uav.id}/missions`).catch(acts.failed);
+  return [h("h3", {}, t("Link")), connection, credentials, h("h3", {}, t("Missions")), missions, none];
+}
+
+/** @param {FleetType} type @param {How} how @returns {Child} */
+function partsOfType(type, { canPlan, acts: { failed } }) {
+  const limits = h("div", { class: "type-limits" });
+  const airframe = h("div", { class: "type-airframe" });
+  mountTypeLimits(limits, type, { canPlan, failed }).catch(failed);
+  mountTypeAirframe(airframe, type, { canPlan, failed }).catch(failed);
+  return [h("h3", {}, t("Alerts")), limits, h("h3", {}, t("Simulation")), airframe];
+}
+
+/** @param {Row} row @param {Uav | null} uav the same, where it is one @param {PanelActs} acts */
+const actsOf = (row, uav, acts) =>
+  h(
+    "div",
+    { class: "panel-acts" },
+    button("pencil", t("Edit"), acts.edit),
+    uav && stateButtons(uav, acts),
+    h(
+      "button",
+      {
+        type: "button",
+        class: "icon-button",
+        "aria-label": t("Delete {name}", { name: row.name }),
+        title: t("Delete"),
+        onclick: acts.remove,
+      },
+      icon("trash-2"),
+    ),
+  );
+
+/** The way to the UAVs of a type or a base. @param {Tab} tab @param {number} id @param {number} count @param {PanelActs} acts */
+const uavsLink = (tab, id, count, acts) =>
+  h(
+    "p",
+    {},
+    h(
+      "button",
+      { type: "button", class: "text-button", onclick: () => acts.showUavs(tab, id) },
+      tn(count, "Show the UAV", "Show the {count} UAVs"),
+    ),
+  );
+
+/** @param {How} how */
+export function mountPanel(how) {
+  const { canPlan, acts } = how;
   const panel = byId("fleet-panel");
   const back = () =>
     h(
@@ -21,132 +144,30 @@ export function mountPanel({ canPlan, acts }) {
       icon("arrow-left", "small"),
       t("All of them"),
     );
-  const button = (name, words, act, kind = "") =>
-    h("button", { type: "button", class: `button ${kind}`, onclick: act }, icon(name, "small"), words);
 
-  function stateButtons(uav) {
-    if (uav.state === "retired") return [button("archive-restore", t("Bring back"), () => acts.put("active"))];
-    return [
-      uav.state === "active"
-        ? button("wrench", t("Maintenance"), () => acts.put("maintenance"))
-        : button("check", t("Back in service"), () => acts.put("active")),
-      button("archive", t("Retire"), () => acts.put("retired")),
-    ];
-  }
-
-  function missionRows(missions) {
-    return missions.map((mission) =>
-      h(
-        "li",
-        {},
-        h(
-          "div",
-          { class: "what" },
-          h("a", { href: `/missions/${mission.id}` }, mission.name),
-          h("span", { class: "caption" }, whenText(mission.updated_at)),
-        ),
-        h("span", { class: `chip ${mission.state}` }, MISSION_STATES[mission.state] ?? mission.state),
-      ),
-    );
-  }
-
-  /** The newest missions first; more on demand. */
-  async function fillMissions(list, none, address) {
-    const { data } = await get(address);
-    list.append(...missionRows(data.results));
-    none.hidden = list.children.length > 0;
-    if (!data.next) return;
-    const more = h(
-      "button",
-      {
-        type: "button",
-        class: "text-button",
-        onclick: () => (more.parentElement.remove(), fillMissions(list, none, data.next)),
-      },
-      t("Earlier missions"),
-    );
-    list.append(h("li", {}, more));
-  }
-
+  /** Shows all of a row. Returns its title, to be focused. @param {Kind} kind @param {Row} row */
   function show(kind, row) {
-    const isUav = kind.tab === "uavs";
+    const uav = kind.tab === "uavs" ? /** @type {Uav} */ (row) : null;
     const title = h("h2", { tabindex: -1 }, row.name);
-    const connection = h("div", { class: "connection" });
-    const credentials = h("ul", { class: "plain-list" });
-    const missions = h("ul", { class: "plain-list" });
-    const limits = h("div", { class: "type-limits" });
-    const airframe = h("div", { class: "type-airframe" });
-    const none = h("p", { class: "quiet-text", hidden: true }, t("No mission uses it yet."));
     panel.hidden = false;
-    panel.replaceChildren(
-      ...[
-        back(),
-        h(
-          "div",
-          { class: "panel-head" },
-          title,
-          isUav && row.is_simulated && simulatedMark(),
-          isUav && stateChip(row.state),
-        ),
-        isUav &&
-          row.state === "retired" &&
-          h("p", { class: "quiet-text" }, t("It is not offered for new missions and does not connect.")),
-        canPlan &&
-          h(
-            "div",
-            { class: "panel-acts" },
-            button("pencil", t("Edit"), acts.edit),
-            isUav && stateButtons(row),
-            h(
-              "button",
-              {
-                type: "button",
-                class: "icon-button",
-                "aria-label": t("Delete {name}", row),
-                title: t("Delete"),
-                onclick: acts.remove,
-              },
-              icon("trash-2"),
-            ),
-          ),
-        h("dl", { class: "facts" }, kind.facts(row)),
-        !isUav &&
-          row.uav_count > 0 &&
-          h(
-            "p",
-            {},
-            h(
-              "button",
-              { type: "button", class: "text-button", onclick: () => acts.showUavs(kind.tab, row.id) },
-              tn(row.uav_count, "Show the UAV", "Show the {count} UAVs"),
-            ),
-          ),
-        kind.tab === "types" && h("h3", {}, t("Alerts")),
-        kind.tab === "types" && limits,
-        kind.tab === "types" && h("h3", {}, t("Simulation")),
-        kind.tab === "types" && airframe,
-        isUav && h("h3", {}, t("Link")),
-        isUav && connection,
-        isUav && credentials,
-        isUav && h("h3", {}, t("Missions")),
-        isUav && missions,
-        isUav && none,
-      ].filter(Boolean),
+    setChildren(
+      panel,
+      back(),
+      h("div", { class: "panel-head" }, title, uav?.is_simulated && simulatedMark(), uav && stateChip(uav.state)),
+      uav?.state === "retired" &&
+        h("p", { class: "quiet-text" }, t("It is not offered for new missions and does not connect.")),
+      canPlan && actsOf(row, uav, acts),
+      h("dl", { class: "facts" }, kind.facts(row)),
+      "uav_count" in row && row.uav_count > 0 && uavsLink(kind.tab, row.id, row.uav_count, acts),
+      kind.tab === "types" && partsOfType(/** @type {FleetType} */ (row), how),
+      uav && partsOfUav(uav, how),
     );
-    if (isUav) {
-      mountConnection(connection, row).catch(acts.failed);
-      mountCredentials(credentials, row, { canPlan, onChange: acts.refresh }).catch(acts.failed);
-      fillMissions(missions, none, `/uavs/${row.id}/missions`).catch(acts.failed);
-    }
-    if (kind.tab === "types") {
-      mountTypeLimits(limits, row, { canPlan, failed: acts.failed }).catch(acts.failed);
-      mountTypeAirframe(airframe, row, { canPlan, failed: acts.failed }).catch(acts.failed);
-    }
     return title;
   }
 
   return {
     show,
+    /** @param {string} title @param {Form} form */
     edit(title, form) {
       panel.hidden = false;
       panel.replaceChildren(back(), h("div", { class: "panel-head" }, h("h2", { tabindex: -1 }, title)), form.element);
@@ -159,9 +180,23 @@ export function mountPanel({ canPlan, acts }) {
   };
 }
 
-/** Somebody else was faster: what they changed, and what can be done. seen and theirs are bodies. */
+/**
+ * Somebody else was faster: what they changed, and what can be done.
+ *
+ * @param {object} conflict
+ * @param {string} conflict.who
+ * @param {Body} conflict.seen
+ * @param {Body} conflict.theirs
+ * @param {Form} conflict.form
+ * @param {() => unknown} conflict.onTheirs
+ * @param {() => unknown} conflict.onMine
+ */
 export function conflictNotice({ who, seen, theirs, form, onTheirs, onMine }) {
-  const changed = Object.keys(theirs).filter((name) => JSON.stringify(theirs[name]) !== JSON.stringify(seen[name]));
+  /** @type {Map<string, unknown>} */
+  const before = new Map(Object.entries(seen));
+  const changed = Object.entries(theirs).filter(
+    ([name, value]) => JSON.stringify(value) !== JSON.stringify(before.get(name)),
+  );
   return h(
     "div",
     { class: "notice critical", role: "alert" },
@@ -178,10 +213,10 @@ export function conflictNotice({ who, seen, theirs, form, onTheirs, onMine }) {
       h(
         "dl",
         { class: "differences" },
-        changed.map((name) => [
+        changed.map(([name, value]) => [
           h("dt", {}, form.label(name)),
-          h("dd", {}, form.words(name, seen[name])),
-          h("dd", {}, `→ ${form.words(name, theirs[name])}`),
+          h("dd", {}, form.words(name, before.get(name))),
+          h("dd", {}, `→ ${form.words(name, value)}`),
         ]),
       ),
       h(

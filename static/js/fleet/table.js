@@ -4,21 +4,43 @@ import { byId, h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { numberText } from "../units.js";
 
-/** onChoose(id), onNew(), onClear(). */
+/** @import { Kind, Row } from "./types.d.ts" */
+
+/**
+ * @typedef {object} TableActs
+ * @property {boolean} canPlan
+ * @property {(id: number) => unknown} onChoose
+ * @property {() => unknown} onNew
+ * @property {() => unknown} onClear
+ */
+/**
+ * @typedef {object} TableContent
+ * @property {Kind} kind
+ * @property {Row[] | null} rows null: not loaded yet
+ * @property {number | null} chosenId
+ * @property {string | null} next
+ * @property {boolean} isFiltered
+ * @property {string} text
+ */
+
+/** @param {TableActs} acts */
 export function mountTable({ canPlan, onChoose, onNew, onClear }) {
   const head = byId("fleet-head");
+  const links = () => [...byId("fleet-rows").querySelectorAll("a")];
 
+  /** @param {Kind} kind @param {Row} item @param {boolean} isChosen */
   function row(kind, item, isChosen) {
     const [first, ...rest] = kind.columns;
     const link = h(
       "a",
-      {
-        href: `?tab=${kind.tab}&id=${item.id}`,
-        "aria-current": isChosen ? "true" : null,
-        onclick: (event) => (event.preventDefault(), event.stopPropagation(), onChoose(item.id)),
-      },
+      { href: `?tab=${kind.tab}&id=${item.id}`, "aria-current": isChosen ? "true" : null },
       item.name,
     );
+    link.addEventListener("click", (event) => {
+      event.preventDefault();
+      event.stopPropagation();
+      onChoose(item.id);
+    });
     return h(
       "tr",
       { class: isChosen ? "chosen" : null, onclick: () => onChoose(item.id) },
@@ -27,8 +49,9 @@ export function mountTable({ canPlan, onChoose, onNew, onClear }) {
     );
   }
 
-  function empty(kind, isFiltered, text) {
-    const words = isFiltered
+  /** @param {Kind} kind @param {boolean} isFiltered @param {string} text */
+  function drawEmpty(kind, isFiltered, text) {
+    const parts = isFiltered
       ? [
           h("strong", {}, text ? t("Nothing matches “{text}”", { text }) : t("No UAV is like that")),
           h("button", { type: "button", class: "button", onclick: onClear }, t("Clear the filter")),
@@ -36,12 +59,13 @@ export function mountTable({ canPlan, onChoose, onNew, onClear }) {
       : [
           h("strong", {}, kind.none.title),
           h("span", {}, kind.none.text),
-          canPlan && h("button", { type: "button", class: "button", onclick: onNew }, kind.one),
+          ...(canPlan ? [h("button", { type: "button", class: "button", onclick: onNew }, kind.one)] : []),
         ];
-    byId("fleet-empty").replaceChildren(icon(kind.icon, "large"), ...words.filter(Boolean));
+    byId("fleet-empty").replaceChildren(icon(kind.icon, "large"), ...parts);
   }
 
   return {
+    /** @param {TableContent} content */
     draw({ kind, rows, chosenId, next, isFiltered, text }) {
       byId("fleet-waiting").hidden = rows !== null;
       byId("fleet-table").hidden = !rows?.length;
@@ -54,9 +78,9 @@ export function mountTable({ canPlan, onChoose, onNew, onClear }) {
         : "";
       if (rows === null) return;
       byId("fleet-caption").textContent = kind.words;
-      const focused = byId("fleet-rows").contains(document.activeElement)
-        ? document.activeElement.getAttribute("href")
-        : null;
+      const focused = links()
+        .find((link) => link === document.activeElement)
+        ?.getAttribute("href");
       head.replaceChildren(
         h(
           "tr",
@@ -66,15 +90,17 @@ export function mountTable({ canPlan, onChoose, onNew, onClear }) {
       );
       byId("fleet-rows").replaceChildren(...rows.map((item) => row(kind, item, item.id === chosenId)));
       if (focused)
-        [...byId("fleet-rows").querySelectorAll("a")]
+        links()
           .find((link) => link.getAttribute("href") === focused)
           ?.focus({ preventScroll: true });
-      if (!rows.length) empty(kind, isFiltered, text);
+      if (!rows.length) drawEmpty(kind, isFiltered, text);
     },
+    /** Focuses the next (1) or the previous (-1) row. Returns false where there is none. @param {1 | -1} by */
     step(by) {
-      const links = [...byId("fleet-rows").querySelectorAll("a")];
-      if (!links.length) return false;
-      links[(links.indexOf(document.activeElement) + by + links.length) % links.length].focus();
+      const all = links();
+      if (!all.length) return false;
+      const at = all.indexOf(/** @type {HTMLAnchorElement} */ (document.activeElement));
+      all[(at + by + all.length) % all.length].focus();
       return true;
     },
   };

@@ -7,6 +7,11 @@ import { t } from "../text.js";
 import { durationText, speedText } from "../units.js";
 import { kilograms, wattHours } from "./words.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { Airframe, AirframeList, TypeAirframe } from "../api_types.d.ts" */
+/** @import { FleetType } from "./types.d.ts" */
+
+/** @param {Airframe} airframe */
 const wordsOf = ({ mass_kg, battery_wh, hover_min, max_airspeed_mps }) =>
   [
     kilograms(mass_kg),
@@ -15,10 +20,18 @@ const wordsOf = ({ mass_kg, battery_wh, hover_min, max_airspeed_mps }) =>
     t("up to {speed}", { speed: speedText(max_airspeed_mps) }),
   ].join(" · ");
 
-/** Draws itself into `place`. Rejects with ApiError, and calls failed(it) where one comes later. */
+/**
+ * Draws itself into `place`. Rejects with ApiError, and calls failed(it) where one comes later.
+ *
+ * @param {HTMLElement} place
+ * @param {FleetType} type
+ * @param {{ canPlan: boolean, failed: (error: unknown) => void }} how
+ */
 export async function mountTypeAirframe(place, type, { canPlan, failed }) {
   const address = `/uav-types/${type.id}/airframe`;
-  const [{ data: known }, { data }] = await Promise.all([get("/airframes"), get(address)]);
+  const [{ data: known }, { data }] = /** @type {[Answer<AirframeList>, Answer<TypeAirframe>]} */ (
+    await Promise.all([get("/airframes"), get(address)])
+  );
   const airframes = new Map(known.results.map((airframe) => [airframe.code, airframe]));
 
   const facts = h("p", { class: "caption" });
@@ -29,20 +42,23 @@ export async function mountTypeAirframe(place, type, { canPlan, failed }) {
     known.results.map(({ code, name }) => h("option", { value: code }, name)),
   );
 
+  /** @param {TypeAirframe} chosen */
   function draw({ airframe, flown }) {
     const flies = airframes.get(flown);
     choice.value = airframe ?? "";
-    facts.textContent = `${flies.name}: ${wordsOf(flies)}`;
+    facts.textContent = flies ? `${flies.name}: ${wordsOf(flies)}` : flown;
   }
 
   async function choose() {
     try {
-      const stored = (await put(address, { airframe: choice.value || null })).data;
+      const { data: stored } = /** @type {Answer<TypeAirframe>} */ (
+        await put(address, { airframe: choice.value || null })
+      );
       draw(stored);
       toast(
         t(
           "In simulation {airframe} flies for {name}. Rehearsals of its missions are out of date if another one flew.",
-          { airframe: airframes.get(stored.flown).name, name: type.name },
+          { airframe: airframes.get(stored.flown)?.name, name: type.name },
         ),
       );
     } catch (error) {

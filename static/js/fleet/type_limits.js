@@ -6,14 +6,27 @@ import { get } from "../api.js";
 import { h, icon } from "../dom.js";
 import { t } from "../text.js";
 
-/** Draws itself into `place`. Rejects with ApiError, and calls failed(it) where one comes later. */
+/** @import { Figures } from "../alert_limits/words.js" */
+/** @import { Answer } from "../api.js" */
+/** @import { AlertLimits } from "../api_types.d.ts" */
+/** @import { FleetType } from "./types.d.ts" */
+
+/**
+ * Draws itself into `place`. Rejects with ApiError, and calls failed(it) where one comes later.
+ *
+ * @param {HTMLElement} place
+ * @param {FleetType} type
+ * @param {{ canPlan: boolean, failed: (error: unknown) => void }} how
+ */
 export async function mountTypeLimits(place, type, { canPlan, failed }) {
   const address = `/uav-types/${type.id}/alert-limits`;
   const hint = t(
     "For all UAVs of this type, at once, also in flight. Empty: the usual, in grey. A mission can state its own.",
   );
-  const change = () => openAlertLimits({ address, title: t("Where alerts begin: {name}", type), hint, onSaved: draw });
+  const change = () =>
+    openAlertLimits({ address, title: t("Where alerts begin: {name}", { name: type.name }), hint, onSaved: draw });
 
+  /** @param {Figures} stated */
   function draw(stated) {
     const lines = statedLines(stated);
     place.replaceChildren(
@@ -37,5 +50,6 @@ export async function mountTypeLimits(place, type, { canPlan, failed }) {
     );
   }
 
-  draw((await get(address)).data.stated);
+  const { data } = /** @type {Answer<AlertLimits>} */ (await get(address));
+  draw(data.stated);
 }

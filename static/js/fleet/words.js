@@ -4,14 +4,19 @@ import { h, icon } from "../dom.js";
 import { t, tn } from "../text.js";
 import { lengthText, numberText, percentText, whenText } from "../units.js";
 
+/** @import { UavFeature, UavState } from "../api_types.d.ts" */
+/** @import { FleetBase, FleetType, Position, RowAnswer, Uav } from "./types.d.ts" */
+
 const LOW_PERCENT = 30;
 
+/** @type {Record<UavState, { words: string, icon: string }>} */
 export const STATES = {
   active: { words: t("In service"), icon: "check" },
   maintenance: { words: t("In maintenance"), icon: "wrench" },
   retired: { words: t("Retired"), icon: "archive" },
 };
 
+/** @type {[Uav["end_action"], string][]} */
 export const ENDS = [
   ["hover", t("Hover over its last target")],
   ["return", t("Return to start")],
@@ -19,6 +24,7 @@ export const ENDS = [
   ["base", t("Land at the nearest base")],
 ];
 
+/** @type {Record<string, string>} */
 export const MISSION_STATES = {
   draft: t("Draft"),
   planned: t("Planned"),
@@ -37,25 +43,30 @@ export const LINKS = {
   http: { words: t("a companion computer over HTTP"), by: t("over HTTP") },
 };
 
+/** @param {UavState} state */
 export function stateChip(state) {
   return h("span", { class: `chip ${state}` }, icon(STATES[state].icon, "small"), STATES[state].words);
 }
 
+/** @param {string} end */
 export function endWords(end) {
   return ENDS.find(([value]) => value === end)?.[1] ?? end;
 }
 
-/** "now", "today, 11:40": when the UAV was last known to be where it is. */
+/** "now", "today, 11:40": when the UAV was last known to be where it is. @param {Pick<Uav, "located_at">} uav */
 export function ageText(uav) {
   return uav.located_at ? whenText(uav.located_at) : t("age not known");
 }
 
+/** @param {number | null} range_m */
 export const rangeText = (range_m) => (range_m === null ? t("not limited") : lengthText(range_m));
 
+/** @param {Pick<Uav, "from_type">} uav @param {string} field @param {string} words */
 export function fromType(uav, field, words) {
   return uav.from_type.includes(field) ? t("{figure}, as its type", { figure: words }) : words;
 }
 
+/** @param {number | null} percent */
 export function batteryMark(percent) {
   if (percent === null) return h("span", { class: "quiet-text" }, "—");
   const bar = h("b", {});
@@ -68,14 +79,23 @@ export function batteryMark(percent) {
   );
 }
 
+/** @param {number | null} battery_wh */
 export const wattHours = (battery_wh) =>
   battery_wh === null ? "—" : `${numberText(battery_wh, Number.isInteger(battery_wh) ? 0 : 1)}\u00a0Wh`;
+/** @param {number | null} mass_kg */
 export const kilograms = (mass_kg) =>
   mass_kg === null ? "—" : `${numberText(mass_kg, Number.isInteger(mass_kg) ? 0 : 1)}\u00a0kg`;
+/** @param {number | null} area_m2 */
 export const squareMetres = (area_m2) => (area_m2 === null ? t("not stated") : `${numberText(area_m2, 3)}\u00a0m²`);
+/** @param {number} count */
 export const uavsText = (count) => tn(count, "{count} UAV", "{count} UAVs");
 
-/** A UAV of the API as one object. */
-export function flat(feature) {
-  return { id: feature.id, position: feature.geometry.coordinates.slice(0, 2), ...feature.properties };
+/** A row of the API; a UAV as one object. @param {RowAnswer} answer */
+export const readRow = (answer) =>
+  answer && "properties" in answer ? flat(answer) : /** @type {FleetType | FleetBase} */ (answer);
+
+/** A UAV of the API as one object. @param {UavFeature} feature */
+export function flat({ id, geometry, properties }) {
+  const position = /** @type {Position} */ (geometry.coordinates.slice(0, 2));
+  return /** @type {Uav} */ ({ id, position, ...properties });
 }
