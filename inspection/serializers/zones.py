@@ -34,6 +34,16 @@ class ScheduleField(serializers.JSONField):
     """When a zone applies, as it is stored: see inspection/zones/schedule.py."""
 
 
+class CircleSerializer(serializers.Serializer):
+    centre = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="lon, lat [deg]")
+    radius_m = serializers.FloatField()
+
+
+@extend_schema_field(CircleSerializer(allow_null=True))
+class CircleField(serializers.DictField):
+    """A circle as it is stored."""
+
+
 class LimitSerializer(serializers.Serializer):
     value_m = serializers.FloatField()
     reference = serializers.ChoiceField(choices=HeightReference.choices, allow_blank=True, help_text="empty when not stated")
@@ -51,7 +61,7 @@ class ZonePropertiesSerializer(serializers.Serializer):
     lower_limit = LimitSerializer(allow_null=True)
     upper_limit = LimitSerializer(allow_null=True)
     source_heights = serializers.DictField(help_text="limits, unit and references in the source's own words")
-    circle = serializers.DictField(
+    circle = CircleField(
         allow_null=True, help_text="centre and radius_m, where the source gives a circle; the polygon encloses it"
     )
     schedule = ScheduleField(allow_null=True, help_text="when it applies: periods as ED-318 writes them; null = always")

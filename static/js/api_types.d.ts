@@ -561,6 +561,12 @@ export interface components {
              */
             stopped_s: number;
         };
+        Circle: {
+            /** @description lon, lat [deg] */
+            centre: number[];
+            /** Format: double */
+            radius_m: number;
+        };
         Command: {
             /** Format: uuid */
             id: string;
@@ -6341,9 +6347,7 @@ export interface components {
                 [key: string]: unknown;
             };
             /** @description centre and radius_m, where the source gives a circle; the polygon encloses it */
-            circle: {
-                [key: string]: unknown;
-            } | null;
+            circle: components["schemas"]["Circle"] | null;
             /** @description when it applies: periods as ED-318 writes them; null = always */
             schedule: components["schemas"]["SchedulePeriod"][] | null;
             /** @description the same for people */
@@ -6428,9 +6432,7 @@ export interface components {
                 [key: string]: unknown;
             };
             /** @description centre and radius_m, where the source gives a circle; the polygon encloses it */
-            circle: {
-                [key: string]: unknown;
-            } | null;
+            circle: components["schemas"]["Circle"] | null;
             /** @description when it applies: periods as ED-318 writes them; null = always */
             schedule: components["schemas"]["SchedulePeriod"][] | null;
             /** @description the same for people */
@@ -6577,6 +6579,7 @@ export type ChangeCollection = components['schemas']['ChangeCollection'];
 export type ChangeFeature = components['schemas']['ChangeFeature'];
 export type ChangeProperties = components['schemas']['ChangeProperties'];
 export type Charging = components['schemas']['Charging'];
+export type Circle = components['schemas']['Circle'];
 export type Command = components['schemas']['Command'];
 export type CommandDetail = components['schemas']['CommandDetail'];
 export type CommandEvent = components['schemas']['CommandEvent'];
