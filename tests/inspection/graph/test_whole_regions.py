@@ -1,4 +1,4 @@
-"""The graph of real regions: what the rules promise holds for every edge, with and without zones."""
+"""The graph of whole regions, generated and real: what the rules promise holds for every edge, with and without zones."""
 
 from itertools import pairwise
 
@@ -23,7 +23,10 @@ from inspection.selectors.ground_data import ground_data
 from tests.exact_geometry import segment_meets_polygon
 
 RULES = LinkingRules()
-REGIONS = ["columbus-ohio.osm.pbf", "nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf", "copenhagen-rail-2015.osm.gz"]
+REGIONS = [
+    "elme-valley.osm.pbf", "quillmoor.osm.pbf",
+    "columbus-ohio.osm.pbf", "nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf", "copenhagen-rail-2015.osm.gz",
+]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -32,9 +35,9 @@ def grounds() -> dict[str, GroundData]:
 
 
 @pytest.fixture(params=REGIONS)
-def region(request, grounds, db, shared_data) -> GroundData:
+def region(request, grounds, db, region_file) -> GroundData:
     if request.param not in grounds:
-        services.import_osm(path=shared_data(f"osm/{request.param}"))
+        services.import_osm(path=region_file(request.param))
         grounds[request.param] = ground_data()
     return grounds[request.param]
 
