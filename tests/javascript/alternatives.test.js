@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { flying_s, isBestIn, waysOf } from "../../static/js/mission/panels/alternatives.js";
+import { flying_s, isBestIn, waysOf } from "../../static/js/mission/panels/why/alternatives.js";
 import { basisOf, EMPTY } from "../../static/js/mission/selection.js";
 
 const result = (more) => ({

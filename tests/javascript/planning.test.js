@@ -10,9 +10,9 @@ import {
   summaryOfPlan,
 } from "../../static/js/mission/compare.js";
 import { canFly, choicesOf, isAskedFor, standingUavs } from "../../static/js/mission/fleet.js";
-import { moreOrLess } from "../../static/js/mission/panels/routes.js";
-import { partsOf } from "../../static/js/mission/panels/why_route.js";
-import { fullUavs, reasonWords } from "../../static/js/mission/panels/why_target.js";
+import { moreOrLess } from "../../static/js/mission/panels/routes/routes.js";
+import { partsOf } from "../../static/js/mission/panels/why/route.js";
+import { fullUavs, reasonWords } from "../../static/js/mission/panels/why/target.js";
 import { withResult } from "../../static/js/mission/planning.js";
 import { bandOf, flightOf, groundOf, heightAt, readingAt, spanOf, thinned } from "../../static/js/mission/profile.js";
 import { scaleOf } from "../../static/js/mission/span_strip.js";

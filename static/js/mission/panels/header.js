@@ -13,7 +13,7 @@ import { departureText } from "../flight_options.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
 import { inWords } from "../plan_words.js";
 import { showHistory } from "./history.js";
-import { uavNotice } from "./uav_changes.js";
+import { uavNotice } from "./uavs/changes.js";
 
 const STATE_WORDS = {
   draft: t("Draft"),

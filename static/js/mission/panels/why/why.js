@@ -1,18 +1,18 @@
 /** Beside the strips: why a UAV flies its route, why a target is not reached, what differs from the last plan, the ways to plan it, or a
  * route that is changed by hand. */
 
-import { post } from "../../api.js";
-import { byId, h, icon } from "../../dom.js";
-import { routeLetter, routeNumber } from "../../domain/palette.js";
-import { t } from "../../text.js";
-import { isPlanCurrent, lastPlanOf } from "../plan_view.js";
-import { takesShortestWays } from "../plan_words.js";
-import { requestOf } from "../selection.js";
+import { post } from "../../../api.js";
+import { byId, h, icon } from "../../../dom.js";
+import { routeLetter, routeNumber } from "../../../domain/palette.js";
+import { t } from "../../../text.js";
+import { isPlanCurrent, lastPlanOf } from "../../plan_view.js";
+import { takesShortestWays } from "../../plan_words.js";
+import { requestOf } from "../../selection.js";
 import { alternatives } from "./alternatives.js";
 import { createByHand } from "./by_hand.js";
-import { comparison } from "./why_compared.js";
-import { routeExplanation } from "./why_route.js";
-import { targetExplanation } from "./why_target.js";
+import { comparison } from "./compared.js";
+import { routeExplanation } from "./route.js";
+import { targetExplanation } from "./target.js";
 
 /** What the server is asked: the plan as it was made, whatever has been picked since. */
 function questionOf({ result, targets, uavs, charging_w }) {

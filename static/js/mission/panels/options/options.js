@@ -1,9 +1,9 @@
 /** What the plan is to be best at, each with its figures once it is planned, and whether UAVs fly back. */
 
-import { byId, h } from "../../dom.js";
-import { t } from "../../text.js";
-import { endingsOf, figuresOf, OBJECTIVES } from "../plan_view.js";
-import { basisOf } from "../selection.js";
+import { byId, h } from "../../../dom.js";
+import { t } from "../../../text.js";
+import { endingsOf, figuresOf, OBJECTIVES } from "../../plan_view.js";
+import { basisOf } from "../../selection.js";
 
 export function mountOptions(store, actions, canPlan) {
   const choices = OBJECTIVES.map(({ value, words, meaning }) => {

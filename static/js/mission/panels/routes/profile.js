@@ -1,14 +1,14 @@
 /** Under the strips: the flight of the route that is looked at from the side, with the figures at the pointer. */
 
-import { byId, h } from "../../dom.js";
-import { routeNumber } from "../../domain/palette.js";
-import { t, tn } from "../../text.js";
-import { heightText, lengthText, percentText } from "../../units.js";
-import { timeAt } from "../flight_options.js";
-import { isPlanCurrent, lastPlanOf, shownRoute } from "../plan_view.js";
-import { drawProfile, flightOf, profileTable, readingAt } from "../profile.js";
-import { batteryOf, landing_s, stayText } from "../route_times.js";
-import { marginWords, zoneLegend, zoneWords } from "../zones_passed.js";
+import { byId, h } from "../../../dom.js";
+import { routeNumber } from "../../../domain/palette.js";
+import { t, tn } from "../../../text.js";
+import { heightText, lengthText, percentText } from "../../../units.js";
+import { timeAt } from "../../flight_options.js";
+import { isPlanCurrent, lastPlanOf, shownRoute } from "../../plan_view.js";
+import { drawProfile, flightOf, profileTable, readingAt } from "../../profile.js";
+import { batteryOf, landing_s, stayText } from "../../route_times.js";
+import { marginWords, zoneLegend, zoneWords } from "../../zones_passed.js";
 import { stripRoom } from "./routes.js";
 
 const MOST_WAITS = 3;

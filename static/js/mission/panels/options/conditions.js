@@ -1,11 +1,11 @@
 /** The air that a mission is planned for: wind by height, and temperature. */
 
-import { h, icon } from "../../dom.js";
-import { open } from "../../page/keyboard.js";
-import { t } from "../../text.js";
-import { SHORT_UNIT, SPEED_UNIT, TEMPERATURE_UNIT } from "../../units.js";
-import { compassText, conditionsOf, MILD_C, MOST_LAYERS } from "../flight_options.js";
-import { windArrow } from "../wind_arrow.js";
+import { h, icon } from "../../../dom.js";
+import { open } from "../../../page/keyboard.js";
+import { t } from "../../../text.js";
+import { SHORT_UNIT, SPEED_UNIT, TEMPERATURE_UNIT } from "../../../units.js";
+import { compassText, conditionsOf, MILD_C, MOST_LAYERS } from "../../flight_options.js";
+import { windArrow } from "../../wind_arrow.js";
 
 const FIRST_LAYER = { altitude_agl_m: 100, speed_mps: 5, from_deg: 270 };
 const [HIGHEST_M, STRONGEST_MPS] = [1000, 60]; // missions/serializers/limits.py

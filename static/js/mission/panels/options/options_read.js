@@ -1,11 +1,11 @@
 /** The options of a mission in words, for those who may not change them. */
 
-import { byId } from "../../dom.js";
-import { t } from "../../text.js";
-import { powerText, zoneText } from "../../units.js";
-import { conditionsText, departureText } from "../flight_options.js";
-import { lostLinkText } from "../lost_link.js";
-import { OBJECTIVES } from "../plan_view.js";
+import { byId } from "../../../dom.js";
+import { t } from "../../../text.js";
+import { powerText, zoneText } from "../../../units.js";
+import { conditionsText, departureText } from "../../flight_options.js";
+import { lostLinkText } from "../../lost_link.js";
+import { OBJECTIVES } from "../../plan_view.js";
 
 export function mountOptionsRead(store) {
   store.listen(["selection"], ({ selection }) => {

@@ -1,10 +1,10 @@
 /** The panel of rehearsals: conditions, progress, and the verdict by route and by target. Everything in it is simulated, and says so. */
 
-import { byId, h, icon, refill } from "../../dom.js";
-import { routeLetter, routeNumber } from "../../domain/palette.js";
-import { t } from "../../text.js";
-import { exactHeightText, heightText, numberText, percentText, SPEED_UNIT, speedText, whenText } from "../../units.js";
-import { isPlanCurrent, isUnsaved } from "../plan_view.js";
+import { byId, h, icon, refill } from "../../../dom.js";
+import { routeLetter, routeNumber } from "../../../domain/palette.js";
+import { t } from "../../../text.js";
+import { exactHeightText, heightText, numberText, percentText, SPEED_UNIT, speedText, whenText } from "../../../units.js";
+import { isPlanCurrent, isUnsaved } from "../../plan_view.js";
 import {
   CONDITIONS,
   conditionWords,
@@ -15,8 +15,8 @@ import {
   nearestOther,
   ownConditions,
   sentenceOf,
-} from "../rehearsal.js";
-import { drawCharts } from "../rehearsal_charts.js";
+} from "../../rehearsal.js";
+import { drawCharts } from "../../rehearsal_charts.js";
 
 const [MOST_WIND_MPS, MOST_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/sky.py
 

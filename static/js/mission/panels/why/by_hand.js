@@ -1,10 +1,10 @@
 /** The small panel beside the strips while a route is changed by hand: the chosen waypoint, what is wrong, undo, keep. */
 
-import { h, icon } from "../../dom.js";
-import { t, tn } from "../../text.js";
-import { SHORT_UNIT, SPEED_UNIT } from "../../units.js";
-import { figuresOfLook, speedWords } from "../hand_figures.js";
-import { changesOf, isFlownTo, isFree } from "../hand_route.js";
+import { h, icon } from "../../../dom.js";
+import { t, tn } from "../../../text.js";
+import { SHORT_UNIT, SPEED_UNIT } from "../../../units.js";
+import { figuresOfLook, speedWords } from "../../hand_figures.js";
+import { changesOf, isFlownTo, isFree } from "../../hand_route.js";
 
 const MOST_SAID = 4;
 const typed = (metres) => Number((metres / SHORT_UNIT.metres).toFixed(1));

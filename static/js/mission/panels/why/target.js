@@ -1,10 +1,10 @@
 /** Why no route visits a target: the reason, the figures behind it, and one change or more that would help. */
 
-import { h } from "../../dom.js";
-import { t, tn } from "../../text.js";
-import { heightText, lengthText, numberText } from "../../units.js";
-import { inWords, zoneOf } from "../plan_words.js";
-import { showLegalTimes } from "./legal_times.js";
+import { h } from "../../../dom.js";
+import { t, tn } from "../../../text.js";
+import { heightText, lengthText, numberText } from "../../../units.js";
+import { inWords, zoneOf } from "../../plan_words.js";
+import { showLegalTimes } from "../options/legal_times.js";
 
 /** said: see TargetExplanationSerializer; entry: of the plan's unassigned. */
 export function targetExplanation(said, { plan, entry, store, actions, canPlan }) {

@@ -1,9 +1,9 @@
 /** Says which UAV of the mission is no longer as it was planned with, and takes its present figures. */
 
-import { h, icon } from "../../dom.js";
-import { t, tn } from "../../text.js";
-import { isPlanCurrent } from "../plan_view.js";
-import { changeWords, openChanges } from "../uav_changes.js";
+import { h, icon } from "../../../dom.js";
+import { t, tn } from "../../../text.js";
+import { isPlanCurrent } from "../../plan_view.js";
+import { changeWords, openChanges } from "../../uav_changes.js";
 
 const CHANGEABLE = ["draft", "planned"];
 const MOST_TOLD = 4;

@@ -1,15 +1,15 @@
 /** The fleet to choose from: who flies in this mission, with letter, base, battery, range, sensors and how its flight ends. */
 
-import { byId, h, icon, keyedList } from "../../dom.js";
-import { routeNumber } from "../../domain/palette.js";
-import { markSimulated } from "../../simulated.js";
-import { t, tn } from "../../text.js";
-import { percentText } from "../../units.js";
-import { canFly, choicesOf, factsOfUav, inFleetOrder, isAskedFor, standingUavs } from "../fleet.js";
-import { isPlanCurrent } from "../plan_view.js";
-import { GROUNDING, inWords } from "../plan_words.js";
-import { saidInMission } from "../uav_changes.js";
-import { uavDialog } from "./uav_dialog.js";
+import { byId, h, icon, keyedList } from "../../../dom.js";
+import { routeNumber } from "../../../domain/palette.js";
+import { markSimulated } from "../../../simulated.js";
+import { t, tn } from "../../../text.js";
+import { percentText } from "../../../units.js";
+import { canFly, choicesOf, factsOfUav, inFleetOrder, isAskedFor, standingUavs } from "../../fleet.js";
+import { isPlanCurrent } from "../../plan_view.js";
+import { GROUNDING, inWords } from "../../plan_words.js";
+import { saidInMission } from "../../uav_changes.js";
+import { uavDialog } from "./dialog.js";
 
 const LEAST_TO_NARROW = 4; // a fleet of fewer is seen at a glance
 const SHOWN_FIRST = 30;

@@ -1,12 +1,12 @@
 /** Where a UAV starts, how far and how fast it flies, with which battery, and how its flight ends: for a new one, or for this mission alone. */
 
-import { ApiError, get, signInAddress } from "../../api.js";
-import { h, icon } from "../../dom.js";
-import { open } from "../../page/keyboard.js";
-import { t } from "../../text.js";
-import { boundsIn, usualOf } from "../../uav_figures.js";
-import { LONG_UNIT, SPEED_UNIT } from "../../units.js";
-import { MOST_TARGETS } from "../picking.js";
+import { ApiError, get, signInAddress } from "../../../api.js";
+import { h, icon } from "../../../dom.js";
+import { open } from "../../../page/keyboard.js";
+import { t } from "../../../text.js";
+import { boundsIn, usualOf } from "../../../uav_figures.js";
+import { LONG_UNIT, SPEED_UNIT } from "../../../units.js";
+import { MOST_TARGETS } from "../../picking.js";
 
 const MOST_SORTIES = 20; // missions/serializers/limits.py
 

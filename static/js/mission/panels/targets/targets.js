@@ -1,14 +1,14 @@
 /** The list of targets: pill, kind, name, second fact, task, remove; and what is done with several of them at once. */
 
-import { byId, h, icon, keyedList } from "../../dom.js";
-import { routeNumber } from "../../domain/palette.js";
-import { toggleMenu } from "../../page/chrome.js";
-import { t, tn } from "../../text.js";
-import { lockOf, ordersOf } from "../locks.js";
-import { inPlanOrder, isPlanCurrent, shownPlaces } from "../plan_view.js";
-import { arrivalsOf } from "../route_times.js";
-import { isUsualTask, isWhole, nameOf, taskOf } from "../selection.js";
-import { priorityOf, targetMenu, taskIcon, taskText, whoMayFly } from "../target_menu.js";
+import { byId, h, icon, keyedList } from "../../../dom.js";
+import { routeNumber } from "../../../domain/palette.js";
+import { toggleMenu } from "../../../page/chrome.js";
+import { t, tn } from "../../../text.js";
+import { lockOf, ordersOf } from "../../locks.js";
+import { inPlanOrder, isPlanCurrent, shownPlaces } from "../../plan_view.js";
+import { arrivalsOf } from "../../route_times.js";
+import { isUsualTask, isWhole, nameOf, taskOf } from "../../selection.js";
+import { priorityOf, targetMenu, taskIcon, taskText, whoMayFly } from "../../target_menu.js";
 import { mountChosenBar } from "./chosen_bar.js";
 
 const SHOWN_FIRST = 40;

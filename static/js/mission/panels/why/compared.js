@@ -1,11 +1,11 @@
 /** What differs from the last plan: the sentence, then each UAV, then the targets that changed hands. */
 
-import { h } from "../../dom.js";
-import { routeLetter, routeNumber } from "../../domain/palette.js";
-import { t, tn } from "../../text.js";
-import { durationText, lengthText } from "../../units.js";
-import { counterpart, endsBetween, movesBetween, summaryOfPlan } from "../compare.js";
-import { moreOrLess } from "./routes.js";
+import { h } from "../../../dom.js";
+import { routeLetter, routeNumber } from "../../../domain/palette.js";
+import { t, tn } from "../../../text.js";
+import { durationText, lengthText } from "../../../units.js";
+import { counterpart, endsBetween, movesBetween, summaryOfPlan } from "../../compare.js";
+import { moreOrLess } from "../routes/routes.js";
 
 const MOST_MOVES = 30;
 

@@ -1,9 +1,9 @@
 /** What can be done with several chosen targets: their task, the stretch between two, removing them. */
 
-import { byId, h, icon } from "../../dom.js";
-import { toggleMenu } from "../../page/chrome.js";
-import { t, tn } from "../../text.js";
-import { targetMenu } from "../target_menu.js";
+import { byId, h, icon } from "../../../dom.js";
+import { toggleMenu } from "../../../page/chrome.js";
+import { t, tn } from "../../../text.js";
+import { targetMenu } from "../../target_menu.js";
 
 export function mountChosenBar(store, actions, { chooseAll, done }) {
   const bar = byId("chosen-bar");

@@ -1,14 +1,14 @@
 /** The dock: the sentence, then a strip for each UAV, all on one axis; on request the strip of the plan before under each. */
 
-import { byId, h, icon } from "../../dom.js";
-import { routeNumber } from "../../domain/palette.js";
-import { profileOf } from "../../domain/route_profile.js";
-import { t, tn } from "../../text.js";
-import { durationText, lengthText } from "../../units.js";
-import { counterpart, profileOfSummary } from "../compare.js";
-import { timeAt } from "../flight_options.js";
-import { lockOf, ordersOf, stopsWished, wishedOrders } from "../locks.js";
-import { checkStateOf, checkText } from "../lost_link.js";
+import { byId, h, icon } from "../../../dom.js";
+import { routeNumber } from "../../../domain/palette.js";
+import { profileOf } from "../../../domain/route_profile.js";
+import { t, tn } from "../../../text.js";
+import { durationText, lengthText } from "../../../units.js";
+import { counterpart, profileOfSummary } from "../../compare.js";
+import { timeAt } from "../../flight_options.js";
+import { lockOf, ordersOf, stopsWished, wishedOrders } from "../../locks.js";
+import { checkStateOf, checkText } from "../../lost_link.js";
 import {
   endingOf,
   isPlanCurrent,
@@ -20,13 +20,13 @@ import {
   sentenceOf,
   stripLabel,
   wishWordsOf,
-} from "../plan_view.js";
-import { GROUNDING } from "../plan_words.js";
-import { batteryOf, delayText, landing_s, separationOf, staysOf, staysText, stayText } from "../route_times.js";
-import { uavsByName } from "../selection.js";
-import { paleStrip, spanStrip, stripAxis, stripTable } from "../span_strip.js";
-import { createPillDrag } from "../strip_drag.js";
-import { passedZones } from "../zones_passed.js";
+} from "../../plan_view.js";
+import { GROUNDING } from "../../plan_words.js";
+import { batteryOf, delayText, landing_s, separationOf, staysOf, staysText, stayText } from "../../route_times.js";
+import { uavsByName } from "../../selection.js";
+import { paleStrip, spanStrip, stripAxis, stripTable } from "../../span_strip.js";
+import { createPillDrag } from "../../strip_drag.js";
+import { passedZones } from "../../zones_passed.js";
 
 const BESIDE_PX = 184 + 84 + 72 + 80 + 4 * 12 + 32; // name, figures, hand and Why, gaps and edges, as in planning.css
 const BATTERY_PX = 76 + 12; // where one has a battery

@@ -1,12 +1,12 @@
 /** The four ways of planning side by side: what each gives, the present one marked, one click takes one. */
 
-import { h, icon } from "../../dom.js";
-import { t } from "../../text.js";
-import { durationText, energyText, lengthText, numberText } from "../../units.js";
-import { isWithoutBattery, longestDuration_s, OBJECTIVES } from "../plan_view.js";
-import { standing_s } from "../route_times.js";
-import { basisOf } from "../selection.js";
-import { openChanges } from "../uav_changes.js";
+import { h, icon } from "../../../dom.js";
+import { t } from "../../../text.js";
+import { durationText, energyText, lengthText, numberText } from "../../../units.js";
+import { isWithoutBattery, longestDuration_s, OBJECTIVES } from "../../plan_view.js";
+import { standing_s } from "../../route_times.js";
+import { basisOf } from "../../selection.js";
+import { openChanges } from "../../uav_changes.js";
 
 function missed({ unassigned }) {
   return unassigned.length;

@@ -1,9 +1,9 @@
 /** Where UAVs do not all fly back: how the flight of each one ends, beside the switch. */
 
-import { byId, h, keyedList } from "../../dom.js";
-import { routeLetter, routeNumber } from "../../domain/palette.js";
-import { t } from "../../text.js";
-import { END_CHOICES } from "./uav_dialog.js";
+import { byId, h, keyedList } from "../../../dom.js";
+import { routeLetter, routeNumber } from "../../../domain/palette.js";
+import { t } from "../../../text.js";
+import { END_CHOICES } from "./dialog.js";
 
 export function mountEndings(store, actions) {
   const list = byId("endings");

@@ -1,12 +1,12 @@
 /** What UAVs do when their link is lost, the rally points where they may land then, and the check of both in words. */
 
-import { byId, h, icon, keyedList } from "../../dom.js";
-import { routeNumber } from "../../domain/palette.js";
-import { positionIn } from "../../map/coordinates_read.js";
-import { toast } from "../../page/toast.js";
-import { t, tn } from "../../text.js";
-import * as link from "../lost_link.js";
-import { isPlanCurrent } from "../plan_view.js";
+import { byId, h, icon, keyedList } from "../../../dom.js";
+import { routeNumber } from "../../../domain/palette.js";
+import { positionIn } from "../../../map/coordinates_read.js";
+import { toast } from "../../../page/toast.js";
+import { t, tn } from "../../../text.js";
+import * as link from "../../lost_link.js";
+import { isPlanCurrent } from "../../plan_view.js";
 
 const SHOWN_FIRST = 6; // groups of waypoints that fail
 const ICONS = { home: "circle-check", lost: "triangle-alert" };

@@ -1,12 +1,12 @@
 /** The dialog "When is this mission legal?": two days as a bar, all zones on top and each in a row; the departure is moved on it. */
 
-import { get, post } from "../../api.js";
-import { h } from "../../dom.js";
-import { scheduleText } from "../../domain/schedule_words.js";
-import { open } from "../../page/keyboard.js";
-import { t } from "../../text.js";
-import { zoneText } from "../../units.js";
-import { departureText } from "../flight_options.js";
+import { get, post } from "../../../api.js";
+import { h } from "../../../dom.js";
+import { scheduleText } from "../../../domain/schedule_words.js";
+import { open } from "../../../page/keyboard.js";
+import { t } from "../../../text.js";
+import { zoneText } from "../../../units.js";
+import { departureText } from "../../flight_options.js";
 import {
   betterWords,
   legalTimesOf,
@@ -21,9 +21,9 @@ import {
   stepWithin,
   ticksOf,
   wordsOf,
-} from "../legal_times.js";
-import { isPlanCurrent, routesOf } from "../plan_view.js";
-import { requestOf } from "../selection.js";
+} from "../../legal_times.js";
+import { isPlanCurrent, routesOf } from "../../plan_view.js";
+import { requestOf } from "../../selection.js";
 
 const HOUR_MS = 3_600_000;
 const [LAST_ROOM, LAST_ROOM_WIDE] = [0.78, 0.93]; // a label that begins later has no room to the right, on a phone and on a desk

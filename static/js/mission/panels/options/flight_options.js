@@ -1,10 +1,10 @@
 /** When the mission departs, in what air it flies and whether UAVs charge on towers. */
 
-import { byId, h } from "../../dom.js";
-import { t } from "../../text.js";
-import { momentTyped, typedMoment, zoneText } from "../../units.js";
-import { compassText, conditionsText, nextMinute } from "../flight_options.js";
-import { windArrow } from "../wind_arrow.js";
+import { byId, h } from "../../../dom.js";
+import { t } from "../../../text.js";
+import { momentTyped, typedMoment, zoneText } from "../../../units.js";
+import { compassText, conditionsText, nextMinute } from "../../flight_options.js";
+import { windArrow } from "../../wind_arrow.js";
 import { askForConditions } from "./conditions.js";
 import { showLegalTimes } from "./legal_times.js";
 

@@ -1,13 +1,13 @@
 /** Where a route's kilometres come from, what another UAV would fly, what limits the plan, and what is worth trying. */
 
-import { h } from "../../dom.js";
-import { scheduleText } from "../../domain/schedule_words.js";
-import { heightsText } from "../../domain/zone_heights.js";
-import { zoneDetails } from "../../map/zone_details.js";
-import { t } from "../../text.js";
-import { durationText, energyText, lengthText } from "../../units.js";
-import { longestDuration_s, OBJECTIVES, otherObjective, routesOf } from "../plan_view.js";
-import { basisOf } from "../selection.js";
+import { h } from "../../../dom.js";
+import { scheduleText } from "../../../domain/schedule_words.js";
+import { heightsText } from "../../../domain/zone_heights.js";
+import { zoneDetails } from "../../../map/zone_details.js";
+import { t } from "../../../text.js";
+import { durationText, energyText, lengthText } from "../../../units.js";
+import { longestDuration_s, OBJECTIVES, otherObjective, routesOf } from "../../plan_view.js";
+import { basisOf } from "../../selection.js";
 
 const LEAST_M = 20; // less is the rounding of positions
 
