@@ -2,14 +2,24 @@
 
 import { triangulate } from "./triangulate.js";
 
+/** @import { SceneBridge } from "../../api_types.d.ts" */
+/** @import { Frame, Ring, SurfaceParts } from "../types.d.ts" */
+/** @import { Ground } from "./ground.js" */
+
 const SLAB_M = 1.4;
 const PIER_EVERY_M = 30;
 const PIER_M = 1.4; // along the bridge
 const INSET_M = 1.5; // of abutments
 const LEAST_ROOM_M = 0.5; // below the slab, for a pier to be seen
 
-/** Gives { vertices, index } without normals: faces are flat. */
+/**
+ * Gives { vertices, index } without normals: faces are flat.
+ *
+ * @param {Pick<SceneBridge, "deck_amsl_m" | "polygons">} bridge
+ * @param {{ frame: Frame, ground: Pick<Ground, "heightAt"> }} world
+ */
 export function bridgeSolid(bridge, { frame, ground }) {
+  /** @type {SurfaceParts} */
   const solid = { vertices: [], index: [] };
   const deck = bridge.deck_amsl_m - frame.origin.altitude_amsl_m + 0.15;
   for (const rings of bridge.polygons) {
@@ -26,6 +36,13 @@ export function bridgeSolid(bridge, { frame, ground }) {
   return { vertices: Float32Array.from(solid.vertices), index: Uint32Array.from(solid.index) };
 }
 
+/**
+ * @param {SurfaceParts} solid
+ * @param {Ring} points
+ * @param {readonly number[]} triangles
+ * @param {number} y
+ * @param {1 | -1} turn
+ */
 function addFace({ vertices, index }, points, triangles, y, turn) {
   const first = vertices.length / 3;
   for (const [x, z] of points) vertices.push(x, y, z);
@@ -35,6 +52,7 @@ function addFace({ vertices, index }, points, triangles, y, turn) {
   }
 }
 
+/** @param {SurfaceParts} solid @param {Ring} ring @param {number} low @param {number} high */
 function addSides({ vertices, index }, ring, low, high) {
   for (let at = 0; at < ring.length - 1; at += 1) {
     const first = vertices.length / 3;
@@ -43,7 +61,11 @@ function addSides({ vertices, index }, ring, low, high) {
   }
 }
 
-/** Abutments at both ends and piers between them, evenly along the longest line through the outline: rings of four corners, closed. */
+/**
+ * Abutments at both ends and piers between them, evenly along the longest line through the outline: rings of four corners, closed.
+ *
+ * @param {Ring} ring
+ */
 function supportsOf(ring) {
   const [x0, z0] = [0, 1].map((axis) => ring.reduce((sum, point) => sum + point[axis], 0) / ring.length);
   let [xx, xz, zz] = [0, 0, 0];
@@ -54,6 +76,7 @@ function supportsOf(ring) {
   const [from, to] = [Math.min(...reach) + INSET_M, Math.max(...reach) - INSET_M];
   if (to - from < 4 * INSET_M) return [];
   const fields = Math.max(Math.round((to - from) / PIER_EVERY_M), 1);
+  /** @type {Ring[]} */
   const walls = [];
   for (let field = 0; field <= fields; field += 1) {
     const along = from + ((to - from) * field) / fields;
@@ -79,8 +102,16 @@ function supportsOf(ring) {
   return walls;
 }
 
-/** Between the outermost crossings of the outline with the line across at `along`; null where it does not cross. */
+/**
+ * Between the outermost crossings of the outline with the line across at `along`; null where it does not cross.
+ *
+ * @param {Ring} ring
+ * @param {number[]} middle
+ * @param {number[]} way its direction
+ * @param {number} along
+ */
 function widthAt(ring, [x0, z0], [along_x, along_z], along) {
+  /** @type {number[]} */
   const crossings = [];
   for (let at = 0; at < ring.length - 1; at += 1) {
     const [here, there] = [ring[at], ring[at + 1]].map(([x, z]) => [

@@ -3,20 +3,32 @@
 const LEAST_M = 0.5; // less is not shown
 const CAP_M = 1.6; // half of the cross on top of a mark
 
-/** How much more planners count of a support than is drawn; 0 where what is drawn is counted. */
+/** @import { Scene, Support } from "../../api_types.d.ts" */
+/** @import { Frame, Polylines } from "../types.d.ts" */
+
+/**
+ * How much more planners count of a support than is drawn; 0 where what is drawn is counted.
+ *
+ * @param {Pick<Support, "height_m" | "likely_m">} support
+ */
 export const uncounted_m = ({ height_m, likely_m }) => (height_m - likely_m > LEAST_M ? height_m - likely_m : 0);
 
 /**
  * { points, first }: the wires that planners count there, as polylines of wiresOf, straight from top to top; marks: Float32Array of segments
  * (x, y, z, x, y, z): those, and over each such support a mast up to its counted height with a cross on it.
+ *
+ * @param {Pick<Scene, "supports" | "spans">} scene
+ * @param {Frame} frame
+ * @returns {Polylines & { marks: Float32Array }}
  */
 export function countedAir(scene, frame) {
-  const topOf = (place) =>
-    frame.toLocal(
-      ...scene.supports[place].position,
-      scene.supports[place].ground_amsl_m + scene.supports[place].height_m,
-    );
+  /** @param {number} place in supports */
+  const topOf = (place) => {
+    const { position, ground_amsl_m, height_m } = scene.supports[place];
+    return frame.toLocal(position[0], position[1], ground_amsl_m + height_m);
+  };
   const isHigher = scene.supports.map((support) => uncounted_m(support) > 0);
+  /** @type {number[]} */
   const segments = [];
   scene.supports.forEach((support, place) => {
     if (!isHigher[place]) return;

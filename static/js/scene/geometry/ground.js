@@ -1,10 +1,17 @@
 /** The ground as a grid of triangles in the frame: its height anywhere, and its mesh. Values in, arrays out. */
 
+/** @import { GroundGrid } from "../../api_types.d.ts" */
+/** @import { Frame } from "../types.d.ts" */
+
+/** @typedef {ReturnType<typeof makeGround>} Ground */
+
 const SKIRT_M = 100_000; // the ground goes on so far beyond the grid, and comes to the mean height of its edge
 
 /**
- * ground: of the scene (see docs/scene.md). Gives { columns, rows, west, north, stepX, stepZ, heights: Float32Array (y, row by row from the
- * north-west), edge (mean y of the edge), heightAt(x, z) }. heightAt is exact on the mesh's triangles.
+ * heights: y, row by row from the north-west; edge: mean y of the edge; heightAt is exact on the mesh's triangles. See docs/scene.md.
+ *
+ * @param {Omit<GroundGrid, "kind">} ground
+ * @param {Frame} frame
  */
 export function makeGround(ground, frame) {
   const { columns, rows } = ground;
@@ -14,6 +21,7 @@ export function makeGround(ground, frame) {
   const heights = Float32Array.from(ground.altitude_amsl_m, (altitude) => altitude - frame.origin.altitude_amsl_m);
   const edge = meanOfEdge(heights, columns, rows);
 
+  /** @param {number} x @param {number} z */
   function heightAt(x, z) {
     const [u, v] = [(x - west) / stepX, (z - north) / stepZ];
     const [inU, inV] = [clamp(u, 0, columns - 1), clamp(v, 0, rows - 1)];
@@ -36,12 +44,13 @@ export function makeGround(ground, frame) {
   return { columns, rows, west, north, stepX, stepZ, heights, edge, heightAt };
 }
 
-/** { vertices, normals, index }: the grid, and around it the skirt. */
+/** { vertices, normals, index }: the grid, and around it the skirt. @param {Ground} ground */
 export function groundMesh(ground) {
   const { columns, rows, west, north, stepX, stepZ, heights, edge } = ground;
   const inner = columns * rows;
   const ring = edgePlaces(columns, rows);
   const vertices = new Float32Array((inner + ring.length) * 3);
+  /** @type {number[]} */
   const index = [];
   for (let row = 0; row < rows; row += 1) {
     for (let column = 0; column < columns; column += 1) {
@@ -67,8 +76,14 @@ export function groundMesh(ground) {
   return { vertices, normals: normalsOf(vertices, index), index: Uint32Array.from(index) };
 }
 
-/** Places of the grid's edge as [column, row], against the clock seen from above: west side down, south side, east side up, north side. */
+/**
+ * Places of the grid's edge as [column, row], against the clock seen from above: west side down, south side, east side up, north side.
+ *
+ * @param {number} columns
+ * @param {number} rows
+ */
 function edgePlaces(columns, rows) {
+  /** @type {[column: number, row: number][]} */
   const places = [];
   for (let row = 0; row < rows - 1; row += 1) places.push([0, row]);
   for (let column = 0; column < columns - 1; column += 1) places.push([column, rows - 1]);
@@ -77,12 +92,18 @@ function edgePlaces(columns, rows) {
   return places.reverse();
 }
 
+/** @param {Float32Array} heights @param {number} columns @param {number} rows */
 function meanOfEdge(heights, columns, rows) {
   const places = edgePlaces(columns, rows);
   return places.reduce((sum, [column, row]) => sum + heights[row * columns + column], 0) / places.length;
 }
 
-/** Of each vertex, weighted by the area of its triangles. */
+/**
+ * Of each vertex, weighted by the area of its triangles.
+ *
+ * @param {Float32Array} vertices
+ * @param {readonly number[]} index
+ */
 export function normalsOf(vertices, index) {
   const normals = new Float32Array(vertices.length);
   for (let at = 0; at < index.length; at += 3) {
@@ -107,6 +128,7 @@ export function normalsOf(vertices, index) {
   return normals;
 }
 
+/** @param {number} value @param {number} low @param {number} high */
 function clamp(value, low, high) {
   return Math.min(Math.max(value, low), high);
 }

@@ -2,20 +2,37 @@
 
 import { uncounted_m } from "./counted.js";
 
+/** @import { Scene } from "../../api_types.d.ts" */
+/** @import { Frame, Vector } from "../types.d.ts" */
+
+/**
+ * What may be named. counted_m: the height that planners count, of what is drawn lower.
+ *
+ * @typedef {object} GroundLabel
+ * @property {"zone" | "tower" | "bridge"} kind
+ * @property {number} id
+ * @property {string} text
+ * @property {Vector} position
+ * @property {number} weight
+ * @property {number | null} [counted_m]
+ */
+
 const TOP_M = 4; // over the top of what is named
 
-/** [{ kind, id, text, position: [x, y, z], weight, counted_m }], heavier first; counted_m: the height that planners count, of what is drawn lower. */
+/**
+ * Heavier first.
+ *
+ * @param {Scene} scene
+ * @param {Frame} frame
+ * @param {readonly { middle: Vector, isInForce: boolean }[]} volumes
+ */
 export function labelsOf(scene, frame, volumes) {
+  /** @type {GroundLabel[]} */
   const labels = [];
-  scene.zones.forEach((zone, number) =>
-    labels.push({
-      kind: "zone",
-      id: zone.id,
-      text: zone.name,
-      position: volumes[number].middle,
-      weight: volumes[number].isInForce ? 90 : 60,
-    }),
-  );
+  scene.zones.forEach(({ id, name }, number) => {
+    const { middle, isInForce } = volumes[number];
+    labels.push({ kind: "zone", id, text: name, position: middle, weight: isInForce ? 90 : 60 });
+  });
   for (const support of scene.supports) {
     const { id, label, position, ground_amsl_m, height_m, voltage_v } = support;
     if (id === null) continue;
@@ -23,8 +40,8 @@ export function labelsOf(scene, frame, volumes) {
     labels.push({
       kind: "tower",
       id,
-      text: label,
-      position: frame.toLocal(...position, ground_amsl_m + height_m + TOP_M),
+      text: label ?? "",
+      position: frame.toLocal(position[0], position[1], ground_amsl_m + height_m + TOP_M),
       weight,
       counted_m: uncounted_m(support) ? height_m : null,
     });

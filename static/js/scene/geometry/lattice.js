@@ -1,5 +1,11 @@
 /** A tower of steel lattice: four legs that meet at the lowest arm and go up as a slim body, arms as wedges, crosses between the legs. */
 
+/** @import { Support } from "../../api_types.d.ts" */
+/** @import { DrawSupport, Vector } from "../types.d.ts" */
+
+/** @typedef {Support & { depth_m: number }} DrawnSupport depth_m: of its foundations */
+
+/** @type {[across: number, along: number][]} */
 const SIDES = [
   [-1, -1],
   [1, -1],
@@ -7,7 +13,13 @@ const SIDES = [
   [-1, 1],
 ]; // corners as signs across and along, in turn
 
-/** draw: { outline, fine } of (start, end, width_m, tone); points are [across, up, along]. */
+/**
+ * Points are [across, up, along].
+ *
+ * @param {DrawnSupport} support
+ * @param {DrawSupport} draw
+ * @param {{ foot_m?: number, waist_m?: number }} [how]
+ */
 export function lattice(support, draw, { foot_m = footOf(support), waist_m = waistOf(support) } = {}) {
   const { height_m, arms } = support;
   const [legs_m, brace_m] = [0.16 + height_m * 0.0032, 0.07 + height_m * 0.0011];
@@ -26,6 +38,7 @@ export function lattice(support, draw, { foot_m = footOf(support), waist_m = wai
       brace_m: brace_m * 0.85,
     });
   }
+  /** @param {number} up */
   const half = (up) =>
     (highest_m > lowest_m ? waist_m + ((top_m - waist_m) * (up - lowest_m)) / (highest_m - lowest_m) : waist_m) / 2;
   for (const arm of arms) wedge(draw, arm, half(arm[0]), brace_m);
@@ -35,22 +48,31 @@ export function lattice(support, draw, { foot_m = footOf(support), waist_m = wai
   footings(draw, foot_m, legs_m, support.depth_m);
 }
 
+/** @param {Support} support */
 function footOf({ height_m }) {
   return Math.min(Math.max(height_m * 0.17, 2.5), 14);
 }
 
+/** @param {Support} support */
 function waistOf({ height_m, voltage_v }) {
   return Math.min(Math.max(height_m * 0.03 + (voltage_v ?? 110_000) / 400_000, 0.9), 3.4);
 }
 
-/** One level with a phase in the axis and two earth wires: that phase hangs in a window. */
+/** One level with a phase in the axis and two earth wires: that phase hangs in a window. @param {Support} support */
 function isDelta({ arms, slots, earth }) {
   return arms.length === 1 && slots.some(([across]) => Math.abs(across) < 0.01) && earth.length === 2;
 }
 
-/** Four legs between two heights; near by with crosses and rings, higher than wide each. */
+/**
+ * Four legs between two heights; near by with crosses and rings, higher than wide each.
+ *
+ * @param {DrawSupport} draw
+ * @param {{ low: number, high: number, lowHalf_m: number, highHalf_m: number, legs_m: number, brace_m: number }} how
+ */
 function body({ outline, fine }, { low, high, lowHalf_m, highHalf_m, legs_m, brace_m }) {
+  /** @param {number} up */
   const half = (up) => lowHalf_m + ((highHalf_m - lowHalf_m) * (up - low)) / (high - low);
+  /** @param {[across: number, along: number]} side @param {number} up @returns {Vector} */
   const corner = ([a, b], up) => [a * half(up), up, b * half(up)];
   for (const side of SIDES) outline(corner(side, low), corner(side, high), legs_m);
   for (const [from, to] of panels(low, high, half)) {
@@ -63,19 +85,34 @@ function body({ outline, fine }, { low, high, lowHalf_m, highHalf_m, legs_m, bra
   }
 }
 
-/** Heights between which crosses stand, as high as the body is wide there, at most nine. */
+/**
+ * Heights between which crosses stand, as high as the body is wide there, at most nine.
+ *
+ * @param {number} low
+ * @param {number} high
+ * @param {(up: number) => number} half
+ * @returns {[from: number, to: number][]}
+ */
 function panels(low, high, half) {
   const heights = [low];
-  while (heights.at(-1) < high - 0.1 && heights.length < 10) {
-    const up = heights.at(-1);
-    heights.push(Math.min(high, up + Math.max(2 * half(up) * 1.05, (high - low) / 9)));
+  for (let up = low; up < high - 0.1 && heights.length < 10; ) {
+    up = Math.min(high, up + Math.max(2 * half(up) * 1.05, (high - low) / 9));
+    heights.push(up);
   }
-  if (heights.length > 2 && high - heights.at(-2) < 0.4 * (heights.at(-2) - heights.at(-3))) heights.splice(-2, 1);
+  const [before, last] = heights.slice(-3);
+  if (heights.length > 2 && high - last < 0.4 * (last - before)) heights.splice(-2, 1);
   heights[heights.length - 1] = high;
   return heights.slice(1).map((up, number) => [heights[number], up]);
 }
 
-/** An arm: two lower chords from the body to the tip, and an upper one that holds it. */
+/**
+ * An arm: two lower chords from the body to the tip, and an upper one that holds it.
+ *
+ * @param {DrawSupport} draw
+ * @param {number[]} arm height, left and right end
+ * @param {number} half_m
+ * @param {number} brace_m
+ */
 function wedge({ outline, fine }, [up, left_m, right_m], half_m, brace_m) {
   for (const tip of [left_m, right_m]) {
     const sign = Math.sign(tip);
@@ -97,7 +134,13 @@ function wedge({ outline, fine }, [up, left_m, right_m], half_m, brace_m) {
   }
 }
 
-/** The body ends below the beam in two arms of a Y, which carry the beam and, above it, the tips with the earth wires. */
+/**
+ * The body ends below the beam in two arms of a Y, which carry the beam and, above it, the tips with the earth wires.
+ *
+ * @param {DrawnSupport} support
+ * @param {DrawSupport} draw
+ * @param {{ foot_m: number, waist_m: number, legs_m: number, brace_m: number }} how
+ */
 function delta(support, draw, { foot_m, waist_m, legs_m, brace_m }) {
   const {
     height_m,
@@ -146,6 +189,7 @@ function delta(support, draw, { foot_m, waist_m, legs_m, brace_m }) {
   footings(draw, foot_m, legs_m, support.depth_m);
 }
 
+/** @param {DrawSupport} draw @param {number} foot_m @param {number} legs_m @param {number} depth_m */
 function footings({ fine }, foot_m, legs_m, depth_m) {
   for (const [a, b] of SIDES)
     fine([(a * foot_m) / 2, -depth_m, (b * foot_m) / 2], [(a * foot_m) / 2, 0.4, (b * foot_m) / 2], legs_m * 3, 2);

@@ -2,6 +2,12 @@
 
 import { memberList } from "./struts.js";
 
+/** @import { Railway } from "../../api_types.d.ts" */
+/** @import { Frame, Ring, Vector } from "../types.d.ts" */
+/** @import { Ground } from "./ground.js" */
+
+/** @typedef {{ railway: Railway, points: Ring, onDeck: (number | null)[], heights: number[] }} Way */
+
 const STEP_M = 20;
 const GAUGE_M = 1.435;
 const TRACK_M = 4.2; // from track to track
@@ -22,10 +28,14 @@ const MOST_ROUNDS = 12;
  * (x, y, z, x, y, z), wires: the same of contact wires and what carries them, masts: members }]. Where two share an end they are equally high there, so ramps go on from one to the next.
  *
  * deckAt(x, z): y of a bridge for rails there, or null. wire_agl_m: what planners count of a railway; nothing of it is drawn higher.
+ *
+ * @param {readonly Railway[]} railways
+ * @param {{ frame: Frame, ground: Pick<Ground, "heightAt">, deckAt?: (x: number, z: number) => number | null, wire_agl_m?: number }} world
  */
 export function railwayTracks(railways, { frame, ground, deckAt = () => null, wire_agl_m = 8 }) {
   const ways = railways.map((railway) => {
-    const points = densified(railway.line.map(([lon, lat]) => frame.toLocal(lon, lat, 0)).map(([x, , z]) => [x, z]));
+    const places = railway.line.map(([lon, lat]) => frame.toLocal(lon, lat, 0));
+    const points = densified(places.map(([x, , z]) => [x, z]));
     const onDeck = points.map(([x, z]) => deckAt(x, z));
     return {
       railway,
@@ -38,9 +48,15 @@ export function railwayTracks(railways, { frame, ground, deckAt = () => null, wi
   return ways.map((way) => ({ ...track(way, ground), ...overhead(way, wire_agl_m) }));
 }
 
-/** Before and behind what is lifted, no steeper than a ramp; again until ends that lie together agree. */
+/**
+ * Before and behind what is lifted, no steeper than a ramp; again until ends that lie together agree.
+ *
+ * @param {Way[]} ways
+ */
 function ramps(ways) {
+  /** @type {Map<string, number>} */
   const ends = new Map();
+  /** @param {number[]} place */
   const key = ([x, z]) => `${Math.round(x)} ${Math.round(z)}`;
   let waiting = ways.filter(({ onDeck }) => onDeck.some((height) => height !== null));
   for (let round = 0; round < MOST_ROUNDS && waiting.length; round += 1) {
@@ -56,7 +72,7 @@ function ramps(ways) {
     waiting = ways.filter(
       (way) =>
         [0, way.points.length - 1].filter((place) => {
-          const height = ends.get(key(way.points[place]));
+          const height = ends.get(key(way.points[place])) ?? -Infinity;
           if (!lifted.has(key(way.points[place])) || height <= way.heights[place] + LEAST_LIFT_M) return false;
           way.heights[place] = height;
           return true;
@@ -65,7 +81,9 @@ function ramps(ways) {
   }
 }
 
+/** @param {Way} way */
 function slope({ points, heights }) {
+  /** @param {number} here @param {number} before */
   const ramp = (here, before) => {
     const far_m = Math.hypot(points[here][0] - points[before][0], points[here][1] - points[before][1]);
     heights[here] = Math.max(heights[here], heights[before] - STEEPEST * far_m);
@@ -74,8 +92,10 @@ function slope({ points, heights }) {
   for (let at = points.length - 2; at >= 0; at -= 1) ramp(at, at + 1);
 }
 
+/** @param {Way} way @param {Pick<Ground, "heightAt">} ground */
 function track({ railway, points, onDeck, heights }, ground) {
   const width_m = BED_M + (railway.tracks - 1) * TRACK_M;
+  /** @type {{ vertices: number[], uv: number[], index: number[] }} */
   const bed = { vertices: [], uv: [], index: [] };
   const sides = sidesOf(points);
   let along_m = 0;
@@ -110,13 +130,21 @@ function track({ railway, points, onDeck, heights }, ground) {
   };
 }
 
-/** Masts beside the outermost track, an arm over all, and for each track a contact wire below the wire that carries it. */
+/**
+ * Masts beside the outermost track, an arm over all, and for each track a contact wire below the wire that carries it.
+ *
+ * @param {Way} way
+ * @param {number} wire_agl_m
+ */
 function overhead({ railway, points, heights }, wire_agl_m) {
-  const [masts, wires] = [memberList(), []];
+  const masts = memberList();
+  /** @type {number[]} */
+  const wires = [];
   if (!railway.is_electrified) return { masts: masts.take(), wires: new Float32Array(0) };
   const sides = sidesOf(points);
   const out_m = (BED_M + (railway.tracks - 1) * TRACK_M) / 2 + MAST_OUT_M;
   const high_m = wire_agl_m - 0.3; // the bed's lift is below the wire, too
+  /** @param {number} place @param {number} across @param {number} up @returns {Vector} */
   const at = (place, across, up) => [
     points[place][0] + across * sides[place][0],
     heights[place] + up,
@@ -133,6 +161,7 @@ function overhead({ railway, points, heights }, wire_agl_m) {
     for (let field = 1; field < stands.length; field += 1) {
       const [from, to] = [stands[field - 1], stands[field]];
       for (let place = from; place < to; place += 1) {
+        /** @param {number} own */
         const carried = (own) =>
           high_m - 4 * CARRIER_SAG_M * ((own - from) / (to - from)) * (1 - (own - from) / (to - from));
         wires.push(...at(place, across, CONTACT_M), ...at(place + 1, across, CONTACT_M));
@@ -143,7 +172,7 @@ function overhead({ railway, points, heights }, wire_agl_m) {
   return { masts: masts.take(), wires: Float32Array.from(wires) };
 }
 
-/** Every so many metres along the way, at its points; the first and the last among them. */
+/** Every so many metres along the way, at its points; the first and the last among them. @param {Ring} points */
 function mastPlaces(points) {
   const places = [0];
   let since_m = 0;
@@ -156,11 +185,14 @@ function mastPlaces(points) {
   return points.length > 1 ? [...places, points.length - 1] : [];
 }
 
+/** @param {Ring} points @param {readonly number[]} heights @param {Ring} sides @param {number} tracks */
 function railLines(points, heights, sides, tracks) {
+  /** @type {number[]} */
   const segments = [];
   for (let track = 0; track < tracks; track += 1) {
     const middle_m = (track - (tracks - 1) / 2) * TRACK_M;
     for (const across of [middle_m - GAUGE_M / 2, middle_m + GAUGE_M / 2]) {
+      /** @param {number} at */
       const place = (at) => [
         points[at][0] + across * sides[at][0],
         heights[at] + BED_LIFT_M + RAIL_LIFT_M,
@@ -172,7 +204,9 @@ function railLines(points, heights, sides, tracks) {
   return Float32Array.from(segments);
 }
 
+/** @param {Ring} line */
 function densified(line) {
+  /** @type {Ring} */
   const points = [];
   line.forEach(([x, z], at) => {
     if (at) {
@@ -186,7 +220,7 @@ function densified(line) {
   return points;
 }
 
-/** At each point the direction to the right, of length 1. */
+/** At each point the direction to the right, of length 1. @param {Ring} points */
 function sidesOf(points) {
   return points.map((_, at) => {
     const [before, after] = [points[Math.max(at - 1, 0)], points[Math.min(at + 1, points.length - 1)]];

@@ -1,10 +1,15 @@
 /** A flown or planned way as a flat band with poles to the ground. Arrays in, arrays out. */
 
+/** @import { HeightAt } from "../types.d.ts" */
+
 /**
  * positions: flat [x, y, z, …] of n points in the frame, in the order flown. The band lies level across the way, `width_m` wide, and passes
  * through every point; straight up or down it turns its broad side along the last level direction.
  *
  * Gives { vertices: Float32Array (2 n points: left, right of each), normals, along_m: Float32Array (2 n), index: Uint32Array }.
+ *
+ * @param {ArrayLike<number>} positions
+ * @param {{ width_m?: number }} [how]
  */
 export function ribbon(positions, { width_m = 2 } = {}) {
   const count = positions.length / 3;
@@ -43,9 +48,14 @@ export function ribbon(positions, { width_m = 2 } = {}) {
   return { vertices, normals, along_m, index };
 }
 
-/** For each point the level direction to the right of the way, and how much longer the mitre is; at most twice. */
+/**
+ * For each point the level direction to the right of the way, and how much longer the mitre is; at most twice.
+ *
+ * @param {ArrayLike<number>} positions
+ */
 function directionsAcross(positions) {
   const count = positions.length / 3;
+  /** @type {(number[] | null)[]} */
   const legs = [];
   let last = [1, 0];
   for (let point = 0; point < count - 1; point += 1) {
@@ -73,10 +83,17 @@ function directionsAcross(positions) {
  * Poles from the way down to the ground, one at each `spacing_m` of the way over the ground and at both ends.
  *
  * groundAt(x, z) -> y. Gives { segments: Float32Array [x, top, z, x, ground, z, …], heights_m: Float32Array }.
+ *
+ * @param {number[]} positions
+ * @param {HeightAt} groundAt
+ * @param {{ spacing_m?: number }} [how]
  */
 export function heightPoles(positions, groundAt, { spacing_m = 50 } = {}) {
+  /** @type {number[]} */
   const segments = [];
+  /** @type {number[]} */
   const heights_m = [];
+  /** @param {number} x @param {number} y @param {number} z */
   const stand = (x, y, z) => {
     const ground = groundAt(x, z);
     segments.push(x, y, z, x, ground, z);
@@ -91,20 +108,31 @@ export function heightPoles(positions, groundAt, { spacing_m = 50 } = {}) {
       stand(x + (dx * left_m) / length, y + (dy * left_m) / length, z + (dz * left_m) / length);
     left_m -= length;
   }
-  if (positions.length >= 3) stand(...positions.slice(-3));
+  if (positions.length >= 3) {
+    const [x, y, z] = positions.slice(-3);
+    stand(x, y, z);
+  }
   return { segments: new Float32Array(segments), heights_m: new Float32Array(heights_m) };
 }
 
-/** With points in between, where a stretch is longer than longest_m: { positions, at_s }. */
+/**
+ * With points in between, where a stretch is longer than longest_m: { positions, at_s }.
+ *
+ * @template {{ positions: number[], at_s?: number[] | null }} Line
+ * @param {Line} line
+ * @param {number} longest_m
+ */
 export function stepped({ positions, at_s, ...line }, longest_m) {
-  const [all, times] = [[...positions.slice(0, 3)], at_s ? [at_s[0]] : null];
+  const all = positions.slice(0, 3);
+  const times = at_s ? [at_s[0]] : null;
   for (let end = 3; end < positions.length; end += 3) {
     const [from, to] = [positions.slice(end - 3, end), positions.slice(end, end + 3)];
     const steps = Math.max(1, Math.ceil(Math.hypot(...to.map((metres, axis) => metres - from[axis])) / longest_m));
     for (let step = 1; step <= steps; step += 1) {
+      /** @param {number} one @param {number} other */
       const between = (one, other) => (step === steps ? other : one + ((other - one) * step) / steps);
       all.push(...to.map((metres, axis) => between(from[axis], metres)));
-      times?.push(between(at_s[end / 3 - 1], at_s[end / 3]));
+      if (at_s) times?.push(between(at_s[end / 3 - 1], at_s[end / 3]));
     }
   }
   return { ...line, positions: all, at_s: times };

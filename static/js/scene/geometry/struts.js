@@ -1,12 +1,17 @@
 /** Straight members: what towers are built of. Arrays in, arrays out. */
 
-/**
- * A list of members that grows: add(start, end, width_m, tone), points [x, y, z]. Taken as { ends: Float32Array (6 n), width_m (n),
- * tone: Uint8Array (n) }.
- */
+/** @import { Members, Vector } from "../types.d.ts" */
+
+/** A list of members that grows. */
 export function memberList() {
-  const [ends, widths, tones] = [[], [], []];
+  /** @type {number[]} */
+  const ends = [];
+  /** @type {number[]} */
+  const widths = [];
+  /** @type {number[]} */
+  const tones = [];
   return {
+    /** @param {Vector} start @param {Vector} end @param {number} width_m @param {number} [tone] */
     add(start, end, width_m, tone = 0) {
       ends.push(...start, ...end);
       widths.push(width_m);
@@ -15,6 +20,7 @@ export function memberList() {
     get length() {
       return widths.length;
     },
+    /** @returns {Members} */
     take: () => ({ ends: Float32Array.from(ends), width_m: Float32Array.from(widths), tone: Uint8Array.from(tones) }),
   };
 }
@@ -22,6 +28,10 @@ export function memberList() {
 /**
  * For each member the 4 x 4 matrix, by columns, that brings a prism of width 1 around y = -1/2 to 1/2 to its place; written to `into` from
  * member number `from` on, where given.
+ *
+ * @param {Pick<Members, "ends" | "width_m">} members
+ * @param {Float32Array} [into]
+ * @param {number} [from]
  */
 export function memberMatrices({ ends, width_m }, into = new Float32Array(width_m.length * 16), from = 0) {
   for (let member = 0; member < width_m.length; member += 1) {

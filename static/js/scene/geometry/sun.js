@@ -6,6 +6,9 @@ const DAY_MS = 86_400_000;
 /**
  * { altitude_deg, azimuth_deg (clockwise from north) } at a place [lon, lat] and a Date, within a tenth of a degree; without refraction.
  * Source: the Astronomical Almanac's approximate solar coordinates.
+ *
+ * @param {Date} date
+ * @param {readonly number[]} place
  */
 export function sunAt(date, [lon, lat]) {
   const days = (date.getTime() - Date.UTC(2000, 0, 1, 12)) / DAY_MS;

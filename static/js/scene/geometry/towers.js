@@ -4,6 +4,10 @@ import { lattice } from "./lattice.js";
 import { memberList } from "./struts.js";
 import { standing } from "./wires.js";
 
+/** @import { Support } from "../../api_types.d.ts" */
+/** @import { DrawMember, DrawSupport, Frame, Vector } from "../types.d.ts" */
+/** @import { DrawnSupport } from "./lattice.js" */
+
 /** Tones of members. */
 export const BODY = 0;
 export const INSULATOR = 1;
@@ -17,15 +21,21 @@ const SEGMENTS = 5; // of a pole that gets thinner
  *
  * below_m: how far the drawn ground is below the support's foot: foundations reach down to it.
  * Nothing is higher than the support likely is above its ground, and something of the outline reaches it.
+ *
+ * @param {Support} support
+ * @param {Frame} frame
+ * @param {number} [below_m]
  */
 export function supportMembers(support, frame, below_m = 0) {
   const stand = standing(support, frame);
   const [outline, fine] = [memberList(), memberList()];
+  /** @param {Vector} point @returns {Vector} */
   const place = ([across, up, along]) => [
     stand.foot[0] + across * stand.across[0] + along * stand.along[0],
     stand.foot[1] + up,
     stand.foot[2] + across * stand.across[1] + along * stand.along[1],
   ];
+  /** @param {ReturnType<typeof memberList>} list @returns {DrawMember} */
   const into =
     (list) =>
     (start, end, width_m, tone = BODY) =>
@@ -37,13 +47,20 @@ export function supportMembers(support, frame, below_m = 0) {
   return { outline: outline.take(), fine: fine.take() };
 }
 
+/** @type {Record<string, (support: DrawnSupport, draw: DrawSupport) => void>} */
 const BUILDERS = { lattice, guyed, tubular: pole, wooden: pole, "h-frame": twoLegged, portal: twoLegged, stake };
 
+/** @param {DrawnSupport} support @param {DrawSupport} draw */
 function stake(support, { outline }) {
   outline([0, 0, 0], [0, support.height_m, 0], 0.25);
 }
 
-/** One leg, thinner towards its top, with arms that rise a little to their ends. */
+/**
+ * One leg, thinner towards its top, with arms that rise a little to their ends.
+ *
+ * @param {DrawnSupport} support
+ * @param {DrawSupport} draw
+ */
 function pole(support, { outline, fine }) {
   const { height_m } = support;
   const isWooden = support.form === "wooden";
@@ -65,7 +82,12 @@ function pole(support, { outline, fine }) {
   else if (support.depth_m > LEAST_DEPTH_M) fine([0, -support.depth_m, 0], [0, 0, 0], foot_m);
 }
 
-/** Two legs under a beam, crossed below it; with the tips of the legs above it where earth wires hang. */
+/**
+ * Two legs under a beam, crossed below it; with the tips of the legs above it where earth wires hang.
+ *
+ * @param {DrawnSupport} support
+ * @param {DrawSupport} draw
+ */
 function twoLegged(support, { outline, fine }) {
   const { height_m, arms, earth } = support;
   const isPortal = support.form === "portal";
@@ -84,7 +106,7 @@ function twoLegged(support, { outline, fine }) {
   for (const side of [-1, 1]) fine([side * leg_m, arm_m - width_m, 0], [-side * leg_m, low_m, 0], width_m * 0.35);
 }
 
-/** A slim mast on ropes. */
+/** A slim mast on ropes. @param {DrawnSupport} support @param {DrawSupport} draw */
 function guyed(support, draw) {
   const { height_m, arms } = support;
   lattice(support, draw, { foot_m: 0.5, waist_m: Math.min(Math.max(height_m * 0.03, 0.8), 1.6) });
@@ -99,7 +121,7 @@ function guyed(support, draw) {
   }
 }
 
-/** From the arm down to where the phase hangs. */
+/** From the arm down to where the phase hangs. @param {DrawnSupport} support @param {DrawSupport} draw */
 function insulators({ arms, slots, form }, { fine }) {
   if (form === "stake") return;
   for (const [across, hangs_m] of slots) {

@@ -1,8 +1,12 @@
 /** Polygons as triangles, by cutting ears off. Numbers in, numbers out. */
 
+/** @import { Ring } from "../types.d.ts" */
+
 /**
  * rings: the outline and its holes, each a list of points [x, z], closed or not, in any turn. Gives { points: [[x, z], …], triangles:
  * [a, b, c, …] }: places in points, all turning one way (to the left where x goes right and z up). Rings of fewer than three points give nothing.
+ *
+ * @param {readonly Ring[]} rings
  */
 export function triangulate(rings) {
   const [outline, ...holes] = rings.map(opened).filter((ring) => ring.length >= 3);
@@ -13,13 +17,14 @@ export function triangulate(rings) {
   return { points: ring, triangles: ears(ring) };
 }
 
+/** @param {Ring} ring */
 function opened(ring) {
   const points = ring.filter(([x, z], at) => at === 0 || x !== ring[at - 1][0] || z !== ring[at - 1][1]);
-  const [first, last] = [points[0], points.at(-1)];
+  const [first, last] = [points[0], points[points.length - 1]];
   return points.length > 1 && first[0] === last[0] && first[1] === last[1] ? points.slice(0, -1) : points;
 }
 
-/** Twice the signed area. */
+/** Twice the signed area. @param {Ring} ring */
 export function area2(ring) {
   return ring.reduce((sum, [x, z], at) => {
     const [nextX, nextZ] = ring[(at + 1) % ring.length];
@@ -27,15 +32,22 @@ export function area2(ring) {
   }, 0);
 }
 
+/** @param {Ring} ring @param {1 | -1} way */
 function turned(ring, way) {
   return Math.sign(area2(ring)) === way ? ring : [...ring].reverse();
 }
 
+/** @param {Ring} ring */
 function rightmost(ring) {
   return ring.reduce((best, point) => (point[0] > best[0] ? point : best));
 }
 
-/** Outline and hole as one ring, joined where the hole's rightmost point sees a corner of the outline. */
+/**
+ * Outline and hole as one ring, joined where the hole's rightmost point sees a corner of the outline.
+ *
+ * @param {Ring} ring
+ * @param {Ring} hole
+ */
 function bridged(ring, hole) {
   const point = rightmost(hole);
   const start = hole.indexOf(point);
@@ -50,6 +62,7 @@ function bridged(ring, hole) {
   return [...ring.slice(0, best + 1), ...round, ring[best], ...ring.slice(best + 1)];
 }
 
+/** @param {Ring} ring @param {Ring} hole @param {number[]} point @param {number} at */
 function seen(ring, hole, point, at) {
   const corner = ring[at];
   for (const sides of [ring, hole]) {
@@ -63,8 +76,10 @@ function seen(ring, hole, point, at) {
   return true;
 }
 
+/** @param {Ring} ring */
 function ears(ring) {
   const left = ring.map((_, at) => at);
+  /** @type {number[]} */
   const triangles = [];
   let tried = 0;
   let at = 0;
@@ -84,6 +99,7 @@ function ears(ring) {
   return triangles;
 }
 
+/** @param {Ring} ring @param {readonly number[]} left @param {number} a @param {number} b @param {number} c */
 function isEar(ring, left, a, b, c) {
   const [first, tip, last] = [ring[a], ring[b], ring[c]];
   if (cross(first, tip, last) <= 0) return tip !== first && cross(first, tip, last) === 0;
@@ -100,10 +116,12 @@ function isEar(ring, left, a, b, c) {
   return true;
 }
 
+/** @param {number[]} one @param {number[]} other */
 function same(one, other) {
   return one[0] === other[0] && one[1] === other[1];
 }
 
+/** @param {number[]} a @param {number[]} b @param {number[]} c */
 function cross(a, b, c) {
   return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }

@@ -1,8 +1,17 @@
 /** Whether a place lies on a bridge that carries rails, and how high its deck is. Values in, a function out. */
 
+/** @import { SceneBridge } from "../../api_types.d.ts" */
+/** @import { Frame, Ring } from "../types.d.ts" */
+
 const CARRIES_RAILS = /railway/;
 
-/** Gives deckAt(x, z) -> y of the deck, or null. */
+/**
+ * Gives deckAt(x, z) -> y of the deck, or null.
+ *
+ * @param {readonly Pick<SceneBridge, "carries" | "polygons" | "deck_amsl_m">[]} bridges
+ * @param {Frame} frame
+ * @returns {(x: number, z: number) => number | null}
+ */
 export function deckUnder(bridges, frame) {
   const decks = bridges
     .filter(({ carries }) => CARRIES_RAILS.test(carries))
@@ -18,6 +27,7 @@ export function deckUnder(bridges, frame) {
       }),
     );
   return (x, z) => {
+    /** @type {number | null} */
     let highest = null;
     for (const { ring, box, y } of decks) {
       if (x < box[0] || x > box[2] || z < box[1] || z > box[3] || (highest !== null && y <= highest)) continue;
@@ -27,7 +37,13 @@ export function deckUnder(bridges, frame) {
   };
 }
 
-/** Whether a ray from the place crosses the ring an odd number of times. */
+/**
+ * Whether a ray from the place crosses the ring an odd number of times.
+ *
+ * @param {Ring} ring
+ * @param {number} x
+ * @param {number} z
+ */
 export function isInside(ring, x, z) {
   let inside = false;
   for (let at = 0; at < ring.length - 1; at += 1) {

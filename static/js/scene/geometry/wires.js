@@ -3,23 +3,51 @@
 import { direction } from "../frame.js";
 import { hang, piecesFor } from "./catenary.js";
 
-/** A support's foot in the frame, and its axes on the ground: { foot: [x, y, z], along: [x, z], across: [x, z] (to the right) }. */
+/** @import { Scene, Support } from "../../api_types.d.ts" */
+/** @import { Frame, Vector } from "../types.d.ts" */
+
+/** @typedef {ReturnType<typeof standing>} Stand */
+/** @typedef {ReturnType<typeof wiresOf>} Wires */
+
+/**
+ * A support's foot in the frame, and its axes on the ground: { foot: [x, y, z], along: [x, z], across: [x, z] (to the right) }.
+ *
+ * @param {Support} support
+ * @param {Frame} frame
+ */
 export function standing(support, frame) {
   const along = direction(support.bearing_deg);
-  return { foot: frame.toLocal(...support.position, support.ground_amsl_m), along, across: [-along[1], along[0]] };
+  const { position, ground_amsl_m } = support;
+  return { foot: frame.toLocal(position[0], position[1], ground_amsl_m), along, across: [-along[1], along[0]] };
 }
 
-/** Where something hangs at a support: [across_m, height_m] as a point in the frame. */
+/**
+ * Where something hangs at a support: [across_m, height_m] as a point in the frame.
+ *
+ * @param {Stand} stand
+ * @param {readonly number[]} slot
+ * @returns {Vector}
+ */
 export function slotPoint({ foot, across }, [across_m, height_m]) {
   return [foot[0] + across_m * across[0], foot[1] + height_m, foot[2] + across_m * across[1]];
 }
 
 /**
  * Gives { points: Float64Array (x, y, z …), first: Uint32Array (n + 1: a wire's first point), span: Uint32Array (n), isEarth: Uint8Array (n) }.
+ *
+ * @param {Scene} scene
+ * @param {Frame} frame
  */
 export function wiresOf(scene, frame) {
   const stands = scene.supports.map((support) => standing(support, frame));
-  const [points, first, span, isEarth] = [[], [0], [], []];
+  /** @type {number[]} */
+  const points = [];
+  const first = [0];
+  /** @type {number[]} */
+  const span = [];
+  /** @type {number[]} */
+  const isEarth = [];
+  /** @param {Vector} start @param {Vector} end @param {number} sag_m @param {number} number @param {0 | 1} earth */
   const add = (start, end, sag_m, number, earth) => {
     hang(start, end, sag_m, piecesFor(sag_m), points);
     first.push(points.length / 3);
@@ -40,7 +68,13 @@ export function wiresOf(scene, frame) {
   };
 }
 
-/** Which slot goes to which: both ends sorted from left to right as the span is seen from its start, then from below. */
+/**
+ * Which slot goes to which: both ends sorted from left to right as the span is seen from its start, then from below.
+ *
+ * @param {{ support: Support, stand: Stand }[]} ends
+ * @param {"slots" | "earth"} kind
+ * @param {number} wanted
+ */
 function pairs(ends, kind, wanted) {
   const [start, end] = ends.map(({ stand }) => stand);
   const [x, z] = [end.foot[0] - start.foot[0], end.foot[2] - start.foot[2]];
@@ -58,7 +92,12 @@ function pairs(ends, kind, wanted) {
   ]);
 }
 
-/** Of more slots than wires: one side's where that is enough, else the inner ones. */
+/**
+ * Of more slots than wires: one side's where that is enough, else the inner ones.
+ *
+ * @param {readonly number[][]} slots
+ * @param {number} wanted
+ */
 function chosen(slots, wanted) {
   if (slots.length <= wanted) return [...slots];
   const side = slots.filter(([across_m]) => across_m > 0);

@@ -3,36 +3,66 @@
 import { cutBy } from "./folds.js";
 import { area2, triangulate } from "./triangulate.js";
 
+/** @import { Scene, SceneLimit, SceneRules, SceneZone } from "../../api_types.d.ts" */
+/** @import { Frame, HeightAt, Ring, SurfaceParts, Vector } from "../types.d.ts" */
+/** @import { Folds } from "./folds.js" */
+/** @import { Ground } from "./ground.js" */
+
+/** @typedef {Pick<SceneZone, "polygons" | "lower" | "upper">} Volume what a zone takes up */
+/** @typedef {{ level: number, over: number }} Height the higher of a level y and the ground's with so much over it */
+/** @typedef {SurfaceParts & { uv: number[], fade: number[] }} WallParts */
+/** @typedef {{ x: number, z: number, low: number, high: number, share: number, along: number }} WallCorner */
+/** @typedef {{ area: number, middle: [x: number, z: number] }} Largest */
+/** @typedef {ReturnType<typeof zoneVolume>} ZoneVolume */
+
 export const WITHIN_M = 0.15; // a floor, ceiling or wall strays no farther from what it follows
 const MOST_BLOCKS = 300_000; // of the ground, under all floors and ceilings of a scene that follow it
 const ON_CLIP_DEG = 1e-6;
 const LIFT_M = 0.25; // a floor on the ground lies so far above it
 
-/** How far zones may stray from the ground they follow: WITHIN_M, more where they would be too many triangles together. */
+/**
+ * How far zones may stray from the ground they follow: WITHIN_M, more where they would be too many triangles together.
+ *
+ * @param {readonly Volume[]} zones
+ * @param {Frame} frame
+ * @param {Folds} folds
+ */
 export function withinFor(zones, frame, folds) {
   const following = zones.flatMap((zone) =>
     [zone.lower, zone.upper].filter(({ above }) => above !== "sea").map(() => zone),
   );
   const boxes = following.flatMap(({ polygons }) =>
-    polygons.map(([outline]) => boxOf(outline.map(([lon, lat]) => local(frame, lon, lat)))),
+    polygons.map(([outline]) => boxOf(outline.map((place) => local(frame, place)))),
   );
   let within_m = WITHIN_M;
   while (boxes.reduce((sum, box) => sum + folds.count(box, within_m), 0) > MOST_BLOCKS) within_m *= 2;
   return within_m;
 }
 
-/** A limit { above, m } as { level, over }: the higher of a level y and the ground's with so much over it. An open one: the ground below, or the height that open zones are drawn to. */
+/**
+ * A limit { above, m } as { level, over }: the higher of a level y and the ground's with so much over it. An open one: the ground below, or the height that open zones are drawn to.
+ *
+ * @param {SceneLimit} limit
+ * @param {"lower" | "upper"} side
+ * @param {{ frame: Frame, open_top_agl_m: number }} room
+ * @returns {Height}
+ */
 function surfaceOf(limit, side, { frame, open_top_agl_m }) {
-  if (limit.above === "ground") return { level: -Infinity, over: limit.m };
-  if (limit.above === "sea") return { level: limit.m - frame.origin.altitude_amsl_m, over: -Infinity };
+  const limit_m = limit.m ?? 0;
+  if (limit.above === "ground") return { level: -Infinity, over: limit_m };
+  if (limit.above === "sea") return { level: limit_m - frame.origin.altitude_amsl_m, over: -Infinity };
   return { level: -Infinity, over: side === "upper" ? open_top_agl_m : 0 };
 }
 
+/** @param {Height} one @param {Height} other @returns {Height} */
 const higherOf = (one, other) => ({ level: Math.max(one.level, other.level), over: Math.max(one.over, other.over) });
 
 /**
  * One zone. Gives { walls: { vertices, uv (metres along, metres up), fade (1, or 0 where it ends without a limit), index }, caps: { vertices, index }, edges: Float32Array of segments
  * (x, y, z, x, y, z), middle: [x, y, z] over its ceiling }. Walls are left out where the scene was cut (`clip`). folds: of the ground.
+ *
+ * @param {Volume} zone
+ * @param {{ frame: Frame, ground: Ground, folds: Folds, clip: Scene["clip"], rules: Pick<SceneRules, "open_top_agl_m">, within_m?: number }} world
  */
 export function zoneVolume(zone, { frame, ground, folds, clip, rules, within_m = WITHIN_M }) {
   const room = { frame, open_top_agl_m: rules.open_top_agl_m };
@@ -40,13 +70,18 @@ export function zoneVolume(zone, { frame, ground, folds, clip, rules, within_m =
   const ceiling = higherOf(surfaceOf(zone.upper, "upper", room), floor);
   const [low, high] = [floor, ceiling].map(
     ({ level, over }) =>
+      /** @type {HeightAt} */
       (x, z) =>
         Math.max(level, ground.heightAt(x, z) + over),
   );
   const isOpen = zone.upper.above === "open";
+  /** @type {WallParts} */
   const walls = { vertices: [], uv: [], fade: [], index: [] };
+  /** @type {SurfaceParts} */
   const caps = { vertices: [], index: [] };
+  /** @type {number[]} */
   const edges = [];
+  /** @type {Largest | null} */
   let largest = null;
   for (const rings of zone.polygons) {
     for (const ring of rings.map(facingOut))
@@ -63,7 +98,7 @@ export function zoneVolume(zone, { frame, ground, folds, clip, rules, within_m =
         walls,
         edges,
       });
-    const { points, triangles } = triangulate(rings.map((ring) => ring.map(([lon, lat]) => local(frame, lon, lat))));
+    const { points, triangles } = triangulate(rings.map((ring) => ring.map((place) => local(frame, place))));
     const parts = Array.from({ length: triangles.length / 3 }, (_, place) =>
       [0, 1, 2].map((corner) => points[triangles[place * 3 + corner]]),
     );
@@ -72,6 +107,8 @@ export function zoneVolume(zone, { frame, ground, folds, clip, rules, within_m =
     largest = larger(largest, points, triangles);
   }
   const [x, z] = largest?.middle ?? [0, 0];
+  /** @type {Vector} */
+  const middle = [x, high(x, z), z];
   return {
     walls: {
       vertices: Float32Array.from(walls.vertices),
@@ -81,32 +118,55 @@ export function zoneVolume(zone, { frame, ground, folds, clip, rules, within_m =
     },
     caps: { vertices: Float32Array.from(caps.vertices), index: Uint32Array.from(caps.index) },
     edges: Float32Array.from(edges),
-    middle: [x, high(x, z), z],
+    middle,
   };
 }
 
-/** The ring so turned that walls along it show their front to the outside: outlines one way round, holes the other. */
+/**
+ * The ring so turned that walls along it show their front to the outside: outlines one way round, holes the other.
+ *
+ * @param {Ring} ring
+ * @param {number} number
+ */
 function facingOut(ring, number) {
   return area2(ring) > 0 === (number === 0) ? ring : [...ring].reverse();
 }
 
-function local(frame, lon, lat) {
+/** @param {Frame} frame @param {number[]} place lon, lat */
+function local(frame, [lon, lat]) {
   const [x, , z] = frame.toLocal(lon, lat, 0);
   return [x, z];
 }
 
+/** @param {Ring} points */
 function boxOf(points) {
   return [0, 1]
     .map((axis) => points.reduce((least, point) => Math.min(least, point[axis]), Infinity))
     .concat([0, 1].map((axis) => points.reduce((most, point) => Math.max(most, point[axis]), -Infinity)));
 }
 
+/**
+ * @param {Ring} ring
+ * @param {object} how
+ * @param {Frame} how.frame
+ * @param {Ground} how.ground
+ * @param {Folds} how.folds
+ * @param {number[]} how.clip
+ * @param {HeightAt} how.low
+ * @param {HeightAt} how.high
+ * @param {Height[]} how.kinks surfaces that go over from a level to following the ground
+ * @param {boolean} how.isOpen
+ * @param {number} how.within_m
+ * @param {WallParts} how.walls that they are added to
+ * @param {number[]} how.edges likewise
+ */
 function addWalls(ring, { frame, ground, folds, clip, low, high, kinks, isOpen, within_m, walls, edges }) {
   let along_m = 0;
   for (let at = 0; at < ring.length - 1; at += 1) {
-    const [start, end] = [local(frame, ...ring[at]), local(frame, ...ring[at + 1])];
+    const [start, end] = [local(frame, ring[at]), local(frame, ring[at + 1])];
     const length = Math.hypot(end[0] - start[0], end[1] - start[1]);
     if (length === 0) continue;
+    /** @param {number} share */
     const corner = (share) => {
       const [x, z] = [0, 1].map((axis) => start[axis] + (end[axis] - start[axis]) * share);
       return { x, z, low: low(x, z), high: high(x, z), share, along: along_m + length * share };
@@ -114,7 +174,7 @@ function addWalls(ring, { frame, ground, folds, clip, low, high, kinks, isOpen, 
     if (!liesOn(clip, ring[at], ring[at + 1])) {
       const shares = withKinks(
         [0, ...folds.meeting(start, end), 1],
-        (share) => ground.heightAt(...[0, 1].map((axis) => start[axis] + (end[axis] - start[axis]) * share)),
+        (share) => ground.heightAt(start[0] + (end[0] - start[0]) * share, start[1] + (end[1] - start[1]) * share),
         kinks,
       );
       const corners = straightened(shares.map(corner), within_m);
@@ -127,7 +187,13 @@ function addWalls(ring, { frame, ground, folds, clip, low, high, kinks, isOpen, 
   }
 }
 
-/** Besides the shares of the way those where a surface goes over from its level to following the ground. */
+/**
+ * Besides the shares of the way those where a surface goes over from its level to following the ground.
+ *
+ * @param {readonly number[]} shares
+ * @param {(share: number) => number} groundAt
+ * @param {readonly Height[]} surfaces
+ */
 function withKinks(shares, groundAt, surfaces) {
   const found = [...shares];
   for (const { level, over } of surfaces) {
@@ -142,19 +208,24 @@ function withKinks(shares, groundAt, surfaces) {
   return found.sort((one, other) => one - other);
 }
 
-/** Without the corners that lie on the line between those kept, in both heights. */
+/**
+ * Without the corners that lie on the line between those kept, in both heights.
+ *
+ * @param {readonly WallCorner[]} corners
+ * @param {number} within_m
+ */
 function straightened(corners, within_m) {
   const kept = [corners[0]];
   const spans = [[0, corners.length - 1]];
-  while (spans.length) {
-    const [from, to] = spans.pop();
+  for (let span = spans.pop(); span; span = spans.pop()) {
+    const [from, to] = span;
     const [start, end] = [corners[from], corners[to]];
     let [worst, most] = [-1, within_m];
     for (let at = from + 1; at < to; at += 1) {
       const share = (corners[at].share - start.share) / (end.share - start.share || 1);
-      const off = Math.max(
-        ...["low", "high"].map((name) => Math.abs(start[name] + share * (end[name] - start[name]) - corners[at][name])),
-      );
+      /** @param {"low" | "high"} name */
+      const strays = (name) => Math.abs(start[name] + share * (end[name] - start[name]) - corners[at][name]);
+      const off = Math.max(strays("low"), strays("high"));
       if (off > most) [worst, most] = [at, off];
     }
     if (worst < 0) kept.push(end);
@@ -163,6 +234,13 @@ function straightened(corners, within_m) {
   return kept;
 }
 
+/**
+ * @param {WallParts} walls
+ * @param {number[]} edges
+ * @param {WallCorner} here
+ * @param {WallCorner} there
+ * @param {boolean} isOpen
+ */
 function addPanel({ vertices, uv, fade, index }, edges, here, there, isOpen) {
   const first = vertices.length / 3;
   for (const { x, z, low, high, along } of [here, there]) {
@@ -175,7 +253,12 @@ function addPanel({ vertices, uv, fade, index }, edges, here, there, isOpen) {
   if (!isOpen) edges.push(here.x, here.high, here.z, there.x, there.high, there.z);
 }
 
-/** Whether the outline turns there by 20 degrees or more: a circle has no upright edges. */
+/**
+ * Whether the outline turns there by 20 degrees or more: a circle has no upright edges.
+ *
+ * @param {Ring} ring
+ * @param {number} at
+ */
 function isCorner(ring, at) {
   const last = ring.length - 2;
   const [before, here, after] = [ring[at === 0 ? last : at - 1], ring[at], ring[at + 1]];
@@ -186,14 +269,31 @@ function isCorner(ring, at) {
   return Math.abs(Math.atan2(Math.sin(b - a), Math.cos(b - a))) > Math.PI / 9;
 }
 
-/** Whether a side of an outline is where the scene was cut. */
+/**
+ * Whether a side of an outline is where the scene was cut.
+ *
+ * @param {number[]} clip
+ * @param {number[]} place
+ * @param {number[]} next
+ */
 function liesOn([west, south, east, north], [lon, lat], [nextLon, nextLat]) {
+  /** @param {number} value @param {number} next @param {number} edge */
   const on = (value, next, edge) => Math.abs(value - edge) < ON_CLIP_DEG && Math.abs(next - edge) < ON_CLIP_DEG;
   return on(lon, nextLon, west) || on(lon, nextLon, east) || on(lat, nextLat, south) || on(lat, nextLat, north);
 }
 
-/** A floor or ceiling of triangles, in pieces over which its surface is level or goes with a face of the ground. */
+/**
+ * A floor or ceiling of triangles, in pieces over which its surface is level or goes with a face of the ground.
+ *
+ * @param {SurfaceParts} caps
+ * @param {Ring[]} parts
+ * @param {Height} surface
+ * @param {HeightAt} heightOf
+ * @param {1 | -1} turn
+ * @param {{ ground: Ground, folds: Folds, within_m: number }} world
+ */
 function addCap({ vertices, index }, parts, { level, over }, heightOf, turn, { ground, folds, within_m }) {
+  /** @type {HeightAt} */
   const aboveLevel = (x, z) => ground.heightAt(x, z) + over - level;
   for (const piece of folds.pieces(parts, within_m, (highest) => highest + over <= level)) {
     for (const part of Number.isFinite(level)
@@ -207,7 +307,14 @@ function addCap({ vertices, index }, parts, { level, over }, heightOf, turn, { g
   }
 }
 
-/** The middle of the piece with the greatest area, by its triangles. */
+/**
+ * The middle of the piece with the greatest area, by its triangles.
+ *
+ * @param {Largest | null} largest
+ * @param {Ring} points
+ * @param {readonly number[]} triangles
+ * @returns {Largest | null}
+ */
 function larger(largest, points, triangles) {
   let [area, x, z] = [0, 0, 0];
   for (let at = 0; at < triangles.length; at += 3) {
