@@ -4,6 +4,10 @@ import { h } from "../dom.js";
 import { t } from "../text.js";
 import { HIGHEST_KV, voltsOf } from "./voltages.js";
 
+/** @import { AssetDetailFeature, AssetDetailProperties } from "../api_types.d.ts" */
+/** @import { Facts, RecordForm } from "../ground/types.d.ts" */
+
+/** @type {Record<string, [string, string][]>} */
 const SUBTYPES = {
   tower: [
     ["tower", t("Tower")],
@@ -24,6 +28,7 @@ const SUBTYPES = {
   bridge: [["area", t("Bridge")]],
 };
 
+/** @param {string} id @param {string} words @param {HTMLElement} input @param {string} [unit] */
 const field = (id, words, input, unit) =>
   h(
     "div",
@@ -31,6 +36,7 @@ const field = (id, words, input, unit) =>
     h("label", { for: id }, words),
     unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input,
   );
+/** @param {string} id @param {string | null | undefined} value @param {number} [longest] */
 const text = (id, value, longest = 255) =>
   h("input", {
     class: "input",
@@ -41,12 +47,21 @@ const text = (id, value, longest = 255) =>
     autocomplete: "off",
     spellcheck: "false",
   });
+/** @param {string} id @param {number | null | undefined} value @param {object} rest */
 const number = (id, value, rest) => h("input", { class: "input", id, type: "number", value: value ?? "", ...rest });
 
+/** @param {HTMLInputElement} input */
 const numberOrNull = (input) => (input.value === "" ? null : Number(input.value));
 
+/**
+ * @param {AssetDetailFeature | null} feature null for a new one
+ * @param {string} kind
+ * @param {Facts | null} kept of an edit that goes on
+ * @returns {RecordForm}
+ */
 export function assetForm(feature, kind, kept) {
-  const facts = { ...(feature?.properties ?? {}), ...kept };
+  /** @type {Partial<AssetDetailProperties>} */
+  const facts = { ...feature?.properties, ...kept };
   const isPower = kind === "tower" || kind === "line";
   const subtypes = SUBTYPES[kind];
   const isOther = facts.subtype && !subtypes.some(([value]) => value === facts.subtype);
@@ -57,7 +72,9 @@ export function assetForm(feature, kind, kept) {
       h("option", { value, selected: value === (facts.subtype || subtypes[0][0]) }, words),
     ),
   );
-  const [ref, name, operator] = ["ref", "name", "operator"].map((key) => text(`asset-${key}`, facts[key]));
+  const ref = text("asset-ref", facts.ref);
+  const name = text("asset-name", facts.name);
+  const operator = text("asset-operator", facts.operator);
   const voltages = text("asset-voltages", (facts.voltages_v ?? []).map((volts) => volts / 1000).join(", "), 60);
   const checkVoltages = () =>
     voltages.setCustomValidity(
@@ -93,6 +110,7 @@ export function assetForm(feature, kind, kept) {
   return {
     element,
     read() {
+      /** @type {Facts} */
       const read = {
         subtype: subtype.value,
         ref: ref.value.trim(),

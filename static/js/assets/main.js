@@ -1,41 +1,55 @@
 /** The page "Assets": find, look, draw, correct. */
 
 import { byId, h } from "../dom.js";
+import { coordinatesOf } from "../ground/record_list.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { t, tn } from "../text.js";
 import { coordinateText, exactHeightText, lengthText, voltageText, whenText } from "../units.js";
 import { assetForm } from "./form.js";
 
+/** @import { AssetDetailFeature, AssetDetailProperties, AssetFeature } from "../api_types.d.ts" */
+/** @import { Child } from "../dom.js" */
+/** @import { ShapeKind } from "../draw/types.d.ts" */
+/** @import { RecordFeature, RecordKind } from "../ground/types.d.ts" */
+
+/** @type {[string, string][]} */
 const KINDS = [
   ["tower", t("Towers")],
   ["line", t("Lines")],
   ["railway", t("Railways")],
   ["bridge", t("Bridges")],
 ];
+/** @type {Record<string, string>} */
 const NEW_NAMES = {
   tower: t("New power tower"),
   line: t("New power line"),
   railway: t("New railway"),
   bridge: t("New bridge"),
 };
+/** @type {Record<string, string>} */
 const NAMES = { tower: t("Power tower"), line: t("Power line"), railway: t("Railway"), bridge: t("Bridge") };
+/** @type {Record<string, ShapeKind>} */
 const SHAPES = { tower: "point", line: "line", railway: "line", bridge: "area" };
-const PAGE = 60;
+const PAGE = "60";
 const TYPING_MS = 250;
 
 const filter = { text: "", kind: "", inView: false };
+/** @param {string} name @param {Child} value */
 const term = (name, value) =>
   value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)];
+/** @type {(keyof AssetDetailProperties)[]} */
 const FACTS = ["subtype", "name", "ref", "operator", "voltages_v", "circuits", "height_m", "is_flyable"];
+/** @param {AssetDetailFeature} feature */
 const factsOf = ({ properties, geometry }) => ({
   ...Object.fromEntries(FACTS.map((name) => [name, properties[name]])),
   geometry,
 });
 
+/** @param {AssetDetailFeature} feature */
 function sourceWords({ properties }) {
   const { source, osm, asset_set: set } = properties;
   if (osm) {
-    const kind = { n: "node", w: "way", r: "relation" }[osm[0]];
+    const kind = osm[0] === "n" ? "node" : osm[0] === "w" ? "way" : "relation";
     return [
       h(
         "a",
@@ -48,6 +62,7 @@ function sourceWords({ properties }) {
   return set ? [`${set}${source ? `, ${source.file_name}` : ""}`] : [t("Drawn here")];
 }
 
+/** @param {AssetDetailFeature} feature */
 function details(feature) {
   const { properties } = feature;
   const tags = Object.entries(properties.tags ?? {});
@@ -94,13 +109,14 @@ function details(feature) {
         h(
           "dl",
           { class: "facts" },
-          tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", { translate: "no" }, value)]),
+          tags.map(([key, value]) => [h("dt", {}, h("code", {}, key)), h("dd", { translate: "no" }, String(value))]),
         ),
       ),
-  ].filter(Boolean);
+  ].filter((part) => part instanceof Node);
 }
 
-const records = mountRecordPage({
+/** @type {RecordKind<AssetDetailFeature & RecordFeature, AssetFeature>} */
+const ASSETS = {
   path: "/assets",
   key: "asset",
   findWords: t("Find an asset"),
@@ -129,18 +145,11 @@ const records = mountRecordPage({
     detail: properties.detail || NAMES[properties.kind],
     chip: properties.is_flyable ? "" : t("not flown"),
   }),
-  listQuery(map) {
+  listQuery(box) {
     const query = new URLSearchParams({ limit: PAGE });
     if (filter.text) query.set("text", filter.text);
     if (filter.kind) query.set("kind", filter.kind);
-    if (filter.inView)
-      query.set(
-        "bbox",
-        map
-          .box()
-          .map((degrees) => degrees.toFixed(6))
-          .join(","),
-      );
+    if (filter.inView) query.set("bbox", coordinatesOf(box()));
     return `/assets?${query}`;
   },
   nothing: () =>
@@ -154,16 +163,20 @@ const records = mountRecordPage({
           h("span", {}, t("Bring in an OpenStreetMap file, or take the visible area from Overpass.")),
           h("a", { class: "button", href: "/imports" }, t("Import a file")),
         ],
-});
+};
+const records = mountRecordPage(ASSETS);
 
-let timer = 0;
-byId("record-text").addEventListener("input", (event) => {
-  filter.text = event.target.value.trim();
+/** @type {ReturnType<typeof setTimeout> | undefined} */
+let timer;
+const text = byId("record-text", HTMLInputElement);
+text.addEventListener("input", () => {
+  filter.text = text.value.trim();
   clearTimeout(timer);
   timer = setTimeout(() => records.load(), TYPING_MS);
 });
-byId("record-in-view").addEventListener("change", (event) => {
-  filter.inView = event.target.checked;
+const inView = byId("record-in-view", HTMLInputElement);
+inView.addEventListener("change", () => {
+  filter.inView = inView.checked;
   records.load();
 });
 byId("asset-kinds").append(
@@ -176,7 +189,10 @@ byId("asset-kinds").append(
         name: "kind",
         value,
         checked: value === "",
-        onchange: () => ((filter.kind = value), records.load()),
+        onchange: () => {
+          filter.kind = value;
+          records.load();
+        },
       }),
       h("span", { class: "segment" }, words),
     ),

@@ -2,7 +2,7 @@
 
 export const HIGHEST_KV = 2_000;
 
-/** "110, 20" or "110 kV; 20 kV" → volts, highest first; null where a part is no voltage. */
+/** "110, 20" or "110 kV; 20 kV" → volts, highest first; null where a part is no voltage. @param {string} words */
 export function voltsOf(words) {
   const parts = words
     .split(/[;,/]/)

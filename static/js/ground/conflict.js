@@ -5,6 +5,9 @@ import { t } from "../text.js";
 import { clockText } from "../units.js";
 import { differences } from "./history_list.js";
 
+/** @import { Facts } from "./types.d.ts" */
+
+/** @param {string[][]} rows name, words */
 const list = (rows) =>
   h(
     "dl",
@@ -12,14 +15,26 @@ const list = (rows) =>
     rows.map(([name, words]) => h("div", {}, h("dt", {}, name), h("dd", {}, words))),
   );
 
-/** Resolves to "theirs", "mine" or null (look again). `seen`, `mine` and `theirs` are facts under the same names; `theirs` null where it is gone. */
+/**
+ * Asks which version counts. Resolves to null where the user goes on editing.
+ *
+ * @param {object} versions facts under the same names
+ * @param {string} versions.changed_by
+ * @param {string | null} versions.changed_at
+ * @param {Facts | null} versions.seen
+ * @param {Facts | null} versions.mine
+ * @param {Facts | null} versions.theirs null where it was deleted
+ * @returns {Promise<"theirs" | "mine" | null>}
+ */
 export function askWhich({ changed_by, changed_at, seen, mine, theirs }) {
   return new Promise((resolve) => {
+    /** @param {"theirs" | "mine" | null} which */
     const answer = (which) => () => {
       dialog.close();
       dialog.remove();
       resolve(which);
     };
+    /** @type {HTMLDialogElement} */
     const dialog = h(
       "dialog",
       { "aria-labelledby": "conflict-title" },
@@ -50,9 +65,12 @@ export function askWhich({ changed_by, changed_at, seen, mine, theirs }) {
           h("button", { type: "button", class: "button danger", onclick: answer("mine") }, t("Store mine over it")),
       ),
     );
-    dialog.addEventListener("cancel", (event) => (event.preventDefault(), answer(null)()));
+    dialog.addEventListener("cancel", (event) => {
+      event.preventDefault();
+      answer(null)();
+    });
     document.body.append(dialog);
     dialog.showModal();
-    dialog.querySelector("button").focus();
+    dialog.querySelector("button")?.focus();
   });
 }

@@ -1,7 +1,9 @@
-/** An edit that was not saved outlives the page, in this browser. */
+//** An edit that was not saved outlives the page, in this browser. */
 
+/** @param {string} key in the browser's storage */
 export function createDraft(key) {
   return {
+    /** Returns whether it is kept. @param {object | null} value */
     keep(value) {
       try {
         localStorage.setItem(key, JSON.stringify({ ...value, kept_at: new Date().toISOString() }));

@@ -5,22 +5,28 @@ import { piecesOf, routeClicks } from "../map/click_router.js";
 import { mountControls } from "../map/controls.js";
 import { createTip } from "../map/furniture.js";
 import * as selectionLayer from "../map/layers/selection.js";
+import { rememberedUnder } from "../map/look/under.js";
 import { createMap } from "../map/map_view.js";
 import { tipOf } from "../map/tips.js";
-import { rememberedUnder } from "../map/look/under.js";
 import { t } from "../text.js";
+
+/** @import { VectorTileSource } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { Ground } from "../api_types.d.ts" */
+/** @import { Palette } from "../domain/palette.js" */
+/** @import { Box, Geometry, MapLibreMap, MapThing } from "../map/types.d.ts" */
+/** @import { GroundHandlers, GroundPage } from "./types.d.ts" */
 
 const SETTLED_MS = 350;
 const NEAR_ZOOM = 14;
 
 /**
- * on: { click(thing, position, point), hover(thing, point, position), box([W, S, E, N]), tool() , kinds() }, each optional. A page that
- * draws returns true from `isBusy()` while the pointer belongs to the drawing: then nothing is picked and no tip comes up.
- * Returns { map, view, bindings, ready, fit(box), show(position or box), setGround(ground), box(), ring(geometries), onRecolour(act) }.
+ * @param {GroundPage} page
+ * @param {GroundHandlers} [on]
  */
 export function mountGroundMap(page, on = {}) {
   const container = byId("map");
-  const frame = container.parentElement;
+  const frame = /** @type {HTMLElement} */ (container.parentElement);
+  /** @type {Ground | null} */
   let ground = null;
   const view = createMap(container, {
     baseMap: page.baseMap,
@@ -31,14 +37,18 @@ export function mountGroundMap(page, on = {}) {
     extent: page.extent,
   });
   const { map } = view;
+  /** @type {Set<(palette: Palette) => void>} */
   const repainted = new Set();
   const tip = createTip(frame);
   const isBusy = () => on.isBusy?.() ?? false;
+  /** @type {MapThing | null} */
   let pointed = null;
   const controls = mountControls(view, page, {
     isBusy,
     fit: () => fit(extent()),
-    recoloured: (palette) => repainted.forEach((act) => act(palette)),
+    recoloured(palette) {
+      for (const act of repainted) act(palette);
+    },
   });
 
   routeClicks(map, {
@@ -52,7 +62,8 @@ export function mountGroundMap(page, on = {}) {
     hover(thing, point, position) {
       controls.hover(position);
       const met = isBusy() || controls.isMeasuring() ? null : thing;
-      tip(met ? `${met.kind} ${met.id}` : null, point, (refresh) => tipOf({ ...met, place: position }, refresh));
+      if (met) tip(`${met.kind} ${met.id}`, point, (fill) => tipOf({ ...met, place: position }, fill));
+      else tip(null);
       on.hover?.(met, point, position);
       if (met?.id === pointed?.id && met?.kind === pointed?.kind) return;
       pointed = met;
@@ -63,12 +74,13 @@ export function mountGroundMap(page, on = {}) {
     box: (box) => on.box?.(box),
   });
 
-  const extent = () => ground?.extent ?? page.extent;
-  const calm = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const extent = () => /** @type {Box | null} */ (ground?.extent ?? page.extent);
+  /** @param {Box | null} box @param {{ animate?: boolean }} [options] */
   function fit(box, options) {
     map.resize(); // the dock may just have come: fit into what is left
     view.fit(box, options);
   }
+  /** Rings geometries: what a list row is at. @param {Geometry[]} geometries */
   function ring(geometries) {
     if (map.getSource("selection")) selectionLayer.showHovered(map, geometries);
   }
@@ -80,27 +92,42 @@ export function mountGroundMap(page, on = {}) {
     ready: view.ready,
     opensAtPlace: view.opensAtPlace,
     fit,
+    /** @param {{ animate?: boolean }} [options] */
     fitAll: (options) => fit(extent(), options),
+    /** @param {number} steps */
     zoom: (steps) => map.zoomTo(map.getZoom() + steps),
     box: () => map.getBounds().toArray().flat(),
     centre: () => map.getCenter().toArray(),
-    /** Rings geometries: what a list row is at. */
     ring,
-    /** Brings a position [lon, lat] or a box [W, S, E, N] into view, near enough to see what stands there. */
+    /** Brings a position [lon, lat] or a box [W, S, E, N] into view, near enough to see what stands there. @param {number[]} place */
     show(place) {
-      if (place.length === 4) fit(place);
-      else map.easeTo({ center: place, zoom: Math.max(map.getZoom(), NEAR_ZOOM), duration: calm() ? 0 : SETTLED_MS });
+      if (place.length === 4) fit(/** @type {Box} */ (place));
+      else easeTo(map, place);
     },
     /** `act(palette)` paints a page's own layers again after a change of theme. */
-    onRecolour: (act) => repainted.add(act),
+    onRecolour: (/** @type {(palette: Palette) => void} */ act) => repainted.add(act),
     /** New tiles, after the ground has changed. */
     refreshTiles() {
-      const source = map.getSource("ground-tiles");
-      if (source) source.setTiles([`${location.origin}/api/v1/tiles/{z}/{x}/{y}?of=${Date.now()}`]);
+      refreshTiles(map);
     },
+    /** @param {Ground} next */
     setGround(next) {
       ground = next;
       controls.setGround(next);
     },
   };
+}
+
+/** Moves to a position, near enough to see what stands there. @param {MapLibreMap} map @param {number[]} position */
+function easeTo(map, [longitude, latitude]) {
+  const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const zoom = Math.max(map.getZoom(), NEAR_ZOOM);
+  map.easeTo({ center: [longitude, latitude], zoom, duration: calm ? 0 : SETTLED_MS });
+}
+
+/** @param {MapLibreMap} map */
+function refreshTiles(map) {
+  /** @type {VectorTileSource | undefined} */
+  const source = map.getSource("ground-tiles");
+  source?.setTiles([`${location.origin}/api/v1/tiles/{z}/{x}/{y}?of=${Date.now()}`]);
 }

@@ -7,15 +7,24 @@ import { mountWorkbench } from "../page/workbench.js";
 import { t } from "../text.js";
 import { mountGroundMap } from "./ground_map.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { Ground } from "../api_types.d.ts" */
+/** @import { Binding } from "../page/keyboard.js" */
+/** @import { GroundHandlers, GroundPage } from "./types.d.ts" */
+
 /**
- * Returns { page, map, layout, open({ bindings, load }) }. `on` is what the map tells the page: see ground_map.js. `open` starts the keys,
- * loads the ground and what the page loads besides, and marks the document as loaded (for tests, `html[data-loaded]`).
+ * Mounts the page. `open` starts the keys, loads the ground and what the page loads besides, and marks the document as loaded (for tests,
+ * `html[data-loaded]`).
+ *
+ * @param {GroundHandlers} [on]
  */
 export function mountGroundPage(on = {}) {
+  /** @type {GroundPage} */
   const page = readPage();
   const map = mountGroundMap(page, on);
   const layout = mountWorkbench({ dockOnPhone: byId("dock-on-phone") });
 
+  /** @param {{ bindings?: Binding[], load?: () => Promise<unknown> }} [options] */
   async function open({ bindings = [], load = async () => {} } = {}) {
     startChrome({
       bindings: [
@@ -28,7 +37,8 @@ export function mountGroundPage(on = {}) {
         { keys: ["]"], words: t("Fold the dock"), act: layout.foldDock },
       ],
     });
-    map.setGround((await get("/ground")).data);
+    const { data } = /** @type {Answer<Ground>} */ (await get("/ground"));
+    map.setGround(data);
     await map.ready;
     await load();
     document.documentElement.dataset.loaded = "true";

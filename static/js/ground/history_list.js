@@ -13,6 +13,11 @@ import {
   whenText,
 } from "../units.js";
 
+/** @import { GroundHistoryEntry } from "../api_types.d.ts" */
+/** @import { Geometry } from "../map/types.d.ts" */
+/** @import { Facts } from "./types.d.ts" */
+
+/** @type {Record<string, string>} */
 const ACTS = {
   created: t("Drawn"),
   changed: t("Changed"),
@@ -23,6 +28,7 @@ const ACTS = {
   "followed source": t("Follows its source again"),
   imported: t("Imported"),
 };
+/** @type {Record<string, string>} */
 const NAMES = {
   ref: t("Ref"),
   name: t("Name"),
@@ -48,13 +54,14 @@ const NAMES = {
 };
 const QUIET = new Set(["is_edited", "layer", "osm_type", "osm_id", "source_key", "max_voltage_v"]);
 
+/** @param {string} name */
 export const factName = (name) => NAMES[name] ?? name;
 
-/** A fact as people say it. */
+/** A fact as people say it. @param {string} name @param {any} value as the history keeps it @returns {string} */
 export function factText(name, value) {
   if (value === null || value === undefined || value === "" || (Array.isArray(value) && !value.length))
     return t("not stated");
-  if (name === "voltages_v") return value.map((volts) => voltageText(volts / 1000)).join(", ");
+  if (name === "voltages_v") return value.map((/** @type {number} */ volts) => voltageText(volts / 1000)).join(", ");
   if (name === "geometry") return countText(countPoints(value.coordinates), "point");
   if (name.endsWith("_m")) return exactHeightText(value);
   if (name === "circle")
@@ -65,10 +72,13 @@ export function factText(name, value) {
   return String(value);
 }
 
+/** @param {unknown[]} coordinates @returns {number} */
 const countPoints = (coordinates) =>
-  typeof coordinates[0] === "number" ? 1 : coordinates.reduce((sum, part) => sum + countPoints(part), 0);
+  typeof coordinates[0] === "number"
+    ? 1
+    : /** @type {unknown[][]} */ (coordinates).reduce((sum, part) => sum + countPoints(part), 0);
 
-/** Lines "Ref: 18 → 18a" of what differs. */
+/** Lines "Ref: 18 → 18a" of what differs. @param {Facts | null} before @param {Facts | null} after */
 export function differences(before, after) {
   if (!before || !after) return [];
   return Object.keys(before)
@@ -79,13 +89,18 @@ export function differences(before, after) {
     ]);
 }
 
-/** The day and the time of day, in the reader's own zone. */
+/** The day and the time of day, in the reader's own zone. @param {string} iso */
 function momentText(iso) {
   const words = whenText(iso);
   return words === t("now") || words.includes(",") ? words : `${words}, ${clockText(iso)}`;
 }
 
-/** entries as the API gives them; `revert(entry)` where somebody may, `ring(geometries)` shows on the map where it was. */
+/**
+ * entries as the API gives them; `revert(entry)` where somebody may, `ring(geometries)` shows on the map where it was.
+ *
+ * @param {GroundHistoryEntry[]} entries
+ * @param {{ revert?: ((entry: GroundHistoryEntry) => void) | null, ring?: (geometries?: Geometry[]) => void }} [options]
+ */
 export function historyList(entries, { revert = null, ring = () => {} } = {}) {
   return h(
     "ol",
@@ -93,9 +108,7 @@ export function historyList(entries, { revert = null, ring = () => {} } = {}) {
     entries.map((entry) =>
       h(
         "li",
-        entry.before?.geometry
-          ? { onpointerenter: () => ring([entry.before.geometry]), onpointerleave: () => ring() }
-          : {},
+        ringing(entry, ring),
         h(
           "div",
           { class: "history-head" },
@@ -128,4 +141,10 @@ export function historyList(entries, { revert = null, ring = () => {} } = {}) {
       ),
     ),
   );
+}
+
+/** Rings where it was, while the pointer is at an entry. @param {GroundHistoryEntry} entry @param {(geometries?: Geometry[]) => void} ring */
+function ringing({ before }, ring) {
+  const geometry = /** @type {Geometry | undefined} */ (before?.geometry);
+  return geometry ? { onpointerenter: () => ring([geometry]), onpointerleave: () => ring() } : {};
 }
