@@ -8,25 +8,43 @@ import { standing_s } from "../../route_times.js";
 import { basisOf } from "../../selection.js";
 import { openChanges } from "../../uav_changes.js";
 
+/** @import { Child } from "../../../dom.js" */
+/** @import { MissionActions, MissionPageState, PlanResult } from "../../types.d.ts" */
+
+/** @typedef {ReturnType<typeof waysOf>[number]} Way of planning */
+/**
+ * @typedef {object} Column
+ * @property {string} words
+ * @property {(result: PlanResult) => number | null} figureOf
+ * @property {(value: number) => string} textOf
+ * @property {number} least a smaller difference does not count
+ */
+
+/** @param {PlanResult} result */
 function missed({ unassigned }) {
   return unassigned.length;
 }
 
+/** @type {Column[]} */
 const COLUMNS = [
-  { words: t("Distance"), valueOf: ({ total_length_m }) => total_length_m, textOf: lengthText, least: 50 },
-  { words: t("Done in"), valueOf: longestDuration_s, textOf: durationText, least: 30 },
-  { words: t("In the air"), valueOf: flying_s, textOf: durationText, least: 30 },
-  { words: t("Energy"), valueOf: ({ total_energy_wh }) => total_energy_wh ?? null, textOf: energyText, least: 1 },
-  { words: t("Not reached"), valueOf: missed, textOf: (count) => numberText(count), least: 0.5 },
+  { words: t("Distance"), figureOf: ({ total_length_m }) => total_length_m, textOf: lengthText, least: 50 },
+  { words: t("Done in"), figureOf: longestDuration_s, textOf: durationText, least: 30 },
+  { words: t("In the air"), figureOf: flying_s, textOf: durationText, least: 30 },
+  { words: t("Energy"), figureOf: ({ total_energy_wh }) => total_energy_wh ?? null, textOf: energyText, least: 1 },
+  { words: t("Not reached"), figureOf: missed, textOf: (count) => numberText(count), least: 0.5 },
 ];
 
-/** Of all UAVs together, without what they stand at a base between two flights or on a tower to charge. */
+/** Of all UAVs together, without what they stand at a base between two flights or on a tower to charge. @param {PlanResult} result */
 export function flying_s({ routes }) {
   const used = routes.filter(({ waypoints }) => waypoints?.length);
   return used.reduce((sum, route) => sum + route.duration_s - standing_s(route), 0);
 }
 
-/** [{ objective, words, meaning, result or null, fault, isPresent, isBeingMade }] in the order in which they are offered. */
+/**
+ * The ways to plan in the order in which they are offered; `result` is null where one is not planned.
+ *
+ * @param {Pick<MissionPageState, "selection" | "figures" | "planningBeside" | "refusedBeside" | "plan">} state
+ */
 export function waysOf({ selection, figures, planningBeside, refusedBeside, plan }) {
   return OBJECTIVES.map(({ value, words, meaning }) => {
     const basis = basisOf({ ...selection, objective: value });
@@ -45,13 +63,14 @@ export function waysOf({ selection, figures, planningBeside, refusedBeside, plan
   });
 }
 
-/** For each column whether a way is as good as the best there, and not all are. Who reaches fewer targets than another wins nothing. */
+/** For each column whether a way is as good as the best there, and not all are. Who reaches fewer targets than another wins nothing. @param {Pick<Way, "result">[]} ways */
 export function isBestIn(ways) {
   const made = ways.map(({ result }) => result);
-  const fewest = Math.min(...made.filter(Boolean).map(missed));
-  return COLUMNS.map(({ valueOf, least }) => {
-    const counts = (result) => result && (valueOf === missed || missed(result) === fewest);
-    const values = made.map((result) => (counts(result) ? valueOf(result) : null));
+  const fewest = Math.min(...made.filter((result) => result !== null).map(missed));
+  return COLUMNS.map(({ figureOf, least }) => {
+    const values = made.map((result) =>
+      result && (figureOf === missed || missed(result) === fewest) ? figureOf(result) : null,
+    );
     const known = values.filter((value) => value !== null);
     const best = Math.min(...known);
     const areAlike = known.every((value) => value - best < least);
@@ -59,25 +78,10 @@ export function isBestIn(ways) {
   });
 }
 
+/** @param {MissionPageState} state @param {MissionActions} actions @param {boolean} canPlan @returns {Child[]} */
 export function alternatives(state, actions, canPlan) {
   const ways = waysOf(state);
   const best = isBestIn(ways);
-  const row = (way, index) =>
-    h(
-      "tr",
-      { class: way.isPresent ? "present" : null, "aria-current": way.isPresent ? "true" : null },
-      h("th", { scope: "row" }, nameOf(way, actions, canPlan)),
-      way.result
-        ? COLUMNS.map(({ valueOf, textOf }, column) =>
-            h(
-              "td",
-              { class: best[column][index] ? "best" : null },
-              said(valueOf(way.result), textOf),
-              best[column][index] && h("span", { class: "unseen" }, ` ${t("(best)")}`),
-            ),
-          )
-        : h("td", { colspan: COLUMNS.length }, way.fault || (way.isBeingMade ? t("being planned") : t("not planned"))),
-    );
   const isBusy = ways.some(({ isBeingMade }) => isBeingMade);
   const canAsk = canPlan && !isBusy && ways.some(({ result, fault }) => !result && !fault);
   return [
@@ -109,7 +113,21 @@ export function alternatives(state, actions, canPlan) {
             COLUMNS.map(({ words }) => h("th", { scope: "col" }, words)),
           ),
         ),
-        h("tbody", {}, ways.map(row)),
+        h(
+          "tbody",
+          {},
+          ways.map((way, index) =>
+            h(
+              "tr",
+              { class: way.isPresent ? "present" : null, "aria-current": way.isPresent ? "true" : null },
+              h("th", { scope: "row" }, nameOf(way, actions, canPlan)),
+              cellsOf(
+                way,
+                best.map((isBest) => isBest[index]),
+              ),
+            ),
+          ),
+        ),
       ),
     ),
     isBusy &&
@@ -120,14 +138,28 @@ export function alternatives(state, actions, canPlan) {
         {},
         h("button", { type: "button", class: "button", onclick: actions.planAlternatives }, t("Plan the others")),
       ),
-  ].filter(Boolean);
+  ];
 }
 
-/** Whether some reach more targets than others. */
-const differ = (ways) => new Set(ways.filter(({ result }) => result).map(({ result }) => missed(result))).size > 1;
+/** Its figures, or why there are none. @param {Way} way @param {boolean[]} isBest by column */
+function cellsOf({ result, fault, isBeingMade }, isBest) {
+  if (!result)
+    return h("td", { colspan: COLUMNS.length }, fault || (isBeingMade ? t("being planned") : t("not planned")));
+  return COLUMNS.map(({ figureOf, textOf }, column) => {
+    const value = figureOf(result);
+    return h(
+      "td",
+      { class: isBest[column] ? "best" : null },
+      value === null ? "—" : textOf(value),
+      isBest[column] && h("span", { class: "unseen" }, ` ${t("(best)")}`),
+    );
+  });
+}
 
-const said = (value, textOf) => (value === null ? "—" : textOf(value));
+/** Whether some reach more targets than others. @param {Way[]} ways */
+const differ = (ways) => new Set(ways.flatMap(({ result }) => (result ? [missed(result)] : []))).size > 1;
 
+/** @param {Way} way @param {MissionActions} actions @param {boolean} canPlan */
 function nameOf({ objective, words, meaning, result, isPresent }, actions, canPlan) {
   if (isPresent || !result || !canPlan)
     return h(

@@ -7,8 +7,13 @@ import { durationText, lengthText } from "../../../units.js";
 import { counterpart, endsBetween, movesBetween, summaryOfPlan } from "../../compare.js";
 import { moreOrLess } from "../routes/routes.js";
 
+/** @import { ShortPlan, ShortRoute, ShownPlan } from "../../types.d.ts" */
+
+/** @typedef {ReturnType<typeof movesBetween>} Moves */
+
 const MOST_MOVES = 30;
 
+/** @param {ShownPlan} plan @param {ShortPlan} last */
 export function comparison(plan, last) {
   const now = summaryOfPlan(plan);
   const moves = movesBetween(last, now);
@@ -17,9 +22,10 @@ export function comparison(plan, last) {
     table(now, last),
     gone(now, last),
     moved(moves, now),
-  ].filter(Boolean);
+  ];
 }
 
+/** @param {ShortPlan} last @param {ShortPlan} now @param {Moves} moves */
 function sentenceOf(last, now, moves) {
   const [time, length] = [now.duration_s - last.duration_s, now.total_length_m - last.total_length_m];
   const parts = [];
@@ -39,11 +45,14 @@ function sentenceOf(last, now, moves) {
   return `${parts.length ? `${parts.join(", ")}.` : t("As long and as late as before.")} ${changes}`;
 }
 
+/** @param {ShortPlan} now @param {ShortPlan} last */
 function table(now, last) {
   const heads = [t("UAV"), t("before"), t("now"), t("difference")];
   const rows = now.routes.map((route, sequence) => {
     const old = counterpart(route, last);
-    const figures = (of) => (of?.length_m > 0 ? `${lengthText(of.length_m)}, ${durationText(of.duration_s)}` : "—");
+    /** @param {ShortRoute | null} of */
+    const figures = (of) =>
+      of && of.length_m > 0 ? `${lengthText(of.length_m)}, ${durationText(of.duration_s)}` : "—";
     const differences = [
       moreOrLess(route.length_m - (old?.length_m ?? 0), 50, lengthText),
       moreOrLess(route.duration_s - (old?.duration_s ?? 0), 30, durationText),
@@ -86,22 +95,26 @@ const END_WORDS = {
   base: t("at the nearest base"),
 };
 
-/** "starts 1.2 km from before", "ends at its start instead of hovering at its last target". */
+/** "starts 1.2 km from before", "ends at its start instead of hovering at its last target". @param {ReturnType<typeof endsBetween>} ends */
 function endWords({ moved_m, from, to }) {
-  const place = ({ end_action, base }) => base ?? END_WORDS[end_action];
+  /** @param {Pick<ShortRoute, "end_action" | "base">} end */
+  const place = ({ end_action, base }) => base ?? (end_action ? END_WORDS[end_action] : "");
   return [
-    moved_m > 0 && t("starts {distance} from before", { distance: lengthText(moved_m) }),
-    to && t("ends {now} instead of {before}", { now: place(to), before: place(from) }),
-  ].filter(Boolean);
+    ...(moved_m > 0 ? [t("starts {distance} from before", { distance: lengthText(moved_m) })] : []),
+    ...(from && to ? [t("ends {now} instead of {before}", { now: place(to), before: place(from) })] : []),
+  ];
 }
 
+/** @param {ShortPlan} now @param {ShortPlan} last */
 function gone(now, last) {
   const names = last.routes.filter((route) => route.length_m > 0 && !counterpart(route, now)).map(({ uav }) => uav);
   return names.length ? h("p", {}, t("No longer in the mission: {names}.", { names: names.join(", ") })) : null;
 }
 
+/** @param {Moves} moves @param {ShortPlan} now */
 function moved(moves, now) {
   if (!moves.length) return null;
+  /** @param {ShortRoute | null | undefined} route */
   const place = (route) => {
     if (route === undefined) return t("not in the mission");
     if (route === null) return t("not reached");

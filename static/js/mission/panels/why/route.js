@@ -9,10 +9,25 @@ import { durationText, energyText, lengthText } from "../../../units.js";
 import { longestDuration_s, OBJECTIVES, otherObjective, routesOf } from "../../plan_view.js";
 import { basisOf } from "../../selection.js";
 
+/** @import { BindsEnum, ObjectiveEnum, RouteExplanation } from "../../../api_types.d.ts" */
+/** @import { Child } from "../../../dom.js" */
+/** @import { MissionActions, MissionStore, ShownPlan, ShownRoute } from "../../types.d.ts" */
+
+/**
+ * What an explanation is drawn with.
+ *
+ * @typedef {object} Explaining
+ * @property {ShownPlan} plan
+ * @property {MissionStore} store
+ * @property {MissionActions} actions
+ * @property {boolean} canPlan
+ */
+
 const LEAST_M = 20; // less is the rounding of positions
 
-/** said: see RouteExplanationSerializer. */
-export function routeExplanation(said, { plan, store, actions, canPlan }) {
+/** @param {RouteExplanation} said @param {Explaining} explaining @returns {Child[]} */
+export function routeExplanation(said, explaining) {
+  const { plan } = explaining;
   const route = routesOf(plan)[said.uav];
   return [
     bar(said),
@@ -21,35 +36,41 @@ export function routeExplanation(said, { plan, store, actions, canPlan }) {
     instead(said, plan),
     limit(plan, route),
     bound(said),
-    heaviest(said, { plan, route, actions, canPlan }),
-    otherWay({ plan, store, actions, canPlan }),
-  ].filter(Boolean);
+    heaviest(said, route, explaining),
+    otherWay(explaining),
+  ];
 }
 
-/** [{ name, words, length_m }]: straight, kept to the lines, round zones. */
-export function partsOf(said) {
-  const zones = said.zones.map(({ name }) => name);
+/**
+ * [{ name, words, length_m }]: straight, kept to the lines, round zones.
+ *
+ * @param {Pick<RouteExplanation, "zones" | "straight_m" | "on_lines_m" | "round_zones_m">} said
+ */
+export function partsOf({ zones, straight_m, on_lines_m, round_zones_m }) {
+  const names = zones.map(({ name }) => name).join(", ");
   const list = [
-    { name: "straight", words: t("Straight from target to target"), length_m: said.straight_m },
-    { name: "lines", words: t("Kept to the lines"), length_m: said.on_lines_m },
+    { name: "straight", words: t("Straight from target to target"), length_m: straight_m },
+    { name: "lines", words: t("Kept to the lines"), length_m: on_lines_m },
     {
       name: "zones",
-      words: zones.length ? t("Round {zones}", { zones: zones.join(", ") }) : t("Round no-fly zones"),
-      length_m: said.round_zones_m,
+      words: names ? t("Round {zones}", { zones: names }) : t("Round no-fly zones"),
+      length_m: round_zones_m ?? 0, // null: too much to work out
     },
   ];
-  return list.filter(({ name, length_m }) => name === "straight" || (length_m !== null && length_m >= LEAST_M));
+  return list.filter(({ name, length_m }) => name === "straight" || length_m >= LEAST_M);
 }
 
+/** @param {RouteExplanation} said */
 function bar(said) {
   const pieces = partsOf(said).map(({ name, length_m }) => {
     const piece = h("i", { class: name });
-    piece.style.flexGrow = Math.max(1, length_m);
+    piece.style.flexGrow = `${Math.max(1, length_m)}`;
     return piece;
   });
   return h("div", { class: "why-bar", "aria-hidden": "true" }, pieces);
 }
 
+/** @param {RouteExplanation} said */
 function parts(said) {
   const rows = partsOf(said).map(({ name, words, length_m }) =>
     h(
@@ -62,7 +83,7 @@ function parts(said) {
   return h("dl", { class: "why-parts" }, rows);
 }
 
-/** Each zone that forces a detour, how much, and what makes it one: heights and times, once they are read. */
+/** Each zone that forces a detour, how much, and what makes it one: heights and times, once they are read. @param {RouteExplanation} said */
 function zonesInTheWay({ zones }) {
   const found = zones.filter(({ extra_m }) => extra_m >= LEAST_M);
   if (!found.length) return null;
@@ -70,22 +91,27 @@ function zonesInTheWay({ zones }) {
     "ul",
     { class: "why-zones", "aria-label": t("Zones that force a detour") },
     found.map(({ id, name, extra_m }) => {
-      const reason = h("small", {}, t("Reading times and source…"));
-      zoneDetails(id).then(
-        (details) =>
-          (reason.textContent = [
-            heightsText(details),
-            scheduleText(details.schedule, { otherwise: details.schedule_words }),
-          ]
-            .filter(Boolean)
-            .join(" · ")),
-        () => (reason.textContent = t("Times and source cannot be read now.")),
-      );
+      const reason = h("small", {}, id === null ? "" : t("Reading times and source…"));
+      if (id !== null) showReason(id, reason);
       return h("li", {}, h("span", { class: "zone-name" }, name, reason), h("span", {}, `+${lengthText(extra_m)}`));
     }),
   );
 }
 
+/** Heights and times of a zone. @param {number} id @param {HTMLElement} reason */
+function showReason(id, reason) {
+  zoneDetails(id).then(
+    (details) => {
+      const schedule = scheduleText(details.schedule, { otherwise: details.schedule_words });
+      reason.textContent = [heightsText(details), schedule].filter(Boolean).join(" · ");
+    },
+    () => {
+      reason.textContent = t("Times and source cannot be read now.");
+    },
+  );
+}
+
+/** @param {RouteExplanation} said @param {ShownPlan} plan */
 function instead(said, plan) {
   const { alternative } = said;
   if (!alternative) return null;
@@ -106,6 +132,7 @@ function instead(said, plan) {
   return h("p", {}, h("strong", {}, t("{own}, not {other}.", values)), " ", words);
 }
 
+/** @param {ShownPlan} plan @param {ShownRoute} route */
 function limit(plan, route) {
   const flown = plan.result.routes.filter(({ geometry }) => geometry);
   if (flown.length < 2) return null;
@@ -118,27 +145,31 @@ function limit(plan, route) {
   return h("p", {}, h("strong", {}, t("What limits the plan.")), " ", words);
 }
 
-/** What keeps the route from more targets, or from being quicker. */
+/** What keeps the route from more targets, or from being quicker. @param {RouteExplanation} explanation */
 function bound({ binds, used_wh, usable_wh, wind_s }) {
+  /** @type {Record<BindsEnum, string>} */
   const words = {
-    battery: () =>
-      t("the battery, {used} of {usable} are used", { used: energyText(used_wh), usable: energyText(usable_wh) }),
-    range: () => t("its range"),
-    most_targets: () => t("as many targets as it may have"),
-    zone: () => t("a zone"),
-    wind: () =>
-      wind_s > 0 ? t("the wind, {time} more than in calm air", { time: durationText(wind_s) }) : t("the wind"),
-    balance: () => t("another UAV’s route is the longest"),
+    battery: t("the battery, {used} of {usable} are used", {
+      used: energyText(used_wh ?? 0),
+      usable: energyText(usable_wh ?? 0),
+    }),
+    range: t("its range"),
+    most_targets: t("as many targets as it may have"),
+    zone: t("a zone"),
+    wind: wind_s > 0 ? t("the wind, {time} more than in calm air", { time: durationText(wind_s) }) : t("the wind"),
+    balance: t("another UAV’s route is the longest"),
   };
-  const said = (binds ?? []).filter((what) => words[what]).map((what) => words[what]());
+  const said = (binds ?? []).flatMap((what) => words[what] ?? []);
   return said.length ? h("p", {}, h("strong", {}, t("What binds it.")), " ", `${sentence(said.join("; "))}.`) : null;
 }
 
+/** @param {string} words */
 const sentence = (words) => words[0].toUpperCase() + words.slice(1);
 
-function heaviest({ heaviest: found }, { plan, route, actions, canPlan }) {
+/** @param {RouteExplanation} said @param {ShownRoute} route @param {Explaining} explaining */
+function heaviest({ heaviest: found }, route, { plan, actions, canPlan }) {
   const target = found && plan.targets[found.target];
-  if (!target || found.saves_m < LEAST_M || route.targets.length < 2) return null;
+  if (!found || !target || found.saves_m < LEAST_M || route.targets.length < 2) return null;
   const words = t("Without {target} {name} flies {length} less.", {
     target: target.label,
     name: route.name,
@@ -160,15 +191,16 @@ function heaviest({ heaviest: found }, { plan, route, actions, canPlan }) {
   );
 }
 
-/** The other objective, where it is planned: what it wins and what it costs. */
+/** The other objective, where it is planned: what it wins and what it costs. @param {Explaining} explaining */
 function otherWay({ plan, store, actions, canPlan }) {
+  /** @type {ObjectiveEnum} */
   const objective = otherObjective(plan.result.objective);
   const other = store.state.figures[basisOf({ ...store.state.selection, objective })];
   if (!other || !canPlan) return null;
   const time = longestDuration_s(other) - longestDuration_s(plan.result);
   const length = other.total_length_m - plan.result.total_length_m;
   if (Math.abs(time) < 30 && Math.abs(length) < 50) return null;
-  const name = OBJECTIVES.find(({ value }) => value === objective).words;
+  const name = OBJECTIVES.find(({ value }) => value === objective)?.words ?? "";
   const clauses = [
     Math.abs(time) >= 30 &&
       (time < 0 ? t("{time} sooner", { time: durationText(-time) }) : t("{time} later", { time: durationText(time) })),

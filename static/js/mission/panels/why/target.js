@@ -6,8 +6,15 @@ import { heightText, lengthText, numberText } from "../../../units.js";
 import { inWords, zoneOf } from "../../plan_words.js";
 import { showLegalTimes } from "../options/legal_times.js";
 
-/** said: see TargetExplanationSerializer; entry: of the plan's unassigned. */
-export function targetExplanation(said, { plan, entry, store, actions, canPlan }) {
+/** @import { Reach, TargetExplanation, Unassigned } from "../../../api_types.d.ts" */
+/** @import { Child } from "../../../dom.js" */
+/** @import { MissionActions, MissionStore, PickedTarget, ShownPlan } from "../../types.d.ts" */
+/** @import { Explaining } from "./route.js" */
+
+/** @typedef {TargetExplanation} Said */
+
+/** @param {Said} said @param {Unassigned} entry @param {Explaining} explaining @returns {Child[]} */
+export function targetExplanation(said, entry, { plan, store, actions, canPlan }) {
   const target = plan.targets[said.target];
   const full = fullUavs(said, plan);
   return [
@@ -18,11 +25,17 @@ export function targetExplanation(said, { plan, entry, store, actions, canPlan }
     ),
     facts(said),
     canPlan && changes(said, { target, full, store, actions }),
-  ].filter(Boolean);
+  ];
 }
 
-/** UAVs of the mission that could fly there but for having as many targets as they may. */
+/**
+ * UAVs of the mission that could fly there but for having as many targets as they may.
+ *
+ * @param {Pick<Said, "uavs">} said
+ * @param {Pick<ShownPlan, "result">} plan
+ */
 export function fullUavs(said, plan) {
+  /** @param {Reach} uav */
   const done = (uav) => new Set(plan.result.routes.find((route) => route.uav === uav.name)?.targets).size;
   return said.uavs.filter(
     (uav) =>
@@ -34,6 +47,7 @@ export function fullUavs(said, plan) {
   );
 }
 
+/** @param {Said} said @param {Reach[]} full */
 function sharedWords(said, full) {
   const able = (said.uavs ?? []).filter((uav) => uav.is_in_mission && uav.is_enough);
   if (!full.length)
@@ -50,19 +64,20 @@ function sharedWords(said, full) {
     : `${words} ${t("No other UAV has the range left after its other targets.")}`;
 }
 
-/** What the range lacks of the UAV that comes nearest; sentences of batteries have it in themselves. */
+/** What the range lacks of the UAV that comes nearest; sentences of batteries have it in themselves. @param {Pick<Said, "reason">} said @param {Pick<Unassigned, "missing_m" | "missing_s">} entry */
 export function lackWords({ reason }, { missing_m, missing_s }) {
   if (reason !== "beyond_range" || !missing_m) return "";
   return t("The one that comes nearest lacks {length}, {minutes} min of flight.", {
     length: lengthText(missing_m),
-    minutes: numberText(Math.ceil(missing_s / 6) / 10, 1),
+    minutes: numberText(Math.ceil((missing_s ?? 0) / 6) / 10, 1),
   });
 }
 
-/** full: see fullUavs. */
+/** @param {Said} said @param {Reach[]} [full] see fullUavs */
 export function reasonWords(said, full = []) {
   const zones = said.zones.map(({ name }) => zoneOf(name)).join(", ");
   const lengths = { reach: lengthText(said.access_limit_m), distance: lengthText(said.network_m) };
+  /** @type {Partial<Record<Said["reason"], () => string>>} */
   const words = {
     asset_gone: () => t("It has been deleted from the data since it was picked."),
     inside_zone: () =>
@@ -71,8 +86,8 @@ export function reasonWords(said, full = []) {
         : t("It stands inside {zones}.", { zones: zones || t("the margin round a no-fly zone") }),
     above_height_limit: () =>
       t("It is {height} high. A UAV would have to fly at {needed}; the limit is {limit}.", {
-        height: heightText(said.height_m),
-        needed: heightText(said.needed_height_m),
+        height: heightText(said.height_m ?? 0),
+        needed: heightText(said.needed_height_m ?? 0),
         limit: heightText(said.height_limit_m),
       }),
     too_far_from_network: () =>
@@ -91,9 +106,11 @@ export function reasonWords(said, full = []) {
   return words[said.reason]?.() ?? "";
 }
 
+/** @param {Said} said */
 function facts(said) {
   const needs = said.uavs.filter(({ is_in_mission }) => is_in_mission);
   if (!needs.length || ["beyond_energy", "wind"].includes(said.reason)) return null; // ranges say nothing of them
+  /** @param {Reach} reach */
   const row = ({ name, needed_m, max_range_m, most_targets, is_grounded }) => {
     const limit = most_targets ? tn(most_targets, "at most {count} target", "at most {count} targets") : "";
     const has = [max_range_m === null ? t("not limited") : lengthText(max_range_m), limit].filter(Boolean).join(", ");
@@ -116,9 +133,13 @@ function facts(said) {
   );
 }
 
+/**
+ * What would help.
+ *
+ * @param {Said} said
+ * @param {{ target: PickedTarget, full: Reach[], store: MissionStore, actions: MissionActions }} context
+ */
 function changes(said, { target, full, store, actions }) {
-  const act = (words, label, run) =>
-    h("li", {}, h("span", {}, words), " ", h("button", { type: "button", class: "text-button", onclick: run }, label));
   const list = [];
   if (said.stretches.length)
     list.push(
@@ -127,42 +148,58 @@ function changes(said, { target, full, store, actions }) {
       ),
     );
   for (const { name, most_targets } of full) {
+    const most = most_targets ?? 0;
     const raise = () => {
-      actions.changeUav(
-        store.state.selection.uavs.findIndex((uav) => uav.name === name),
-        { most_targets: most_targets + 1 },
-      );
+      const place = store.state.selection.uavs.findIndex((uav) => uav.name === name);
+      actions.changeUav(place, { most_targets: most + 1 });
       actions.plan();
     };
     list.push(
       act(
-        tn(most_targets, "{name} may do {count} target at most.", "{name} may do {count} targets at most.", { name }),
+        tn(most, "{name} may do {count} target at most.", "{name} may do {count} targets at most.", { name }),
         t("Let {name} do one more", { name }),
         raise,
       ),
     );
   }
-  const isOfRange = !["beyond_energy", "wind"].includes(said.reason);
-  const spare = isOfRange && said.uavs.find((uav) => !uav.is_in_mission && uav.is_enough);
-  if (spare)
+  if (!["beyond_energy", "wind"].includes(said.reason)) list.push(...changesOfRange(said.uavs, actions));
+  if (said.reason === "not_with_the_others") list.push(h("li", {}, t("Add a UAV, or plan it as a flight of its own.")));
+  if (["inside_zone", "no_path"].includes(said.reason) && said.zones.length)
+    list.push(
+      act(t("The zone may be over later."), t("Look for a better departure"), () => showLegalTimes(store, actions)),
+    );
+  const remove = () => {
+    store.update({ why: null });
+    actions.removeTargets([target.key]);
+  };
+  list.push(act(t("The plan goes without it."), t("Remove it"), remove));
+  return h("div", {}, h("h3", {}, t("What would help")), h("ul", { class: "why-changes" }, list));
+}
+
+/** What helps a target that is out of range. @param {Reach[]} uavs @param {MissionActions} actions */
+function changesOfRange(uavs, actions) {
+  const list = [];
+  const spare = uavs.find((uav) => !uav.is_in_mission && uav.is_enough);
+  if (spare) {
+    const takeAlong = () => {
+      actions.addUavOfFleet(spare.uav_id);
+      actions.plan();
+    };
     list.push(
       act(
         t("{name} could fly there: it needs {needed}.", { name: spare.name, needed: lengthText(spare.needed_m) }),
         t("Take {name} along", { name: spare.name }),
-        () => (actions.addUavOfFleet(spare.uav_id), actions.plan()),
+        takeAlong,
       ),
     );
-  const nearest = said.uavs
+  }
+  const [nearest] = uavs
     .filter(
-      (uav) =>
-        isOfRange &&
-        uav.is_in_mission &&
-        uav.is_allowed &&
-        uav.needed_m !== null &&
-        uav.max_range_m !== null &&
-        !uav.is_enough,
+      ({ is_in_mission, is_allowed, needed_m, max_range_m, is_enough }) =>
+        is_in_mission && is_allowed && needed_m !== null && max_range_m !== null && !is_enough,
     )
-    .sort((a, b) => a.needed_m - a.max_range_m - (b.needed_m - b.max_range_m))[0];
+    .map(({ name, needed_m, max_range_m }) => ({ name, missing_m: (needed_m ?? 0) - (max_range_m ?? 0) }))
+    .sort((a, b) => a.missing_m - b.missing_m);
   if (nearest)
     list.push(
       h(
@@ -170,21 +207,13 @@ function changes(said, { target, full, store, actions }) {
         {},
         t("{name} would need {missing} more range, or a start that is nearer: drag its square on the map.", {
           name: nearest.name,
-          missing: lengthText(nearest.needed_m - nearest.max_range_m),
+          missing: lengthText(nearest.missing_m),
         }),
       ),
     );
-  if (said.reason === "not_with_the_others") list.push(h("li", {}, t("Add a UAV, or plan it as a flight of its own.")));
-  if (["inside_zone", "no_path"].includes(said.reason) && said.zones.length)
-    list.push(
-      act(t("The zone may be over later."), t("Look for a better departure"), () => showLegalTimes(store, actions)),
-    );
-  list.push(
-    act(
-      t("The plan goes without it."),
-      t("Remove it"),
-      () => (store.update({ why: null }), actions.removeTargets([target.key])),
-    ),
-  );
-  return h("div", {}, h("h3", {}, t("What would help")), h("ul", { class: "why-changes" }, list));
+  return list;
 }
+
+/** @param {string} words @param {string} label @param {() => unknown} run */
+const act = (words, label, run) =>
+  h("li", {}, h("span", {}, words), " ", h("button", { type: "button", class: "text-button", onclick: run }, label));

@@ -2,7 +2,7 @@
  * route that is changed by hand. */
 
 import { post } from "../../../api.js";
-import { byId, h, icon } from "../../../dom.js";
+import { byId, h, icon, setChildren } from "../../../dom.js";
 import { routeLetter, routeNumber } from "../../../domain/palette.js";
 import { t } from "../../../text.js";
 import { isPlanCurrent, lastPlanOf } from "../../plan_view.js";
@@ -14,38 +14,189 @@ import { comparison } from "./compared.js";
 import { routeExplanation } from "./route.js";
 import { targetExplanation } from "./target.js";
 
-/** What the server is asked: the plan as it was made, whatever has been picked since. */
+/** @import { RouteExplanation, TargetExplanation } from "../../../api_types.d.ts" */
+/** @import { Child } from "../../../dom.js" */
+/** @import { MissionActions, MissionPageState, MissionStore, PlanResult, ShownPlan, Why } from "../../types.d.ts" */
+
+/** What the server is asked: the plan as it was made, whatever has been picked since. @param {ShownPlan} plan */
 function questionOf({ result, targets, uavs, charging_w }) {
   const { objective, return_to_start, departs_at, conditions } = result;
-  return requestOf({ targets, uavs, objective, return_to_start, departs_at, conditions, charging_w });
+  return requestOf({
+    targets,
+    uavs,
+    objective,
+    return_to_start,
+    departs_at,
+    conditions,
+    charging_w,
+    lost_link: null,
+    locks: [],
+  });
 }
 
-export function mountWhy(store, actions, { canPlan }) {
-  const panel = byId("why");
-  const answers = new WeakMap(); // result of a plan → Map of question → promise
-  const byHand = createByHand(store, actions);
-  let opener = null;
-  let openedFrom = ""; // the row of it: rows are drawn anew
-  let shown = null; // the question that was drawn last
+/** Asks each question about a plan once. */
+function createQuestions() {
+  /** @type {WeakMap<PlanResult, Map<string, Promise<unknown>>>} */
+  const answers = new WeakMap();
 
-  function ask(plan, path, more) {
-    if (!answers.has(plan.result)) answers.set(plan.result, new Map());
-    const known = answers.get(plan.result);
+  /** @param {ShownPlan} plan @param {string} path @param {Record<string, unknown>} more */
+  return (plan, path, more) => {
+    const known = answers.get(plan.result) ?? new Map();
+    answers.set(plan.result, known);
     const key = JSON.stringify([path, more]);
+    const asked = known.get(key) ?? post(path, { ...questionOf(plan), ...more }).then(({ data }) => data);
     if (!known.has(key)) {
-      const asked = post(path, { ...questionOf(plan), ...more }).then(({ data }) => data);
       asked.catch(() => known.delete(key));
       known.set(key, asked);
     }
-    return known.get(key);
+    return asked;
+  };
+}
+
+/** Gives the focus back to what opened the panel; its row may have been drawn anew. */
+function createOpener() {
+  /** @type {Element | null} */
+  let opener = null;
+  let row = "";
+  return {
+    remember() {
+      opener = document.activeElement;
+      row = /** @type {HTMLElement | null | undefined} */ (opener?.closest(".route"))?.dataset.sequence ?? "";
+    },
+    focus() {
+      /** @type {HTMLElement | null} */
+      const again = document.querySelector(`.route[data-sequence="${row}"] .why-button`);
+      if (opener instanceof HTMLElement && opener.isConnected) opener.focus();
+      else if (again) again.focus();
+      else if (!document.activeElement || document.activeElement === document.body) byId("compare-plans").focus();
+      opener = null;
+    },
+  };
+}
+
+/** @param {string} title @param {...Child} content */
+function put(title, ...content) {
+  byId("why-title").textContent = title;
+  setChildren(byId("why-body"), ...content);
+}
+
+/** The letter and colour of the route that it is about. @param {HTMLElement} panel @param {number | undefined} sequence */
+function markRoute(panel, sequence) {
+  panel.className = sequence === undefined ? "why" : `why route-${routeNumber(sequence)}`;
+  byId("why-letter").hidden = sequence === undefined;
+  byId("why-letter").textContent = sequence === undefined ? "" : routeLetter(sequence);
+}
+
+class WhyPanel {
+  #panel = byId("why");
+  #title = byId("why-title");
+  #opener = createOpener();
+  #ask = createQuestions();
+  /** @type {Why | null} */
+  #shown = null; // the question that was drawn last
+  #store;
+  #actions;
+  #canPlan;
+  #byHand;
+
+  /** @param {MissionStore} store @param {MissionActions} actions @param {boolean} canPlan */
+  constructor(store, actions, canPlan) {
+    this.#store = store;
+    this.#actions = actions;
+    this.#canPlan = canPlan;
+    this.#byHand = createByHand(store, actions);
   }
 
-  function put(title, ...content) {
-    byId("why-title").textContent = title;
-    byId("why-body").replaceChildren(...content);
+  close() {
+    this.#store.update({ why: null });
   }
 
-  async function answer(title, asked, show) {
+  /** @param {MissionPageState} state */
+  draw(state) {
+    const { why, plan } = state;
+    const panel = this.#panel;
+    const wasHidden = panel.hidden;
+    if (this.#store.state.litZones.length) this.#store.update({ litZones: [] });
+    panel.hidden = !why || !plan;
+    byId("dock").classList.toggle("with-why", !panel.hidden);
+    if (!why || !plan) {
+      this.#shown = null;
+      if (!wasHidden) this.#opener.focus();
+      return;
+    }
+    if (why !== this.#shown) this.#opener.remember();
+    byId("dock").classList.toggle("with-ways", Boolean(why.alternatives));
+    this.#explain(state, plan, why);
+    markRoute(panel, why.route ?? why.byHand);
+    if (why !== this.#shown || document.activeElement === document.body) this.#title.focus(); // on a phone it comes into sight so
+    this.#shown = why;
+  }
+
+  /** Shows what is asked. @param {MissionPageState} state @param {ShownPlan} plan @param {Why} why */
+  #explain(state, plan, why) {
+    const mayChange = this.#canPlan && isPlanCurrent(state);
+    if (why.byHand !== undefined) {
+      const { uav: name } = plan.result.routes[why.byHand];
+      if (why !== this.#shown) put(t("Change the route of {name} by hand", { name }), this.#byHand.element);
+    } else if (why.alternatives) this.#putAlternatives(state, mayChange);
+    else if (why.compare) {
+      const last = lastPlanOf(state);
+      if (last) put(t("Against the last plan"), ...comparison(plan, last));
+      else this.close();
+    } else if (why.target) this.#explainTarget(plan, why.target, mayChange);
+    else this.#explainRoute(plan, why.route, mayChange);
+  }
+
+  /** The ways to plan it, with the focus where it was. @param {MissionPageState} state @param {boolean} mayChange */
+  #putAlternatives(state, mayChange) {
+    const { activeElement } = document;
+    const isInside = this.#panel.contains(activeElement) && activeElement !== this.#title;
+    const focused = isInside ? activeElement?.textContent : null;
+    put(t("Ways to plan it"), ...alternatives(state, this.#actions, mayChange));
+    if (!focused) return;
+    const buttons = [...this.#panel.querySelectorAll("button")];
+    (buttons.find(({ textContent }) => textContent === focused) ?? this.#title).focus();
+  }
+
+  /** @param {ShownPlan} plan @param {string} key of the target @param {boolean} canPlan */
+  #explainTarget(plan, key, canPlan) {
+    const [store, actions] = [this.#store, this.#actions];
+    const index = plan.targets.findIndex((target) => target.key === key);
+    const entry = plan.result.unassigned.find(({ target }) => target === index);
+    if (!entry) return this.close();
+    return this.#answer(
+      t("Why {target} is not reached", { target: plan.targets[index].label }),
+      /** @type {Promise<TargetExplanation>} */ (this.#ask(plan, "/plans/why-target", { target: index })),
+      (said) => targetExplanation(said, entry, { plan, store, actions, canPlan }),
+    );
+  }
+
+  /** @param {ShownPlan} plan @param {number | undefined} sequence of the route @param {boolean} canPlan */
+  #explainRoute(plan, sequence, canPlan) {
+    const [store, actions] = [this.#store, this.#actions];
+    const route = sequence === undefined ? undefined : plan.result.routes[sequence];
+    if (!route?.geometry) return this.close();
+    const asked = this.#ask(plan, "/plans/why-route", {
+      uav: sequence,
+      routes: plan.result.routes.map(({ targets }) => targets),
+      shortest_ways: takesShortestWays(plan.result),
+    });
+    return this.#answer(
+      t("Why {name} flies this way", { name: route.uav }),
+      /** @type {Promise<RouteExplanation>} */ (asked),
+      (said) => routeExplanation(said, { plan, store, actions, canPlan }),
+    );
+  }
+
+  /**
+   * @template {{ zones?: { id: number | null }[] }} Said
+   * @param {string} title
+   * @param {Promise<Said>} asked
+   * @param {(said: Said) => Child[]} show
+   */
+  async #answer(title, asked, show) {
+    const store = this.#store;
+    const { why } = store.state;
     put(
       title,
       h(
@@ -54,106 +205,34 @@ export function mountWhy(store, actions, { canPlan }) {
         [1, 2, 3].map(() => h("div", { class: "skeleton" })),
       ),
     );
-    const { why } = store.state;
     try {
       const said = await asked;
       if (store.state.why !== why) return;
       put(title, ...show(said));
-      store.update({ litZones: (said.zones ?? []).map(({ id }) => id) });
+      store.update({ litZones: (said.zones ?? []).flatMap(({ id }) => id ?? []) });
     } catch (error) {
-      if (store.state.why === why)
-        put(
-          title,
-          h("p", { role: "alert" }, error.message),
-          h("button", { type: "button", class: "button", onclick: () => draw(store.state) }, t("Ask again")),
-        );
+      if (store.state.why !== why) return;
+      put(
+        title,
+        h("p", { role: "alert" }, error instanceof Error ? error.message : ""),
+        h("button", { type: "button", class: "button", onclick: () => this.draw(store.state) }, t("Ask again")),
+      );
     }
   }
+}
 
-  function draw(state) {
-    const { why, plan } = state;
-    const wasHidden = panel.hidden;
-    if (store.state.litZones.length) store.update({ litZones: [] });
-    panel.hidden = !why || !plan;
-    byId("dock").classList.toggle("with-why", !panel.hidden);
-    if (panel.hidden) {
-      shown = null;
-      if (!wasHidden) giveBack();
-      return;
-    }
-    if (why !== shown) {
-      opener = document.activeElement;
-      openedFrom = opener?.closest(".route")?.dataset.sequence ?? "";
-    }
-    byId("dock").classList.toggle("with-ways", Boolean(why.alternatives));
-    if (why.byHand !== undefined) {
-      if (why !== shown)
-        put(t("Change the route of {name} by hand", { name: plan.result.routes[why.byHand].uav }), byHand.element);
-    } else if (why.alternatives) {
-      const focused =
-        panel.contains(document.activeElement) && document.activeElement !== byId("why-title")
-          ? document.activeElement.textContent
-          : null;
-      put(t("Ways to plan it"), ...alternatives(state, actions, canPlan && isPlanCurrent(state)));
-      if (focused)
-        (
-          [...panel.querySelectorAll("button")].find(({ textContent }) => textContent === focused) ?? byId("why-title")
-        ).focus();
-    } else if (why.compare) {
-      const last = lastPlanOf(state);
-      if (last) put(t("Against the last plan"), ...comparison(plan, last));
-      else store.update({ why: null });
-    } else if (why.target) {
-      const index = plan.targets.findIndex(({ key }) => key === why.target);
-      const entry = plan.result.unassigned.find(({ target }) => target === index);
-      if (!entry) store.update({ why: null });
-      else
-        answer(
-          t("Why {target} is not reached", { target: plan.targets[index].label }),
-          ask(plan, "/plans/why-target", { target: index }),
-          (said) => targetExplanation(said, { plan, entry, store, actions, canPlan: canPlan && isPlanCurrent(state) }),
-        );
-    } else {
-      const route = plan.result.routes[why.route];
-      if (!route?.geometry) store.update({ why: null });
-      else
-        answer(
-          t("Why {name} flies this way", { name: route.uav }),
-          ask(plan, "/plans/why-route", {
-            uav: why.route,
-            routes: plan.result.routes.map(({ targets }) => targets),
-            shortest_ways: takesShortestWays(plan.result),
-          }),
-          (said) => routeExplanation(said, { plan, store, actions, canPlan: canPlan && isPlanCurrent(state) }),
-        );
-    }
-    const sequence = why.route ?? why.byHand;
-    panel.className = sequence === undefined ? "why" : `why route-${routeNumber(sequence)}`;
-    byId("why-letter").hidden = sequence === undefined;
-    byId("why-letter").textContent = sequence === undefined ? "" : routeLetter(sequence);
-    if (why !== shown || document.activeElement === document.body) byId("why-title").focus(); // on a phone it comes into sight so
-    shown = why;
-  }
-
-  /** Focus goes back to what opened it; a row may have been drawn anew. */
-  function giveBack() {
-    const row = document.querySelector(`.route[data-sequence="${openedFrom}"] .why-button`);
-    if (opener?.isConnected) opener.focus();
-    else if (row) row.focus();
-    else if (!document.activeElement || document.activeElement === document.body) byId("compare-plans").focus();
-    opener = null;
-  }
-
+/** @param {MissionStore} store @param {MissionActions} actions @param {{ canPlan: boolean }} how */
+export function mountWhy(store, actions, { canPlan }) {
+  const panel = new WhyPanel(store, actions, canPlan);
   byId("close-why").append(icon("x"));
-  byId("close-why").addEventListener("click", () => store.update({ why: null }));
-  panel.addEventListener("keydown", (event) => {
+  byId("close-why").addEventListener("click", () => panel.close());
+  byId("why").addEventListener("keydown", (event) => {
     if (event.key !== "Escape") return;
     event.stopPropagation();
-    store.update({ why: null });
+    panel.close();
   });
-  store.listen(["why", "plan", "lastPlan"], draw);
-  store.listen(
-    ["figures", "planningBeside", "refusedBeside", "selection"],
-    (state) => state.why?.alternatives && draw(state),
-  );
+  store.listen(["why", "plan", "lastPlan"], (state) => panel.draw(state));
+  store.listen(["figures", "planningBeside", "refusedBeside", "selection"], (state) => {
+    if (state.why?.alternatives) panel.draw(state);
+  });
 }
