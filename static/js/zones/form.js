@@ -5,11 +5,22 @@ import { limitField } from "../domain/zone_heights.js";
 import { t } from "../text.js";
 import { scheduleEditor } from "./schedule_editor.js";
 
+/** @import { ZoneDetailFeature, ZoneDetailProperties } from "../api_types.d.ts" */
+/** @import { Facts, RecordForm } from "../ground/types.d.ts" */
+
 const RESTRICTIONS = ["PROHIBITED", "REQ_AUTHORISATION", "CONDITIONAL", "NO_RESTRICTION"];
+/** @param {string} id @param {string} words @param {HTMLElement} input */
 const field = (id, words, input) => h("div", { class: "field" }, h("label", { for: id }, words), input);
 
-export function zoneForm(feature, choice, kept) {
-  const facts = { ...(feature?.properties ?? {}), ...kept };
+/**
+ * @param {ZoneDetailFeature | null} feature null for a new one
+ * @param {string} _choice
+ * @param {Facts | null} kept of an edit that goes on
+ * @returns {RecordForm}
+ */
+export function zoneForm(feature, _choice, kept) {
+  /** @type {Partial<ZoneDetailProperties>} */
+  const facts = { ...feature?.properties, ...kept };
   const name = h("input", {
     class: "input",
     id: "zone-name",
@@ -36,9 +47,9 @@ export function zoneForm(feature, choice, kept) {
     value: facts.reason ?? "",
     autocomplete: "off",
   });
-  const lower = limitField("lower", t("Lower limit"), facts.lower_limit);
-  const upper = limitField("upper", t("Upper limit"), facts.upper_limit);
-  const times = scheduleEditor(facts.schedule);
+  const lower = limitField("lower", t("Lower limit"), facts.lower_limit ?? null);
+  const upper = limitField("upper", t("Upper limit"), facts.upper_limit ?? null);
+  const times = scheduleEditor(facts.schedule ?? null);
   return {
     element: h(
       "form",

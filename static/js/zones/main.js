@@ -1,8 +1,9 @@
 /** The page "No-fly zones": find, look, draw, correct; sets and their sources. */
 
-import { byId, h, icon } from "../dom.js";
+import { byId, find, h, icon, setChildren } from "../dom.js";
 import { scheduleText } from "../domain/schedule_words.js";
 import { bandDrawing, heightsText } from "../domain/zone_heights.js";
+import { coordinatesOf } from "../ground/record_list.js";
 import { mountRecordPage } from "../ground/record_page.js";
 import { plainWords } from "../map/tips.js";
 import { t } from "../text.js";
@@ -11,12 +12,19 @@ import { zoneForm } from "./form.js";
 import { weekDrawing } from "./schedule_editor.js";
 import { mountSetsPanel, validityText } from "./sets_panel.js";
 
-const PAGE = 60;
+/** @import { Limit, ZoneDetailFeature, ZoneFeature, ZoneSet } from "../api_types.d.ts" */
+/** @import { Child } from "../dom.js" */
+/** @import { Facts, RecordFeature, RecordKind } from "../ground/types.d.ts" */
+
+const PAGE = "60";
 const TYPING_MS = 250;
+/** @type {{ text: string, set: ZoneSet | null, inView: boolean }} */
 const filter = { text: "", set: null, inView: false };
+/** @param {string} name @param {Child} value */
 const term = (name, value) =>
   value === null || value === undefined || value === "" ? [] : [h("dt", {}, name), h("dd", {}, value)];
 
+/** @param {ZoneDetailFeature} feature @returns {Facts} */
 function factsOf({ properties, geometry }) {
   const { name, restriction, reason, schedule, circle, lower_limit: lower, upper_limit: upper } = properties;
   return {
@@ -31,20 +39,22 @@ function factsOf({ properties, geometry }) {
   };
 }
 
+/** @param {"lower" | "upper"} side @param {Limit | null} limit @returns {Facts} */
 const limitFacts = (side, limit) => ({
   [`${side}_limit_m`]: limit?.value_m ?? null,
   [`${side}_reference`]: limit?.reference ?? "",
 });
 
-/** What is sent, under the names that facts have. */
+/** What is sent, under the names that facts have. @param {Facts} body @returns {Facts} */
 function factsOfBody({ lower_limit: lower, upper_limit: upper, ...rest }) {
   return {
     ...rest,
-    ...(lower === undefined ? {} : limitFacts("lower", lower)),
-    ...(upper === undefined ? {} : limitFacts("upper", upper)),
+    ...(lower === undefined ? {} : limitFacts("lower", /** @type {Limit | null} */ (lower))),
+    ...(upper === undefined ? {} : limitFacts("upper", /** @type {Limit | null} */ (upper))),
   };
 }
 
+/** @param {ZoneDetailFeature} feature */
 function details({ properties }) {
   const { source } = properties;
   const isTimed = Boolean(properties.schedule?.length);
@@ -97,10 +107,11 @@ function details({ properties }) {
       term(t("Changed"), whenText(properties.updated_at)),
     ),
     h("p", { class: "caption" }, t("Facts as the source states them; whether you may fly is for you to judge.")),
-  ].filter(Boolean);
+  ].filter((part) => part instanceof Node);
 }
 
-const records = mountRecordPage({
+/** @type {RecordKind<ZoneDetailFeature & RecordFeature, ZoneFeature>} */
+const ZONES = {
   path: "/zones",
   key: "zone",
   findWords: t("Find a zone"),
@@ -112,7 +123,7 @@ const records = mountRecordPage({
   ],
   newTitle: () => t("New no-fly zone"),
   choiceOf: (feature) => (feature.properties.circle ? "circle" : "area"),
-  shapeKind: (choice) => choice,
+  shapeKind: (choice) => (choice === "circle" ? "circle" : "area"),
   checkKind: () => "zone",
   fixedFacts: () => ({}),
   factsOf,
@@ -127,18 +138,11 @@ const records = mountRecordPage({
     detail: heightsText(properties),
     chip: properties.schedule ? t("at times") : "",
   }),
-  listQuery(map) {
+  listQuery(box) {
     const query = new URLSearchParams({ limit: PAGE });
     if (filter.text) query.set("text", filter.text);
-    if (filter.set) query.set("zone_set", filter.set.id);
-    if (filter.inView)
-      query.set(
-        "bbox",
-        map
-          .box()
-          .map((degrees) => degrees.toFixed(6))
-          .join(","),
-      );
+    if (filter.set) query.set("zone_set", String(filter.set.id));
+    if (filter.inView) query.set("bbox", coordinatesOf(box()));
     return `/zones?${query}`;
   },
   nothing: () =>
@@ -152,40 +156,36 @@ const records = mountRecordPage({
           h("span", {}, t("Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file.")),
           h("a", { class: "button", href: "/imports" }, t("Import a file")),
         ],
-});
+};
+const records = mountRecordPage(ZONES);
 
-let timer = 0;
-byId("record-text").addEventListener("input", (event) => {
-  filter.text = event.target.value.trim();
+/** @type {ReturnType<typeof setTimeout> | undefined} */
+let timer;
+const text = byId("record-text", HTMLInputElement);
+text.addEventListener("input", () => {
+  filter.text = text.value.trim();
   clearTimeout(timer);
   timer = setTimeout(() => records.load(), TYPING_MS);
 });
-byId("record-in-view").addEventListener("change", (event) => {
-  filter.inView = event.target.checked;
+const inView = byId("record-in-view", HTMLInputElement);
+inView.addEventListener("change", () => {
+  filter.inView = inView.checked;
   records.load();
 });
 
+/** Shows which set the list is narrowed to. */
 function showSet() {
-  byId("zone-set-filter").replaceChildren(
-    ...(filter.set
-      ? [
-          h(
-            "span",
-            { class: "chip" },
-            filter.set.name,
-            h(
-              "button",
-              {
-                type: "button",
-                class: "icon-button tight",
-                "aria-label": t("No longer only {name}", { name: filter.set.name }),
-                onclick: () => ((filter.set = null), showSet(), records.load()),
-              },
-              icon("x", "small"),
-            ),
-          ),
-        ]
-      : []),
+  const name = filter.set?.name;
+  const clear = () => {
+    filter.set = null;
+    showSet();
+    records.load();
+  };
+  const label = t("No longer only {name}", { name });
+  const button = { type: "button", class: "icon-button tight", "aria-label": label, onclick: clear };
+  setChildren(
+    byId("zone-set-filter"),
+    filter.set && h("span", { class: "chip" }, name, h("button", button, icon("x", "small"))),
   );
 }
 
@@ -199,17 +199,19 @@ const sets = mountSetsPanel({
   },
 });
 
+/** @type {[string, string][]} */
 const TABS = [
   ["zones", t("Zones")],
   ["sets", t("Sets and sources")],
 ];
+/** @param {string} tab */
 function turnTo(tab) {
   byId("zone-sets").hidden = tab !== "sets";
   if (tab === "sets") {
     for (const id of ["record-find", "record-show"]) byId(id).hidden = true;
     sets.load();
   } else records.go("find");
-  document.querySelector(`input[name=zone-tab][value=${tab}]`).checked = true;
+  find(document, `input[name=zone-tab][value=${tab}]`, HTMLInputElement).checked = true;
 }
 byId("zone-tabs").append(
   ...TABS.map(([value, words]) =>

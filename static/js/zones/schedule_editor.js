@@ -1,6 +1,6 @@
 /** Edits when a zone applies: periods with dates, days and times, and a week that shows them. */
 
-import { h, icon, svg } from "../dom.js";
+import { h, icon, setChildren, svg } from "../dom.js";
 import {
   DAYS,
   EVENTS,
@@ -15,6 +15,8 @@ import {
 import { t } from "../text.js";
 import { minutesAheadOfUtc, zoneText } from "../units.js";
 
+/** @import { ScheduleEntry, SchedulePeriod } from "../api_types.d.ts" */
+
 const offsetWords = () => {
   const minutes = minutesAheadOfUtc(Date.now());
   if (!minutes) return t("Your clock shows UTC now.");
@@ -25,9 +27,15 @@ const offsetWords = () => {
   });
 };
 
-/** The week as seven rows of 24 hours; ahead_h: by how much the clock that is drawn is ahead of UTC. */
+/**
+ * The week as seven rows of 24 hours.
+ *
+ * @param {SchedulePeriod} period
+ * @param {number} [ahead_h] by how much the clock that is drawn is ahead of UTC
+ */
 export function weekDrawing(period, ahead_h = 0) {
   const [left, row, width] = [30, 11, 290];
+  /** @param {number} hours */
   const x = (hours) => left + (hours / 24) * width;
   const stretches = weekOf(period, ahead_h);
   return svg(
@@ -66,171 +74,177 @@ export function weekDrawing(period, ahead_h = 0) {
   );
 }
 
-/** { element, read() }; read gives the periods, or null for "always". */
+/**
+ * A form for the periods; read() returns null for "always".
+ *
+ * @param {SchedulePeriod[] | null} schedule
+ */
 export function scheduleEditor(schedule) {
-  let periods = structuredClone(schedule ?? []);
-  const body = h("div", { class: "record-form" });
-  const element = h("fieldset", {}, h("legend", {}, t("When it applies")), body);
-  const tell = () => element.dispatchEvent(new Event("input", { bubbles: true }));
-  /** Everything is drawn anew; focus stays at the control that has the same place. */
-  const change = (act) => () => {
-    const controls = () => [...body.querySelectorAll("input, select, button")];
-    const place = controls().indexOf(document.activeElement);
-    act();
-    draw();
-    if (place >= 0) controls()[Math.min(place, controls().length - 1)].focus();
-    tell();
-  };
+  const editor = new ScheduleEditor(schedule ?? []);
+  return { element: editor.element, read: () => editor.read() };
+}
 
-  const moment = (period, side, words, number) =>
-    h(
-      "div",
-      { class: "field" },
-      h("label", { for: `${side}-${number}` }, words),
-      h("input", {
-        class: "input",
-        id: `${side}-${number}`,
-        type: "datetime-local",
-        value: toField(period[side]),
-        onchange: (event) => ((period[side] = fromField(event.target.value)), tell()),
-      }),
+class ScheduleEditor {
+  #periods;
+  #body = h("div", { class: "record-form" });
+
+  /** @param {SchedulePeriod[]} schedule */
+  constructor(schedule) {
+    this.#periods = structuredClone(schedule);
+    this.element = h("fieldset", {}, h("legend", {}, t("When it applies")), this.#body);
+    this.#draw();
+  }
+
+  read() {
+    return this.#periods.length ? structuredClone(this.#periods) : null;
+  }
+
+  #tell() {
+    this.element.dispatchEvent(new Event("input", { bubbles: true }));
+  }
+
+  /** A listener after which everything is drawn anew; focus stays at the control that has the same place. @param {() => unknown} act */
+  #change(act) {
+    return () => {
+      /** @returns {HTMLElement[]} */
+      const controls = () =>
+        [...this.#body.querySelectorAll("input, select, button")].map((one) => /** @type {HTMLElement} */ (one));
+      const place = controls().findIndex((control) => control.matches(":focus"));
+      act();
+      this.#draw();
+      if (place >= 0) controls()[Math.min(place, controls().length - 1)].focus();
+      this.#tell();
+    };
+  }
+
+  #draw() {
+    const turnAlways = () => {
+      this.#periods = this.#periods.length ? [] : [newPeriod()];
+    };
+    const always = h("input", { class: "switch", type: "checkbox", role: "switch", checked: !this.#periods.length });
+    always.addEventListener("change", this.#change(turnAlways));
+    setChildren(
+      this.#body,
+      h("label", { class: "switch-line" }, always, t("Always")),
+      this.#periods.map((period, number) => this.#period(period, number)),
+      this.#periods.length > 0 && [
+        this.#textButton(t("Add a period"), () => this.#periods.push(newPeriod())),
+        h("p", { class: "caption" }, clockWords(), " ", offsetWords()),
+      ],
     );
+  }
 
-  function side(entry, which, words) {
+  /** @param {string} words @param {() => unknown} act */
+  #textButton(words, act) {
+    return h("button", { type: "button", class: "text-button", onclick: this.#change(act) }, words);
+  }
+
+  /** @param {SchedulePeriod} period @param {number} number from 0 */
+  #period(period, number) {
+    const title = this.#periods.length > 1 ? t("Period {number}", { number: number + 1 }) : t("Period");
+    const remove = this.#change(() => this.#periods.splice(number, 1));
+    const label = t("Remove the period");
+    return h(
+      "div",
+      { class: "period" },
+      h(
+        "div",
+        { class: "period-head" },
+        h("strong", {}, title),
+        h(
+          "button",
+          { type: "button", class: "icon-button tight", "aria-label": label, onclick: remove },
+          icon("x", "small"),
+        ),
+      ),
+      h(
+        "div",
+        { class: "time-row" },
+        this.#moment(period, "startDateTime", t("From"), number),
+        this.#moment(period, "endDateTime", t("Until"), number),
+      ),
+      weekDrawing(period),
+      period.schedule.map((entry, index) => this.#entry(period, entry, index)),
+      this.#textButton(period.schedule.length ? t("Add hours") : t("Only at certain hours"), () =>
+        period.schedule.push(newEntry()),
+      ),
+    );
+  }
+
+  /** @param {SchedulePeriod} period @param {ScheduleEntry} entry @param {number} index */
+  #entry(period, entry, index) {
+    return h(
+      "div",
+      { class: "entry" },
+      this.#days(entry),
+      this.#side(entry, "start", t("Begins")),
+      this.#side(entry, "end", t("Ends")),
+      this.#textButton(t("Remove these hours"), () => period.schedule.splice(index, 1)),
+    );
+  }
+
+  /** @param {SchedulePeriod} period @param {"startDateTime" | "endDateTime"} side @param {string} words @param {number} number */
+  #moment(period, side, words, number) {
+    const id = `${side}-${number}`;
+    const input = h("input", { class: "input", id, type: "datetime-local", value: toField(period[side]) });
+    input.addEventListener("change", () => {
+      period[side] = fromField(input.value);
+      this.#tell();
+    });
+    return h("div", { class: "field" }, h("label", { for: id }, words), input);
+  }
+
+  /** A time or an event of the sun. @param {ScheduleEntry} entry @param {"start" | "end"} which @param {string} words */
+  #side(entry, which, words) {
+    /** @type {[string, string][]} */
+    const choices = [["", t("at a time")], ...EVENTS];
+    const chosen = entry[`${which}Event`] ?? "";
     const event = h(
       "select",
       { class: "input", "aria-label": words },
-      [["", t("at a time")], ...EVENTS].map(([key, text]) =>
-        h("option", { value: key, selected: key === (entry[`${which}Event`] ?? "") }, text),
-      ),
+      choices.map(([key, text]) => h("option", { value: key, selected: key === chosen }, text)),
     );
-    const time = h("input", {
-      class: "input",
-      type: "time",
-      "aria-label": t("{side}, UTC", { side: words }),
-      value: timeToField(entry[`${which}Time`]),
-      disabled: Boolean(entry[`${which}Event`]),
-    });
-    event.addEventListener(
-      "change",
-      change(() => {
-        entry[`${which}Event`] = event.value || null;
-        entry[`${which}Time`] = event.value ? null : which === "start" ? "08:00:00Z" : "18:00:00Z";
-      }),
-    );
-    time.addEventListener(
-      "change",
-      change(() => (entry[`${which}Time`] = timeFromField(time.value))),
-    );
+    const label = t("{side}, UTC", { side: words });
+    const value = timeToField(entry[`${which}Time`]);
+    const time = h("input", { class: "input", type: "time", "aria-label": label, value, disabled: chosen !== "" });
+    const takeEvent = () => {
+      entry[`${which}Event`] = /** @type {ScheduleEntry["startEvent"]} */ (event.value || null);
+      entry[`${which}Time`] = event.value ? null : which === "start" ? "08:00:00Z" : "18:00:00Z";
+    };
+    const takeTime = () => {
+      entry[`${which}Time`] = timeFromField(time.value);
+    };
+    event.addEventListener("change", this.#change(takeEvent));
+    time.addEventListener("change", this.#change(takeTime));
     return h(
       "div",
       { class: "field" },
-      h("span", { class: "field-label" }, t("{side}, UTC", { side: words })),
+      h("span", { class: "field-label" }, label),
       h("div", { class: "time-row" }, time, event),
     );
   }
 
-  function days(entry) {
-    const has = (day) => entry.day.includes("ANY") || entry.day.includes(day);
-    return h(
-      "div",
-      { class: "days", role: "group", "aria-label": t("Days") },
-      DAYS.map(([key, words]) =>
-        h(
-          "label",
-          {},
-          h("input", {
-            type: "checkbox",
-            checked: has(key),
-            onchange: change(() => {
-              const chosen = DAYS.map(([day]) => day).filter((day) => (day === key ? !has(day) : has(day)));
-              if (chosen.length) entry.day = chosen.length === 7 ? ["ANY"] : chosen; // the last day stays
-            }),
-          }),
-          h("span", {}, words),
-        ),
-      ),
-    );
+  /** @param {ScheduleEntry} entry */
+  #days(entry) {
+    const all = /** @type {ScheduleEntry["day"]} */ (DAYS.map(([day]) => day));
+    const has = (/** @type {ScheduleEntry["day"][number]} */ day) =>
+      entry.day.includes("ANY") || entry.day.includes(day);
+    const boxes = all.map((key, index) => {
+      const turn = () => {
+        const chosen = all.filter((day) => (day === key ? !has(day) : has(day)));
+        if (chosen.length) entry.day = chosen.length === 7 ? ["ANY"] : chosen; // the last day stays
+      };
+      const box = h("input", { type: "checkbox", checked: has(key), onchange: this.#change(turn) });
+      return h("label", {}, box, h("span", {}, DAYS[index][1]));
+    });
+    return h("div", { class: "days", role: "group", "aria-label": t("Days") }, boxes);
   }
+}
 
-  function draw() {
-    const always = h(
-      "label",
-      { class: "switch-line" },
-      h("input", {
-        class: "switch",
-        type: "checkbox",
-        role: "switch",
-        checked: !periods.length,
-        onchange: change(() => (periods = periods.length ? [] : [newPeriod()])),
-      }),
-      t("Always"),
-    );
-    body.replaceChildren(
-      always,
-      ...periods.map((period, number) =>
-        h(
-          "div",
-          { class: "period" },
-          h(
-            "div",
-            { class: "period-head" },
-            h("strong", {}, periods.length > 1 ? t("Period {number}", { number: number + 1 }) : t("Period")),
-            h(
-              "button",
-              {
-                type: "button",
-                class: "icon-button tight",
-                "aria-label": t("Remove the period"),
-                onclick: change(() => periods.splice(number, 1)),
-              },
-              icon("x", "small"),
-            ),
-          ),
-          h(
-            "div",
-            { class: "time-row" },
-            moment(period, "startDateTime", t("From"), number),
-            moment(period, "endDateTime", t("Until"), number),
-          ),
-          weekDrawing(period),
-          ...period.schedule.map((entry, index) =>
-            h(
-              "div",
-              { class: "entry" },
-              days(entry),
-              side(entry, "start", t("Begins")),
-              side(entry, "end", t("Ends")),
-              h(
-                "button",
-                { type: "button", class: "text-button", onclick: change(() => period.schedule.splice(index, 1)) },
-                t("Remove these hours"),
-              ),
-            ),
-          ),
-          h(
-            "button",
-            { type: "button", class: "text-button", onclick: change(() => period.schedule.push(newEntry())) },
-            period.schedule.length ? t("Add hours") : t("Only at certain hours"),
-          ),
-        ),
-      ),
-      ...(periods.length
-        ? [
-            h(
-              "button",
-              { type: "button", class: "text-button", onclick: change(() => periods.push(newPeriod())) },
-              t("Add a period"),
-            ),
-            h(
-              "p",
-              { class: "caption" },
-              `${t("From and until are by the clock of {zone}. Hours of the week are UTC, as sources state them: they do not move with summer time.", { zone: zoneText(new Date().toISOString()) })} ${offsetWords()}`,
-            ),
-          ]
-        : []),
-    );
-  }
-  draw();
-  return { element, read: () => (periods.length ? structuredClone(periods) : null) };
+function clockWords() {
+  const zone = zoneText(new Date().toISOString());
+  return t(
+    "From and until are by the clock of {zone}. Hours of the week are UTC, as sources state them: they do not move with summer time.",
+    { zone },
+  );
 }

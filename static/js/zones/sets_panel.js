@@ -1,85 +1,110 @@
 /** Sets and sources: where zones come from, how old they are, earlier states, and what is fetched by itself. */
 
-import { ApiError, follow, get, patch, post, remove } from "../api.js";
-import { byId, h, icon } from "../dom.js";
+import { ApiError, follow, get, post } from "../api.js";
+import { byId, h, icon, setChildren } from "../dom.js";
 import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { countText, whenText } from "../units.js";
+import { askSubscription, openDialog } from "./subscription_dialog.js";
 
-const FORMATS = [
-  ["", t("found out from the file")],
-  ["ed269", "ED-269"],
-  ["ed318", "ED-318"],
-  ["openair", "OpenAir"],
-  ["geojson", "GeoJSON"],
-];
+/** @import { Answer } from "../api.js" */
+/** @import { FetchJob, Proposal, ZoneSet, ZoneSetPage, ZoneSetVersion, ZoneSetVersionPage, ZoneSubscription } from "../api_types.d.ts" */
+/** @import { Child } from "../dom.js" */
+
+/** @param {string} name @param {Child} value */
 const term = (name, value) => (value ? [h("dt", {}, name), h("dd", {}, value)] : []);
-/** "from 1 Jan until 31 Dec": what a file states of itself. */
+
+/** "from 1 Jan until 31 Dec": what a file states of itself. @param {{ valid_from: string | null, valid_until: string | null }} source */
 export const validityText = ({ valid_from: from, valid_until: until }) =>
   [from && t("from {when}", { when: whenText(from) }), until && t("until {when}", { when: whenText(until) })]
     .filter(Boolean)
     .join(" ");
 
-export function mountSetsPanel({ canCurate, showZones }) {
-  const place = byId("zone-sets");
-  let sets = [];
+/** @typedef {{ canCurate: boolean, showZones: (set: ZoneSet) => void }} SetsOptions */
 
-  async function load() {
-    try {
-      sets = [];
-      for (let next = "/zone-sets?limit=200"; next; ) {
-        const { data } = await get(next);
-        sets.push(...data.results);
-        next = data.next;
-      }
-      draw();
-    } catch (error) {
-      toast(error.message, { label: t("Try again"), act: load });
-    }
+/** @param {SetsOptions} options */
+export const mountSetsPanel = (options) => new SetsPanel(options);
+
+class SetsPanel {
+  #canCurate;
+  #showZones;
+  #place = byId("zone-sets");
+  /** @type {ZoneSet[]} */
+  #sets = [];
+
+  /** @param {SetsOptions} options */
+  constructor({ canCurate, showZones }) {
+    this.#canCurate = canCurate;
+    this.#showZones = showZones;
   }
 
-  async function attempt(act, words) {
+  load = async () => {
+    try {
+      this.#sets = [];
+      /** @type {string | null} */
+      let next = "/zone-sets?limit=200";
+      while (next) {
+        const { data } = /** @type {Answer<ZoneSetPage>} */ (await get(next));
+        this.#sets.push(...data.results);
+        next = data.next;
+      }
+      this.#draw();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      toast(error.message, { label: t("Try again"), act: this.load });
+    }
+  };
+
+  /** Does something, then reads the sets again. @param {() => Promise<unknown>} act @param {string} [words] */
+  #attempt = async (act, words) => {
     try {
       await act();
       if (words) toast(words);
-      await load();
+      await this.load();
     } catch (error) {
-      toast(error.message);
       if (!(error instanceof ApiError)) throw error;
+      toast(error.message);
     }
+  };
+
+  /** @param {ZoneSet | null} set */
+  #askSubscription(set) {
+    askSubscription(set, { attempt: this.#attempt, reload: this.load });
   }
 
-  function draw() {
-    place.replaceChildren(
-      canCurate &&
-        h(
-          "section",
-          { class: "panel-section" },
-          h(
-            "button",
-            { type: "button", class: "button", onclick: () => askSubscription() },
-            icon("plus", "small"),
-            t("Fetch a source by itself"),
-          ),
-        ),
-      sets.length
-        ? h("div", {}, sets.map(oneSet))
-        : h(
+  #draw() {
+    const subscribe = () => this.#askSubscription(null);
+    const button = h("button", { type: "button", class: "button", onclick: subscribe });
+    setChildren(button, icon("plus", "small"), t("Fetch a source by itself"));
+    setChildren(
+      this.#place,
+      this.#canCurate && h("section", { class: "panel-section" }, button),
+      this.#sets.length
+        ? h(
             "div",
-            { class: "record-end" },
-            h(
-              "div",
-              { class: "empty" },
-              h("strong", {}, t("No sets yet.")),
-              h("span", {}, t("Bring in an ED-269, ED-318, OpenAir or GeoJSON file, or have one fetched.")),
-              canCurate && h("a", { class: "button", href: "/imports" }, t("Import a file")),
-            ),
-          ),
+            {},
+            this.#sets.map((set) => this.#oneSet(set)),
+          )
+        : this.#nothing(),
     );
   }
 
-  function oneSet(set) {
-    const { source, subscription } = set;
+  #nothing() {
+    return h(
+      "div",
+      { class: "record-end" },
+      h(
+        "div",
+        { class: "empty" },
+        h("strong", {}, t("No sets yet.")),
+        h("span", {}, t("Bring in an ED-269, ED-318, OpenAir or GeoJSON file, or have one fetched.")),
+        this.#canCurate && h("a", { class: "button", href: "/imports" }, t("Import a file")),
+      ),
+    );
+  }
+
+  /** @param {ZoneSet} set */
+  #oneSet(set) {
     return h(
       "section",
       { class: "set", "aria-label": set.name },
@@ -89,251 +114,149 @@ export function mountSetsPanel({ canCurate, showZones }) {
         h("strong", {}, set.name),
         h("span", { class: "caption" }, countText(set.zone_count, "zone")),
       ),
-      h(
-        "dl",
-        { class: "facts" },
-        term(t("File"), source?.file_name),
-        term(t("Format"), set.source_format),
-        term(t("Licence"), source?.licence || (source ? t("not stated") : "")),
-        term(t("Attribution"), source?.attribution),
-        term(t("Address"), source?.source_address),
-        term(t("Fetched"), source?.fetched_at && whenText(source.fetched_at)),
-        term(t("Imported"), source?.imported_at && whenText(source.imported_at)),
-        term(t("Valid"), source ? validityText(source) || t("not stated") : ""),
-        term(
-          t("Edited"),
-          set.edited_count ? tn(set.edited_count, "{count} zone by hand", "{count} zones by hand") : "",
-        ),
-        subscription && term(t("Subscription"), subscriptionWords(subscription)),
-      ),
-      subscription?.problem &&
-        h(
-          "div",
-          { class: "notice warning" },
-          icon("triangle-alert"),
-          h("p", {}, h("strong", {}, `${t("Not fetched.")} `), subscription.problem),
-        ),
-      subscription?.proposal?.state === "ready" &&
-        h(
-          "div",
-          { class: "notice advisory" },
-          icon("info"),
-          h(
-            "p",
-            {},
-            h("strong", {}, `${t("A new version waits.")} `),
-            h("a", { href: `/imports/${subscription.proposal.id}` }, t("See the difference")),
-          ),
-        ),
-      h(
-        "div",
-        { class: "record-acts" },
-        h("button", { type: "button", class: "button", onclick: () => showZones(set) }, t("Its zones")),
-        canCurate &&
-          set.version_count > 0 &&
-          h(
-            "button",
-            { type: "button", class: "button", onclick: () => askVersion(set) },
-            icon("history", "small"),
-            countText(set.version_count, "version"),
-          ),
-        canCurate &&
-          subscription &&
-          h(
-            "button",
-            { type: "button", class: "button", onclick: () => fetchNow(subscription) },
-            icon("refresh-cw", "small"),
-            t("Fetch now"),
-          ),
-        canCurate &&
-          subscription &&
-          h("button", { type: "button", class: "text-button", onclick: () => askSubscription(set) }, t("Change")),
-      ),
+      factsOf(set),
+      noticesOf(set),
+      h("div", { class: "record-acts" }, this.#acts(set)),
     );
   }
 
-  const subscriptionWords = ({ is_active, interval_h, fetched_at }) =>
-    is_active
-      ? `${t("every {hours}\u00a0h", { hours: interval_h })}, ${fetched_at ? t("source last answered {when}", { when: whenText(fetched_at) }) : t("not fetched yet")}`
-      : t("paused");
+  /** @param {ZoneSet} set */
+  #acts(set) {
+    const { subscription } = set;
+    /** @param {string} kind @param {() => unknown} act @param {...Child} words */
+    const button = (kind, act, ...words) => h("button", { type: "button", class: kind, onclick: act }, words);
+    const versions = countText(set.version_count, "version");
+    return [
+      button("button", () => this.#showZones(set), t("Its zones")),
+      this.#canCurate &&
+        set.version_count > 0 &&
+        button("button", () => this.#askVersion(set), icon("history", "small"), versions),
+      this.#canCurate &&
+        subscription && [
+          button("button", () => this.#fetchNow(subscription), icon("refresh-cw", "small"), t("Fetch now")),
+          button("text-button", () => this.#askSubscription(set), t("Change")),
+        ],
+    ];
+  }
 
-  async function fetchNow(subscription) {
-    await attempt(async () => {
+  /** @param {ZoneSubscription} subscription */
+  async #fetchNow(subscription) {
+    await this.#attempt(async () => {
       toast(t("Fetching…"));
-      const { data } = await post(`/zone-subscriptions/${subscription.id}/fetch`);
-      const job = await follow(data.job.id ?? data.job);
-      toast(
-        job.result?.proposal && job.result.is_new ? t("Something new: look at the difference.") : t("Nothing new."),
-        job.result?.proposal && job.result.is_new
-          ? { label: t("See it"), act: () => (location.href = `/imports/${job.result.proposal}`) }
-          : null,
-      );
+      const { data } = /** @type {Answer<FetchJob>} */ (await post(`/zone-subscriptions/${subscription.id}/fetch`));
+      const job = await follow(data.job);
+      const result = /** @type {{ proposal?: string, is_new?: boolean } | null} */ (job.result);
+      if (!result?.proposal || !result.is_new) {
+        toast(t("Nothing new."));
+        return;
+      }
+      const see = () => location.assign(`/imports/${result.proposal}`);
+      toast(t("Something new: look at the difference."), { label: t("See it"), act: see });
     });
   }
 
-  function openDialog(title, ...content) {
-    const dialog = h("dialog", { "aria-label": title }, h("h2", {}, title), ...content);
-    dialog.addEventListener("close", () => dialog.remove());
-    document.body.append(dialog);
-    dialog.showModal();
-    return dialog;
-  }
-
-  async function askVersion(set) {
-    const { data } = await get(`/zone-sets/${set.id}/versions`);
+  /** @param {ZoneSet} set */
+  async #askVersion(set) {
+    const { data } = /** @type {Answer<ZoneSetVersionPage>} */ (await get(`/zone-sets/${set.id}/versions`));
+    const close = () => dialog.close();
+    /** @param {ZoneSetVersion} version */
+    const rollBack = (version) => {
+      dialog.close();
+      this.#rollBack(set, version);
+    };
+    /** @type {HTMLDialogElement} */
     const dialog = openDialog(
       t("Versions of {name}", { name: set.name }),
       h("p", { class: "caption" }, t("Going back is shown as a difference first.")),
       h(
         "ol",
         { class: "history-list" },
-        data.results.map((version, index) =>
-          h(
-            "li",
-            {},
-            h(
-              "div",
-              { class: "history-head" },
-              h(
-                "strong",
-                {},
-                index === 0
-                  ? t("Version {number}, the newest", { number: version.version })
-                  : t("Version {number}", { number: version.version }),
-              ),
-              h(
-                "span",
-                { class: "caption" },
-                [
-                  countText(version.zone_count, "zone"),
-                  whenText(version.created_at),
-                  version.created_by,
-                  version.source?.file_name,
-                ]
-                  .filter(Boolean)
-                  .join(" · "),
-              ),
-            ),
-            h(
-              "button",
-              { type: "button", class: "text-button", onclick: () => rollBack(set, version, dialog) },
-              icon("undo-2", "small"),
-              t("Go back to this"),
-            ),
-          ),
-        ),
+        data.results.map((version, index) => versionRow(version, index === 0, () => rollBack(version))),
       ),
-      h(
-        "div",
-        { class: "acts" },
-        h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Close")),
-      ),
+      h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: close }, t("Close"))),
     );
   }
 
-  async function rollBack(set, version, dialog) {
-    dialog.close();
-    await attempt(async () => {
-      const { data } = await post(`/zone-sets/${set.id}/roll-back`, { version: version.version });
-      location.href = `/imports/${data.id}`;
+  /** @param {ZoneSet} set @param {ZoneSetVersion} version */
+  async #rollBack(set, version) {
+    await this.#attempt(async () => {
+      const address = `/zone-sets/${set.id}/roll-back`;
+      const { data } = /** @type {Answer<Proposal>} */ (await post(address, { version: version.version }));
+      location.assign(`/imports/${data.id}`);
     });
   }
+}
 
-  function askSubscription(set = null) {
-    const old = set?.subscription;
-    const input = (id, words, rest) =>
+/** @param {ZoneSet} set */
+function factsOf({ source, subscription, source_format, edited_count }) {
+  const edited = edited_count ? tn(edited_count, "{count} zone by hand", "{count} zones by hand") : "";
+  return h(
+    "dl",
+    { class: "facts" },
+    term(t("File"), source?.file_name),
+    term(t("Format"), source_format),
+    term(t("Licence"), source?.licence || (source ? t("not stated") : "")),
+    term(t("Attribution"), source?.attribution),
+    term(t("Address"), source?.source_address),
+    term(t("Fetched"), source?.fetched_at && whenText(source.fetched_at)),
+    term(t("Imported"), source?.imported_at && whenText(source.imported_at)),
+    term(t("Valid"), source ? validityText(source) || t("not stated") : ""),
+    term(t("Edited"), edited),
+    subscription && term(t("Subscription"), subscriptionWords(subscription)),
+  );
+}
+
+/** What is wrong with the source, and what of it waits. @param {ZoneSet} set */
+function noticesOf({ subscription }) {
+  const proposal = subscription?.proposal;
+  return [
+    subscription?.problem &&
       h(
         "div",
-        { class: "field" },
-        h("label", { for: id }, words),
-        h("input", { class: "input", id, autocomplete: "off", ...rest }),
-      );
-    const form = h(
-      "form",
-      {},
-      !old && input("subscription-set", t("Name of the set"), { required: true, maxlength: 200 }),
-      input("subscription-address", t("Address of the file"), {
-        type: "url",
-        required: true,
-        placeholder: "https://",
-        maxlength: 500,
-        value: old?.address ?? "",
-      }),
+        { class: "notice warning" },
+        icon("triangle-alert"),
+        h("p", {}, h("strong", {}, `${t("Not fetched.")} `), subscription.problem),
+      ),
+    proposal?.state === "ready" &&
       h(
         "div",
-        { class: "pair" },
+        { class: "notice advisory" },
+        icon("info"),
         h(
-          "div",
-          { class: "field" },
-          h("label", { for: "subscription-format" }, t("Format")),
-          h(
-            "select",
-            { class: "input", id: "subscription-format" },
-            FORMATS.map(([value, words]) =>
-              h("option", { value, selected: value === (old?.source_format ?? "") }, words),
-            ),
-          ),
+          "p",
+          {},
+          h("strong", {}, `${t("A new version waits.")} `),
+          h("a", { href: `/imports/${proposal.id}` }, t("See the difference")),
         ),
-        input("subscription-interval", t("Every … hours"), {
-          type: "number",
-          min: 1,
-          max: 8760,
-          required: true,
-          value: String(old?.interval_h ?? 24),
-        }),
       ),
-      input("subscription-licence", t("Licence"), { maxlength: 200, value: old?.licence ?? "" }),
-      input("subscription-attribution", t("Attribution"), { maxlength: 300, value: old?.attribution ?? "" }),
-      h(
-        "p",
-        { class: "caption" },
-        t("What it brings is shown as a difference; nothing is replaced before somebody applies it."),
-      ),
-      h("p", { class: "field-error", id: "subscription-fault", hidden: true }),
-      h(
-        "div",
-        { class: "acts" },
-        old &&
-          h(
-            "button",
-            {
-              type: "button",
-              class: "button danger",
-              onclick: () => (
-                dialog.close(),
-                attempt(() => remove(`/zone-subscriptions/${old.id}`), t("No longer fetched. Its zones stay."))
-              ),
-            },
-            t("Fetch no longer"),
-          ),
-        h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
-        h("button", { type: "submit", class: "button primary" }, old ? t("Save") : t("Subscribe")),
-      ),
-    );
-    const dialog = openDialog(old ? t("Source of {name}", { name: set.name }) : t("Fetch a source by itself"), form);
-    form.addEventListener("submit", async (event) => {
-      event.preventDefault();
-      const value = (id) => byId(id).value.trim();
-      const body = {
-        address: value("subscription-address"),
-        source_format: value("subscription-format"),
-        interval_h: Number(value("subscription-interval")),
-        licence: value("subscription-licence"),
-        attribution: value("subscription-attribution"),
-      };
-      try {
-        if (old) await patch(`/zone-subscriptions/${old.id}`, body);
-        else await post("/zone-subscriptions", { set_name: value("subscription-set"), ...body });
-        dialog.close();
-        toast(old ? t("Saved.") : t("Subscribed. It is fetched within a minute."));
-        await load();
-      } catch (error) {
-        const fault = byId("subscription-fault");
-        fault.hidden = false;
-        fault.textContent = error.message;
-      }
-    });
-  }
+  ];
+}
 
-  return { load };
+/** @param {ZoneSubscription} subscription */
+function subscriptionWords({ is_active, interval_h, fetched_at }) {
+  if (!is_active) return t("paused");
+  const last = fetched_at ? t("source last answered {when}", { when: whenText(fetched_at) }) : t("not fetched yet");
+  return `${t("every {hours}\u00a0h", { hours: interval_h })}, ${last}`;
+}
+
+/** @param {ZoneSetVersion} version @param {boolean} isNewest @param {() => void} rollBack */
+function versionRow({ version: number, zone_count, created_at, created_by, source }, isNewest, rollBack) {
+  const facts = [countText(zone_count, "zone"), whenText(created_at), created_by, source?.file_name];
+  const title = isNewest ? t("Version {number}, the newest", { number }) : t("Version {number}", { number });
+  return h(
+    "li",
+    {},
+    h(
+      "div",
+      { class: "history-head" },
+      h("strong", {}, title),
+      h("span", { class: "caption" }, facts.filter(Boolean).join(" · ")),
+    ),
+    h(
+      "button",
+      { type: "button", class: "text-button", onclick: rollBack },
+      icon("undo-2", "small"),
+      t("Go back to this"),
+    ),
+  );
 }
