@@ -2,6 +2,7 @@
 
 from rest_framework import serializers
 
+from missions.serializers.shapes import WindLayerOutputSerializer
 from simulation.models import VerdictLevel
 from simulation.rehearsing.sky import Named
 from workspace.models import JobState
@@ -28,7 +29,7 @@ class RehearsalInputSerializer(serializers.Serializer):
 class RehearsalConditionsSerializer(serializers.Serializer):
     code = serializers.ChoiceField(choices=[(str(code), str(code)) for code in Named])
     name = serializers.CharField(allow_blank=True)
-    wind = serializers.ListField(child=serializers.DictField(), help_text="layers, as in a mission's conditions")
+    wind = WindLayerOutputSerializer(many=True, help_text="layers, as in a mission's conditions")
     temperature_c = serializers.FloatField()
     gusts_mps = serializers.FloatField(help_text="standard deviation, across each axis")
     turbulence_mps_at_20ft = serializers.FloatField(help_text="wind at 20 feet that Dryden turbulence is made by; 0: none")

@@ -3865,9 +3865,7 @@ export interface components {
             code: components["schemas"]["RehearsalConditionsCodeEnum"];
             name: string;
             /** @description layers, as in a mission's conditions */
-            wind: {
-                [key: string]: unknown;
-            }[];
+            wind: components["schemas"]["WindLayerOutput"][];
             /** Format: double */
             temperature_c: number;
             /**
