@@ -16,6 +16,13 @@ const KINDS = [
   { kind: "bridge", words: () => t("Bridges") },
 ];
 
+/** How many of all assets found can be targets; asked only where the answer does not show it. */
+async function countFlyable(asked, found, signal) {
+  if (found.total <= found.features.length) return found.features.filter(({ properties }) => properties.is_flyable).length;
+  const { data } = await get(`/assets?${asked}&flyable=true&limit=1&total=true`, { signal });
+  return data.total;
+}
+
 /** page: { box(), show(feature), add(feature), addAll(features), goTo(place), things(), canPlan } */
 export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
   const input = byId("find");
@@ -152,10 +159,11 @@ export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
         get(`/assets?${asked}&limit=${MOST}&total=true`, { signal }),
         text && !filters.kinds.size ? placesFound(text, { signal, things: things() }) : [],
       ]);
+      const flyable = canPlan ? await countFlyable(asked, data, signal) : 0;
       results = [...places.map(placeResult), ...data.features.map(assetResult)];
       active = -1;
       isBehind = false;
-      draw(results.length ? headOf(asked, data.total) : emptyWords(text), data.total);
+      draw(results.length ? headOf(asked, data.total) : emptyWords(text), flyable);
       if (results.length && text) activate(0);
       if (takesFirst) take(0);
       takesFirst = false;
