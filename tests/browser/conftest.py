@@ -1,5 +1,6 @@
-"""A whole installation started by ./run with real data, and Chromium in front of it."""
+"""A whole installation started by ./run with the data of a region, and Chromium in front of it."""
 
+import json
 import os
 import shutil
 import socket
@@ -10,12 +11,15 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Page, expect, sync_playwright
 
 from scripts.places import Places
 from scripts.system_packages import BROWSERS
+from tests.browser.pictures import HAS_PICTURES
+from tests.browser.regions import region
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
 # findings: the quickest flags of those that render WebGL in Debian's Chromium without a graphics card
@@ -54,29 +58,65 @@ def _free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
         return int(probe.getsockname()[1])
 
 
+def _run(environment: dict[str, str], *command: str) -> None:
+    done = subprocess.run(command, cwd=PROJECT_DIR, env=environment, capture_output=True, text=True, timeout=300, check=False)  # noqa: S603
+    assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}\n{done.stderr}"
+
+
+def _environment(state: Path) -> dict[str, str]:
+    own = {name: value for name, value in os.environ.items() if name not in {"DATABASE_URL", "REDIS_URL", "DJANGO_SETTINGS_MODULE"}}
+    return own | {"SPANWISE_VAR": str(state), "SPANWISE_BASE_MAP_TILES": "", "SPANWISE_GATEWAY_TCP": ""}
+
+
+def _site_on(state: Path, port: int, gateway_port: int) -> Site:
+    does = partial(_run, _environment(state), sys.executable, "manage.py", "shell", "-v", "0", "-c")
+    return Site(address=f"http://127.0.0.1:{port}", does=does, gateway_port=gateway_port)
+
+
+def _start_site(state: Path, shared_data: Callable[[str], Path]) -> Site:
+    """Start an installation with the region's infrastructure, two zones and no base map from outside."""
+    osm_files, zones_file = region.write_files(state, shared_data)
+    osm = [argument for path in osm_files for argument in ("--osm", str(path))]
+    port, gateway_port = _free_port(), _free_port(socket.SOCK_DGRAM)
+    environment = _environment(state) | {"SPANWISE_GATEWAY_UDP": f"127.0.0.1:{gateway_port}"}
+    _run(environment, "./run", "--detach", "--port", str(port), *osm, "--zones", str(zones_file))
+    started = _site_on(state, port, gateway_port)
+    started.does(NEW_USERS)
+    return started
+
+
+def _kept_site(state: Path, shared_data: Callable[[str], Path]) -> Site:
+    """Return the installation that an earlier run has started on this state, or start one that is left running."""
+    note = state / "site.json"
+    status = [PROJECT_DIR / "run", "--status", "--var", state]
+    if note.exists() and subprocess.run(status, capture_output=True, check=False).returncode == 0:  # noqa: S603
+        known = json.loads(note.read_text())
+        assert known["region"] == region.name, f"{state} has the region {known['region']}"
+        return _site_on(state, known["port"], known["gateway_port"])
+    assert note.exists() or not state.exists(), f"{state} is no site of these tests"
+    if state.exists():
+        _run(_environment(state), "./run", "--stop")
+        shutil.rmtree(Places(state).data, ignore_errors=True)
+        shutil.rmtree(state)
+    state.mkdir(parents=True)
+    note.write_text("{}")
+    started = _start_site(state, shared_data)
+    note.write_text(json.dumps({"region": region.name, "port": urlsplit(started.address).port, "gateway_port": started.gateway_port}))
+    return started
+
+
 @pytest.fixture(scope="session")
 def site(shared_data: Callable[[str], Path], tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
-    """Columbus, Ohio, with two zones, behind the real front door: proxy, policy headers, workers. Without a base map from outside."""
-    osm_file = shared_data("osm/columbus-ohio.osm.pbf")
-    state_dir = tmp_path_factory.mktemp("site")
-    environment = {name: value for name, value in os.environ.items() if name not in {"DATABASE_URL", "REDIS_URL", "DJANGO_SETTINGS_MODULE"}}
-    port, gateway_port = _free_port(), _free_port(socket.SOCK_DGRAM)
-    environment |= {"SPANWISE_VAR": str(state_dir), "SPANWISE_BASE_MAP_TILES": ""}
-    environment |= {"SPANWISE_GATEWAY_UDP": f"127.0.0.1:{gateway_port}", "SPANWISE_GATEWAY_TCP": ""}
-    zones_file = Path(__file__).with_name("zones.geojson")
-
-    def run(*command: str) -> None:
-        done = subprocess.run(command, cwd=PROJECT_DIR, env=environment, capture_output=True, text=True, timeout=300, check=False)  # noqa: S603
-        assert done.returncode == 0, f"{' '.join(command)}\n{done.stdout}\n{done.stderr}"
-
+    """The region behind the real proxy, policy headers and workers. With SPANWISE_TEST_SITE=DIR it is left running for the next run."""
+    if kept := os.environ.get("SPANWISE_TEST_SITE"):
+        yield _kept_site(Path(kept).resolve() / os.environ.get("PYTEST_XDIST_WORKER", ""), shared_data)
+        return
+    state = tmp_path_factory.mktemp("site")
     try:
-        run("./run", "--detach", "--port", str(port), "--osm", str(osm_file), "--zones", str(zones_file))
-        does = partial(run, sys.executable, "manage.py", "shell", "-v", "0", "-c")
-        does(NEW_USERS)
-        yield Site(address=f"http://127.0.0.1:{port}", does=does, gateway_port=gateway_port)
+        yield _start_site(state, shared_data)
     finally:
-        run("./run", "--stop")
-        shutil.rmtree(Places(state_dir).data, ignore_errors=True)  # as root the database may stand outside the state folder
+        _run(_environment(state), "./run", "--stop")
+        shutil.rmtree(Places(state).data, ignore_errors=True)  # as root the database may stand outside the state folder
 
 
 @pytest.fixture(scope="session")
@@ -155,12 +195,20 @@ def visitor(site: Site, chromium: Browser) -> Iterator[Visitor]:
     assert somebody.requests_outside == []
 
 
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what is for the documentation alone, unless pictures are asked for."""
+    left_out = [item for item in items if not HAS_PICTURES and item.get_closest_marker("pictures")]
+    if left_out:
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if item not in left_out]
+
+
 @pytest.fixture
 def picture() -> Callable[[Page, str], None]:
     """Writes a screenshot for the documentation when SPANWISE_SCREENSHOTS=1."""
 
     def take(page: Page, name: str) -> None:
-        if os.environ.get("SPANWISE_SCREENSHOTS") == "1":
+        if HAS_PICTURES:
             page.evaluate("document.activeElement?.blur()")
             page.mouse.move(0, 0)
             page.wait_for_timeout(PICTURE_SETTLES_MS)

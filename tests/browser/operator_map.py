@@ -5,6 +5,8 @@ from typing import Any
 
 from playwright.sync_api import Page, TimeoutError, expect
 
+from tests.browser.regions import region
+
 CLOSE_ZOOM = 16
 MOST_MOVES, MOVE_TIMEOUT_MS = 4, 15_000
 A_HAIR = 1e-5  # of a level: another address for the same place
@@ -26,6 +28,11 @@ TOO_WIDE = """() => {
 def wait_for_map(page: Page) -> None:
     page.locator("html[data-loaded]").wait_for(state="attached")
     page.locator("#map[data-idle]").wait_for(state="attached")
+
+
+def at_zoom(zoom: float, position: list[float]) -> str:
+    """The end of an address that opens the map there."""
+    return f"#map={zoom:g}/{position[1]:.9g}/{position[0]:.9g}"
 
 
 def asks(page: Page, path: str) -> Any:
@@ -105,24 +112,25 @@ class Pickable:
 
 
 def find_pickable(page: Page) -> Pickable:
-    """Real assets of Columbus: away from others of a kind that a click would prefer, and outside the zones."""
+    """Assets that stand away from others of a kind that a click would prefer, and outside the zones."""
     tower = next(
         feature
-        for feature in asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=100")["features"]
+        for feature in asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=100")["features"]
         if _is_alone(page, feature["geometry"]["coordinates"], "tower")
     )
     bridge = next(
         feature
-        for feature in asks(page, "/assets?kind=bridge&bbox=-82.97,39.96,-82.92,39.99&limit=100")["features"]
+        for feature in asks(page, f"/assets?kind=bridge&bbox={region.bridges}&limit=100")["features"]
         if _is_alone(page, feature["properties"]["centre"], "tower,bridge")
     )
+    west, south, east, north = map(float, region.railways.split(","))
     railway_point = next(
         place
-        for feature in asks(page, "/assets?kind=railway&bbox=-83.08,39.95,-83.03,39.99&limit=100")["features"]
+        for feature in asks(page, f"/assets?kind=railway&bbox={region.railways}&limit=100")["features"]
         for place in _vertices(page, feature["id"])[1:-1]
-        if -83.08 < place[0] < -83.03 and 39.95 < place[1] < 39.99 and _is_alone(page, place, "tower,bridge,line,railway")
+        if west < place[0] < east and south < place[1] < north and _is_alone(page, place, "tower,bridge,line,railway")
     )
-    lines = asks(page, "/assets?kind=line&bbox=-83.1,39.85,-83.0,39.94&limit=100")["features"]
+    lines = asks(page, f"/assets?kind=line&bbox={region.lines}&limit=100")["features"]
     line = next(feature for feature in lines if feature["properties"]["is_flyable"] and len(_vertices(page, feature["id"])) > 10)
     a, b = _vertices(page, line["id"])[4:6]
     return Pickable(tower, bridge, railway_point, line, [(a[0] + b[0]) / 2, (a[1] + b[1]) / 2])
@@ -144,8 +152,8 @@ def _is_alone(page: Page, place: list[float], kinds: str) -> bool:
 
 def stores_mission(page: Page, name: str) -> str:
     """A planned mission with two UAVs and two towers, made through the API with the page's session. Its address."""
-    towers = asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=2")["features"]
-    uavs = [{"name": "Heron", "position": [-83.045, 39.935]}, {"name": "Kite", "position": [-82.945, 39.945]}]
+    towers = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=2")["features"]
+    uavs = [{"name": "Heron", "position": region.west}, {"name": "Kite", "position": region.east}]
     token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
     answer = page.request.post(
         "/api/v1/missions",

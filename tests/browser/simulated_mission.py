@@ -7,9 +7,9 @@ from typing import Any
 from playwright.sync_api import Page, expect
 
 from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.regions import region
 from tests.browser.test_fleet import writes
 
-TOWERS = "-82.98,39.87,-82.93,39.94"
 APART_M, FROM_M = (150.0, 900.0), 250.0  # of the two towers; of a UAV from the first one
 FLIGHT_MS = 240_000  # a machine that has much else to do flies slower than it was told
 SOON_MS = 60_000
@@ -22,7 +22,7 @@ def away_m(a: list[float], b: list[float]) -> float:
 
 def two_towers(page: Page) -> list[dict[str, Any]]:
     """Two that stand alone enough to be clicked, and near each other."""
-    found = asks(page, f"/assets?kind=tower&bbox={TOWERS}&limit=200")["features"]
+    found = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=200")["features"]
     places = [tower["geometry"]["coordinates"] for tower in found]
     uavs = [uav["geometry"]["coordinates"] for uav in asks(page, "/uavs?limit=200")["features"]]  # of other tests, which a click would take
     alone = [tower for tower, at in zip(found, places, strict=True) if sum(away_m(at, other) < 60.0 for other in places + uavs) == 1]

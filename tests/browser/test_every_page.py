@@ -1,6 +1,5 @@
 """Every page, wide and narrow, light and dark: pictures for the documentation. What each must keep, test_accessibility looks at."""
 
-import os
 from collections.abc import Callable
 from typing import Any
 
@@ -32,11 +31,11 @@ def settles(page: Page) -> None:
         wait_for_map(page)
 
 
-@pytest.mark.skipif(os.environ.get("SPANWISE_SCREENSHOTS") != "1", reason="pictures are asked for with SPANWISE_SCREENSHOTS=1")
+@pytest.mark.pictures
 @pytest.mark.parametrize("view", VIEWS)
 def test_every_page_has_its_picture(visitor: Visitor, picture: Picture, view: str) -> None:
     page = visitor.signs_in("opal", **VIEWS[view])
-    stored = stores_mission(page, "Scioto crossing, autumn")
+    stored = stores_mission(page, "River crossing, autumn")
     for name, path in PAGES.items() | {("mission", stored)}:
         page.goto("about:blank")
         page.goto(path)

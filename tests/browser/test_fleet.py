@@ -9,12 +9,13 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.browser
 
 Picture = Callable[[Page, str], None]
-YARD = [-82.99, 39.96]
+YARD = region.at(0.01, 0.01)
 
 
 def fleet(page: Page, query: str = "") -> Page:

@@ -9,17 +9,18 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Site, Visitor
 from tests.browser.operator_map import asks
+from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 from tests.browser.test_fleet import Picture, details, fleet, writes
 
 pytestmark = pytest.mark.browser
 
-YARD = [-82.99, 39.96]
-HEARD = """
+YARD = region.at(0.01, 0.01)
+HEARD = f"""
 from django.contrib.gis.geos import Point
 from django.utils import timezone
 from telemetry.models import UnknownVehicle
-for system_id, place in ((41, Point(-82.99, 39.96)), (42, None)):
+for system_id, place in ((41, Point({YARD[0]}, {YARD[1]})), (42, None)):
     UnknownVehicle.objects.create(
         mavlink_system_id=system_id, autopilot="ardupilot", vehicle_type="Quadrotor", address="udp 10.0.0.7:14550", location=place,
         heard_at=timezone.now(),

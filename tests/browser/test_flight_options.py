@@ -9,6 +9,7 @@ from playwright.sync_api import Locator, Page, expect
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, look_at, place_of, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
+from tests.browser.regions import HELIPORT, region
 from tests.browser.test_accessibility import faults
 from tests.browser.test_planning import opens_mission
 from tests.browser.test_planning_options import PHONE, route
@@ -187,13 +188,13 @@ def test_what_can_be_inspected_is_a_layer_with_counts_and_the_reason_of_each_ass
     page.keyboard.press("Escape")
     card = page.get_by_role("region", name="What can be inspected")
     expect(card).to_contain_text(re.compile(r"[\d,]+ of [\d,]+ assets can be inspected"))
-    expect(card.get_by_role("list", name="Reasons")).to_contain_text("Inside Greenlawn heliport.")
+    expect(card.get_by_role("list", name="Reasons")).to_contain_text(f"Inside {HELIPORT}.")
     in_both_themes(page, picture, "plan-reach")
-    inside = asks(page, "/assets?kind=bridge&bbox=-83.025,39.943,-83.015,39.951&limit=1")["features"][0]
+    inside = asks(page, f"/assets?kind=bridge&bbox={region.heliport_bridges}&limit=1")["features"][0]
     place = look_at(page, inside["properties"]["centre"])
     page.mouse.move(place["x"] + 40, place["y"] + 40)
     page.mouse.move(place["x"], place["y"])
-    expect(page.get_by_role("tooltip")).to_contain_text("Inside Greenlawn heliport.")
+    expect(page.get_by_role("tooltip")).to_contain_text(f"Inside {HELIPORT}.")
     assert faults(page) == []
     page.get_by_role("button", name="Change Kite in this mission").click()
     page.get_by_role("dialog", name="Kite").get_by_label("Range").fill("3")

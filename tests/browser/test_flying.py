@@ -9,10 +9,11 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import TOO_WIDE, asks, wait_for_map
+from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
 
-STARTS = {"Petrel": [-83.045, 39.935], "Skua": [-82.945, 39.945]}
+STARTS = {"Petrel": region.west, "Skua": region.east}
 
 
 def posts(page: Page, path: str, body: dict[str, Any], *, method: str = "POST") -> Any:
@@ -30,7 +31,7 @@ def mission(visitor: Visitor) -> Iterator[str]:
             made = posts(page, "/uavs", {"name": name, "position": position, "is_simulated": True})
             assert made.status == 201, made.text()
             known[name] = made.json()["id"]
-    towers = asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=2")["features"]
+    towers = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=2")["features"]
     body = {
         "name": "South belt, by night", "uavs": [{"id": known[name], "most_targets": 1} for name in STARTS],
         "targets": [{"asset": tower["id"]} for tower in towers],

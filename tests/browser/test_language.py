@@ -11,6 +11,7 @@ from scripts import texts
 from tests.browser.conftest import PASSWORD, Visitor
 from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.page_lists import FOR_OPERATORS, FOR_STRANGERS
+from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
 
@@ -91,13 +92,13 @@ def _german(visitor: Visitor, name: str | None = None, *, size: tuple[int, int] 
 
 
 def _stores_mission(page: Page, **rest: Any) -> str:
-    tower = asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=3&flyable=true")["features"]
+    tower = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=3&flyable=true")["features"]
     uav = asks(page, "/uavs")["features"]
     token = page.evaluate("document.cookie.match(/csrftoken=([^;]*)/)[1]")
     body = {
         "name": "Prüfung",
         "targets": [{"asset": feature["id"]} for feature in tower],
-        "uavs": [{"id": uav[0]["id"]}] if uav else [{"position": [-82.95, 39.9], "name": "Milan"}],
+        "uavs": [{"id": uav[0]["id"]}] if uav else [{"position": region.beside_tower, "name": "Milan"}],
         "plan": True,
         **rest,
     }

@@ -11,13 +11,14 @@ from examples.companion.link import HttpLink
 from tests.browser.conftest import Site, Visitor
 from tests.browser.operator_map import TOO_WIDE, asks, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
+from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 from tests.browser.test_fleet import writes
 from tests.browser.uav_over_http import Flyer
 
 pytestmark = [pytest.mark.browser, pytest.mark.long]  # UAVs fly in real time
 
-STARTS = {"Kite": [-82.945, 39.945], "Tern": [-82.93, 39.94]}
+STARTS = {"Kite": region.east, "Tern": [region.east[0] + 0.015, region.east[1] - 0.005]}
 STEP_M = 9.0
 MOST_STEPS = 30
 
@@ -31,7 +32,7 @@ def flight(visitor: Visitor, site: Site) -> Iterator[tuple[str, list[Flyer]]]:
         for name, at in STARTS.items()
     ]
     tokens = [writes(page, "POST", f"/uavs/{uav}/credentials", {"kind": "link-token"})["secret"] for uav in uavs]
-    towers = asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=5")["features"]
+    towers = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=5")["features"]
     made = writes(
         page,
         "POST",

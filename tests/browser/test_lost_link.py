@@ -9,6 +9,7 @@ from playwright.sync_api import Locator, Page, expect
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import TOO_WIDE, look_at, place_of, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
+from tests.browser.regions import RESERVE, region
 from tests.browser.test_accessibility import faults
 from tests.browser.test_flight_options import is_saved, mission_of
 from tests.browser.test_planning import opens_mission
@@ -16,8 +17,7 @@ from tests.browser.test_planning_options import PHONE
 
 pytestmark = pytest.mark.browser
 
-CLEAR = [-82.99, 39.86]  # south of both routes, away from the zones
-IN_RESERVE = "39.9100, -82.9100"  # within the zone "Alum Creek reserve"
+IN_RESERVE = "{1}, {0}".format(*region.in_reserve)
 UNCOUNTED = "Energy is not checked for Heron, Kite: no battery is stated."
 
 
@@ -58,7 +58,7 @@ def test_the_way_back_is_chosen_rally_points_are_placed_dragged_and_undone_and_t
     assert {haven for haven, _ in says_what_is_stored(page)} <= {0}
 
     panel(page).get_by_role("button", name="Add on the map").click()
-    place = look_at(page, CLEAR, 13)
+    place = look_at(page, region.clear, 13)
     page.mouse.click(**place)
     expect(rally_points(page)).to_have_count(1)
     page.get_by_role("button", name="Done").click()
@@ -84,8 +84,8 @@ def test_the_way_back_is_chosen_rally_points_are_placed_dragged_and_undone_and_t
     typed.press("Enter")
     expect(rally_points(page)).to_have_count(2)
     failures = panel(page).get_by_role("list", name="From where a UAV would not get home")
-    expect(failures.get_by_role("button", name=re.compile("back to R2 ?the way back meets Alum Creek reserve"))).to_be_visible()
-    assert (2, "Alum Creek reserve") in says_what_is_stored(page)
+    expect(failures.get_by_role("button", name=re.compile(f"back to R2 ?the way back meets {RESERVE}"))).to_be_visible()
+    assert (2, RESERVE) in says_what_is_stored(page)
     expect(page.locator("#plan-quality")).to_contain_text(
         re.compile(r"If the link is lost: From \d+ of \d+ waypoints a UAV would not get home")
     )

@@ -1,5 +1,6 @@
 """What the map offers to look with: tooltips, layers, measuring, coordinates, places to go to, and what is said when it cannot be read."""
 
+import math
 import re
 from collections.abc import Callable
 from typing import Any
@@ -9,10 +10,10 @@ from playwright.sync_api import Page, Route, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, look_at, targets, wait_for_map
+from tests.browser.regions import HELIPORT, METRES_PER_DEG, region
 
 pytestmark = pytest.mark.browser
 
-RIVER = [-83.06, 39.9]  # south-west of the city: nothing else of the fixture is near
 AROUND = 0.01
 
 
@@ -34,9 +35,9 @@ def operator(visitor: Visitor) -> Page:
 
 
 def draws_zone(page: Page, name: str, **facts: Any) -> int:
-    """A square zone at RIVER, made through the API with the page's session. Its number."""
+    """A square zone in an empty place, made through the API with the page's session. Its number."""
     token = next(cookie["value"] for cookie in page.context.cookies() if cookie["name"] == "csrftoken")
-    [west, south], [east, north] = [[degrees + side * AROUND for degrees in RIVER] for side in (-1, 1)]
+    [west, south], [east, north] = [[degrees + side * AROUND for degrees in region.empty] for side in (-1, 1)]
     square = {"type": "Polygon", "coordinates": [[[west, south], [east, south], [east, north], [west, north], [west, south]]]}
     answer = page.request.post("/api/v1/zones", data={"name": name, "geometry": square, **facts}, headers={"X-CSRFToken": token})
     assert answer.status == 201, answer.text()
@@ -67,7 +68,7 @@ def test_a_zone_under_the_pointer_tells_its_heights_times_source_and_whether_it_
         schedule=[{"startDateTime": None, "endDateTime": "2020-06-01T00:00:00Z", "schedule": []}],
     )
     try:
-        place = opens_at(curator, RIVER, 14)
+        place = opens_at(curator, region.empty, 14)
         curator.mouse.move(place["x"] + 20, place["y"] + 20)
         tip = curator.get_by_role("tooltip")
         expect(tip).to_contain_text("Heron colony")
@@ -93,7 +94,7 @@ def test_a_zone_under_the_pointer_tells_its_heights_times_source_and_whether_it_
 
 
 def test_layers_go_by_kind_and_voltage_and_it_is_said_that_some_are_hidden(operator: Page, picture: Callable[[Page, str], None]) -> None:
-    line = asks(operator, "/assets?kind=line&text=138&limit=1")["features"][0]
+    line = asks(operator, f"/assets?kind=line&text={region.voltage_kv}&limit=1")["features"][0]
     look_at(operator, line["properties"]["centre"], 13)
     legend = operator.get_by_role("list", name="Legend")
     expect(legend).to_contain_text("100 to 199 kV")
@@ -114,12 +115,13 @@ def test_layers_go_by_kind_and_voltage_and_it_is_said_that_some_are_hidden(opera
 
 
 def test_distances_are_measured_with_the_mouse_and_nothing_is_picked_meanwhile(operator: Page) -> None:
-    place = look_at(operator, RIVER, 14)
+    place = look_at(operator, region.empty, 14)
     operator.get_by_role("button", name="Measure").click()
     banner = operator.get_by_role("group", name="Measuring")
     expect(banner).to_contain_text("Click where to measure from")
-    a_kilometre = operator.evaluate(
-        "([x, y]) => { const map = document.getElementById('map'); return map.project([x + 0.01176, y]).x - map.project([x, y]).x; }", RIVER
+    a_kilometre = operator.evaluate(  # and a little, or it would be told in metres
+        "([x, y, east]) => { const map = document.getElementById('map'); return map.project([x + east, y]).x - map.project([x, y]).x; }",
+        [*region.empty, 1003 / (METRES_PER_DEG * math.cos(math.radians(region.empty[1])))],
     )
     operator.mouse.click(place["x"], place["y"])
     operator.mouse.click(place["x"] + a_kilometre, place["y"])
@@ -134,7 +136,7 @@ def test_distances_are_measured_with_the_mouse_and_nothing_is_picked_meanwhile(o
 
 
 def test_distances_are_measured_with_the_keyboard_alone(operator: Page) -> None:
-    look_at(operator, RIVER, 14)
+    look_at(operator, region.empty, 14)
     operator.keyboard.press("m")
     banner = operator.get_by_role("group", name="Measuring")
     operator.get_by_role("region", name="Map").locator("canvas").focus()
@@ -153,12 +155,12 @@ def test_distances_are_measured_with_the_keyboard_alone(operator: Page) -> None:
 
 def test_the_coordinates_of_a_place_are_copied_latitude_first(operator: Page) -> None:
     operator.context.grant_permissions(["clipboard-read", "clipboard-write"])
-    place = look_at(operator, RIVER, 14)
+    place = look_at(operator, region.empty, 14)
     operator.mouse.click(place["x"], place["y"], button="right")
     operator.get_by_role("button", name="Copy the coordinates").click()
     copied = [float(part) for part in operator.evaluate("navigator.clipboard.readText()").split(", ")]
-    assert copied == pytest.approx([RIVER[1], RIVER[0]], abs=1e-4)
-    expect(operator.get_by_text(re.compile("^Copied: 39.9"))).to_be_visible()
+    assert copied == pytest.approx([region.empty[1], region.empty[0]], abs=1e-4)
+    expect(operator.get_by_text(re.compile(f"^Copied: {str(region.empty[1])[:4]}"))).to_be_visible()
 
 
 @pytest.mark.parametrize("words", ["39.9612, -82.9988", "39°57'40.3\"N 82°59'55.7\"W"])
@@ -171,9 +173,11 @@ def test_coordinates_in_the_search_box_are_gone_to(operator: Page, words: str) -
 
 
 def test_a_zone_is_found_by_name_and_gone_to(operator: Page) -> None:
-    operator.get_by_role("combobox", name="Find an asset or a line").fill("Greenlawn")
-    operator.get_by_role("listbox").get_by_role("option", name="Greenlawn heliport").click()
-    expect(operator).to_have_url(re.compile(r"#map=1[2-6][\d.]*/39\.9[45]\d*/-83\.0[12]\d*$"))
+    operator.get_by_role("combobox", name="Find an asset or a line").fill("Meadow")
+    operator.get_by_role("listbox").get_by_role("option", name=HELIPORT).click()
+    expect(operator).to_have_url(re.compile(r"#map=1[2-6][\d.]*/[\d.]+/-?[\d.]+$"))
+    latitude, longitude = map(float, operator.url.split("/")[-2:])
+    assert [longitude, latitude] == pytest.approx(region.heliport, abs=0.01)
 
 
 def test_tiles_that_cannot_be_read_are_told_and_asked_for_again(visitor: Visitor, operator: Page) -> None:
@@ -181,7 +185,7 @@ def test_tiles_that_cannot_be_read_are_told_and_asked_for_again(visitor: Visitor
         route.abort()
 
     operator.route("**/api/v1/tiles/**", away)
-    look_at(operator, [-82.9, 39.99], 15)
+    look_at(operator, region.at(0.1, 0.04), 15)
     notice = operator.get_by_text("The map cannot be read.")
     expect(notice).to_be_visible()
     operator.unroute("**/api/v1/tiles/**", away)
@@ -196,18 +200,22 @@ def test_with_a_finger_a_zone_tells_the_same(visitor: Visitor) -> None:
     page = visitor.signs_in("opal", size=(390, 844), touch=True)
     page.goto("/missions/new")
     wait_for_map(page)
-    place = look_at(page, [-83.02, 39.9495], 14)
+    place = look_at(page, region.in_heliport, 14)
     page.touchscreen.tap(place["x"], place["y"])
-    expect(page.get_by_role("tooltip")).to_contain_text("Greenlawn heliport")
+    expect(page.get_by_role("tooltip")).to_contain_text(HELIPORT)
 
 
 def test_a_uav_points_along_its_heading_and_nowhere_without_one(operator: Page) -> None:
     token = next(cookie["value"] for cookie in operator.context.cookies() if cookie["name"] == "csrftoken")
-    east = [RIVER[0] + 0.05, RIVER[1]]
-    for name, place, more in (("Heading dart", RIVER, {"heading_deg": 90}), ("Heading unknown", east, {}), ("Heading unknown 2", east, {})):
+    east = [region.empty[0] + 0.05, region.empty[1]]
+    for name, place, more in (
+        ("Heading dart", region.empty, {"heading_deg": 90}),
+        ("Heading unknown", east, {}),
+        ("Heading unknown 2", east, {}),
+    ):
         answer = operator.request.post("/api/v1/uavs", data={"name": name, "position": place, **more}, headers={"X-CSRFToken": token})
         assert answer.status == 201, answer.text()
-    opens_at(operator, RIVER, 12)
+    opens_at(operator, region.empty, 12)
     map_region = operator.get_by_role("region", name="Map")
     dart = map_region.get_by_role("button", name="Heading dart, not in this mission, heading 090°")
     expect(dart.locator("svg")).to_have_css("rotate", "90deg")

@@ -8,6 +8,7 @@ from playwright.sync_api import Page, Route, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, stores_mission, targets, wait_for_map
+from tests.browser.regions import region
 from tests.browser.test_unsaved_changes import opens_mission, picks_from_the_search, removes_first_target
 
 pytestmark = pytest.mark.browser
@@ -64,7 +65,7 @@ def test_a_page_that_dies_without_a_network_finds_its_changes_again(visitor: Vis
 
 def test_a_save_whose_answer_is_lost_makes_one_mission(visitor: Visitor) -> None:
     page = opens_mission(visitor.signs_in("opal"), "/missions/new")
-    picks_from_the_search(page, "138 kV")
+    picks_from_the_search(page, f"{region.voltage_kv} kV")
     page.get_by_role("textbox", name="Name of the mission").fill("Answer lost")
 
     def stored_and_cut(route: Route) -> None:
@@ -99,7 +100,7 @@ def test_a_new_mission_stores_itself_with_its_first_plan_and_then_each_change(vi
     expect(page.get_by_role("textbox", name="Name of the mission")).to_have_value(re.compile(r"^Mission of "))
     assert asks(page, address)["state"] == "planned"
     with page.expect_response(lambda answer: answer.request.method == "PATCH"):
-        picks_from_the_search(page, "138 kV")
+        picks_from_the_search(page, f"{region.voltage_kv} kV")
     expect(page.locator("#save-state")).to_have_text(SAVED)
     assert len(asks(page, address)["targets"]) == 2
     wait_for_map(page)

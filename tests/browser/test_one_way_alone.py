@@ -8,6 +8,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import PASSWORD, Visitor
 from tests.browser.operator_map import asks, find_pickable, look_at, place_of, targets, wait_for_map
+from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
 
@@ -54,7 +55,7 @@ def test_a_mission_is_planned_and_saved_with_the_keyboard_alone(visitor: Visitor
     page.keyboard.press("Enter")
     expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
     page.locator("html[data-loaded]").wait_for(state="attached")
-    known = asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=100")["features"]
+    known = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=100")["features"]
 
     page.keyboard.press("n")
     page.wait_for_url(re.compile("/missions/new"))

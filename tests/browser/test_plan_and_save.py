@@ -8,6 +8,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import adds_uav, clicks_at, find_pickable, look_at, second_facts, stores_mission, targets, wait_for_map
+from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
 
@@ -18,8 +19,8 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     page.wait_for_url(re.compile("/missions/new"))
     wait_for_map(page)
 
-    adds_uav(page, "Heron", [-83.045, 39.935], range_km=80)
-    adds_uav(page, "Kite", [-82.945, 39.945], range_km=80)
+    adds_uav(page, "Heron", region.west, range_km=80)
+    adds_uav(page, "Kite", region.east, range_km=80)
     things = find_pickable(page)
     picked_so_far = page.locator("#target-list .target")
     clicks_at(page, things.tower["geometry"]["coordinates"])
@@ -39,7 +40,7 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     assert picked[1] == things.bridge["properties"]["label"]
     assert picked[3] == things.line["properties"]["label"]
     facts_of_targets = second_facts(page)
-    assert re.fullmatch(r"Tower \d+ of \d+", picked[0])
+    assert re.fullmatch(region.tower_label, picked[0])
     assert facts_of_targets[picked[0]] == things.tower["properties"]["detail"] != ""
     assert facts_of_targets[picked[1]] == things.bridge["properties"]["detail"] != ""
     assert facts_of_targets[picked[3]].startswith("whole line")
@@ -101,10 +102,10 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
 
 
 def test_the_mission_fits_a_phone(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
-    stores_mission(visitor.signs_in("opal"), "Alum Creek towers")
+    stores_mission(visitor.signs_in("opal"), "Towers on a phone")
     for theme in ("light", "dark"):
         page = visitor.signs_in("opal", size=(390, 844), theme=theme, touch=True)
-        page.get_by_role("link", name="Alum Creek towers").click()
+        page.get_by_role("link", name="Towers on a phone").click()
         wait_for_map(page)
         expect(page.locator("#plan-sentence")).to_contain_text("All back in")
         assert page.evaluate("document.documentElement.scrollWidth") == 390
@@ -125,7 +126,7 @@ def test_what_is_picked_can_be_undone_and_survives_a_reload(visitor: Visitor) ->
     find = page.get_by_role("combobox", name="Find an asset or a line")
     expect(find).to_be_focused()
     expect(page.get_by_role("listbox").get_by_role("option").first).to_be_visible()  # empty: what is in view
-    find.fill("138 kV")
+    find.fill(f"{region.voltage_kv} kV")
     expect(page.get_by_role("listbox").get_by_role("option").first).to_have_attribute("aria-selected", "true")
     page.keyboard.press("Enter")
     expect(page.locator("#target-list .target")).to_have_count(1)

@@ -9,11 +9,9 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, place_of, wait_for_map
+from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
-
-FAR_AWAY = [-82.5, 39.6]
-WEST, EAST = [-83.045, 39.935], [-82.945, 39.945]
 
 
 def sends(page: Page, path: str, body: dict[str, Any]) -> Any:
@@ -25,9 +23,9 @@ def sends(page: Page, path: str, body: dict[str, Any]) -> Any:
 
 def opens_mission(page: Page, name: str, *, targets: int = 8, more: list[dict[str, Any]] | None = None) -> None:
     """A planned mission with two UAVs that start apart, and towers around both."""
-    towers = asks(page, "/assets?kind=tower&bbox=-83.12,39.83,-82.86,40.0&limit=200")["features"]
+    towers = asks(page, f"/assets?kind=tower&bbox={region.all_towers}&limit=200")["features"]
     picked = towers[:: max(1, len(towers) // targets)][:targets]
-    uavs = [{"name": "Heron", "position": WEST}, {"name": "Kite", "position": EAST}]
+    uavs = [{"name": "Heron", "position": region.west}, {"name": "Kite", "position": region.east}]
     wanted = [{"asset": tower["id"]} for tower in picked] + (more or [])
     options = {"objective": "makespan", "return_to_start": True, "plan": targets <= 12}
     mission = sends(page, "missions", {"name": name, "uavs": uavs, "targets": wanted, **options})
@@ -41,7 +39,7 @@ def objective(page: Page, name: str) -> Any:
 
 def test_both_ways_of_planning_stand_side_by_side_and_one_click_switches(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
-    opens_mission(page, "Two ways", more=[{"position": FAR_AWAY}])
+    opens_mission(page, "Two ways", more=[{"position": region.far_away}])
     facts = page.locator("#plan-facts")
     even, least = (
         page.locator("#objective label").filter(has_text="Finish soonest"),
@@ -86,7 +84,7 @@ def test_a_strip_the_profile_and_the_map_follow_one_pointer(visitor: Visitor, pi
 
     page.mouse.move(0, 0)
     expect(profile).not_to_contain_text(re.compile(r"at \d+\.\d\skm"))
-    page.locator("#target-list .what").filter(has_text="Tower").first.hover()
+    page.locator("#target-list .what").first.hover()
     expect(page.locator(".strip-target.lit")).to_have_count(1)
     name = row.get_by_role("button", name=re.compile("^B Kite"))
     name.click()
@@ -98,7 +96,7 @@ def test_a_strip_the_profile_and_the_map_follow_one_pointer(visitor: Visitor, pi
 
 def test_a_target_that_is_not_reached_says_why_and_what_would_help(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     page = visitor.signs_in("opal")
-    opens_mission(page, "Too far", more=[{"position": FAR_AWAY}])
+    opens_mission(page, "Too far", more=[{"position": region.far_away}])
     notice = page.locator("#notices .notice").filter(has_text="is not reached")
     expect(notice).to_contain_text("It is more than 10 km from the network.")
     notice.get_by_role("button", name="Why?").click()
@@ -163,7 +161,7 @@ def test_a_uav_that_is_dragged_starts_elsewhere(visitor: Visitor) -> None:
     expect(page.locator("#mission-facts")).to_contain_text("changed since it was planned")
     moved = square.bounding_box()
     assert moved and moved["x"] > box["x"] + 30
-    was = place_of(page, WEST)
+    was = place_of(page, region.west)
     assert abs(moved["x"] + moved["width"] / 2 - was["x"]) > 30
     page.keyboard.press("Control+z")
     expect(page.locator("#mission-facts")).not_to_contain_text("changed since it was planned")
@@ -189,10 +187,11 @@ def test_a_fleet_is_narrowed_by_sensor_and_base_and_several_are_chosen_at_once(v
         name: sends(page, "uav-types", {"name": name, "max_range_m": 30_000, "sensors": sensors})["id"] for name, sensors in KINDS.items()
     }
     bases = {
-        name: sends(page, "bases", {"name": name, "position": place})["id"] for name, place in (("Gate west", WEST), ("Gate east", EAST))
+        name: sends(page, "bases", {"name": name, "position": place})["id"]
+        for name, place in (("Gate west", region.west), ("Gate east", region.east))
     }
     for name, kind, base, state in FLEET:
-        body = {"name": name, "position": WEST, "type": kinds[kind], "base": bases[base], "battery_percent": 95, "state": state}
+        body = {"name": name, "position": region.west, "type": kinds[kind], "base": bases[base], "battery_percent": 95, "state": state}
         sends(page, "uavs", body)
     page.goto("/missions/new")
     wait_for_map(page)

@@ -9,6 +9,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 from tests.browser.test_planning import opens_mission, sends
 
@@ -123,8 +124,8 @@ def test_the_order_is_changed_and_locked_by_keyboard_alone(visitor: Visitor) -> 
 
 def test_wishes_of_targets_and_uavs_are_saved_undone_and_seen_on_a_phone(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal", **PHONE)
-    sends(page, "bases", {"name": "Wishing yard", "position": [-83.0, 39.95]})
-    sends(page, "uavs", {"name": "Sensing", "position": [-83.0, 39.9], "sensor": "Corona camera"})
+    sends(page, "bases", {"name": "Wishing yard", "position": region.centre})
+    sends(page, "uavs", {"name": "Sensing", "position": region.at(0, -0.05), "sensor": "Corona camera"})
     opens_mission(page, "With wishes", targets=5)
     expect(page.locator("#plan-quality")).to_contain_text("Proven soonest.")
     page.get_by_role("button", name="Panel height").click()

@@ -14,6 +14,7 @@ from playwright.sync_api import Page, expect
 from tests.browser.conftest import Site, Visitor
 from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
+from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 from tests.browser.test_fleet import writes
 from tests.browser.uav_by_mavlink import Autopilot
@@ -38,7 +39,7 @@ class Flight:
 def flight(visitor: Visitor, site: Site) -> Iterator[Flight]:
     """A mission whose two UAVs have it on board and stand ready; both speak MAVLink to the installation's own gateway."""
     page = visitor.signs_in("ada")
-    towers = _in_a_row(asks(page, "/assets?kind=tower&bbox=-82.98,39.87,-82.93,39.94&limit=200")["features"])
+    towers = _in_a_row(asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=200")["features"])
     uavs, vehicles = [], {}
     for name, tower in zip(NAMES, (towers[0], towers[-1]), strict=True):
         at = (tower["geometry"]["coordinates"][0], tower["geometry"]["coordinates"][1] + BESIDE_DEG)

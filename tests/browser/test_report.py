@@ -10,12 +10,13 @@ from playwright.sync_api import Page, expect
 from tests.browser.conftest import Site, Visitor
 from tests.browser.operator_map import TOO_WIDE, asks, stores_mission, wait_for_map
 from tests.browser.pictures import HAS_PICTURES
+from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.browser
 
 Picture = Callable[[Page, str], None]
-STARTS = {"Pintail": [-83.045, 39.935], "Garganey": [-82.945, 39.945]}
+STARTS = {"Pintail": region.west, "Garganey": region.east}
 VIEWS: dict[str, dict[str, Any]] = {
     "light": {"theme": "light", "size": (1440, 900)},
     "dark": {"theme": "dark", "size": (1440, 900)},
@@ -39,7 +40,7 @@ def flown(visitor: Visitor, site: Site) -> str:
     if site.address not in _flown:
         page = visitor.signs_in("ada")
         uavs = [posts(page, "/uavs", {"name": name, "position": position, "is_simulated": True})["id"] for name, position in STARTS.items()]
-        towers = asks(page, "/assets?kind=tower&bbox=-83.02,39.87,-82.93,39.94&limit=400")["features"]
+        towers = asks(page, f"/assets?kind=tower&bbox={region.report_towers}&limit=400")["features"]
         towers = towers[:: len(towers) // 8][:8]
         body = {
             "name": "South belt, autumn", "uavs": [{"id": uav, "most_targets": 4} for uav in uavs],

@@ -10,9 +10,10 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, look_at, wait_for_map
-from tests.browser.pictures import HAS_PICTURES, Picture, in_both_themes
+from tests.browser.pictures import Picture, in_both_themes
+from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
-from tests.browser.test_planning import EAST, WEST, sends
+from tests.browser.test_planning import sends
 
 pytestmark = pytest.mark.browser
 
@@ -23,9 +24,9 @@ HALF_DEG = 0.004
 
 
 def planned(page: Page, name: str, **options: Any) -> dict[str, Any]:
-    towers = asks(page, "/assets?kind=tower&bbox=-83.12,39.83,-82.86,40.0&limit=200")["features"]
+    towers = asks(page, f"/assets?kind=tower&bbox={region.all_towers}&limit=200")["features"]
     picked = [{"asset": tower["id"]} for tower in towers[:: len(towers) // 4][:4]]
-    uavs = [{"name": "Heron", "position": WEST}, {"name": "Kite", "position": EAST}]
+    uavs = [{"name": "Heron", "position": region.west}, {"name": "Kite", "position": region.east}]
     body = {"name": name, "uavs": uavs, "targets": picked, "objective": "makespan", "return_to_start": True, "plan": True}
     mission: dict[str, Any] = sends(page, "missions", body | options)
     return mission
@@ -84,10 +85,9 @@ def test_a_route_goes_round_a_timed_zone_at_its_times_alone_and_the_page_says_so
     in_both_themes(page, picture, "plan-legal-zone-phone")
 
 
-@pytest.mark.skipif(not HAS_PICTURES, reason="pictures are asked for with SPANWISE_SCREENSHOTS=1")
 def test_what_does_not_fit_in_one_flight_is_shown_as_several(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
-    uav = {"name": "Kite", "position": EAST, "battery_wh": 280.0, "max_airspeed_mps": 15.0, "sorties": 4}
+    uav = {"name": "Kite", "position": region.east, "battery_wh": 280.0, "max_airspeed_mps": 15.0, "sorties": 4}
     mission = planned(page, "In several flights", uavs=[uav], departs_at=(DAY + timedelta(hours=9)).isoformat())
     (route,) = mission["plan"]["routes"]
     assert "base" in [waypoint["kind"] for waypoint in route["waypoints"]], [mission["plan"]["unassigned"], route["energy_wh"]]

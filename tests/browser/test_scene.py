@@ -10,6 +10,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Site, Visitor
 from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 from tests.browser.test_report import posts
 
@@ -18,7 +19,6 @@ pytestmark = pytest.mark.browser
 Picture = Callable[[Page, str], None]
 PATIENCE_MS = 60_000  # pictures are drawn by the processor here
 FLIGHT_S = 120
-START = [-82.9655, 39.9125]
 DEPARTS_AT = (datetime.now(UTC) + timedelta(days=20)).replace(hour=15, minute=0, second=0, microsecond=0)
 NO_WEBGL = """
     const own = HTMLCanvasElement.prototype.getContext;
@@ -40,9 +40,11 @@ def rehearsed(visitor: Visitor, site: Site) -> tuple[str, str]:
     """Keys of a mission with one short flight to a tower, and of its rehearsal in calm air; flown once for all tests."""
     if site.address not in _rehearsed:
         page = visitor.signs_in("ada")
-        uav = posts(page, "/uavs", {"name": "Eider", "position": START, "is_simulated": True})["id"]
-        towers = asks(page, "/assets?kind=tower&bbox=-82.98,39.90,-82.95,39.925&limit=100")["features"]
-        nearest = min(towers, key=lambda tower: sum((a - b) ** 2 for a, b in zip(tower["geometry"]["coordinates"], START, strict=True)))
+        uav = posts(page, "/uavs", {"name": "Eider", "position": region.beside_tower, "is_simulated": True})["id"]
+        towers = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=200")["features"]
+        nearest = min(
+            towers, key=lambda tower: sum((a - b) ** 2 for a, b in zip(tower["geometry"]["coordinates"], region.beside_tower, strict=True))
+        )
         body: dict[str, Any] = {
             "name": "One tower", "uavs": [{"id": uav}], "targets": [{"asset": nearest["id"]}], "return_to_start": True, "plan": True,
             "departs_at": DEPARTS_AT.isoformat(),

@@ -10,6 +10,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Site, Visitor
 from tests.browser.operator_map import asks
+from tests.browser.regions import region
 from tests.browser.test_fleet import writes
 from tests.browser.test_report import VIEWS, flown, posts
 from tests.browser.test_scene import PATIENCE_MS, seen
@@ -23,16 +24,17 @@ BUILD_GRAPH = "from django.core.management import call_command; call_command('bu
 REHEARSES_S = 300
 BOTH_THEMES = {"approach", "line"}
 DAY = (datetime.now(UTC) + timedelta(days=20)).date()
-DAYTIME, NIGHT = f"{DAY}T19:30:00+00:00", f"{DAY}T23:10:00+00:00"  # in Ohio: the afternoon, an hour after sunset
+DAYTIME, NIGHT = f"{DAY}T{region.afternoon_utc}:00+00:00", f"{DAY}T{region.night_utc}:00+00:00"
 
 
 @pytest.fixture
 def towers(visitor: Visitor) -> Towers:
     """Of one line, by their number in it."""
     page = visitor.signs_in("ada")
-    found = asks(page, "/assets?kind=tower&bbox=-83.0,39.90,-82.94,39.925&limit=100")["features"]
+    found = asks(page, f"/assets?kind=tower&bbox={region.picture_towers}&limit=400")["features"]
     page.context.close()
-    return {int(tower["properties"]["label"].split()[1]): tower for tower in found if tower["properties"]["label"].endswith(" of 40")}
+    numbers = [re.fullmatch(region.picture_line, tower["properties"]["label"]) for tower in found]
+    return {int(number[1]): tower for number, tower in zip(numbers, found, strict=True) if number}
 
 
 @pytest.fixture

@@ -9,6 +9,7 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, find_pickable, look_at, targets, wait_for_map
+from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
 
@@ -122,8 +123,8 @@ def test_every_bridge_of_a_railway_is_picked_from_its_row(visitor: Visitor) -> N
 
 def test_a_search_takes_all_that_match_and_is_filtered(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
-    count = asks(page, "/assets?text=138&flyable=true&total=true&limit=1")["total"]
-    assert adds_all(page, "138") == count > 1
+    count = asks(page, f"/assets?text={region.voltage_kv}&flyable=true&total=true&limit=1")["total"]
+    assert adds_all(page, str(region.voltage_kv)) == count > 1
     page.get_by_role("button", name="Undo", exact=True).first.click()
     expect(rows(page)).to_have_count(0)
 
@@ -234,7 +235,7 @@ def osm_of(page: Page, asset: int) -> str:
 
 def test_several_targets_are_chosen_by_keyboard_and_removed_and_everything_is_undone(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
-    count = adds_all(page, "138")
+    count = adds_all(page, str(region.voltage_kv))
     page.get_by_role("button", name="Choose", exact=True).focus()
     page.keyboard.press("Enter")
     expect(page.get_by_role("checkbox", name=re.compile("^Choose ")).first).to_be_focused()
@@ -260,7 +261,7 @@ def test_several_targets_are_chosen_by_keyboard_and_removed_and_everything_is_un
 
 def test_a_selection_is_kept_loaded_renamed_deleted_and_brought_back(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
-    count = adds_all(page, "138")
+    count = adds_all(page, str(region.voltage_kv))
     page.get_by_role("button", name="Saved selections").click()
     dialog = page.get_by_role("dialog", name="Saved selections")
     dialog.get_by_label(f"Keep the {count} picked targets as").fill("Test belt")

@@ -8,8 +8,9 @@ from playwright.sync_api import Page, expect
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks
 from tests.browser.pictures import Picture, in_both_themes
+from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
-from tests.browser.test_planning import EAST, WEST, sends
+from tests.browser.test_planning import sends
 from tests.browser.test_safe_routes import opens
 
 pytestmark = pytest.mark.browser
@@ -32,10 +33,10 @@ def waits_for_changes(page: Page, mission: dict[str, Any], count: int) -> None:
 def test_a_battery_that_has_shrunk_is_told_taken_and_given_back(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     battery = {"battery_wh": 700.0, "mass_kg": 4.0, "max_airspeed_mps": 15.0}
-    swift = sends(page, "uavs", {"name": "Swift", "position": EAST, **battery})
-    towers = asks(page, "/assets?kind=tower&bbox=-83.12,39.83,-82.86,40.0&limit=200")["features"]
+    swift = sends(page, "uavs", {"name": "Swift", "position": region.east, **battery})
+    towers = asks(page, f"/assets?kind=tower&bbox={region.all_towers}&limit=200")["features"]
     picked = [{"asset": tower["id"]} for tower in towers[:: len(towers) // 4][:4]]
-    uavs = [{"id": swift["id"]}, {"name": "Heron", "position": WEST}]
+    uavs = [{"id": swift["id"]}, {"name": "Heron", "position": region.west}]
     body = {"name": "Swift's battery", "uavs": uavs, "targets": picked, "objective": "makespan", "return_to_start": True, "plan": True}
     mission = sends(page, "missions", body)
     opens(page, mission)

@@ -7,6 +7,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import PASSWORD, Visitor
 from tests.browser.operator_map import stores_mission, targets, wait_for_map
+from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
 
@@ -124,7 +125,7 @@ def test_a_save_in_one_window_leaves_the_changes_of_another(visitor: Visitor) ->
 
 def test_a_cleared_selection_stays_cleared(visitor: Visitor) -> None:
     page = opens_mission(visitor.signs_in("opal"), "/missions/new")
-    picks_from_the_search(page, "138 kV")
+    picks_from_the_search(page, f"{region.voltage_kv} kV")
     page.reload()
     expect(page.get_by_text("Your unsaved mission is back.")).to_be_visible()
     picks_from_the_search(page, "bridge")
@@ -138,7 +139,7 @@ def test_a_cleared_selection_stays_cleared(visitor: Visitor) -> None:
 
 def test_saving_keeps_what_can_be_undone(visitor: Visitor) -> None:
     page = opens_mission(visitor.signs_in("opal"), "/missions/new")
-    picks_from_the_search(page, "138 kV")
+    picks_from_the_search(page, f"{region.voltage_kv} kV")
     picks_from_the_search(page, "bridge")
     saves_as(page, "Undo after saving")
     with page.expect_response(lambda answer: answer.request.method == "PATCH"):
@@ -153,13 +154,13 @@ def test_a_notice_about_an_empty_selection_goes_with_the_first_pick(visitor: Vis
     page = opens_mission(visitor.signs_in("opal"), "/missions/new")
     page.keyboard.press("p")
     expect(page.locator("#notices .critical")).to_contain_text("Nothing picked yet.")
-    picks_from_the_search(page, "138 kV")
+    picks_from_the_search(page, f"{region.voltage_kv} kV")
     expect(page.locator("#notices .critical")).to_have_count(0)
 
 
 def test_an_ended_session_leads_to_the_door_and_back_to_the_selection(visitor: Visitor) -> None:
     page = opens_mission(visitor.signs_in("opal"), "/missions/new")
-    picks_from_the_search(page, "138 kV")
+    picks_from_the_search(page, f"{region.voltage_kv} kV")
     picked = targets(page)
     page.context.clear_cookies(name="sessionid")
     page.get_by_role("button", name="Save", exact=True).click()
@@ -176,7 +177,7 @@ def test_an_ended_session_leads_to_the_door_and_back_to_the_selection(visitor: V
 
 def test_what_one_picked_is_not_shown_to_the_next_at_the_same_browser(visitor: Visitor) -> None:
     page = opens_mission(visitor.signs_in("opal"), "/missions/new")
-    picks_from_the_search(page, "138 kV")
+    picks_from_the_search(page, f"{region.voltage_kv} kV")
     for name, count in (("rory", 0), ("opal", 1)):
         page.get_by_role("button", name=re.compile("^Account of")).click()
         page.get_by_role("button", name="Sign out").click()

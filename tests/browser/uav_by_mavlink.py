@@ -13,7 +13,7 @@ from tests.telemetry.vehicles.px4 import LAND, MISSION, RETURN, Px4
 METRES_A_DEGREE = 111_195.0
 CLIMB_MPS, SINK_MPS, NEAR_M, TELLS_EVERY_S = 12.0, 2.0, 1.0, 1.0
 STAYS = (mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_LOITER_TIME)
-HOME_AMSL_M = 220.0  # about that of Columbus
+HOME_AMSL_M = 220.0
 BATTERY_PERCENT_S = 0.02
 
 

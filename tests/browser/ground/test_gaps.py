@@ -8,11 +8,10 @@ import pytest
 from playwright.sync_api import Page, Route, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import asks, place_of, wait_for_map
+from tests.browser.operator_map import asks, at_zoom, place_of, wait_for_map
+from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
-
-UNTAGGED_KM = "86 of 88 vertices have no tower"
 
 
 def opens_gaps(
@@ -49,10 +48,11 @@ def open_number(page: Page) -> int:
 
 def test_a_gap_is_found_shown_mended_and_the_repair_taken_back(visitor: Visitor) -> None:
     page = opens_gaps(visitor, "cora", kind="Towers missing")
-    expect(page.locator(".gap-row")).to_have_count(14)
+    lines, untagged, vertices = region.missing_towers
+    expect(page.locator(".gap-row")).to_have_count(lines)
     before = open_number(page)
     page.locator(".gap-row").first.click()
-    expect(page.get_by_role("heading", name=UNTAGGED_KM)).to_be_visible()
+    expect(page.get_by_role("heading", name=f"{untagged} of {vertices} vertices have no tower")).to_be_visible()
     wait_for_map(page)
     gap_id = int(re.search(r"gap=(\d+)", page.url)[1])  # type: ignore[index]
     frame = page.locator("#map").bounding_box()
@@ -62,14 +62,14 @@ def test_a_gap_is_found_shown_mended_and_the_repair_taken_back(visitor: Visitor)
         assert frame["x"] < place["x"] < frame["x"] + frame["width"]
         assert frame["y"] < place["y"] < frame["y"] + frame["height"]
 
-    page.get_by_role("button", name="Make 86 towers of the vertices").click()
-    expect(page.locator(".toast")).to_contain_text("86 towers placed.")
+    page.get_by_role("button", name=f"Make {untagged} towers of the vertices").click()
+    expect(page.locator(".toast")).to_contain_text(f"{untagged} towers placed.")
     expect(page.locator(".gap-decided")).to_contain_text("Repaired by cora")
     assert open_number(page) < before
     assert asks(page, f"/gaps/{gap_id}")["properties"]["state"] == "repaired"
     page.get_by_role("button", name="Undo").click()
     expect(page.locator(".toast")).to_contain_text("Taken back.")
-    expect(page.get_by_role("button", name="Make 86 towers of the vertices")).to_be_visible()
+    expect(page.get_by_role("button", name=f"Make {untagged} towers of the vertices")).to_be_visible()
     assert open_number(page) == before
 
 
@@ -110,7 +110,7 @@ def test_filters_narrow_the_list_and_an_empty_one_says_so(visitor: Visitor) -> N
     expect(page.locator("#gap-list-end")).to_contain_text("No gap matches “no such line”.")
     page.get_by_role("button", name="Clear the filter").click()
     expect(page.locator(".gap-row")).to_have_count(whole)
-    page.evaluate("location.hash = 'map=16/39.9/-82.9'")
+    page.evaluate("(hash) => { location.hash = hash; }", at_zoom(16, region.at(0.1, -0.05)))
     page.get_by_role("checkbox", name="In view").check()
     expect(page.locator(".gap-row")).not_to_have_count(whole)
 

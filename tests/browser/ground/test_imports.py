@@ -11,6 +11,7 @@ from playwright.sync_api import Page, Route, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, place_of, wait_for_map
+from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
 
@@ -23,7 +24,9 @@ EDIT = """async (path) => {
     const { etag } = await api.get(path);
     await api.patch(path, { reason: "Checked on site" }, { headers: { "If-Match": etag } });
 }"""
-WHERE_IT_OPENS = (-83.0, 39.96)
+WHERE_IT_OPENS = region.at(0, 0.01)
+NORTH, SOUTH, EAST = ("North", *region.at(0, 0.03)), ("South", *region.at(0, -0.02)), ("East", *region.at(0.07, 0))
+NORTH_MOVED, WEST = ("North", *region.at(0, 0.035)), ("West", *region.at(-0.06, -0.01))
 
 
 def square(west: float, south: float) -> dict[str, Any]:
@@ -87,7 +90,7 @@ def test_what_a_file_would_change_is_seen_on_list_and_map_before_it_counts_and_c
     curator: Page, tmp_path: Path, picture: Callable[[Page, str], None]
 ) -> None:
     page = curator
-    first = written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.98), ("South", -83.0, 39.93), ("East", -82.93, 39.95)))
+    first = written(tmp_path, "works.geojson", zone_file(NORTH, SOUTH, EAST))
     sends(page, first, set_name="Works")
     expect(sentence(page)).to_have_text("3\u00a0new.")
     assert not [found for found in asks(page, "/zone-sets")["results"] if found["name"] == "Works"]
@@ -96,7 +99,7 @@ def test_what_a_file_would_change_is_seen_on_list_and_map_before_it_counts_and_c
     expect(page.get_by_text("Applied by cora")).to_be_visible()
 
     page.get_by_role("link", name="All imports").click()
-    second = written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.985), ("West", -83.06, 39.94), ("East", -82.93, 39.95)))
+    second = written(tmp_path, "works.geojson", zone_file(NORTH_MOVED, WEST, EAST))
     sends(page, second, set_name="Works")
     expect(sentence(page)).to_have_text("1\u00a0new, 1\u00a0changed, 1\u00a0vanished.")
     expect(page.get_by_text("1 is as it was.")).to_be_visible()
@@ -106,7 +109,7 @@ def test_what_a_file_would_change_is_seen_on_list_and_map_before_it_counts_and_c
         page.emulate_media(color_scheme=theme)
         picture(page, f"imports-difference-{theme}")
     page.emulate_media(color_scheme="light")
-    place = place_of(page, [-83.06 + SIDE_DEG / 4, 39.94 + SIDE_DEG / 4])
+    place = place_of(page, [degrees + SIDE_DEG / 4 for degrees in WEST[1:]])
     page.mouse.move(place["x"], place["y"])
     expect(page.locator("#changes li", has_text="West")).to_have_attribute("data-lit", "true")
     page.mouse.move(0, 0)
@@ -128,7 +131,7 @@ def test_what_a_file_would_change_is_seen_on_list_and_map_before_it_counts_and_c
 
 def test_a_cut_connection_goes_on_where_it_was_also_after_a_reload(visitor: Visitor, curator: Page, tmp_path: Path) -> None:
     page = curator
-    path = written(tmp_path, "long.geojson", zone_file(("Long", -83.0, 39.98), padding="x" * (3 * PART)))
+    path = written(tmp_path, "long.geojson", zone_file(("Long", *region.at(0, 0.03)), padding="x" * (3 * PART)))
     sent: list[int] = []
     page.on("request", lambda request: request.method == "PUT" and sent.append(int(request.url.rsplit("/", 1)[1])))
     asked: list[str] = []
@@ -155,7 +158,7 @@ def test_a_cut_connection_goes_on_where_it_was_also_after_a_reload(visitor: Visi
 
 def test_a_connection_that_comes_back_is_used_without_a_word_from_anybody(visitor: Visitor, curator: Page, tmp_path: Path) -> None:
     page = curator
-    path = written(tmp_path, "again.geojson", zone_file(("Again", -83.0, 39.98), padding="x" * PART))
+    path = written(tmp_path, "again.geojson", zone_file(("Again", *region.at(0, 0.03)), padding="x" * PART))
     cuts, lost = iter([True]), iter([True])
     page.route(f"**/bytes/{PART}", lambda route: route.abort() if next(cuts, False) else route.continue_())
 
@@ -194,7 +197,7 @@ def test_a_file_with_a_fault_is_refused_and_the_place_is_one_click_away(curator:
 
 
 def test_somebody_slower_hears_who_decided(curator: Page, visitor: Visitor, session: list[Any], tmp_path: Path) -> None:
-    sends(curator, written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.98))), set_name="Works")
+    sends(curator, written(tmp_path, "works.geojson", zone_file(NORTH)), set_name="Works")
     expect(curator.get_by_role("button", name="Apply 1 change")).to_be_visible()
     other = visitor.opens()
     other.context.add_cookies(session)
@@ -209,9 +212,7 @@ def test_somebody_slower_hears_who_decided(curator: Page, visitor: Visitor, sess
 
 def test_the_keyboard_is_enough_to_decide(curator: Page, tmp_path: Path) -> None:
     page = curator
-    page.locator("#choose-file").set_input_files(
-        written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.98), ("East", -82.93, 39.95)))
-    )
+    page.locator("#choose-file").set_input_files(written(tmp_path, "works.geojson", zone_file(NORTH, EAST)))
     expect(page.get_by_label("What it is")).to_be_focused()
     page.get_by_label("Name of the set").press("Enter")
     expect(sentence(page)).to_have_text("2\u00a0new.")
@@ -226,14 +227,14 @@ def test_the_keyboard_is_enough_to_decide(curator: Page, tmp_path: Path) -> None
 
 def test_what_was_edited_by_hand_is_kept_or_overwritten_with_a_word(curator: Page, tmp_path: Path) -> None:
     page = curator
-    sends(page, written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.98))), set_name="Works")
+    sends(page, written(tmp_path, "works.geojson", zone_file(NORTH)), set_name="Works")
     page.get_by_role("button", name="Apply 1 change").click()
     expect(page.locator("#proposal .chip")).to_have_text("Applied")
     [zone] = asks(page, "/zones?limit=1000")["features"][-1:]
     assert zone["properties"]["name"] == "North"
     page.evaluate(EDIT, f"/zones/{zone['id']}")
     page.get_by_role("link", name="All imports").click()
-    sends(page, written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.985))), set_name="Works")
+    sends(page, written(tmp_path, "works.geojson", zone_file(NORTH_MOVED)), set_name="Works")
     expect(sentence(page)).to_have_text("1\u00a0kept as edited by hand.")
     apply = page.locator("#apply")
     expect(apply).to_be_disabled()
@@ -252,8 +253,9 @@ def test_the_columns_of_a_table_are_explained_before_it_is_compared(
     curator: Page, tmp_path: Path, picture: Callable[[Page, str], None]
 ) -> None:
     page = curator
+    west, south = region.at(-0.05, -0.01)
     rows = "".join(
-        f"{number};{'Mast' if number % 7 else 'Zaun'};{-83.05 + number * 0.003:.5f};{39.94 + number * 0.0007:.5f};{30 + number % 5}\n"
+        f"{number};{'Mast' if number % 7 else 'Zaun'};{west + number * 0.003:.5f};{south + number * 0.0007:.5f};{30 + number % 5}\n"
         for number in range(40)
     )
     page.locator("#choose-file").set_input_files(written(tmp_path, "masts.csv", f"Nr;art;x;y;Hoehe\n{rows}".encode()))
@@ -322,7 +324,7 @@ def test_only_curators_have_the_tools_the_others_a_sentence(visitor: Visitor) ->
 def test_a_phone_has_it_all_in_the_sheet(
     visitor: Visitor, curator: Page, session: list[Any], tmp_path: Path, picture: Callable[[Page, str], None]
 ) -> None:
-    sends(curator, written(tmp_path, "works.geojson", zone_file(("North", -83.0, 39.98), ("East", -82.93, 39.95))), set_name="Phone works")
+    sends(curator, written(tmp_path, "works.geojson", zone_file(NORTH, EAST)), set_name="Phone works")
     expect(sentence(curator)).to_be_visible()
     page = visitor.opens(size=(390, 844), touch=True, theme="dark")
     page.context.add_cookies(session)

@@ -8,9 +8,11 @@ from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, find_pickable, look_at, place_of
+from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
 PHONE = (390, 844)
+VOLTAGE = f"{region.voltage_kv} kV"
 Picture = Callable[[Page, str], None]
 
 
@@ -63,7 +65,7 @@ def figures(page: Page) -> Locator:
 
 def test_a_fact_is_corrected_told_in_the_history_and_brought_back(visitor: Visitor, picture: Picture) -> None:
     page = opens(visitor, "/assets")
-    finds(page, "138 kV", "138 kV")
+    finds(page, VOLTAGE, VOLTAGE)
     page.get_by_role("button", name="Edit", exact=True).click()
     page.get_by_label("Name", exact=True).fill("Northern feeder")
     page.get_by_label("Operator").fill("Test operator")
@@ -89,7 +91,7 @@ def somebody_says(page: Page, asset: str, **facts: object) -> None:
 
 def test_the_second_of_two_curators_is_asked_and_overwrites_nothing_unseen(visitor: Visitor) -> None:
     page = opens(visitor, "/assets")
-    finds(page, "138 kV", "138 kV")
+    finds(page, VOLTAGE, VOLTAGE)
     page.get_by_role("button", name="Edit", exact=True).click()
     asset = page.url.split("id=")[1]
     somebody_says(page, asset, operator="Theirs")
@@ -104,7 +106,7 @@ def test_the_second_of_two_curators_is_asked_and_overwrites_nothing_unseen(visit
 
 def test_what_is_stored_over_a_change_of_others_leaves_their_other_facts(visitor: Visitor) -> None:
     page = opens(visitor, "/assets")
-    finds(page, "138 kV", "138 kV")
+    finds(page, VOLTAGE, VOLTAGE)
     page.get_by_role("button", name="Edit", exact=True).click()
     asset = page.url.split("id=")[1]
     somebody_says(page, asset, operator="Theirs", name="Their name")
@@ -145,20 +147,21 @@ def test_a_shape_is_drawn_and_corrected_without_a_pointer(visitor: Visitor) -> N
     page.get_by_role("button", name="New zone").click()
     page.get_by_role("button", name="Area", exact=True).click()
     page.get_by_text("Points", exact=True).click()
-    for longitude, latitude in (("-83.0", "39.95"), ("-82.98", "39.95"), ("-82.98", "39.97")):
+    north = region.at(0.02, 0.02)[1]
+    for longitude, latitude in (region.at(0, 0), region.at(0.02, 0), region.at(0.02, 0.02)):
         page.get_by_role("button", name="Add a point in the middle of the map").press("Enter")
         row = page.locator(".draw-vertices tbody tr").last
-        row.get_by_role("spinbutton").first.fill(longitude)
-        row.get_by_role("spinbutton").last.fill(latitude)
+        row.get_by_role("spinbutton").first.fill(str(longitude))
+        row.get_by_role("spinbutton").last.fill(str(latitude))
         row.get_by_role("spinbutton").last.press("Tab")
     page.get_by_role("button", name="Finish").press("Enter")
     expect(figures(page)).to_contain_text("3 points")
     page.get_by_role("button", name="Point 3", exact=True).press("Enter")
     page.keyboard.press("Shift+ArrowUp")
     moved = float(page.get_by_label("Latitude of point 3").input_value())
-    assert moved > 39.97
+    assert moved > north
     page.keyboard.press("Control+z")
-    expect(page.get_by_label("Latitude of point 3")).to_have_value("39.97")
+    expect(page.get_by_label("Latitude of point 3")).to_have_value(str(north))
     page.get_by_label("Name", exact=True).fill("By hand")
     page.get_by_role("button", name="Save").press("Enter")
     expect(page.locator("#record-show")).to_contain_text("By hand")

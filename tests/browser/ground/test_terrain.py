@@ -13,12 +13,14 @@ from playwright.sync_api import Browser, Page, expect
 
 from tests.browser.conftest import Site, Visitor
 from tests.browser.operator_map import asks, look_at, place_of, wait_for_map
+from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
 
-WEST, NORTH, STEP = -83.2, 40.15, 0.001  # of the first post, and between posts
+WEST, NORTH = region.at(-0.2, 0.2)  # of the first post
+STEP = 0.001  # between posts
 VOID = -32768
-NAME = "columbus.tif"
+NAME = "plane.tif"
 WORDS = re.compile(r"([\d,]+)\N{NO-BREAK SPACE}m above sea level")
 
 
@@ -73,16 +75,32 @@ def brings_in(page: Page, file: Path) -> None:
     waits_for(page, proposal, "applied")
 
 
-@pytest.fixture(scope="module")
-def model(site: Site, chromium: Browser, tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """A terrain model over Columbus, gone afterwards."""
-    page = Visitor(site, chromium).signs_in("cora")
-    brings_in(page, plane_file(tmp_path_factory.mktemp("terrain")))
-    page.context.close()
-    yield
-    page = Visitor(site, chromium).signs_in("cora")
+def takes_all_away(page: Page) -> None:
     for feature in asks(page, "/terrain")["features"]:
         sends(page, f"/terrain/{feature['id']}", {}, "DELETE")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def no_model_stays(site: Site, chromium: Browser) -> Iterator[None]:
+    yield
+    page = Visitor(site, chromium).signs_in("cora")
+    takes_all_away(page)
+    page.context.close()
+
+
+@pytest.fixture
+def model(visitor: Visitor, tmp_path: Path) -> None:
+    """A terrain model over the region; the next tests find it."""
+    page = visitor.signs_in("cora")
+    if not asks(page, "/terrain")["features"]:
+        brings_in(page, plane_file(tmp_path))
+    page.context.close()
+
+
+@pytest.fixture
+def no_model(visitor: Visitor) -> None:
+    page = visitor.signs_in("cora")
+    takes_all_away(page)
     page.context.close()
 
 
@@ -103,7 +121,7 @@ def shown_m(page: Page) -> float:
 
 def a_line_of(page: Page) -> tuple[dict[str, Any], list[float]]:
     """A power line that has its towers, and the middle of one of its spans."""
-    for feature in asks(page, "/assets?kind=line&bbox=-83.15,39.8,-82.85,40.1&limit=100")["features"]:
+    for feature in asks(page, f"/assets?kind=line&bbox={region.everything}&limit=100")["features"]:
         places = asks(page, f"/assets/{feature['id']}")["geometry"]["coordinates"]
         lons, lats = zip(*places, strict=True)
         around = f"{min(lons) - 0.0001},{min(lats) - 0.0001},{max(lons) + 0.0001},{max(lats) + 0.0001}"
@@ -114,12 +132,10 @@ def a_line_of(page: Page) -> tuple[dict[str, Any], list[float]]:
     raise AssertionError("no line")
 
 
-def test_without_terrain_the_page_says_so_and_leads_to_imports(visitor: Visitor) -> None:
+def test_without_terrain_the_page_says_so_and_leads_to_imports(visitor: Visitor, no_model: None) -> None:
     page = opens_terrain(visitor, "cora")
-    if asks(page, "/terrain")["features"]:
-        pytest.skip("another test has brought a model in")
     expect(page.locator("#terrain-list-end")).to_contain_text("No terrain here yet.")
-    look_at(page, [-83.0, 39.95])
+    look_at(page, region.centre)
     page.locator("#map").click()
     expect(page.locator("#terrain-panel h2")).to_have_text("No terrain model knows the ground here.")
     page.get_by_role("link", name="Import a file").first.click()
@@ -137,7 +153,7 @@ def test_a_model_is_told_with_its_datum_voids_and_licence(visitor: Visitor, mode
 
 def test_a_click_tells_the_height_of_the_ground_there(visitor: Visitor, model: None) -> None:
     page = opens_terrain(visitor, "vera")
-    position = [-82.99, 39.951]
+    position = region.at(0.01, 0.001)
     place = look_at(page, position)
     page.mouse.click(place["x"], place["y"])
     assert shown_m(page) == pytest.approx(plane_m(position), abs=0.6)
@@ -148,8 +164,8 @@ def test_a_click_tells_the_height_of_the_ground_there(visitor: Visitor, model: N
 def test_points_make_a_profile_and_the_last_can_be_taken_back(visitor: Visitor, model: None) -> None:
     page = opens_terrain(visitor, "vera")
     page.keyboard.press("p")
-    look_at(page, [-83.0, 39.95], 13)
-    for position in ([-83.03, 39.95], [-82.99, 39.96], [-82.97, 39.94]):
+    look_at(page, region.centre, 13)
+    for position in (region.at(-0.03, 0), region.at(0.01, 0.01), region.at(0.03, -0.01)):
         place = place_of(page, position)
         page.mouse.click(place["x"], place["y"])
     expect(page.get_by_role("heading", name="3 points")).to_be_visible()
@@ -194,12 +210,8 @@ def test_the_profile_stands_in_sight(
     picture(page, f"terrain-{name}")
 
 
-def test_a_curator_takes_a_model_away_after_being_asked(visitor: Visitor, tmp_path: Path) -> None:
+def test_a_curator_takes_a_model_away_after_being_asked(visitor: Visitor, model: None) -> None:
     page = opens_terrain(visitor, "cora")
-    if not asks(page, "/terrain")["features"]:
-        brings_in(page, plane_file(tmp_path))
-        page.reload()
-        wait_for_map(page)
     page.get_by_role("button", name=f"Remove {NAME}").click()
     page.get_by_role("button", name="Keep it").click()
     expect(page.locator(".terrain-row")).to_have_count(1)

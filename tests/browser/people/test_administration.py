@@ -1,6 +1,5 @@
 """Who works here: invited, found, given roles, kept out; and who came to the door."""
 
-import os
 import re
 from collections.abc import Callable
 from typing import Any
@@ -9,6 +8,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.browser.conftest import PASSWORD, Visitor
+from tests.browser.pictures import HAS_PICTURES
 from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.browser
@@ -202,7 +202,7 @@ def test_only_administrators_find_the_administration(visitor: Visitor) -> None:
     visitor.complaints[:] = [words for words in visitor.complaints if "403" not in words]
 
 
-@pytest.mark.parametrize("view", VIEWS if os.environ.get("SPANWISE_SCREENSHOTS") == "1" else ["light", "phone-dark"])
+@pytest.mark.parametrize("view", VIEWS if HAS_PICTURES else ["light", "phone-dark"])
 def test_axe_finds_nothing_serious_on_any_tab_or_behind_a_link(visitor: Visitor, picture: Callable[[Page, str], None], view: str) -> None:
     page = visitor.signs_in("ada", **VIEWS[view])
     for tab in ("invitations", "sign-ins"):
