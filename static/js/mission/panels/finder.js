@@ -18,7 +18,8 @@ const KINDS = [
 
 /** How many of all assets found can be targets; asked only where the answer does not show it. */
 async function countFlyable(asked, found, signal) {
-  if (found.total <= found.features.length) return found.features.filter(({ properties }) => properties.is_flyable).length;
+  if (found.total <= found.features.length)
+    return found.features.filter(({ properties }) => properties.is_flyable).length;
   const { data } = await get(`/assets?${asked}&flyable=true&limit=1&total=true`, { signal });
   return data.total;
 }
