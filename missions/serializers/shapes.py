@@ -162,10 +162,24 @@ class NearestSerializer(serializers.Serializer):
     """Where two UAVs come nearest to each other."""
 
     metres = serializers.FloatField()
-    vertical_m = serializers.FloatField()
+    vertical_m = serializers.FloatField(allow_null=True, help_text="null: a height is not known")
     seconds = serializers.FloatField()
     uavs = serializers.ListField(child=serializers.CharField(), min_length=2, max_length=2)
     position = PositionField()
+
+
+class UnresolvedSerializer(serializers.Serializer):
+    """Two flights that could not be kept apart, or with `times_not_known` one of another mission that nobody can keep clear of."""
+
+    code = serializers.CharField(help_text="too_near, hovers_in_the_way or times_not_known; the latter has uavs and missions alone")
+    uavs = serializers.ListField(child=serializers.CharField())
+    missions = serializers.ListField(child=serializers.CharField(allow_null=True), help_text="null: this one")
+    metres = serializers.FloatField(required=False)
+    vertical_m = serializers.FloatField(allow_null=True, required=False)
+    seconds = serializers.FloatField(required=False)
+    legs = serializers.ListField(child=serializers.IntegerField(), required=False)
+    at_s = serializers.ListField(child=serializers.FloatField(), required=False)
+    position = PositionField(required=False)
 
 
 class SeparationSerializer(serializers.Serializer):
@@ -177,7 +191,7 @@ class SeparationSerializer(serializers.Serializer):
     delays = serializers.ListField(child=serializers.FloatField(), help_text="of each route's departure [s]")
     layers = serializers.ListField(child=serializers.FloatField(), help_text="by which each route flies higher than it would alone [m]")
     closest = NearestSerializer(allow_null=True)
-    unresolved = serializers.ListField(child=serializers.DictField(), help_text="conflicts that could not be solved")
+    unresolved = UnresolvedSerializer(many=True, help_text="conflicts that could not be solved")
 
 
 class FailedReturnSerializer(serializers.Serializer):

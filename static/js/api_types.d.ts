@@ -2601,8 +2601,11 @@ export interface components {
         Nearest: {
             /** Format: double */
             metres: number;
-            /** Format: double */
-            vertical_m: number;
+            /**
+             * Format: double
+             * @description null: a height is not known
+             */
+            vertical_m: number | null;
             /** Format: double */
             seconds: number;
             uavs: string[];
@@ -4756,9 +4759,7 @@ export interface components {
             layers: number[];
             closest: components["schemas"]["Nearest"] | null;
             /** @description conflicts that could not be solved */
-            unresolved: {
-                [key: string]: unknown;
-            }[];
+            unresolved: components["schemas"]["Unresolved"][];
         };
         SessionTimes: {
             /** Format: date-time */
@@ -6028,6 +6029,30 @@ export interface components {
          * @enum {string}
          */
         UnknownVehicleStateEnum: "new" | "ignored" | "adopted";
+        /** @description Two flights that could not be kept apart, or with `times_not_known` one of another mission that nobody can keep clear of. */
+        Unresolved: {
+            /** @description too_near, hovers_in_the_way or times_not_known; the latter has uavs and missions alone */
+            code: string;
+            uavs: string[];
+            /** @description null: this one */
+            missions: (string | null)[];
+            /** Format: double */
+            metres?: number;
+            /** Format: double */
+            vertical_m?: number | null;
+            /** Format: double */
+            seconds?: number;
+            legs?: number[];
+            at_s?: number[];
+            /**
+             * @description lon, lat [deg], WGS84
+             * @example [
+             *       9.52,
+             *       47.14
+             *     ]
+             */
+            position?: number[];
+        };
         Upload: {
             /** Format: uuid */
             id: string;
@@ -6958,6 +6983,7 @@ export type Units = components['schemas']['Units'];
 export type UnknownVehicle = components['schemas']['UnknownVehicle'];
 export type UnknownVehiclePage = components['schemas']['UnknownVehiclePage'];
 export type UnknownVehicleStateEnum = components['schemas']['UnknownVehicleStateEnum'];
+export type Unresolved = components['schemas']['Unresolved'];
 export type Upload = components['schemas']['Upload'];
 export type UploadInputRequest = components['schemas']['UploadInputRequest'];
 export type VehicleFlavour = components['schemas']['VehicleFlavour'];

@@ -89,6 +89,13 @@ test("a conflict that nothing solves is a fault", () => {
   assert.match(words, /Heron and Kite: one hovers in the way/);
 });
 
+test("a flight of another mission without known times is named alone", () => {
+  const unresolved = [{ code: "times_not_known", uavs: ["Tern"], missions: ["m"] }];
+  const { isFault, words } = separationOf({ routes: [heron, kite], separation: { ...apart, unresolved } });
+  assert.equal(isFault, true);
+  assert.equal(words, "Tern of another mission: its flight times are not known, it may come near.");
+});
+
 const at = (lon, kind, more = {}) => ({
   position: [lon, 40],
   kind,

@@ -4,8 +4,18 @@ import { t, tn } from "../text.js";
 import { durationText, energyText, heightText, lengthText, numberText, percentText } from "../units.js";
 import { timeAt } from "./flight_options.js";
 
-/** index of a target → { arrival_s, battery_percent } where a route first reaches it; null is not known. */
+/** @import { Plan, Route, Separation } from "../api_types.d.ts" */
+/** @import { ShownPlan } from "./types.d.ts" */
+
+/** @typedef {{ index: number, kind: "base" | "charging", stay_s: number, charged_wh: number | null }} Stay */
+
+/**
+ * index of a target → { arrival_s, battery_percent } where a route first reaches it; null is not known.
+ *
+ * @param {Pick<Route, "waypoints" | "arrival_s" | "battery_left_percent">} route
+ */
 export function visitsOf({ waypoints, arrival_s, battery_left_percent }) {
+  /** @type {Map<number | null, { arrival_s: number | null, battery_percent: number | null }>} */
   const visits = new Map();
   waypoints.forEach(({ kind, target }, index) => {
     if (kind === "target" && !visits.has(target))
@@ -17,12 +27,14 @@ export function visitsOf({ waypoints, arrival_s, battery_left_percent }) {
   return visits;
 }
 
-/** key of a target → when it is reached, in words; empty for plans without times. */
+/** key of a target → when it is reached, in words; empty for plans without times. @param {ShownPlan | null} plan */
 export function arrivalsOf(plan) {
+  /** @type {Map<string, string>} */
   const arrivals = new Map();
-  for (const route of plan?.result.routes ?? []) {
+  if (!plan) return arrivals;
+  for (const route of plan.result.routes) {
     for (const [target, { arrival_s }] of visitsOf(route)) {
-      const key = plan.targets[target]?.key;
+      const key = plan.targets[target ?? -1]?.key;
       if (key !== undefined && arrival_s !== null && !arrivals.has(key))
         arrivals.set(key, timeAt(plan.result.departs_at, arrival_s));
     }
@@ -30,25 +42,32 @@ export function arrivalsOf(plan) {
   return arrivals;
 }
 
-/** "lands 14:32" is the last of these; null in plans without times. */
+/**
+ * "lands 14:32" is the last of these; null in plans without times.
+ *
+ * @param {Pick<Route, "arrival_s" | "departs_s" | "duration_s">} route
+ */
 export const landing_s = ({ arrival_s, departs_s, duration_s }) =>
   arrival_s?.length > 0 && arrival_s.at(-1) !== null ? departs_s + duration_s : null;
 
-/** Where a route waits on the way: at a base between two flights, on a tower to charge. [{ index, kind: "base" | "charging", stay_s, charged_wh }] */
+/**
+ * Where a route waits on the way: at a base between two flights, on a tower to charge. [{ index, kind: "base" | "charging", stay_s, charged_wh }]
+ *
+ * @param {Pick<Route, "waypoints" | "charging">} route
+ * @returns {Stay[]}
+ */
 export function staysOf({ waypoints, charging }) {
-  const bases = waypoints.flatMap(({ kind, task }, index) =>
-    kind === "base" ? [{ index, kind: "base", stay_s: task?.hold_s ?? 0, charged_wh: null }] : [],
-  );
-  const chargings = (charging ?? []).map(({ waypoint, stopped_s, charged_wh }) => ({
-    index: waypoint,
-    kind: "charging",
-    stay_s: stopped_s,
-    charged_wh,
-  }));
-  return [...bases, ...chargings].sort((a, b) => a.index - b.index);
+  /** @type {Stay[]} */
+  const stays = [];
+  waypoints.forEach(({ kind, task }, index) => {
+    if (kind === "base") stays.push({ index, kind, stay_s: task?.hold_s ?? 0, charged_wh: null });
+  });
+  for (const { waypoint, stopped_s, charged_wh } of charging ?? [])
+    stays.push({ index: waypoint, kind: "charging", stay_s: stopped_s, charged_wh });
+  return stays.sort((a, b) => a.index - b.index);
 }
 
-/** How long it stands on the way with its rotors off. */
+/** How long it stands on the way with its rotors off. @param {Pick<Route, "waypoints" | "charging">} route */
 export function standing_s(route) {
   const charging_s = (route.charging ?? []).reduce((sum, stop) => sum + stop.charging_s, 0);
   return staysOf(route)
@@ -56,7 +75,11 @@ export function standing_s(route) {
     .reduce((sum, { stay_s }) => sum + stay_s, charging_s);
 }
 
-/** "in 2 flights", "charges 3 times"; empty for one flight without. */
+/**
+ * "in 2 flights", "charges 3 times"; empty for one flight without.
+ *
+ * @param {Pick<Route, "waypoints" | "charging">} route
+ */
 export function staysText(route) {
   const stays = staysOf(route);
   const [bases, chargings] = ["base", "charging"].map((kind) => stays.filter((stay) => stay.kind === kind).length);
@@ -68,7 +91,11 @@ export function staysText(route) {
     .join(", ");
 }
 
-/** What one of them is: "Charges 8 min, +60 Wh", "At the base 10 min". */
+/**
+ * What one of them is: "Charges 8 min, +60 Wh", "At the base 10 min".
+ *
+ * @param {Pick<Stay, "kind" | "stay_s" | "charged_wh">} stay
+ */
 export function stayText({ kind, stay_s, charged_wh }) {
   const time = durationText(stay_s);
   return kind === "base"
@@ -76,11 +103,11 @@ export function stayText({ kind, stay_s, charged_wh }) {
     : t("charges {time}, +{energy}", { time, energy: energyText(charged_wh) });
 }
 
-/** "takes off 3 min later"; empty where it starts with the mission. */
+/** "takes off 3 min later"; empty where it starts with the mission. @param {Pick<Route, "departs_s">} route */
 export const delayText = ({ departs_s }) =>
   departs_s > 0 ? t("takes off {time} later", { time: durationText(departs_s) }) : "";
 
-/** "34 %" and "61 Wh used"; null without a battery. */
+/** "34 %" and "61 Wh used"; null without a battery. @param {Pick<Route, "battery_percent" | "energy_wh">} route */
 export function batteryOf({ battery_percent, energy_wh }) {
   if (battery_percent === null || battery_percent === undefined) return null;
   return { left: percentText(battery_percent), used: energyText(energy_wh) };
@@ -90,6 +117,8 @@ export function batteryOf({ battery_percent, energy_wh }) {
  * How the UAVs are kept apart: { isFault, words }; null where the plan does not say or one flies alone.
  *
  * separation: see SeparationSerializer; layers are those of the routes that are flown.
+ *
+ * @param {Pick<Plan, "separation" | "routes">} plan
  */
 export function separationOf({ separation, routes }) {
   const flown = routes.filter(({ geometry }) => geometry);
@@ -108,6 +137,7 @@ export function separationOf({ separation, routes }) {
   return { isFault: false, words: [kept, nearestWords(separation.closest)].filter(Boolean).join(" ") };
 }
 
+/** @param {Separation["closest"]} closest */
 function nearestWords(closest) {
   if (!closest) return "";
   const [one, other] = closest.uavs;
@@ -126,7 +156,10 @@ function nearestWords(closest) {
       );
 }
 
+/** @param {Separation["unresolved"][number]} conflict */
 function conflictWords({ code, uavs, metres }) {
+  if (code === "times_not_known")
+    return t("{uav} of another mission: its flight times are not known, it may come near.", { uav: uavs[0] });
   const values = { one: uavs[0], other: uavs[1], distance: lengthText(metres) };
   return code === "hovers_in_the_way"
     ? t("{one} and {other}: one hovers in the way of the other.", values)

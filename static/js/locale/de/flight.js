@@ -185,7 +185,6 @@ export default {
   "waypoint {places}, back to {haven}": "Wegpunkt {places}, zurück zu {haven}",
   "waypoints {places}, back to {haven}": "Wegpunkte {places}, zurück zu {haven}",
   "without a link each UAV {does}": "ohne Verbindung: jedes UAV {does}",
-  "Zones count {time} before and after their times.": "Zonen zählen {time} vor und nach ihren Zeiten.",
   "{name} is removed.": "{name} ist entfernt.",
   "For the routes as planned, by the clock of {zone}.": "Für die Routen wie geplant, nach der Uhr von {zone}.",
   "from the {side}": "aus {side}",
@@ -243,6 +242,8 @@ export default {
   "Of the battery; a plan does not use it.": "Vom Akku; ein Plan verbraucht sie nicht.",
   "on its way": "unterwegs",
   "{one} and {other} come within {distance} of each other.": "{one} und {other} kommen einander auf {distance} nahe.",
+  "{uav} of another mission: its flight times are not known, it may come near.":
+    "{uav} einer anderen Mission: Die Flugzeiten sind nicht bekannt, es kann nahe kommen.",
   "{one} and {other}: one hovers in the way of the other.": "{one} und {other}: Eines schwebt dem anderen im Weg.",
   "All are planned with the figures that this mission has of its UAVs.":
     "Alle sind mit den Werten geplant, die diese Mission von ihren UAVs hat.",
