@@ -4,16 +4,21 @@
  * null where it is put in; speed_mps is over ground on the leg that leads to it, null the UAV's own. Start, end and targets stay.
  */
 
+/** @import { HandFaults, HandPoint } from "./types.d.ts" */
+/** @import { Route } from "../api_types.d.ts" */
+
 const DIGITS = 7; // some 0.01 m
 
-/** Only a waypoint between targets may go. */
+/** Only a waypoint between targets may go. @param {Pick<HandPoint, "kind">} point */
 export const isFree = ({ kind }) => kind === "pass";
 
+/** @param {number[]} position */
 const rounded = (position) => position.map((degrees) => Number(degrees.toFixed(DIGITS)));
 
-/** Whether a leg leads to it that has a speed. */
+/** Whether a leg leads to it that has a speed. @param {Pick<HandPoint, "kind">} point */
 export const isFlownTo = ({ kind }) => kind !== "start" && kind !== "base";
 
+/** @param {Pick<Route, "waypoints" | "by_hand" | "speeds_by_hand">} route @returns {HandPoint[]} */
 export function pointsOf({ waypoints, by_hand, speeds_by_hand }) {
   const byHand = new Set(by_hand ?? []);
   const speeds = new Map((speeds_by_hand ?? []).map(({ waypoint, speed_mps }) => [waypoint, speed_mps]));
@@ -28,30 +33,52 @@ export function pointsOf({ waypoints, by_hand, speeds_by_hand }) {
   }));
 }
 
+/** @param {HandPoint[]} points @param {number} index @param {Partial<HandPoint>} values */
 const replaced = (points, index, values) =>
   points.map((point, at) => (at === index ? { ...point, ...values, isByHand: true } : point));
 
-/** The same points where one that has to stay would be moved. */
+/**
+ * The same points where one that has to stay would be moved.
+ *
+ * @param {HandPoint[]} points
+ * @param {number} index
+ * @param {number[]} position
+ */
 export function moved(points, index, position) {
   return points[index] && isFree(points[index]) ? replaced(points, index, { position: rounded(position) }) : points;
 }
 
+/** @param {HandPoint[]} points @param {number} index @param {number} altitude_agl_m */
 export const raised = (points, index, altitude_agl_m) =>
   points[index] && points[index].altitude_agl_m !== altitude_agl_m
     ? replaced(points, index, { altitude_agl_m })
     : points;
 
-/** speed_mps on the leg to a point; null: the UAV's own again. */
+/**
+ * speed_mps on the leg to a point; null: the UAV's own again.
+ *
+ * @param {HandPoint[]} points
+ * @param {number} index
+ * @param {number | null} speed_mps
+ */
 export const paced = (points, index, speed_mps) =>
   points[index] && isFlownTo(points[index]) && points[index].speed_mps !== speed_mps
     ? replaced(points, index, { speed_mps })
     : points;
 
-/** A new one after `index`, as high as the higher of its neighbours, the leg as fast as before; in the middle of the leg where no place is said. */
+/**
+ * A new one after `index`, as high as the higher of its neighbours, the leg as fast as before; in the middle of the leg where no place is said.
+ *
+ * @param {HandPoint[]} points
+ * @param {number} index
+ * @param {number[] | null} [position]
+ * @returns {HandPoint[]}
+ */
 export function inserted(points, index, position = null) {
   const [before, after] = [points[index], points[index + 1]];
   if (!before || !after) return points;
   const middle = before.position.map((degrees, axis) => (degrees + after.position[axis]) / 2);
+  /** @type {HandPoint} */
   const point = {
     position: rounded(position ?? middle),
     altitude_agl_m: Math.max(before.altitude_agl_m, after.altitude_agl_m),
@@ -64,17 +91,30 @@ export function inserted(points, index, position = null) {
   return [...points.slice(0, index + 1), point, ...points.slice(index + 1)];
 }
 
+/** @param {HandPoint[]} points @param {number} index */
 export const dropped = (points, index) =>
   points[index] && isFree(points[index]) ? points.filter((_, at) => at !== index) : points;
 
-const isAtPlace = (point, original) =>
-  point.was !== null &&
-  point.altitude_agl_m === original[point.was].altitude_agl_m &&
-  point.position.every((degrees, axis) => degrees === original[point.was].position[axis]);
+/**
+ * @param {HandPoint} point
+ * @param {HandPoint[]} original
+ * @returns {point is HandPoint & { was: number }}
+ */
+function isAtPlace(point, original) {
+  if (point.was === null) return false;
+  const { altitude_agl_m, position } = original[point.was];
+  return point.altitude_agl_m === altitude_agl_m && point.position.every((degrees, axis) => degrees === position[axis]);
+}
 
+/** @param {HandPoint & { was: number }} point @param {HandPoint[]} original */
 const isAsFast = (point, original) => point.speed_mps === original[point.was].speed_mps;
 
-/** Indices of the legs that are not flown so in the route as stored: leg i goes from point i to the next. */
+/**
+ * Indices of the legs that are not flown so in the route as stored: leg i goes from point i to the next.
+ *
+ * @param {HandPoint[]} points
+ * @param {HandPoint[]} original
+ */
 export function changedLegs(points, original) {
   return points.slice(1).flatMap((end, index) => {
     const start = points[index];
@@ -84,7 +124,12 @@ export function changedLegs(points, original) {
   });
 }
 
-/** How many waypoints are another than stored: moved, higher, reached faster or slower, put in, taken out. */
+/**
+ * How many waypoints are another than stored: moved, higher, reached faster or slower, put in, taken out.
+ *
+ * @param {HandPoint[]} points
+ * @param {HandPoint[]} original
+ */
 export function changesOf(points, original) {
   const kept = points.filter(({ was }) => was !== null);
   return (
@@ -94,7 +139,7 @@ export function changesOf(points, original) {
   );
 }
 
-/** What the server takes for the whole route. */
+/** What the server takes for the whole route. @param {HandPoint[]} points */
 export const bodyOf = (points) => ({
   waypoints: points.map(({ position, altitude_agl_m, was, speed_mps }) => ({
     position,
@@ -104,8 +149,14 @@ export const bodyOf = (points) => ({
   })),
 });
 
-/** What the server says of single places: { points: Map index → words, legs: Map index → words, other: [words] }. */
+/**
+ * What the server says of single places: { points: Map index → words, legs: Map index → words, other: [words] }.
+ *
+ * @param {unknown} details
+ * @returns {HandFaults}
+ */
 export function faultsOf(details) {
+  /** @type {HandFaults} */
   const faults = { points: new Map(), legs: new Map(), other: [] };
   for (const [place, words] of Object.entries(details ?? {})) {
     const text = [words].flat(2).join(" ");
@@ -117,5 +168,10 @@ export function faultsOf(details) {
   return faults;
 }
 
-/** Whether a leg is as it should be, by the faults of it and of the points at its ends. */
+/**
+ * Whether a leg is as it should be, by the faults of it and of the points at its ends.
+ *
+ * @param {HandFaults} faults
+ * @param {number} index
+ */
 export const isLegClear = ({ legs, points }, index) => !legs.has(index) && !points.has(index) && !points.has(index + 1);

@@ -6,11 +6,21 @@
 
 import { uavsByName, wishesOf, withWishes } from "./selection.js";
 
+/** @import { FlownOrder, Lock, MissionSelection, PickedTarget, ShownPlan } from "./types.d.ts" */
+
+/** @param {Pick<MissionSelection, "locks">} selection */
 const locksOf = (selection) => selection.locks ?? [];
+/** @param {Lock} lock */
 const isHeldAt = ({ at_start, at_end }) => at_start || at_end;
+/** @param {Lock} lock */
 const isWholeRoute = ({ at_start, at_end }) => Boolean(at_start && at_end);
 
-/** Whether no plan can keep both: a target in each, or one end of a route wished for twice, or all of it and something more. */
+/**
+ * Whether no plan can keep both: a target in each, or one end of a route wished for twice, or all of it and something more.
+ *
+ * @param {Lock} a
+ * @param {Lock} b
+ */
 export function areContrary(a, b) {
   if (a.targets.some((key) => b.targets.includes(key))) return true;
   return (
@@ -19,26 +29,40 @@ export function areContrary(a, b) {
   );
 }
 
-/** Whether a lock to this name says which UAV is meant. */
+/** Whether a lock to this name says which UAV is meant. @param {MissionSelection} selection @param {string} uav */
 const isOneUav = (selection, uav) => uavsByName(selection).some(({ name }) => name === uav);
 
-/** The order of each UAV's targets in a plan; one that is visited in several pieces stands once. */
+/**
+ * The order of each UAV's targets in a plan; one that is visited in several pieces stands once.
+ *
+ * @param {Pick<ShownPlan, "result" | "targets"> | null} plan
+ * @returns {FlownOrder[]}
+ */
 export function ordersOf(plan) {
-  return (plan?.result.routes ?? []).map((route) => ({
+  if (!plan) return [];
+  return plan.result.routes.map((route) => ({
     uav: route.uav,
     targets: [...new Set(route.targets.map((target) => plan.targets[target]?.key).filter(Boolean))],
   }));
 }
 
+/** @param {Pick<MissionSelection, "locks">} selection @param {string} key */
 export const lockOf = (selection, key) => locksOf(selection).find(({ targets }) => targets.includes(key)) ?? null;
 
-/** What is left of a run; one target whose neighbours went is held no more, unless the run stands at an end of the route. */
+/**
+ * What is left of a run; one target whose neighbours went is held no more, unless the run stands at an end of the route.
+ *
+ * @param {Lock} lock
+ * @param {string[]} targets
+ * @returns {Lock[]}
+ */
 function leftOf(lock, targets) {
   if (targets.length === lock.targets.length) return [lock];
   if (!targets.length || (targets.length === 1 && !isHeldAt(lock))) return [];
   return [{ ...lock, targets }];
 }
 
+/** @param {Lock[]} locks @param {string[]} keys */
 const without = (locks, keys) =>
   locks.flatMap((lock) =>
     leftOf(
@@ -47,7 +71,12 @@ const without = (locks, keys) =>
     ),
   );
 
-/** Locks and ties of targets and UAVs that are still there; the same selection where nothing has gone. */
+/**
+ * Locks and ties of targets and UAVs that are still there; the same selection where nothing has gone.
+ *
+ * @param {MissionSelection} selection
+ * @returns {MissionSelection}
+ */
 export function settled(selection) {
   const known = new Set(selection.targets.map(({ key }) => key));
   const names = new Set(selection.uavs.map(({ name }) => name));
@@ -59,7 +88,8 @@ export function settled(selection) {
         lock.targets.filter((key) => known.has(key)),
       ),
     );
-  const isTiedToNobody = (target) => wishesOf(target).uav !== null && !names.has(target.uav);
+  /** @param {PickedTarget} target */
+  const isTiedToNobody = (target) => wishesOf(target).uav !== null && !names.has(target.uav ?? "");
   const isSame =
     locks.length === locksOf(selection).length && locks.every((lock, index) => lock === locksOf(selection)[index]);
   if (isSame && !selection.targets.some(isTiedToNobody)) return selection;
@@ -70,17 +100,26 @@ export function settled(selection) {
   };
 }
 
-/** The orders as they would be with the locks: what is locked stands where it is wished, the rest as it was planned.
+/**
+ * The orders as they would be with the locks: what is locked stands where it is wished, the rest as it was planned.
  *
  * One for each of `orders`, at its place, then those of UAVs to which something is locked and which fly nothing yet.
+ *
+ * @param {FlownOrder[]} orders
+ * @param {Lock[]} locks
+ * @returns {FlownOrder[]}
  */
 export function wishedOrders(orders, locks) {
   const wished = orders.map((order) => ({ ...order }));
+  /** @param {Lock} lock */
   const rank = ({ at_start, at_end }) => (at_end ? 2 : at_start ? 1 : 0);
   for (const lock of [...locks].sort((a, b) => rank(a) - rank(b))) {
     const held = new Set(lock.targets);
-    if (!wished.some(({ uav }) => uav === lock.uav)) wished.push({ uav: lock.uav, targets: [] });
-    const own = wished.find(({ uav }) => uav === lock.uav);
+    let own = wished.find(({ uav }) => uav === lock.uav);
+    if (!own) {
+      own = { uav: lock.uav, targets: [] };
+      wished.push(own);
+    }
     const anchor = own.targets.findIndex((key) => held.has(key));
     for (const order of wished) order.targets = order.targets.filter((key) => !held.has(key));
     const rest = own.targets;
@@ -90,35 +129,67 @@ export function wishedOrders(orders, locks) {
   return wished;
 }
 
-/** Whoever is given to another UAV than the one it was tied to is tied no more: the younger wish stands. */
+/**
+ * Whoever is given to another UAV than the one it was tied to is tied no more: the younger wish stands.
+ *
+ * @param {MissionSelection} selection
+ * @param {string[]} keys
+ * @param {string} uav
+ */
 function untied(selection, keys, uav) {
+  /** @param {PickedTarget} target */
   const isTiedElsewhere = (target) => keys.includes(target.key) && wishesOf(target).uav !== null && target.uav !== uav;
   return selection.targets.some(isTiedElsewhere)
     ? selection.targets.map((target) => (isTiedElsewhere(target) ? { ...target, uav: null } : target))
     : selection.targets;
 }
 
-/** Locks with one more; a run that was the whole route of its UAV keeps the begin alone, so that there is room. */
+/**
+ * Locks with one more; a run that was the whole route of its UAV keeps the begin alone, so that there is room.
+ *
+ * @param {Lock[]} locks
+ * @param {Lock} lock
+ * @returns {Lock[]}
+ */
 const withLock = (locks, lock) => [
   ...locks.map((other) => (other.uav === lock.uav && isWholeRoute(other) ? { ...other, at_end: false } : other)),
   lock,
 ];
 
-/** Keys of the targets that a UAV may fly: they are picked still, and tied to nobody else. */
+/**
+ * Keys of the targets that a UAV may fly: they are picked still, and tied to nobody else.
+ *
+ * @param {MissionSelection} selection
+ * @param {string} uav
+ */
 const flyableBy = ({ targets }, uav) =>
   new Set(targets.filter((target) => [null, uav].includes(wishesOf(target).uav)).map(({ key }) => key));
 
+/** @param {FlownOrder[]} orders @param {string} uav */
 const orderOf = (orders, uav) => orders.find((order) => order.uav === uav)?.targets ?? [];
 
-/** The place of a target in the orders as wished: { uav, index, last }, or null where no route visits it. */
+/**
+ * The place of a target in the orders as wished: { uav, index, last }, or null where no route visits it.
+ *
+ * @param {FlownOrder[]} orders
+ * @param {MissionSelection} selection
+ * @param {string} key
+ */
 export function wishedPlace(orders, selection, key) {
   const order = wishedOrders(orders, locksOf(selection)).find(({ targets }) => targets.includes(key));
   return order ? { uav: order.uav, index: order.targets.indexOf(key), last: order.targets.length - 1 } : null;
 }
 
-/** Targets are locked to a UAV, at a place among the others that it flies: between its neighbours there, or at the begin or the end.
+/**
+ * Targets are locked to a UAV, at a place among the others that it flies: between its neighbours there, or at the begin or the end.
  *
  * The same selection where two UAVs have the name.
+ *
+ * @param {MissionSelection} selection
+ * @param {FlownOrder[]} orders
+ * @param {string[]} keys
+ * @param {{ uav: string, index: number }} place
+ * @returns {MissionSelection}
  */
 export function placed(selection, orders, keys, { uav, index }) {
   if (!isOneUav(selection, uav)) return selection;
@@ -128,6 +199,7 @@ export function placed(selection, orders, keys, { uav, index }) {
   const flyable = flyableBy(selection, uav);
   const before = others.slice(0, at).findLast((key) => flyable.has(key));
   const after = others.slice(at).find((key) => flyable.has(key));
+  /** @param {string | undefined} key */
   const runWith = (key) => locks.find((lock) => key !== undefined && lock.uav === uav && lock.targets.includes(key));
   const [left, right] = [runWith(before), runWith(after)];
   const isAlone = before === undefined && after === undefined;
@@ -158,7 +230,14 @@ export function placed(selection, orders, keys, { uav, index }) {
   };
 }
 
-/** A target is flown by this UAV, wherever in its order that is best. The same selection where two UAVs have the name. */
+/**
+ * A target is flown by this UAV, wherever in its order that is best. The same selection where two UAVs have the name.
+ *
+ * @param {MissionSelection} selection
+ * @param {string} key
+ * @param {string} uav
+ * @returns {MissionSelection}
+ */
 export function flownBy(selection, key, uav) {
   if (!isOneUav(selection, uav)) return selection;
   return {
@@ -168,7 +247,15 @@ export function flownBy(selection, key, uav) {
   };
 }
 
-/** One place earlier (−1) or later (1) in the order of its UAV; the same selection at an end. */
+/**
+ * One place earlier (−1) or later (1) in the order of its UAV; the same selection at an end.
+ *
+ * @param {MissionSelection} selection
+ * @param {FlownOrder[]} orders
+ * @param {string} key
+ * @param {number} step
+ * @returns {MissionSelection}
+ */
 export function shifted(selection, orders, key, step) {
   const place = wishedPlace(orders, selection, key);
   const index = place ? place.index + step : -1;
@@ -177,14 +264,28 @@ export function shifted(selection, orders, key, step) {
     : selection;
 }
 
-/** Locked where it is flown now. */
+/**
+ * Locked where it is flown now.
+ *
+ * @param {MissionSelection} selection
+ * @param {FlownOrder[]} orders
+ * @param {string} key
+ * @returns {MissionSelection}
+ */
 export function lockedHere(selection, orders, key) {
   const place = wishedPlace(orders, selection, key);
   return place ? placed(selection, orders, [key], place) : selection;
 }
 
-/** A target that may be flown by anybody at any place again; what was locked before and after it stays locked. */
+/**
+ * A target that may be flown by anybody at any place again; what was locked before and after it stays locked.
+ *
+ * @param {MissionSelection} selection
+ * @param {string} key
+ * @returns {MissionSelection}
+ */
 export function unlocked(selection, key) {
+  /** @param {Lock} lock */
   const parts = (lock) => {
     const at = lock.targets.indexOf(key);
     if (at < 0) return [lock];
@@ -194,15 +295,27 @@ export function unlocked(selection, key) {
   return { ...selection, locks: locksOf(selection).flatMap(parts) };
 }
 
-/** Targets that only one UAV may fly; null frees them. What was locked to another UAV is locked no more. */
+/**
+ * Targets that only one UAV may fly; null frees them. What was locked to another UAV is locked no more.
+ *
+ * @param {MissionSelection} selection
+ * @param {string[]} keys
+ * @param {string | null} uav
+ * @returns {MissionSelection}
+ */
 export function tied(selection, keys, uav) {
   const elsewhere = keys.filter((key) => uav !== null && ![undefined, uav].includes(lockOf(selection, key)?.uav));
   return elsewhere.reduce(unlocked, withWishes(selection, keys, { uav }));
 }
 
-/** Where targets stand on the strip of a route whose order is another one as wished: [{ target, at, isMoved }], `at` in metres flown.
+/**
+ * Where targets stand on the strip of a route whose order is another one as wished: [{ target, at, isMoved }], `at` in metres flown.
  *
  * stops: [{ target, at }] as planned. What keeps its place among the others stays where it is; what moves stands between its neighbours.
+ *
+ * @param {{ target: string, at: number }[]} stops
+ * @param {string[]} wished
+ * @param {number} length_m
  */
 export function stopsWished(stops, wished, length_m) {
   const planned = new Map();
@@ -227,7 +340,11 @@ export function stopsWished(stops, wished, length_m) {
   return result;
 }
 
-/** Indices of the longest part of a list that rises; undefined values are never in it. */
+/**
+ * Indices of the longest part of a list that rises; undefined values are never in it.
+ *
+ * @param {(number | undefined)[]} values
+ */
 function longestRising(values) {
   const best = values.map(() => ({ length: 0, before: -1 }));
   let last = -1;
@@ -235,7 +352,8 @@ function longestRising(values) {
     if (value === undefined) return;
     best[index].length = 1;
     for (let other = 0; other < index; other += 1) {
-      if (values[other] < value && best[other].length >= best[index].length)
+      const earlier = values[other];
+      if (earlier !== undefined && earlier < value && best[other].length >= best[index].length)
         best[index] = { length: best[other].length + 1, before: other };
     }
     if (last < 0 || best[index].length > best[last].length) last = index;

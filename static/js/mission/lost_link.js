@@ -5,12 +5,35 @@ import { routeLetter } from "../domain/palette.js";
 import { language, localeOf, t, tn } from "../text.js";
 import { durationText, exactHeightText, numberText } from "../units.js";
 
+/** @import { FailedReturn, LostLinkCheck } from "../api_types.d.ts" */
+/** @import { LostLink, ShownPlan } from "./types.d.ts" */
+
+/** @typedef {Partial<LostLink> | null | undefined} Wish */
+/** @typedef {"go-on" | "unplanned" | "unknown" | "waiting" | "home" | "lost"} CheckState */
+/**
+ * Waypoints of one route that do not return for the same reason, with the worst figures.
+ *
+ * @typedef {object} FailureGroup
+ * @property {string} key
+ * @property {number} sequence of the route
+ * @property {string} letter
+ * @property {string} name
+ * @property {FailedReturn["haven"]} haven
+ * @property {FailedReturn["trouble"]} trouble
+ * @property {string | null} zone
+ * @property {number | null} zone_id
+ * @property {number[]} waypoints indices
+ * @property {number} missing_wh
+ * @property {number} over_m
+ */
+
 export const MOST_RALLY_POINTS = 50; // missions/serializers/limits.py
 export const LONGEST_HOLD_S = 3600; // missions/routing/problem.py
 const USUAL_HOLD_S = 60;
 const LEAST_WAY_M = 20; // a shorter one is not seen
 const DIGITS = 6; // some 0.1 m
 
+/** @type {{ value: LostLink["behaviour"], words: string, meaning: string }[]} */
 export const BEHAVIOURS = [
   { value: "go_on", words: t("Fly on"), meaning: t("Each UAV flies its route to the end, as it was checked.") },
   {
@@ -28,9 +51,15 @@ export const BEHAVIOURS = [
 ];
 const GO_ON = "go_on";
 
+/** @param {number[]} position */
 const rounded = (position) => position.slice(0, 2).map((degrees) => Number(degrees.toFixed(DIGITS)));
 
-/** One form for equal wishes: null where UAVs go on and no rally point is set; hold_s counts only with "hold". */
+/**
+ * One form for equal wishes: null where UAVs go on and no rally point is set; hold_s counts only with "hold".
+ *
+ * @param {Partial<LostLink> | null | undefined} lost_link
+ * @returns {LostLink | null}
+ */
 export function lostLinkOf(lost_link) {
   const { behaviour = GO_ON, rally_points = [], hold_s = 0 } = lost_link ?? {};
   if (behaviour === GO_ON && !rally_points.length) return null;
@@ -41,15 +70,19 @@ export function lostLinkOf(lost_link) {
   };
 }
 
-/** The same as one object with all parts. */
+/** The same as one object with all parts. @param {Wish} lost_link @returns {LostLink} */
 export const wholeLostLink = (lost_link) => lostLinkOf(lost_link) ?? { behaviour: GO_ON, rally_points: [], hold_s: 0 };
 
+/** @param {Wish} lost_link @param {Partial<LostLink>} values */
 const changed = (lost_link, values) => lostLinkOf({ ...wholeLostLink(lost_link), ...values });
 
+/** @param {Wish} lost_link @param {LostLink["behaviour"]} behaviour */
 export const withBehaviour = (lost_link, behaviour) =>
   changed(lost_link, { behaviour, hold_s: wholeLostLink(lost_link).hold_s || USUAL_HOLD_S });
+/** @param {Wish} lost_link @param {number} hold_s */
 export const withHold = (lost_link, hold_s) => changed(lost_link, { hold_s });
 
+/** @param {Wish} lost_link @param {number[]} position */
 export function withRallyPoint(lost_link, position) {
   const { rally_points } = wholeLostLink(lost_link);
   return rally_points.length < MOST_RALLY_POINTS
@@ -57,22 +90,25 @@ export function withRallyPoint(lost_link, position) {
     : lostLinkOf(lost_link);
 }
 
+/** @param {Wish} lost_link @param {number} index @param {number[]} position */
 export const withRallyPointAt = (lost_link, index, position) =>
   changed(lost_link, {
     rally_points: wholeLostLink(lost_link).rally_points.map((at, place) => (place === index ? rounded(position) : at)),
   });
+/** @param {Wish} lost_link @param {number} index */
 export const withoutRallyPoint = (lost_link, index) =>
   changed(lost_link, { rally_points: wholeLostLink(lost_link).rally_points.filter((_, place) => place !== index) });
 
-/** Whether UAVs may land at rally points: where they go on, none is used. */
+/** Whether UAVs may land at rally points: where they go on, none is used. @param {Wish} lost_link */
 export const usesRallyPoints = (lost_link) => wholeLostLink(lost_link).behaviour !== GO_ON;
 
-/** "R2", as on the map. */
+/** "R2", as on the map. @param {number} index */
 export const rallyName = (index) => `R${index + 1}`;
 
+/** @param {number} hold_s */
 const holdText = (hold_s) => (hold_s < 100 ? `${numberText(hold_s)}\u00a0s` : durationText(hold_s));
 
-/** "holds 60 s and returns, 2 rally points". */
+/** "holds 60 s and returns, 2 rally points". @param {Wish} lost_link */
 export function lostLinkText(lost_link) {
   const { behaviour, rally_points, hold_s } = wholeLostLink(lost_link);
   if (behaviour === GO_ON) return t("flies on");
@@ -82,9 +118,17 @@ export function lostLinkText(lost_link) {
     : does;
 }
 
+/** @param {Wish} a @param {Wish} b */
 const areSame = (a, b) => JSON.stringify(lostLinkOf(a)) === JSON.stringify(lostLinkOf(b));
 
-/** "go-on", "unplanned", "unknown" (a plan of before), "waiting" (checked for another wish), "home" or "lost". */
+/**
+ * "go-on", "unplanned", "unknown" (a plan of before), "waiting" (checked for another wish), "home" or "lost".
+ *
+ * @param {Wish} lost_link
+ * @param {ShownPlan | null} plan
+ * @param {boolean} isCurrent
+ * @returns {CheckState}
+ */
 export function checkStateOf(lost_link, plan, isCurrent) {
   if (!usesRallyPoints(lost_link)) return "go-on";
   if (!plan || !isCurrent) return "unplanned";
@@ -94,11 +138,20 @@ export function checkStateOf(lost_link, plan, isCurrent) {
   return check.failed.length ? "lost" : "home";
 }
 
-/** Places in a route that do not return: [{ sequence, letter, name, haven, trouble, zone, zone_id, waypoints: [index], missing_wh, over_m }], worst figures. */
+/** @type {Pick<LostLinkCheck, "failed" | "rally_points" | "rally_points_in_zones" | "highest_m">} */
+const NO_CHECK = { failed: [], rally_points: [] };
+/** What the server has checked of a plan. @param {ShownPlan} plan */
+const checkOf = (plan) => plan.result.lost_link ?? NO_CHECK;
+
+/**
+ * Places in a route that do not return.
+ *
+ * @param {ShownPlan} plan
+ */
 export function failuresOf(plan) {
+  /** @type {Map<string, FailureGroup>} */
   const groups = new Map();
-  for (const { route, waypoint, haven, trouble, missing_wh, zone, zone_id = null, over_m } of plan.result.lost_link
-    .failed) {
+  for (const { route, waypoint, haven, trouble, missing_wh, zone, zone_id = null, over_m } of checkOf(plan).failed) {
     const key = [route, haven, trouble, zone_id ?? zone].join("|");
     const group = groups.get(key) ?? {
       key,
@@ -121,8 +174,9 @@ export function failuresOf(plan) {
   return [...groups.values()];
 }
 
-/** "3–9, 12", counted from 1. */
+/** "3–9, 12", counted from 1. @param {number[]} waypoints */
 export function placesText(waypoints) {
+  /** @type {{ from: number, to: number }[]} */
   const runs = [];
   for (const number of [...waypoints].sort((a, b) => a - b)) {
     const last = runs.at(-1);
@@ -132,12 +186,17 @@ export function placesText(waypoints) {
   return runs.map(({ from, to }) => (from === to ? `${from + 1}` : `${from + 1}–${to + 1}`)).join(", ");
 }
 
+/** @param {number} haven */
 export const havenText = (haven) => (haven === 0 ? t("its start") : rallyName(haven - 1));
 
-/** Wh to a tenth: what is missing may be little. */
+/** Wh to a tenth: what is missing may be little. @param {number} missing_wh */
 const lackText = (missing_wh) => `${numberText(Math.max(0.1, Math.ceil(missing_wh * 10) / 10), 1)}\u00a0Wh`;
 
-/** What a group of failures says: { where: "waypoints 3–9, back to R2", why: "up to 12.4 Wh are missing with the reserve kept" }. */
+/**
+ * What a group of failures says: { where: "waypoints 3–9, back to R2", why: "up to 12.4 Wh are missing with the reserve kept" }.
+ *
+ * @param {Pick<FailureGroup, "waypoints" | "haven" | "trouble" | "zone" | "missing_wh" | "over_m">} group
+ */
 export function failureText({ waypoints, haven, trouble, zone, missing_wh, over_m }) {
   const values = { places: placesText(waypoints), haven: havenText(haven) };
   const where =
@@ -163,22 +222,23 @@ export function failureText({ waypoints, haven, trouble, zone, missing_wh, over_
   return { where, why };
 }
 
+/** @param {ShownPlan} plan */
 const flownOf = (plan) => plan.result.routes.filter(({ geometry }) => geometry);
 
-/** UAVs whose energy nobody counts: their return may be too far all the same. */
+/** UAVs whose energy nobody counts: their return may be too far all the same. @param {ShownPlan} plan */
 export const uncountedOf = (plan) =>
   flownOf(plan)
     .filter(({ energy_wh }) => energy_wh === null || energy_wh === undefined)
     .map(({ uav }) => uav);
 
-/** The sentence over the check. */
+/** The sentence over the check. @param {CheckState} state @param {ShownPlan | null} plan */
 export function checkText(state, plan) {
   if (state === "go-on") return "";
-  if (state === "unplanned") return t("It is checked for energy and zones once there is a plan.");
+  if (state === "unplanned" || !plan) return t("It is checked for energy and zones once there is a plan.");
   if (state === "unknown") return t("This plan was made before this was checked. Plan again to check it.");
   if (state === "waiting") return t("It is being checked for energy and zones.");
   if (state === "lost") {
-    const count = new Set(plan.result.lost_link.failed.map(({ route, waypoint }) => `${route} ${waypoint}`)).size;
+    const count = new Set(checkOf(plan).failed.map(({ route, waypoint }) => `${route} ${waypoint}`)).size;
     const total = flownOf(plan).reduce((sum, { waypoints }) => sum + waypoints.length, 0);
     return tn(
       count,
@@ -192,15 +252,15 @@ export function checkText(state, plan) {
     : t("From every waypoint each UAV gets home with its reserve, and meets no zone.");
 }
 
-/** Nothing that is not known is taken for safe: who has no battery stated is named. */
+/** Nothing that is not known is taken for safe: who has no battery stated is named. @param {ShownPlan} plan */
 export function uncountedText(plan) {
   const names = uncountedOf(plan);
   return names.length ? t("Energy is not checked for {uavs}: no battery is stated.", { uavs: names.join(", ") }) : "";
 }
 
-/** Rally points in which nothing may land, whether a UAV would now return to them or not. */
+/** Rally points in which nothing may land, whether a UAV would now return to them or not. @param {ShownPlan} plan */
 export function inZonesText(plan) {
-  const found = plan.result.lost_link.rally_points_in_zones ?? [];
+  const found = checkOf(plan).rally_points_in_zones ?? [];
   return found
     .map(({ rally_point, zone }) =>
       t("{name} lies inside {zone}: nothing may land there.", {
@@ -211,11 +271,15 @@ export function inZonesText(plan) {
     .join(" ");
 }
 
-/** Which heights the check counts on: UAVs have to be set to climb so high. Nothing for a check of before. */
+/**
+ * Which heights the check counts on: UAVs have to be set to climb so high. Nothing for a check of before.
+ *
+ * @param {ShownPlan} plan
+ */
 export function heightsText(plan) {
-  const heights = (plan.result.lost_link.highest_m ?? [])
-    .map((height_m, sequence) => ({ height_m, uav: plan.result.routes[sequence]?.uav }))
-    .filter(({ height_m }) => height_m !== null);
+  const heights = (checkOf(plan).highest_m ?? []).flatMap((height_m, sequence) =>
+    height_m === null ? [] : [{ height_m, uav: plan.result.routes[sequence]?.uav }],
+  );
   return heights.length
     ? t("Highest way back, above the start: {heights}.", {
         heights: heights.map(({ uav, height_m }) => `${uav} ${exactHeightText(height_m)}`).join(", "),
@@ -225,13 +289,18 @@ export function heightsText(plan) {
 
 const STAYS_DOWN = ["start", "base"];
 
-/** For the map: [{ from, to }], the ways back that do not fail: from each waypoint in the air to the nearest of the start and the rally points. */
+/**
+ * For the map: [{ from, to }], the ways back that do not fail: from each waypoint in the air to the nearest of the start and the rally points.
+ *
+ * @param {ShownPlan} plan
+ */
 export function quietReturnsOf(plan) {
-  const { rally_points, failed } = plan.result.lost_link;
+  const { rally_points, failed } = checkOf(plan);
   const fails = new Set(failed.map(({ route, waypoint }) => `${route} ${waypoint}`));
   return plan.result.routes.flatMap(({ waypoints, geometry }, route) => {
     if (!geometry) return [];
     const havens = [waypoints[0].position, ...rally_points];
+    /** @param {number[]} from */
     const nearest = (from) =>
       havens.reduce((best, haven) => (distance_m(from, haven) < distance_m(from, best) ? haven : best));
     return waypoints
@@ -241,14 +310,19 @@ export function quietReturnsOf(plan) {
   });
 }
 
-/** For the map: [{ key, from, to }], each waypoint that fails and where it would return to; key: of its group. */
+/**
+ * For the map: [{ key, from, to }], each waypoint that fails and where it would return to; key: of its group.
+ *
+ * @param {ShownPlan} plan
+ */
 export function returnLinesOf(plan) {
-  const { rally_points } = plan.result.lost_link;
+  const { rally_points } = checkOf(plan);
   return failuresOf(plan).flatMap(({ key, sequence, haven, waypoints }) => {
     const places = plan.result.routes[sequence]?.waypoints ?? [];
     const to = haven === 0 ? places[0]?.position : rally_points[haven - 1];
+    if (!to) return [];
     return waypoints
-      .filter((waypoint) => places[waypoint] && to)
+      .filter((waypoint) => places[waypoint])
       .map((waypoint) => ({ key, from: places[waypoint].position, to }));
   });
 }

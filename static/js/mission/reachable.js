@@ -4,17 +4,24 @@ import { t } from "../text.js";
 import { energyText, lengthText } from "../units.js";
 import { requestOf } from "./selection.js";
 
+/** @import { Reachability } from "../api_types.d.ts" */
+/** @import { MissionSelection, PickedUav } from "./types.d.ts" */
+
 /** "yes", "partly" or "no" as the map draws them; "" is not known. */
 export const VERDICTS = ["yes", "partly", "no"];
 
-/** What decides over it: UAVs, where they end, departure, air. Nothing where no UAV is chosen. */
+/**
+ * What decides over it: UAVs, where they end, departure, air. Nothing where no UAV is chosen.
+ *
+ * @param {MissionSelection} selection
+ */
 export function questionOf(selection) {
   if (!selection.uavs.length) return null;
   const { targets, locks, objective, ...rest } = requestOf({ ...selection, lost_link: null });
   return rest;
 }
 
-/** Place of an id in a sorted list, −1 where it is not in it. */
+/** Place of an id in a sorted list, −1 where it is not in it. @param {number[]} ids @param {number} id */
 function placeOf(ids, id) {
   let [low, high] = [0, ids.length - 1];
   while (low <= high) {
@@ -26,6 +33,7 @@ function placeOf(ids, id) {
   return -1;
 }
 
+/** @param {Reachability} answer @param {number} id */
 export function verdictOf({ assets, reasons }, id) {
   const place = placeOf(assets.ids, id);
   if (place < 0) return "";
@@ -34,7 +42,13 @@ export function verdictOf({ assets, reasons }, id) {
   return reasons[code - 1]?.code === "partly_reachable" ? "partly" : "no";
 }
 
-/** What is said of one asset; empty where the answer does not speak of it. uavs: as they were asked about. */
+/**
+ * What is said of one asset; empty where the answer does not speak of it. uavs: as they were asked about.
+ *
+ * @param {Reachability} answer
+ * @param {number} id
+ * @param {Pick<PickedUav, "name">[]} uavs
+ */
 export function reachText({ assets, reasons, flights }, id, uavs) {
   const place = placeOf(assets.ids, id);
   if (place < 0) return "";

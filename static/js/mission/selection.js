@@ -5,7 +5,14 @@ import { OWN_FIGURES } from "../uav_figures.js";
 import { lengthText } from "../units.js";
 import { flightOptionsAsked, flightOptionsOf, UNSAID } from "./flight_options.js";
 
-/** Targets may be more or less urgent, tied to one UAV by its name, or need a sensor; locks: see locks.js, the last three: flight_options.js. */
+/** @import { FleetUav, MissionSelection, PickableAsset, PickedTarget, PickedUav, Task, Wishes } from "./types.d.ts" */
+/** @import { Mission, MissionTarget, PickedAsset, PlanInputRequest, TargetInputRequest, TaskOutput, UavFeature, UavInputRequest } from "../api_types.d.ts" */
+
+/**
+ * Targets may be more or less urgent, tied to one UAV by its name, or need a sensor; locks: see locks.js, the last three: flight_options.js.
+ *
+ * @type {Readonly<MissionSelection>}
+ */
 export const EMPTY = Object.freeze({
   targets: [],
   uavs: [],
@@ -15,13 +22,22 @@ export const EMPTY = Object.freeze({
   ...UNSAID,
 });
 
-/** Two picks of the same place are one target: the asset whole, or one point of it. */
+/**
+ * Two picks of the same place are one target: the asset whole, or one point of it.
+ *
+ * @param {Partial<Pick<PickedTarget, "asset" | "position" | "stretch">>} place
+ */
 export function keyOf({ asset, position, stretch }) {
   const places = stretch ?? (position ? [position] : []);
   return [asset ?? "place", ...places.map((place) => place.map((degrees) => degrees.toFixed(5)).join(","))].join(" ");
 }
 
-/** A target from an asset feature of the API or a tile. `position` makes it one point of a line or railway. */
+/**
+ * A target from an asset feature of the API or a tile. `position` makes it one point of a line or railway.
+ *
+ * @param {PickableAsset} asset
+ * @returns {PickedTarget}
+ */
 export function targetOf({ id, kind, properties, centre = null, position = null, stretch = null, task = null }) {
   const target = {
     asset: id,
@@ -36,39 +52,60 @@ export function targetOf({ id, kind, properties, centre = null, position = null,
   return { key: keyOf(target), ...target };
 }
 
-/** A target from a short row of the API: a list, an area, a stretch. */
+/** A target from a short row of the API: a list, an area, a stretch. @param {PickedAsset} row */
 export function targetOfRow({ id, kind, centre, ...properties }) {
   return targetOf({ id, kind, properties, centre });
 }
 
-/** How much of a line or railway is picked. OpenStreetMap cuts railways into sections: one of them is not the whole track. */
+/**
+ * How much of a line or railway is picked. OpenStreetMap cuts railways into sections: one of them is not the whole track.
+ *
+ * @param {string | null} kind
+ * @param {number | null} [length_m]
+ * @param {number[] | null} [position]
+ * @param {number[][] | null} [stretch]
+ */
 export function extentOf(kind, length_m, position = null, stretch = null) {
-  const whole = { line: t("whole line"), railway: t("section") }[kind];
+  const whole = kind === "line" ? t("whole line") : kind === "railway" ? t("section") : undefined;
   if (!whole || position) return whole && t("one point");
   const words = stretch ? t("stretch") : whole;
   return length_m ? `${words}, ${lengthText(length_m)}` : words;
 }
 
-/** The second fact of a row, in secondary ink: how much of a line or railway is picked, then what the server says of the asset. */
+/**
+ * The second fact of a row, in secondary ink: how much of a line or railway is picked, then what the server says of the asset.
+ *
+ * @param {string | null} kind
+ * @param {{ detail?: string, length_m?: number | null }} properties
+ * @param {number[] | null} [position]
+ * @param {number[][] | null} [stretch]
+ */
 export function detailOf(kind, { detail, length_m }, position = null, stretch = null) {
   return [extentOf(kind, length_m, position, stretch), detail].filter(Boolean).join(" · ");
 }
 
-/** Label and second fact in one, of a target or of an asset's properties. */
+/**
+ * Label and second fact in one, of a target or of an asset's properties.
+ *
+ * @param {{ label: string, detail?: string }} thing
+ */
 export function nameOf({ label, detail }) {
   return detail ? `${label}, ${detail}` : label;
 }
 
+/** @param {Pick<PickedTarget, "kind" | "position">} target */
 export function isWhole(target) {
   return (target.kind === "line" || target.kind === "railway") && !target.position;
 }
 
+/** @param {MissionSelection} selection @param {PickedTarget[]} targets @returns {MissionSelection} */
 export function withTargets(selection, targets) {
   const known = new Set(selection.targets.map((target) => target.key));
   const fresh = targets.filter((target) => !known.has(target.key) && known.add(target.key));
   return fresh.length ? { ...selection, targets: [...selection.targets, ...fresh] } : selection;
 }
 
+/** @param {MissionSelection} selection @param {string[]} keys @returns {MissionSelection} */
 export function withoutTargets(selection, keys) {
   const gone = new Set(keys);
   return { ...selection, targets: selection.targets.filter((target) => !gone.has(target.key)) };
@@ -78,7 +115,12 @@ export function withoutTargets(selection, keys) {
 export const HOLD_S = { look: 5, photo: 10, hold: 30 };
 export const LONGEST_HOLD_S = 3600;
 
-/** What is done at a target for which nobody says it: details of towers and bridges are photographed, lines filmed in passing. */
+/**
+ * What is done at a target for which nobody says it: details of towers and bridges are photographed, lines filmed in passing.
+ *
+ * @param {Pick<PickedTarget, "asset" | "kind" | "position">} target
+ * @returns {TaskOutput}
+ */
 export function usualTask(target) {
   if (target.asset === null) return { kind: "hold", hold_s: 10 };
   if (isWhole(target)) return { kind: "look", hold_s: 0 };
@@ -87,21 +129,32 @@ export function usualTask(target) {
     : { kind: "look", hold_s: HOLD_S.look };
 }
 
+/** @param {Pick<PickedTarget, "asset" | "kind" | "position" | "task">} target @returns {TaskOutput} */
 export function taskOf(target) {
   return target.task
     ? { kind: target.task.kind, hold_s: target.task.hold_s ?? HOLD_S[target.task.kind] }
     : usualTask(target);
 }
 
+/** @param {TaskOutput} a @param {TaskOutput} b */
 const isSameTask = (a, b) => a.kind === b.kind && a.hold_s === b.hold_s;
 
+/** @param {PickedTarget} target */
 export function isUsualTask(target) {
   return isSameTask(taskOf(target), usualTask(target));
 }
 
-/** The same targets with another task at some of them; without seconds each keeps its own where the kind stays. */
+/**
+ * The same targets with another task at some of them; without seconds each keeps its own where the kind stays.
+ *
+ * @param {MissionSelection} selection
+ * @param {string[]} keys
+ * @param {Task} task
+ * @returns {MissionSelection}
+ */
 export function withTask(selection, keys, { kind, hold_s = null }) {
   const wanted = new Set(keys);
+  /** @param {PickedTarget} target */
   const tasked = (target) => {
     const now = taskOf(target);
     const next = { kind, hold_s: hold_s ?? (now.kind === kind ? now.hold_s : HOLD_S[kind]) };
@@ -113,15 +166,27 @@ export function withTask(selection, keys, { kind, hold_s = null }) {
   };
 }
 
-/** What a target without wishes of its own has. */
+/** What a target without wishes of its own has. @type {Readonly<Wishes>} */
 const NO_WISH = { priority: "normal", uav: null, sensor: "" };
 
-/** How urgent a target is, which UAV alone may fly it and which sensor it needs: { priority, uav, sensor }. */
+/**
+ * How urgent a target is, which UAV alone may fly it and which sensor it needs: { priority, uav, sensor }.
+ *
+ * @param {{ priority?: Wishes["priority"] | null, uav?: string | null, sensor?: string | null }} target
+ * @returns {Wishes}
+ */
 export function wishesOf({ priority, uav, sensor }) {
   return { priority: priority || NO_WISH.priority, uav: uav ?? NO_WISH.uav, sensor: sensor ?? NO_WISH.sensor };
 }
 
-/** The same targets with another priority, UAV or sensor at some of them. */
+/**
+ * The same targets with another priority, UAV or sensor at some of them.
+ *
+ * @param {MissionSelection} selection
+ * @param {string[]} keys
+ * @param {Partial<Wishes>} wishes
+ * @returns {MissionSelection}
+ */
 export function withWishes(selection, keys, wishes) {
   const wanted = new Set(keys);
   return {
@@ -132,7 +197,12 @@ export function withWishes(selection, keys, wishes) {
   };
 }
 
-/** Every sensor that somebody may need: those of the UAVs, and those that are asked for already. Upper and lower case are one. */
+/**
+ * Every sensor that somebody may need: those of the UAVs, and those that are asked for already. Upper and lower case are one.
+ *
+ * @param {MissionSelection} selection
+ * @param {FleetUav[]} fleet
+ */
 export function sensorsKnown(selection, fleet) {
   const names = [...fleet, ...selection.uavs]
     .flatMap(({ sensors }) => sensors ?? [])
@@ -141,6 +211,7 @@ export function sensorsKnown(selection, fleet) {
   return [...bySound.values()].sort((a, b) => a.localeCompare(b));
 }
 
+/** @param {UavFeature} feature @returns {FleetUav} */
 export function uavOf(feature) {
   const {
     name,
@@ -156,7 +227,9 @@ export function uavOf(feature) {
     heading_deg,
     is_simulated,
   } = feature.properties;
-  const usual = Object.fromEntries(OWN_FIGURES.map((figure) => [figure, feature.properties[figure] ?? null])); // a mission may say otherwise
+  const figures = OWN_FIGURES.map((figure) => [figure, feature.properties[figure] ?? null]);
+  /** @type {FleetUav["usual"]} */
+  const usual = Object.fromEntries(figures); // a mission may say otherwise
   return {
     id: feature.id,
     name,
@@ -176,7 +249,11 @@ export function uavOf(feature) {
   };
 }
 
-/** What a UAV's flying takes: missions/flight_plan/performance.py. */
+/**
+ * What a UAV's flying takes: missions/flight_plan/performance.py.
+ *
+ * @type {("battery_wh" | "mass_kg" | "reserve_percent" | "max_airspeed_mps" | "rotor_disk_m2" | "hover_power_w")[]}
+ */
 export const PERFORMANCE = [
   "battery_wh",
   "mass_kg",
@@ -186,11 +263,22 @@ export const PERFORMANCE = [
   "hover_power_w",
 ];
 /** What a mission may say of a UAV's flying; where it says nothing, the UAV's own or its type's counts. */
-const UAV_VALUES = ["max_range_m", "cruise_speed_mps", "end_action", "most_targets", ...PERFORMANCE];
+const UAV_VALUES = /** @type {const} */ ([
+  "max_range_m",
+  "cruise_speed_mps",
+  "end_action",
+  "most_targets",
+  ...PERFORMANCE,
+]);
 
 const LONGEST_UAV_NAME = 100; // missions/serializers/limits.py
 
-/** "Heron", or where one of the UAVs is called so "Heron 2": ties and locks name the one that they mean. */
+/**
+ * "Heron", or where one of the UAVs is called so "Heron 2": ties and locks name the one that they mean.
+ *
+ * @param {MissionSelection} selection
+ * @param {string} name
+ */
 function freeName({ uavs }, name) {
   const taken = new Set(uavs.map((uav) => uav.name));
   let free = name;
@@ -199,68 +287,115 @@ function freeName({ uavs }, name) {
   return free;
 }
 
-/** One more UAV of the fleet; in this mission it has another name where its own is taken. */
+/**
+ * One more UAV of the fleet; in this mission it has another name where its own is taken.
+ *
+ * @param {MissionSelection} selection
+ * @param {PickedUav} uav
+ * @returns {MissionSelection}
+ */
 export function withUav(selection, uav) {
   if (selection.uavs.some((chosen) => chosen.id === uav.id)) return selection;
   return { ...selection, uavs: [...selection.uavs, { ...uav, name: freeName(selection, uav.name) }] };
 }
 
-/** UAVs are told apart by name where a target is tied or locked to one: not where two have the same. */
+/**
+ * UAVs are told apart by name where a target is tied or locked to one: not where two have the same.
+ *
+ * @param {Pick<MissionSelection, "uavs">} selection
+ */
 export function uavsByName({ uavs }) {
   const count = new Map();
   for (const { name } of uavs) count.set(name, (count.get(name) ?? 0) + 1);
   return uavs.map((uav, sequence) => ({ ...uav, sequence })).filter(({ name }) => count.get(name) === 1);
 }
 
+/** @param {MissionSelection} selection @param {number} sequence @returns {MissionSelection} */
 export function withoutUavAt(selection, sequence) {
   return { ...selection, uavs: selection.uavs.filter((_, index) => index !== sequence) };
 }
 
+/**
+ * @param {MissionSelection} selection
+ * @param {number} sequence
+ * @param {number[]} position
+ * @returns {MissionSelection}
+ */
 export function withUavAt(selection, sequence, position) {
   return { ...selection, uavs: selection.uavs.map((uav, index) => (index === sequence ? { ...uav, position } : uav)) };
 }
 
-/** The same UAV with other values, in this mission. */
+/**
+ * The same UAV with other values, in this mission.
+ *
+ * @param {MissionSelection} selection
+ * @param {number} sequence
+ * @param {Partial<PickedUav>} values
+ * @returns {MissionSelection}
+ */
 export function withUavAs(selection, sequence, values) {
   return { ...selection, uavs: selection.uavs.map((uav, index) => (index === sequence ? { ...uav, ...values } : uav)) };
 }
 
-/** Locks with indices into the targets, as the API takes them; nothing where none is locked. */
+/**
+ * Locks with indices into the targets, as the API takes them; nothing where none is locked.
+ *
+ * @param {MissionSelection} selection
+ * @returns {Pick<PlanInputRequest, "locks">}
+ */
 function locksAsked({ targets, locks }) {
   if (!locks?.length) return {};
   const index = new Map(targets.map((target, at) => [target.key, at]));
-  return { locks: locks.map((lock) => ({ ...lock, targets: lock.targets.map((key) => index.get(key)) })) };
+  return {
+    locks: locks.map((lock) => ({
+      ...lock,
+      targets: lock.targets.map((key) => /** @type {number} */ (index.get(key))),
+    })),
+  };
 }
 
-/** The same with nothing locked. */
+/** The same with nothing locked. @param {MissionSelection} selection @returns {MissionSelection} */
 export const withoutLocks = (selection) => ({ ...selection, locks: [] });
 
-/** The same without what is locked and what targets wish: what leaves a plan's targets and UAVs as they are. */
+/**
+ * The same without what is locked and what targets wish: what leaves a plan's targets and UAVs as they are.
+ *
+ * @param {MissionSelection} selection
+ * @returns {MissionSelection}
+ */
 export function withoutWishes(selection) {
   return { ...withoutLocks(selection), targets: selection.targets.map((target) => ({ ...target, ...NO_WISH })) };
 }
 
-const MAY_BE_NONE = ["battery_wh", "max_airspeed_mps", "hover_power_w"];
+const MAY_BE_NONE = /** @type {const} */ (["battery_wh", "max_airspeed_mps", "hover_power_w"]);
 
-/** What a mission keeps of a UAV of the fleet though the fleet says otherwise by now: figures that it has none of, sensors, and which are its own. */
+/**
+ * What a mission keeps of a UAV of the fleet though the fleet says otherwise by now: figures that it has none of, sensors, and which are its own.
+ *
+ * @param {PickedUav} uav
+ * @returns {Partial<UavInputRequest>}
+ */
 function asKept(uav) {
   const none = Object.fromEntries(MAY_BE_NONE.filter((name) => uav[name] === null).map((name) => [name, null]));
   return { ...none, ...(uav.sensors ? { sensors: uav.sensors } : {}), own_figures: uav.own_figures ?? [] };
 }
 
-/** The body of /plans and of a mission. */
+/** The body of /plans and of a mission. @param {MissionSelection} selection @returns {PlanInputRequest} */
 export function requestOf(selection) {
   return {
     uavs: selection.uavs.map((uav) => {
+      /** @type {UavInputRequest} */
       const body = { name: uav.name, position: uav.position };
       if (uav.id !== null && uav.id !== undefined) body.id = uav.id;
       if (body.id !== undefined && uav.max_range_m === null) body.max_range_m = null; // said so: the fleet's own range is not meant
-      for (const name of UAV_VALUES) if (uav[name] !== null && uav[name] !== undefined) body[name] = uav[name];
-      if (uav.sorties > 1) body.sorties = uav.sorties;
+      for (const name of UAV_VALUES)
+        if (uav[name] !== null && uav[name] !== undefined) Object.assign(body, { [name]: uav[name] });
+      if ((uav.sorties ?? 1) > 1) body.sorties = uav.sorties;
       if (body.id === undefined && uav.sensors?.length) body.sensors = uav.sensors;
       return body.id === undefined ? body : { ...body, ...asKept(uav) };
     }),
     targets: selection.targets.map((target) => {
+      /** @type {TargetInputRequest} */
       const body = {};
       if (target.asset !== null) body.asset = target.asset;
       if (target.position) body.position = target.position;
@@ -279,7 +414,11 @@ export function requestOf(selection) {
   };
 }
 
-/** Equal selections ask for equal routes: what is done without a link does not change them, nor whose figures a UAV has. */
+/**
+ * Equal selections ask for equal routes: what is done without a link does not change them, nor whose figures a UAV has.
+ *
+ * @param {MissionSelection} selection
+ */
 export function basisOf(selection) {
   return storedBasisOf({
     ...selection,
@@ -288,12 +427,12 @@ export function basisOf(selection) {
   });
 }
 
-/** Equal selections are stored as the same mission. */
+/** Equal selections are stored as the same mission. @param {MissionSelection} selection */
 export function storedBasisOf(selection) {
   return JSON.stringify(requestOf(selection));
 }
 
-/** A target as the server has stored it. */
+/** A target as the server has stored it. @param {MissionTarget} target @returns {PickedTarget} */
 export function storedTarget(target) {
   const position = target.is_point || target.asset === null ? target.position : null;
   const stretch = target.stretch ?? null;
@@ -311,7 +450,11 @@ export function storedTarget(target) {
   return { key: keyOf(made), ...made, ...wishesOf(target) };
 }
 
-/** The same targets, each with a key of its own: a program may ask for one place several times. */
+/**
+ * The same targets, each with a key of its own: a program may ask for one place several times.
+ *
+ * @param {PickedTarget[]} targets
+ */
 function toldApart(targets) {
   const count = new Map();
   return targets.map((target) => {
@@ -321,7 +464,13 @@ function toldApart(targets) {
   });
 }
 
-/** The selection of a stored mission. */
+/**
+ * The selection of a stored mission.
+ *
+ * @param {Mission} mission
+ * @param {FleetUav[]} [fleet]
+ * @returns {MissionSelection}
+ */
 export function selectionOf(mission, fleet = []) {
   const targets = toldApart(mission.targets.map(storedTarget));
   return {

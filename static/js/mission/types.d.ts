@@ -76,6 +76,17 @@ export interface PickedTarget extends Partial<Wishes> {
   task: Task | null;
 }
 
+/** An asset that can be picked: of a tile of the map, or of an answer. */
+export interface PickableAsset {
+  id: number;
+  kind: string;
+  properties: { label: string; detail?: string; length_m?: number | null };
+  centre?: number[] | null;
+  position?: number[] | null;
+  stretch?: number[][] | null;
+  task?: Task | null;
+}
+
 /** What a mission may say of a UAV; what it leaves out is as in the fleet. null: it has none. */
 export type UavValues = {
   [Name in

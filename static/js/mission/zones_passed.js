@@ -4,22 +4,47 @@ import { isInForce } from "../domain/zones_in_force.js";
 import { t } from "../text.js";
 import { durationText, heightText } from "../units.js";
 
+/** @import { Route, ZoneAlong, ZoneMargins } from "../api_types.d.ts" */
+
+/** @typedef {ZoneAlong & { kind: "met" | "apart" | "near" | "asleep" }} PassedZone */
+
 const STEP_MS = 60_000;
 const NO_MARGINS = { time_s: 0, height_m: 0, terrain_m: 0 };
 
-/** Each stretch of the ground's zones with `kind`: "met", "apart" (in height), "near" or "asleep". What is not known counts as met.
- * route: of a plan; places: where its waypoints stand [m]; departs_at: of the plan, null for at any time. */
+/**
+ * Each stretch of the ground's zones with `kind`: "met", "apart" (in height), "near" or "asleep". What is not known counts as met.
+ * route: of a plan; places: where its waypoints stand [m]; departs_at: of the plan, null for at any time.
+ *
+ * @param {{ zones: ZoneAlong[], zone_margins?: ZoneMargins }} ground
+ * @param {Pick<Route, "arrival_s" | "waypoints">} route
+ * @param {number[]} places
+ * @param {string | null} departs_at
+ * @returns {PassedZone[]}
+ */
 export function passedZones({ zones, zone_margins = NO_MARGINS }, route, places, departs_at) {
   return zones.map((zone) => ({ ...zone, kind: kindOf(zone, zone_margins, route, places, departs_at) }));
 }
 
+/**
+ * @param {ZoneAlong} zone
+ * @param {ZoneMargins} margins
+ * @param {Pick<Route, "arrival_s" | "waypoints">} route
+ * @param {number[]} places
+ * @param {string | null} departs_at
+ * @returns {PassedZone["kind"]}
+ */
 function kindOf(zone, margins, route, places, departs_at) {
   if (isAsleep(zone, margins, route, places, departs_at)) return "asleep";
   if (zone.is_crossed === false) return "near";
   return isApart(zone, margins, route, places) ? "apart" : "met";
 }
 
-/** The waypoints from the last one before a stretch to the first one after it. */
+/**
+ * The waypoints from the last one before a stretch to the first one after it.
+ *
+ * @param {Pick<ZoneAlong, "from_m" | "to_m">} zone
+ * @param {number[]} places
+ */
 function around({ from_m, to_m }, places) {
   const first = Math.max(
     0,
@@ -29,6 +54,13 @@ function around({ from_m, to_m }, places) {
   return [first, after < 0 ? places.length - 1 : after];
 }
 
+/**
+ * @param {ZoneAlong} zone
+ * @param {ZoneMargins} margins
+ * @param {Pick<Route, "arrival_s" | "waypoints">} route
+ * @param {number[]} places
+ * @param {string | null} departs_at
+ */
 function isAsleep(zone, { time_s }, { arrival_s, waypoints }, places, departs_at) {
   if (!zone.schedule || !departs_at || !arrival_s?.length) return false;
   const [first, last] = around(zone, places);
@@ -44,22 +76,30 @@ function isAsleep(zone, { time_s }, { arrival_s, waypoints }, places, departs_at
   return true;
 }
 
+/**
+ * @param {ZoneAlong} zone
+ * @param {ZoneMargins} margins
+ * @param {Pick<Route, "waypoints">} route
+ * @param {number[]} places
+ */
 function isApart({ from_m, to_m, lower_limit, upper_limit }, { height_m, terrain_m }, { waypoints }, places) {
   const [first, last] = around({ from_m, to_m }, places);
-  const heights = (reference) => {
-    const name = { AGL: "altitude_agl_m", AMSL: "altitude_amsl_m" }[reference];
-    const known = name ? waypoints.slice(first, last + 1).map((waypoint) => waypoint[name]) : [];
+  /** Those of the flight there over what a limit counts from; null where they are not known. @param {ZoneAlong["lower_limit"]} limit */
+  const heightsOver = (limit) => {
+    const name = limit?.reference === "AGL" ? "altitude_agl_m" : "altitude_amsl_m";
+    if (limit?.reference !== "AGL" && limit?.reference !== "AMSL") return null;
+    const known = waypoints.slice(first, last + 1).map((waypoint) => waypoint[name]);
     return known.length && known.every((height) => typeof height === "number") ? known : null;
   };
-  const [lower, upper] = [lower_limit && heights(lower_limit.reference), upper_limit && heights(upper_limit.reference)];
+  const [lower, upper] = [heightsOver(lower_limit), heightsOver(upper_limit)];
   const give_m = height_m + terrain_m;
   return Boolean(
-    (lower && Math.max(...lower) + give_m < lower_limit.value_m) ||
-      (upper && Math.min(...upper) - give_m > upper_limit.value_m),
+    (lower && lower_limit && Math.max(...lower) + give_m < lower_limit.value_m) ||
+      (upper && upper_limit && Math.min(...upper) - give_m > upper_limit.value_m),
   );
 }
 
-/** "Airport, passed by". */
+/** "Airport, passed by". @param {Pick<PassedZone, "name" | "kind">} zone */
 export const zoneWords = ({ name, kind }) =>
   ({
     met: t("{zone}, in the way", { zone: name }),
@@ -68,20 +108,29 @@ export const zoneWords = ({ name, kind }) =>
     asleep: t("{zone}, not in force then", { zone: name }),
   })[kind];
 
-/** What each kind means where it is drawn: [{ kind, words }], of the kinds that there are. */
+/**
+ * What each kind means where it is drawn: [{ kind, words }], of the kinds that there are.
+ *
+ * @param {Pick<PassedZone, "kind">[]} zones
+ */
 export function zoneLegend(zones) {
+  /** @type {Record<PassedZone["kind"], string>} */
   const words = {
     met: t("zone in the way"),
     apart: t("zone at another height"),
     near: t("zone passed by, not entered"),
     asleep: t("zone not in force when the UAV comes by"),
   };
-  return Object.keys(words)
+  return /** @type {PassedZone["kind"][]} */ (Object.keys(words))
     .filter((kind) => zones.some((zone) => zone.kind === kind))
     .map((kind) => ({ kind, words: words[kind] }));
 }
 
-/** By how much zones count beyond their times and heights; empty where nothing is added. */
+/**
+ * By how much zones count beyond their times and heights; empty where nothing is added.
+ *
+ * @param {Pick<ZoneMargins, "time_s" | "height_m">} [margins]
+ */
 export function marginWords({ time_s, height_m } = NO_MARGINS) {
   if (time_s > 0 && height_m > 0)
     return t("Zones count {time} before and after their times and {height} below and above their limits.", {
