@@ -1,26 +1,22 @@
 /** What is being drawn, on the map: fill, sides, vertices and middles as handles, and what is wrong in red. */
 
 import { circleRing, continuous } from "../domain/geodesy.js";
-import { setPaint, sourceOf } from "../map/look/style.js";
+import { addSources, readToken, setFeatures, setPaint } from "../map/look/style.js";
 import { circleOf, middlesOf, radiusHandle, verticesOf } from "./shape.js";
 
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
-/** @import { FeatureCollection, MapLibreMap } from "../map/types.d.ts" */
+/** @import { MapLibreMap } from "../map/types.d.ts" */
 /** @import { Fault, Handle, Shape, VertexPath } from "./types.d.ts" */
 
-/** @type {FeatureCollection} */
-const NOTHING = { type: "FeatureCollection", features: [] };
 const MOST_MIDDLES = 400; // of a large ring, only vertices
 
-/** @param {string} token of the style sheet */
-const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
 /** @param {string} role */
 const isRole = (role) => ["==", ["get", "role"], role];
 const touch = matchMedia("(pointer: coarse)").matches;
 
 /** @returns {LayerSpecification[]} */
 function layers() {
-  const [accent, casing, raised, critical] = ["--accent", "--map-casing", "--raised", "--critical"].map(read);
+  const [accent, casing, raised, critical] = ["--accent", "--map-casing", "--raised", "--critical"].map(readToken);
   const round = { "line-cap": "round", "line-join": "round" };
   const layers = [
     {
@@ -105,8 +101,7 @@ function layers() {
 
 /** @param {MapLibreMap} map */
 export function addTo(map) {
-  for (const source of ["draw-shape", "draw-next", "draw-points", "draw-faults", "draw-snap"])
-    map.addSource(source, { type: "geojson", data: NOTHING });
+  addSources(map, ["draw-shape", "draw-next", "draw-points", "draw-faults", "draw-snap"]);
   for (const layer of layers()) map.addLayer(layer);
 }
 
@@ -121,10 +116,6 @@ const feature = (role, type, coordinates, rest = {}) => ({
   properties: { role, ...rest },
   geometry: { type, coordinates },
 });
-/** @param {MapLibreMap} map @param {string} source @param {object[]} features */
-function put(map, source, features) {
-  sourceOf(map, source)?.setData(/** @type {FeatureCollection} */ ({ type: "FeatureCollection", features }));
-}
 
 /**
  * shape null draws nothing. `growing`: the ring that is still open.
@@ -134,9 +125,9 @@ function put(map, source, features) {
  * @param {{ chosen?: VertexPath | null, faults?: Fault[], growing?: VertexPath | null, hasHandles?: boolean }} [how]
  */
 export function show(map, shape, { chosen = null, faults = [], growing = null, hasHandles = true } = {}) {
-  put(map, "draw-shape", shape ? shapeFeatures(shape, growing) : []);
-  put(map, "draw-points", shape && hasHandles ? handleFeatures(shape, chosen, growing) : []);
-  put(
+  setFeatures(map, "draw-shape", shape ? shapeFeatures(shape, growing) : []);
+  setFeatures(map, "draw-points", shape && hasHandles ? handleFeatures(shape, chosen, growing) : []);
+  setFeatures(
     map,
     "draw-faults",
     faults.flatMap((fault) => [
@@ -153,12 +144,12 @@ export function show(map, shape, { chosen = null, faults = [], growing = null, h
  * @param {Shape | null} shape
  */
 export function showNext(map, shape) {
-  put(map, "draw-next", shape ? shapeFeatures(shape, null) : []);
+  setFeatures(map, "draw-next", shape ? shapeFeatures(shape, null) : []);
 }
 
 /** @param {MapLibreMap} map @param {number[] | null} position */
 export function showSnap(map, position) {
-  put(map, "draw-snap", position ? [feature("snap", "Point", position)] : []);
+  setFeatures(map, "draw-snap", position ? [feature("snap", "Point", position)] : []);
 }
 
 /** @param {Shape} shape @param {VertexPath | null} growing */

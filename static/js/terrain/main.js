@@ -1,8 +1,8 @@
 /** The page "Terrain": composes the list of models, the map and the dock; a click tells the height, several points the profile. */
 
 import { get, post, remove } from "../api.js";
-import { byId, h } from "../dom.js";
-import { distance_m } from "../domain/geodesy.js";
+import { byId, find, h } from "../dom.js";
+import { pathLength_m } from "../domain/geodesy.js";
 import { mountGroundPage } from "../ground/ground_page.js";
 import { boxAround } from "../map/map_view.js";
 import { say, toast } from "../page/toast.js";
@@ -13,6 +13,11 @@ import { askToRemove, mountModelList } from "./model_list.js";
 import { profileSentence, towersAlong } from "./profile_chart.js";
 import * as layer from "./terrain_layer.js";
 
+/** @import { Answer, ApiError } from "../api.js" */
+/** @import { AssetCollection, AssetDetailFeature, AssetFeature, GroundHeight, ModelCollection, ModelFeature, Profile } from "../api_types.d.ts" */
+/** @import { Box, MapThing, ScreenPoint } from "../map/types.d.ts" */
+/** @import { TowerAlong } from "./profile_chart.js" */
+
 const HINTS = {
   height: t("Click the map: the height of the ground there."),
   profile: t("Click two or more points, or a power line."),
@@ -22,43 +27,53 @@ const MOST_SAMPLES = 1_500; // more than a drawing has pixels
 const REACH_PX = 24; // of the pointer from the profile's line, for the cursor
 const MOST_TOWER_PAGES = 10;
 
+/** @type {ModelFeature[]} */
 let models = [];
+/** @type {keyof typeof HINTS} */
 let tool = "height";
+/** @type {number[][]} */
 let points = [];
-let along = null; // what the profile is of: { profile, towers }
+/** What the profile is of. @type {{ profile: Profile, towers: TowerAlong[] } | null} */
+let along = null;
+/** @type {number | null} */
 let cursor = null;
 let asked = 0;
 
 const { page, map, open } = mountGroundPage({
   click: (thing, position) => (tool === "profile" ? clickInProfile(thing, position) : tellHeight(position)),
-  hover: (thing, point) => pointAlong(point),
+  hover: (_thing, point) => pointAlong(point),
   kinds: () => (tool === "profile" ? (points.length ? [] : ["line"]) : null),
 });
 const showList = mountModelList(page.canCurate, {
   show: ({ geometry }) =>
-    map.fit(boxAround(geometry.type === "Polygon" ? geometry.coordinates.flat() : geometry.coordinates.flat(2))),
+    map.fit(boxAround(/** @type {number[][]} */ (geometry.coordinates.flat(geometry.type === "Polygon" ? 1 : 2)))),
   point: (model) => layer.showModels(map.map, models, model?.id),
   remove: takeAway,
 });
 const panel = mountGroundPanel({ cursor: showCursor, back: takePointBack, close: end });
 
+/** @param {unknown} error */
+const messageOf = (error) => /** @type {Error} */ (error).message;
+
 async function load() {
   try {
-    models = (await get("/terrain")).data.features;
+    const { data } = /** @type {Answer<ModelCollection>} */ (await get("/terrain"));
+    models = data.features;
     showList(models);
     layer.showModels(map.map, models);
     byId("page-facts").textContent = models.length
       ? tn(models.length, "{count} model, newest on top", "{count} models, newest on top")
       : t("No models");
   } catch (error) {
-    toast(error.message, { label: t("Try again"), act: load });
+    toast(messageOf(error), { label: t("Try again"), act: load });
   }
 }
 
+/** @param {keyof typeof HINTS} next */
 function choose(next) {
   end();
   tool = next;
-  document.querySelector(`#terrain-tools input[value=${tool}]`).checked = true;
+  find(document, `#terrain-tools input[value=${tool}]`, HTMLInputElement).checked = true;
   byId("terrain-hint").replaceChildren(
     HINTS[tool],
     ...(tool === "profile" ? [h("span", { class: "with-keys" }, KEYS_OF_PROFILE)] : []),
@@ -69,33 +84,43 @@ function choose(next) {
 /** Closes the dock and forgets the points; whatever is still being asked comes too late. */
 function end() {
   asked += 1;
-  [points, along] = [[], null];
+  points = [];
+  along = null;
   panel.close();
   layer.showLine(map.map, [], []);
   showCursor(null);
 }
 
+/** @param {readonly number[]} position */
 const rounded = (position) => position.map((degrees) => Number(degrees.toFixed(7)));
 
-/** What `question` answers, or null where somebody has gone on to something else in the meantime, or it failed, which is said. */
+/**
+ * What `question` answers, or null where the user has gone on to something else in the meantime, or it failed, which is said.
+ *
+ * @template Result
+ * @param {() => Promise<Result>} question
+ */
 async function ask(question) {
-  const turn = ++asked;
+  asked += 1;
+  const turn = asked;
   try {
     const answer = await question();
     return turn === asked ? answer : null;
   } catch (error) {
-    if (turn === asked) toast(error.message);
+    if (turn === asked) toast(messageOf(error));
     return null;
   }
 }
 
+/** @param {readonly number[]} clicked */
 async function tellHeight(clicked) {
   const position = rounded(clicked);
   layer.showLine(map.map, [], [position]);
-  const told = await ask(async () => (await get(`/terrain/height?position=${position.join(",")}`)).data);
-  if (told) panel.height(position, told);
+  const answer = await ask(() => get(`/terrain/height?position=${position.join(",")}`));
+  if (answer) panel.height(position, /** @type {GroundHeight} */ (answer.data));
 }
 
+/** @param {MapThing | null} thing @param {readonly number[]} position */
 function clickInProfile(thing, position) {
   if (!points.length && thing?.kind === "line") return profileOfLine(thing.id);
   points.push(rounded(position));
@@ -116,12 +141,14 @@ async function profileOfPoints() {
   if (found) show(found, [], { title: countText(points.length, "point"), canStepBack: true });
 }
 
+/** @param {number} id */
 async function profileOfLine(id) {
   const found = await ask(async () => {
-    const { data: line } = await get(`/assets/${id}`);
-    const positions =
-      line.geometry.type === "MultiLineString" ? line.geometry.coordinates[0] : line.geometry.coordinates;
-    const [profile, towers] = await Promise.all([askProfile(positions), towersIn(boxAround(positions))]);
+    const { data: line } = /** @type {Answer<AssetDetailFeature>} */ (await get(`/assets/${id}`));
+    const { type, coordinates } = line.geometry;
+    const positions = /** @type {number[][]} */ (type === "MultiLineString" ? coordinates[0] : coordinates);
+    const box = /** @type {Box} */ (boxAround(positions));
+    const [profile, towers] = await Promise.all([askProfile(positions), towersIn(box)]);
     return { line, positions, profile, towers: towersAlong(profile, towers) };
   });
   if (!found) return;
@@ -130,24 +157,30 @@ async function profileOfLine(id) {
   map.fit(boxAround(found.positions));
 }
 
+/** @param {number[][]} line */
 async function askProfile(line) {
-  const length_m = line.slice(1).reduce((sum, position, index) => sum + distance_m(line[index], position), 0);
+  const length_m = pathLength_m(line);
   const finest_m = models.reduce((finest, { properties }) => Math.min(finest, properties.resolution_m), Infinity);
   const step_m = Math.max(1, length_m / MOST_SAMPLES, Number.isFinite(finest_m) ? finest_m / 2 : 0);
-  return (await post("/terrain/profile", { line, step_m: Math.min(step_m, 100_000) })).data;
+  const body = { line, step_m: Math.min(step_m, 100_000) };
+  return /** @type {Answer<Profile>} */ (await post("/terrain/profile", body)).data;
 }
 
+/** @param {Box} box */
 async function towersIn(box) {
+  /** @type {AssetFeature[]} */
   const found = [];
+  /** @type {string | null} */
   let next = `/assets?kind=tower&limit=500&bbox=${box.map((degrees, index) => (degrees + (index < 2 ? -1e-6 : 1e-6)).toFixed(7)).join(",")}`;
   for (let number = 0; next && number < MOST_TOWER_PAGES; number += 1) {
-    const { data } = await get(next);
+    const { data } = /** @type {Answer<AssetCollection>} */ (await get(next));
     found.push(...data.features);
     next = data.next;
   }
   return found;
 }
 
+/** @param {Profile} profile @param {TowerAlong[]} towers @param {{ title: string, canStepBack: boolean }} words */
 function show(profile, towers, words) {
   along = { profile, towers };
   panel.profile(profile, towers, words);
@@ -161,6 +194,7 @@ function takePointBack() {
   return true;
 }
 
+/** @param {number | null} index */
 function showCursor(index) {
   cursor = index;
   panel.point(index);
@@ -168,22 +202,26 @@ function showCursor(index) {
     layer.showCursor(map.map, index === null || !along ? null : along.profile.positions[index]);
 }
 
-/** The pointer on the map near the profile's line moves the cursor of the chart. */
+/** The pointer on the map near the profile's line moves the cursor of the chart. @param {ScreenPoint | null} point */
 function pointAlong(point) {
   if (!along) return;
+  /** @type {number | null} */
   let nearest = null;
   let reach = REACH_PX;
   if (point) {
-    along.profile.positions.forEach((position, index) => {
-      const place = map.map.project(position);
+    for (const [index, [longitude, latitude]] of along.profile.positions.entries()) {
+      const place = map.map.project([longitude, latitude]);
       const away = Math.hypot(place.x - point.x, place.y - point.y);
-      if (away < reach) [nearest, reach] = [index, away];
-    });
+      if (away < reach) {
+        nearest = index;
+        reach = away;
+      }
+    }
   }
   if (nearest !== cursor) showCursor(nearest);
 }
 
-/** Along the profile by key; a step is a hundredth of it. */
+/** Along the profile by key; a step is a hundredth of it. @param {1 | -1} direction */
 const step = (direction) => () => {
   if (!along) return false;
   const last = along.profile.positions.length - 1;
@@ -192,21 +230,25 @@ const step = (direction) => () => {
   return true;
 };
 
+/** @param {ModelFeature} model */
 async function takeAway(model) {
   if (!(await askToRemove(model.properties))) return;
   try {
     await remove(`/terrain/${model.id}`);
     toast(t("{name} removed.", { name: model.properties.file_name }));
   } catch (error) {
-    toast(error.status === 404 ? t("It has been removed already.") : error.message);
+    const { status, message } = /** @type {ApiError} */ (error);
+    toast(status === 404 ? t("It has been removed already.") : message);
   }
   end();
   await load();
   byId("terrain-list").querySelector("button")?.focus();
 }
 
-for (const input of document.querySelectorAll("#terrain-tools input"))
-  input.addEventListener("change", () => choose(input.value));
+/** @type {NodeListOf<HTMLInputElement>} */
+const tools = document.querySelectorAll("#terrain-tools input");
+for (const input of tools)
+  input.addEventListener("change", () => choose(input.value === "profile" ? "profile" : "height"));
 
 open({
   bindings: [

@@ -4,7 +4,13 @@ import { byId, h, icon } from "../dom.js";
 import { language, localeOf, t } from "../text.js";
 import { countText, heightText, lengthText, numberText, whenText } from "../units.js";
 
-/** Shares below what shows in one digit are not rounded to none. */
+/** @import { ModelFeature, ModelProperties } from "../api_types.d.ts" */
+
+/**
+ * Shares below what shows in one digit are not rounded to none.
+ *
+ * @param {Pick<ModelProperties, "posts" | "voids">} properties
+ */
 export function voidsText({ posts, voids }) {
   if (posts === null || voids === null || !posts) return t("not counted");
   if (!voids) return t("none");
@@ -16,11 +22,11 @@ export function voidsText({ posts, voids }) {
   return `${countText(voids, "post")}, ${share}\u00a0%`;
 }
 
-/** [term, words] of one model. */
+/** [term, words] of one model. @param {ModelProperties} properties @returns {[string, string][]} */
 export function factsOf(properties) {
   const { lowest_m, highest_m, vertical_datum, resolution_m, attribution, licence, is_synthetic, imported_at } =
     properties;
-  const facts = [
+  return [
     [
       t("Heights"),
       lowest_m === null || highest_m === null
@@ -34,14 +40,19 @@ export function factsOf(properties) {
     [t("Licence"), licence || t("not stated")],
     [t("Imported"), whenText(imported_at)],
   ];
-  return facts;
 }
 
-/** on: { show(model), point(model or null), remove(model) }. Returns show(models). */
+/**
+ * on: { show(model), point(model or null), remove(model) }. Returns show(models).
+ *
+ * @param {boolean} canCurate
+ * @param {{ show: (model: ModelFeature) => void, point: (model: ModelFeature | null) => void, remove: (model: ModelFeature) => void }} on
+ */
 export function mountModelList(canCurate, on) {
   const list = byId("terrain-list");
   const end = byId("terrain-list-end");
 
+  /** @param {ModelFeature} model @param {number} index @param {number} count */
   function row(model, index, count) {
     const { file_name } = model.properties;
     const words = count > 1 ? (index === 0 ? t("Counts on top") : t("Fills what those above leave void")) : "";
@@ -94,6 +105,7 @@ export function mountModelList(canCurate, on) {
         : h("p", {}, t("A curator can import one.")),
     );
 
+  /** @param {ModelFeature[]} models */
   return (models) => {
     byId("terrain-count").textContent = models.length ? String(models.length) : "";
     list.replaceChildren(...models.map((model, index) => row(model, index, models.length)));
@@ -101,9 +113,10 @@ export function mountModelList(canCurate, on) {
   };
 }
 
-/** Resolves to whether the model is to go. */
+/** Resolves to whether the model is to go. @param {{ file_name: string }} model @returns {Promise<boolean>} */
 export function askToRemove({ file_name }) {
   return new Promise((resolve) => {
+    /** @type {HTMLDialogElement} */
     const dialog = h(
       "dialog",
       { "aria-labelledby": "remove-title" },

@@ -4,13 +4,34 @@ import { svg } from "../dom.js";
 import { t, tn } from "../text.js";
 import { countText, heightText, lengthText, numberText } from "../units.js";
 
+/** @import { AssetFeature, Profile } from "../api_types.d.ts" */
+
 export const EDGES = { left: 52, right: 14, top: 14, bottom: 20 };
+/**
+ * A tower at a vertex of the profile's line; what is not known of it is null.
+ *
+ * @typedef {object} TowerAlong
+ * @property {number} index of the sample
+ * @property {string} label
+ * @property {number} distance_m
+ * @property {number | null} ground_amsl_m
+ * @property {number | null} height_m
+ * @property {number | null} top_amsl_m
+ */
+/** @typedef {Pick<Profile, "length_m" | "distance_m" | "positions" | "ground_amsl_m" | "lowest_m" | "highest_m">} ProfileLine */
+/** @typedef {NonNullable<ReturnType<typeof scalesOf>>} Scales */
+
 const LEAST_SPAN_M = 20; // a plain must not look like mountains
 const UNTOLD_TOWER_PX = 12; // of a tower whose height nobody has stated; drawn broken
 const RULES = 3;
 
-/** Stretches of a profile where the ground is known, and where not: [{ isKnown, from, to }], indices, both ends in. */
+/**
+ * Stretches of a profile where the ground is known, and where not: [{ isKnown, from, to }], indices, both ends in.
+ *
+ * @param {(number | null)[]} heights_m
+ */
 export function stretchesOf(heights_m) {
+  /** @type {{ isKnown: boolean, from: number, to: number }[]} */
   const found = [];
   heights_m.forEach((height_m, index) => {
     const isKnown = height_m !== null;
@@ -21,22 +42,30 @@ export function stretchesOf(heights_m) {
   return found;
 }
 
-/** Round heights for rules, at most three, from within the span. */
+/** Round heights for rules, at most three, from within the span. @param {number} low_m @param {number} high_m */
 export function rulesOf(low_m, high_m) {
   const rough = (high_m - low_m) / RULES;
   const power = 10 ** Math.floor(Math.log10(rough));
   const step = [1, 2, 5, 10]
     .map((factor) => factor * power)
     .find((candidate) => Math.floor(high_m / candidate) - Math.ceil(low_m / candidate) < RULES);
+  if (!step) return [];
   const rules = [];
   for (let height = Math.ceil(low_m / step) * step; height <= high_m; height += step) rules.push(height);
   return rules;
 }
 
-/** Scales for a profile with its towers in a drawing of this size [px]. Null where nothing of the ground is known. */
+/**
+ * Scales for a profile with its towers in a drawing of this size [px]. Null where nothing of the ground is known.
+ *
+ * @param {ProfileLine} profile
+ * @param {TowerAlong[]} towers
+ * @param {number} width
+ * @param {number} height
+ */
 export function scalesOf(profile, towers, width, height) {
-  const tops = towers.filter(({ top_amsl_m }) => top_amsl_m !== null).map(({ top_amsl_m }) => top_amsl_m);
-  const known = [...profile.ground_amsl_m.filter((ground) => ground !== null), ...tops];
+  const tops = towers.map(({ top_amsl_m }) => top_amsl_m);
+  const known = [...profile.ground_amsl_m, ...tops].filter((height_m) => height_m !== null);
   if (!known.length) return null;
   const lowest = known.reduce((a, b) => Math.min(a, b));
   const highest = known.reduce((a, b) => Math.max(a, b));
@@ -46,13 +75,21 @@ export function scalesOf(profile, towers, width, height) {
   return {
     low,
     high,
+    /** @param {number} distance_m */
     x: (distance_m) => EDGES.left + (profile.length_m > 0 ? (distance_m / profile.length_m) * wide : 0),
+    /** @param {number} height_m */
     y: (height_m) => EDGES.top + ((high - height_m) / (high - low)) * tall,
+    /** @param {number} x */
     distanceAt: (x) => Math.min(1, Math.max(0, (x - EDGES.left) / wide)) * profile.length_m,
   };
 }
 
-/** The index of the sample nearest to a distance along the line; distances rise. */
+/**
+ * The index of the sample nearest to a distance along the line; distances rise.
+ *
+ * @param {number[]} distances_m
+ * @param {number} distance_m
+ */
 export function nearestSample(distances_m, distance_m) {
   let [low, high] = [0, distances_m.length - 1];
   while (high - low > 1) {
@@ -63,11 +100,20 @@ export function nearestSample(distances_m, distance_m) {
   return distance_m - distances_m[low] <= distances_m[high] - distance_m ? low : high;
 }
 
+/** @param {number[]} position */
 const placeKey = ([longitude, latitude]) => `${longitude.toFixed(6)} ${latitude.toFixed(6)}`;
 
-/** Towers (features) that stand at vertices of the profile's line, along it. What is not known of one is null. */
+/**
+ * Towers (features) that stand at vertices of the profile's line, along it. What is not known of one is null.
+ *
+ * @param {ProfileLine} profile
+ * @param {AssetFeature[]} features
+ * @returns {TowerAlong[]}
+ */
 export function towersAlong(profile, features) {
-  const byPlace = new Map(features.map((feature) => [placeKey(feature.geometry.coordinates), feature]));
+  const byPlace = new Map(
+    features.map((feature) => [placeKey(/** @type {number[]} */ (feature.geometry.coordinates)), feature]),
+  );
   return profile.positions.flatMap((position, index) => {
     const feature = byPlace.get(placeKey(position));
     if (!feature) return [];
@@ -86,7 +132,7 @@ export function towersAlong(profile, features) {
   });
 }
 
-/** The whole profile in a sentence. */
+/** The whole profile in a sentence. @param {ProfileLine} profile @param {TowerAlong[]} [towers] */
 export function profileSentence(profile, towers = []) {
   const known = profile.ground_amsl_m.filter((ground) => ground !== null).length;
   const long = lengthText(profile.length_m);
@@ -95,8 +141,8 @@ export function profileSentence(profile, towers = []) {
   const parts = [
     t("{length}, ground from {low} to {high} above sea level", {
       length: long,
-      low: heightText(profile.lowest_m),
-      high: heightText(profile.highest_m),
+      low: heightText(profile.lowest_m ?? 0),
+      high: heightText(profile.highest_m ?? 0),
     }),
   ];
   if (towers.length) parts.push(countText(towers.length, "tower"));
@@ -109,7 +155,13 @@ export function profileSentence(profile, towers = []) {
   return `${parts.join(", ")}.`;
 }
 
-/** Rows of the table behind the drawing: each tower, both ends, and places between, some fifty in all. */
+/**
+ * Rows of the table behind the drawing: each tower, both ends, and places between, some fifty in all.
+ *
+ * @param {ProfileLine} profile
+ * @param {TowerAlong[]} towers
+ * @param {number} [most]
+ */
 export function rowsOf(profile, towers, most = 40) {
   const last = profile.distance_m.length - 1;
   const step = Math.max(1, Math.ceil(last / most));
@@ -126,10 +178,17 @@ export function rowsOf(profile, towers, most = 40) {
     }));
 }
 
-/** Draws it. Returns { element, point(index or null) }. */
+/**
+ * Draws it. point(index) shows the cursor at a sample, null hides it.
+ *
+ * @param {ProfileLine} profile
+ * @param {TowerAlong[]} towers
+ * @param {number} width [px]
+ * @param {number} height [px]
+ * @returns {{ element: SVGSVGElement, scales?: Scales, point: (index: number | null) => void }}
+ */
 export function drawProfile(profile, towers, width, height) {
   const scales = scalesOf(profile, towers, width, height);
-  const floor = height - EDGES.bottom;
   const element = svg("svg", {
     class: "profile-chart",
     width,
@@ -139,63 +198,81 @@ export function drawProfile(profile, towers, width, height) {
     "aria-label": profileSentence(profile, towers),
   });
   if (!scales) return { element, point: () => {} };
-  const { x, y } = scales;
-  for (const rule of rulesOf(scales.low, scales.high)) {
+  const floor = height - EDGES.bottom;
+  drawRules(element, scales, width);
+  for (const { isKnown, from, to } of stretchesOf(profile.ground_amsl_m)) {
+    if (isKnown) drawGround(element, profile, from, to, scales, floor);
+    else drawUnknown(element, profile, from, to, scales, floor);
+  }
+  drawTowers(element, towers, scales);
+  const end = { class: "tick", x: width - EDGES.right, y: height - 5, "text-anchor": "end" };
+  element.append(
+    svg("text", { class: "tick", x: EDGES.left, y: height - 5 }, heightText(0)),
+    svg("text", end, lengthText(profile.length_m)),
+  );
+  return { element, scales, point: cursorOf(element, profile, scales, floor) };
+}
+
+/** @param {SVGElement} element @param {Scales} scales @param {number} width [px] */
+function drawRules(element, { low, high, y }, width) {
+  for (const rule of rulesOf(low, high)) {
     element.append(
       svg("line", { class: "rule", x1: EDGES.left, x2: width - EDGES.right, y1: y(rule), y2: y(rule) }),
       svg("text", { class: "tick", x: EDGES.left - 8, y: y(rule) + 4, "text-anchor": "end" }, heightText(rule)),
     );
   }
-  for (const { isKnown, from, to } of stretchesOf(profile.ground_amsl_m)) {
-    if (isKnown) drawGround(element, profile, from, to, scales, floor);
-    else drawUnknown(element, profile, from, to, scales, floor);
+}
+
+/** @param {SVGElement} element @param {TowerAlong[]} towers @param {Scales} scales */
+function drawTowers(element, towers, { x, y }) {
+  for (const { ground_amsl_m, top_amsl_m, distance_m } of towers) {
+    if (ground_amsl_m === null) continue;
+    const [at, foot] = [x(distance_m), y(ground_amsl_m)];
+    const top = top_amsl_m === null ? foot - UNTOLD_TOWER_PX : y(top_amsl_m);
+    const look = top_amsl_m === null ? "tower untold" : "tower";
+    element.append(svg("line", { class: look, x1: at, x2: at, y1: foot, y2: top }));
   }
-  for (const tower of towers) {
-    if (tower.ground_amsl_m === null) continue;
-    const foot = y(tower.ground_amsl_m);
-    const top = tower.top_amsl_m === null ? foot - UNTOLD_TOWER_PX : y(tower.top_amsl_m);
-    element.append(
-      svg("line", {
-        class: tower.top_amsl_m === null ? "tower untold" : "tower",
-        x1: x(tower.distance_m),
-        x2: x(tower.distance_m),
-        y1: foot,
-        y2: top,
-      }),
-    );
-  }
-  element.append(
-    svg("text", { class: "tick", x: EDGES.left, y: height - 5 }, heightText(0)),
-    svg(
-      "text",
-      { class: "tick", x: width - EDGES.right, y: height - 5, "text-anchor": "end" },
-      lengthText(profile.length_m),
-    ),
-  );
+}
+
+/**
+ * Adds the cursor, and returns what moves it.
+ *
+ * @param {SVGElement} element
+ * @param {ProfileLine} profile
+ * @param {Scales} scales
+ * @param {number} floor [px]
+ * @returns {(index: number | null) => void}
+ */
+function cursorOf(element, profile, { x, y }, floor) {
   const line = svg("line", { class: "cursor", y1: EDGES.top, y2: floor });
   const dot = svg("circle", { class: "cursor-dot", r: 4 });
   const cursor = svg("g", { visibility: "hidden" }, line, dot);
   element.append(cursor);
-  return {
-    element,
-    scales,
-    point(index) {
-      cursor.setAttribute("visibility", index === null ? "hidden" : "visible");
-      if (index === null) return;
-      const [at, ground] = [x(profile.distance_m[index]), profile.ground_amsl_m[index]];
-      line.setAttribute("x1", at);
-      line.setAttribute("x2", at);
-      dot.setAttribute("visibility", ground === null ? "hidden" : "inherit");
-      dot.setAttribute("cx", at);
-      dot.setAttribute("cy", ground === null ? floor : y(ground));
-    },
+  return (index) => {
+    cursor.setAttribute("visibility", index === null ? "hidden" : "visible");
+    if (index === null) return;
+    const [at, ground] = [String(x(profile.distance_m[index])), profile.ground_amsl_m[index]];
+    line.setAttribute("x1", at);
+    line.setAttribute("x2", at);
+    dot.setAttribute("visibility", ground === null ? "hidden" : "inherit");
+    dot.setAttribute("cx", at);
+    dot.setAttribute("cy", String(ground === null ? floor : y(ground)));
   };
 }
 
+/**
+ * @param {SVGElement} element
+ * @param {ProfileLine} profile
+ * @param {number} from
+ * @param {number} to
+ * @param {Scales} scales
+ * @param {number} floor [px]
+ */
 function drawGround(element, profile, from, to, { x, y }, floor) {
+  /** @type {string[]} */
   const points = [];
   for (let index = from; index <= to; index += 1)
-    points.push(`${x(profile.distance_m[index]).toFixed(1)} ${y(profile.ground_amsl_m[index]).toFixed(1)}`);
+    points.push(`${x(profile.distance_m[index]).toFixed(1)} ${y(profile.ground_amsl_m[index] ?? 0).toFixed(1)}`);
   const [start, end] = [x(profile.distance_m[from]), x(profile.distance_m[to])];
   element.append(
     svg("path", { class: "ground", d: `M${start} ${floor}L${points.join("L")}L${end} ${floor}Z` }),
@@ -203,7 +280,16 @@ function drawGround(element, profile, from, to, { x, y }, floor) {
   );
 }
 
-/** From the last place that is known to the next one. */
+/**
+ * From the last place that is known to the next one.
+ *
+ * @param {SVGElement} element
+ * @param {ProfileLine} profile
+ * @param {number} from
+ * @param {number} to
+ * @param {Scales} scales
+ * @param {number} floor [px]
+ */
 function drawUnknown(element, profile, from, to, { x }, floor) {
   const start = x(profile.distance_m[Math.max(0, from - 1)]);
   const end = x(profile.distance_m[Math.min(profile.distance_m.length - 1, to + 1)]);

@@ -1,17 +1,21 @@
 /** Terrain on the map: how far the models reach, the line of the profile, its points and its cursor. */
 
-const NOTHING = { type: "FeatureCollection", features: [] };
+import { addSources, readToken, setFeatures, setPaint } from "../map/look/style.js";
+
+/** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { ModelFeature } from "../api_types.d.ts" */
+/** @import { MapLibreMap } from "../map/types.d.ts" */
+
 const SOURCES = ["terrain-models", "terrain-line", "terrain-points", "terrain-cursor"];
 
-const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
-
+/** @returns {LayerSpecification[]} */
 function layers() {
   const [outline, casing, accent, raised, ink] = ["--outline", "--map-casing", "--accent", "--raised", "--ink"].map(
-    read,
+    readToken,
   );
   const isChosen = ["boolean", ["get", "chosen"], false];
   const round = { "line-cap": "round", "line-join": "round" };
-  return [
+  const layers = [
     {
       id: "terrain-fill",
       type: "fill",
@@ -55,40 +59,53 @@ function layers() {
       paint: { "circle-radius": 5, "circle-color": raised, "circle-stroke-color": ink, "circle-stroke-width": 2.5 },
     },
   ];
+  return /** @type {LayerSpecification[]} */ (layers);
 }
 
+/** @param {MapLibreMap} map */
 export function addTo(map) {
-  for (const source of SOURCES) map.addSource(source, { type: "geojson", data: NOTHING });
+  addSources(map, SOURCES);
   for (const layer of layers()) map.addLayer(layer);
 }
 
+/** @param {MapLibreMap} map */
 export function recolour(map) {
-  for (const layer of layers()) {
-    for (const [name, value] of Object.entries(layer.paint)) map.setPaintProperty(layer.id, name, value);
-  }
+  for (const layer of layers()) setPaint(map, layer);
 }
 
+/** @param {object} geometry @param {object} [properties] */
 const feature = (geometry, properties = {}) => ({ type: "Feature", properties, geometry });
-const put = (map, source, features) => map.getSource(source).setData({ type: "FeatureCollection", features });
 
-/** What counts on top is drawn last. */
+/**
+ * What counts on top is drawn last.
+ *
+ * @param {MapLibreMap} map
+ * @param {Pick<ModelFeature, "id" | "geometry">[]} models
+ * @param {number | null} [chosenId]
+ */
 export function showModels(map, models, chosenId = null) {
-  put(
+  setFeatures(
     map,
     "terrain-models",
     [...models].reverse().map(({ id, geometry }) => feature(geometry, { chosen: id === chosenId })),
   );
 }
 
+/** @param {MapLibreMap} map @param {number[][]} positions @param {number[][]} points */
 export function showLine(map, positions, points) {
-  put(map, "terrain-line", positions.length > 1 ? [feature({ type: "LineString", coordinates: positions })] : []);
-  put(
+  setFeatures(
+    map,
+    "terrain-line",
+    positions.length > 1 ? [feature({ type: "LineString", coordinates: positions })] : [],
+  );
+  setFeatures(
     map,
     "terrain-points",
     points.map((coordinates) => feature({ type: "Point", coordinates })),
   );
 }
 
+/** @param {MapLibreMap} map @param {number[] | null} position */
 export function showCursor(map, position) {
-  put(map, "terrain-cursor", position ? [feature({ type: "Point", coordinates: position })] : []);
+  setFeatures(map, "terrain-cursor", position ? [feature({ type: "Point", coordinates: position })] : []);
 }

@@ -1,12 +1,10 @@
 /** A route that is changed by hand: its points as handles, middles of its legs, and how each changed leg stands. */
 
-import { setPaint, sourceOf } from "../look/style.js";
+import { addSources, readToken, setFeatures, setPaint } from "../look/style.js";
 
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
-/** @import { FeatureCollection, MapLibreMap, Position } from "../types.d.ts" */
+/** @import { MapLibreMap, Position } from "../types.d.ts" */
 
-/** @type {FeatureCollection} */
-const NOTHING = { type: "FeatureCollection", features: [] };
 /** @typedef {{ position: Position, isByHand: boolean }} HandPoint */
 /** @typedef {{ chosen: number | null, stateOf: (leg: number) => string, isFree: (point: any) => boolean }} HandLook */
 
@@ -17,8 +15,6 @@ const LEAST_MIDDLE_PX = 44; // a shorter leg has no room for a handle
 const NO_LOOK = { chosen: null, stateOf: () => "stored", isFree: () => false };
 
 const touch = matchMedia("(pointer: coarse)").matches;
-/** @param {string} token of the style sheet */
-const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
 /** @param {string} role */
 const isRole = (role) => ["==", ["get", "role"], role];
 
@@ -34,7 +30,7 @@ function layers() {
     "--accent",
     "--critical",
     "--ink-2",
-  ].map(read);
+  ].map(readToken);
   const round = { "line-cap": "round", "line-join": "round" };
   /** @param {string} id @param {string} state @param {object} paint */
   const leg = (id, state, paint) => ({
@@ -104,7 +100,7 @@ const feature = (role, type, coordinates, rest) => ({
 export function show(map, points, { chosen, stateOf, isFree } = NO_LOOK) {
   if (!map.getSource(SOURCE)) {
     if (!points) return;
-    map.addSource(SOURCE, { type: "geojson", data: NOTHING });
+    addSources(map, [SOURCE]);
     for (const layer of layers()) map.addLayer(layer);
   }
   if (!points) {
@@ -127,7 +123,7 @@ export function show(map, points, { chosen, stateOf, isFree } = NO_LOOK) {
     }),
   );
   const features = [...legs, ...middles, ...dots];
-  sourceOf(map, SOURCE)?.setData(/** @type {FeatureCollection} */ ({ type: "FeatureCollection", features }));
+  setFeatures(map, SOURCE, features);
 }
 
 /**

@@ -2,23 +2,19 @@
 
 import { h } from "../../dom.js";
 import { t } from "../../text.js";
-import { setPaint, sourceOf } from "../look/style.js";
+import { addSources, readToken, setFeatures, setPaint } from "../look/style.js";
 import { maplibre } from "../maplibre.js";
 
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
-/** @import { FeatureCollection, MapLibreMap, Position } from "../types.d.ts" */
+/** @import { MapLibreMap, Position } from "../types.d.ts" */
 
 const SOURCE = "lost-link";
-/** @type {FeatureCollection} */
-const NOTHING = { type: "FeatureCollection", features: [] };
-/** @param {string} token of the style sheet */
-const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
 /** @param {string} type */
 const isKind = (type) => ["==", ["geometry-type"], type];
 
 /** @returns {LayerSpecification[]} */
 function layers() {
-  const [critical, casing, quiet] = ["--critical", "--map-casing", "--ink-2"].map(read);
+  const [critical, casing, quiet] = ["--critical", "--map-casing", "--ink-2"].map(readToken);
   const lit = ["get", "lit"];
   const fails = ["get", "fails"];
   const layers = [
@@ -55,7 +51,7 @@ function layers() {
       filter: isKind("Point"),
       paint: {
         "circle-radius": ["interpolate", ["linear"], ["zoom"], 9, ["case", lit, 4, 2], 13, ["case", lit, 7, 5]],
-        "circle-color": ["case", lit, critical, read("--raised")],
+        "circle-color": ["case", lit, critical, readToken("--raised")],
         "circle-stroke-color": critical,
         "circle-stroke-width": 2,
       },
@@ -80,14 +76,14 @@ const feature = (type, coordinates, { fails = false, lit = false }) => ({
 export function showReturns(map, returns) {
   if (!map.getSource(SOURCE)) {
     if (!returns.length) return;
-    map.addSource(SOURCE, { type: "geojson", data: NOTHING });
+    addSources(map, [SOURCE]);
     for (const layer of layers()) map.addLayer(layer);
   }
   const features = returns.flatMap(({ from, to, ...how }) => [
     feature("LineString", [from, to], how),
     ...(how.fails ? [feature("Point", from, how)] : []),
   ]);
-  sourceOf(map, SOURCE)?.setData(/** @type {FeatureCollection} */ ({ type: "FeatureCollection", features }));
+  setFeatures(map, SOURCE, features);
 }
 
 /** @param {MapLibreMap} map */

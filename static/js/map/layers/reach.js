@@ -1,6 +1,6 @@
 /** Which assets can be inspected, over their own drawing: filled where they can, hollow where not. Only what is loaded gets a state. */
 
-import { setPaint } from "../look/style.js";
+import { readToken, setPaint } from "../look/style.js";
 import { TILES } from "../look/voltages.js";
 
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
@@ -9,8 +9,6 @@ import { TILES } from "../look/voltages.js";
 const SOURCE_LAYERS = ["lines", "railways", "bridges", "bridge_points", "towers"];
 /** @type {Record<string, number>} */
 const CODE = { yes: 1, partly: 2, no: 3 };
-/** @param {string} token of the style sheet */
-const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
 const reach = ["coalesce", ["feature-state", "reach"], 0];
 /** @param {number} yes @param {number} partly @param {number} no */
 const byReach = (yes, partly, no) => ["match", reach, 1, yes, 2, partly, 3, no, 0];
@@ -18,7 +16,7 @@ const byReach = (yes, partly, no) => ["match", reach, 1, yes, 2, partly, 3, no, 
 /** @returns {LayerSpecification[]} */
 function layers() {
   const [yes, partly, no, casing, raised] = ["--accent", "--ink-2", "--warning-mark", "--map-casing", "--raised"].map(
-    read,
+    readToken,
   );
   const colour = ["match", reach, 1, yes, 2, partly, 3, no, "rgba(0,0,0,0)"];
   /** @param {string} id @param {string} sourceLayer @param {number} minzoom @param {number} radius [px] */

@@ -1,10 +1,10 @@
 /** What was flown in simulation over what was planned: dashed in ink, so that nobody takes it for a flight. */
 
-import { setPaint, sourceOf } from "../look/style.js";
+import { addSources, setFeatures, setPaint } from "../look/style.js";
 
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 /** @import { Palette } from "../../domain/palette.js" */
-/** @import { FeatureCollection, MapLibreMap } from "../types.d.ts" */
+/** @import { MapLibreMap } from "../types.d.ts" */
 
 const SOURCE = "rehearsed";
 const BEFORE = "line-labels";
@@ -41,7 +41,7 @@ function layersOf(palette) {
 export function show(map, palette, routes) {
   if (!map.getSource(SOURCE)) {
     if (!routes) return;
-    map.addSource(SOURCE, { type: "geojson", data: { type: "FeatureCollection", features: [] } });
+    addSources(map, [SOURCE]);
     for (const layer of layersOf(palette)) map.addLayer(layer, map.getLayer(BEFORE) ? BEFORE : undefined);
   }
   const features = (routes ?? []).flatMap(({ uav, flights }) =>
@@ -53,7 +53,7 @@ export function show(map, palette, routes) {
         geometry: { type: "LineString", coordinates: position },
       })),
   );
-  sourceOf(map, SOURCE)?.setData(/** @type {FeatureCollection} */ ({ type: "FeatureCollection", features }));
+  setFeatures(map, SOURCE, features);
 }
 
 /** @param {MapLibreMap} map @param {Palette} palette */

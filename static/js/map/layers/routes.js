@@ -2,13 +2,10 @@
 
 import { ROUTE_COUNT, routeNumber } from "../../domain/palette.js";
 import { routeOpacity } from "../look/page_layers.js";
-import { sourceOf } from "../look/style.js";
+import { setFeatures } from "../look/style.js";
 
 /** @import { Palette } from "../../domain/palette.js" */
-/** @import { FeatureCollection, Geometry, MapLibreMap } from "../types.d.ts" */
-
-/** @param {object[]} features */
-const collection = (features) => /** @type {FeatureCollection} */ ({ type: "FeatureCollection", features });
+/** @import { Geometry, MapLibreMap } from "../types.d.ts" */
 
 /** @type {[string, "line-opacity" | "icon-opacity"][]} */
 const LAYERS = [
@@ -25,20 +22,20 @@ const LAYERS = [
  * @param {{ sequence: number, geometry: Geometry | null }[]} routes
  */
 export function update(map, routes) {
-  sourceOf(map, "routes")?.setData(
-    collection(
-      routes
-        .filter((route) => route.geometry)
-        .map((route) => ({
-          type: "Feature",
-          properties: {
-            sequence: route.sequence,
-            route: routeNumber(route.sequence),
-            dashed: route.sequence >= ROUTE_COUNT,
-          },
-          geometry: route.geometry,
-        })),
-    ),
+  setFeatures(
+    map,
+    "routes",
+    routes
+      .filter((route) => route.geometry)
+      .map((route) => ({
+        type: "Feature",
+        properties: {
+          sequence: route.sequence,
+          route: routeNumber(route.sequence),
+          dashed: route.sequence >= ROUTE_COUNT,
+        },
+        geometry: route.geometry,
+      })),
   );
 }
 
@@ -49,14 +46,14 @@ export function update(map, routes) {
  * @param {{ kind: "base" | "charging", position: number[] }[]} stops
  */
 export function showStops(map, stops) {
-  sourceOf(map, "route-stops")?.setData(
-    collection(
-      stops.map(({ kind, position }) => ({
-        type: "Feature",
-        properties: { kind },
-        geometry: { type: "Point", coordinates: position },
-      })),
-    ),
+  setFeatures(
+    map,
+    "route-stops",
+    stops.map(({ kind, position }) => ({
+      type: "Feature",
+      properties: { kind },
+      geometry: { type: "Point", coordinates: position },
+    })),
   );
 }
 
@@ -67,14 +64,14 @@ export function showStops(map, stops) {
  * @param {{ features: { geometry: Geometry, properties: { uav: number } }[] } | null} lines
  */
 export function showSoFar(map, lines) {
-  sourceOf(map, "routes-so-far")?.setData(
-    collection(
-      (lines?.features ?? []).map(({ geometry, properties }) => ({
-        type: "Feature",
-        properties: { route: routeNumber(properties.uav) },
-        geometry,
-      })),
-    ),
+  setFeatures(
+    map,
+    "routes-so-far",
+    (lines?.features ?? []).map(({ geometry, properties }) => ({
+      type: "Feature",
+      properties: { route: routeNumber(properties.uav) },
+      geometry,
+    })),
   );
 }
 
@@ -97,9 +94,9 @@ export function lookAt(map, palette, sequence) {
  * @param {number[] | null} position
  */
 export function showPoint(map, position) {
-  sourceOf(map, "strip-point")?.setData(
-    collection(
-      position ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: position } }] : [],
-    ),
+  setFeatures(
+    map,
+    "strip-point",
+    position ? [{ type: "Feature", properties: {}, geometry: { type: "Point", coordinates: position } }] : [],
   );
 }

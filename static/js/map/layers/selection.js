@@ -1,22 +1,19 @@
 /** What is picked as a whole (lines), and what the pointer or a list row is at. */
 
-import { sourceOf } from "../look/style.js";
+import { setFeatures } from "../look/style.js";
 import { TILES } from "../look/voltages.js";
 
-/** @import { FeatureCollection, Geometry, MapLibreMap } from "../types.d.ts" */
+/** @import { Geometry, MapLibreMap } from "../types.d.ts" */
 
 /** @type {number | null} */
 let lit = null; // the zone that is ringed
 
 /** @param {Geometry[]} geometries */
-function collection(geometries) {
-  const features = geometries.map((geometry) => ({ type: "Feature", properties: {}, geometry }));
-  return /** @type {FeatureCollection} */ ({ type: "FeatureCollection", features });
-}
+const featuresOf = (geometries) => geometries.map((geometry) => ({ type: "Feature", properties: {}, geometry }));
 
 /** @param {MapLibreMap} map @param {Geometry[]} geometries */
 export function update(map, geometries) {
-  sourceOf(map, "picked-shapes")?.setData(collection(geometries));
+  setFeatures(map, "picked-shapes", featuresOf(geometries));
 }
 
 /**
@@ -36,5 +33,5 @@ export function showZone(map, id) {
 
 /** Geometries to ring: a point, or all pieces of a line. @param {MapLibreMap} map @param {Geometry[]} geometries */
 export function showHovered(map, geometries) {
-  sourceOf(map, "selection")?.setData(collection(geometries));
+  setFeatures(map, "selection", featuresOf(geometries));
 }

@@ -3,12 +3,12 @@
 import { h } from "../../dom.js";
 import { routeNumber } from "../../domain/palette.js";
 import { t, tn } from "../../text.js";
-import { sourceOf } from "../look/style.js";
+import { setFeatures } from "../look/style.js";
 import { maplibre } from "../maplibre.js";
 import { mergePills } from "../pills.js";
 
 /** @import { Group, Pill } from "../pills.js" */
-/** @import { FeatureCollection, MapLibreMap, ScreenPoint } from "../types.d.ts" */
+/** @import { MapLibreMap, ScreenPoint } from "../types.d.ts" */
 
 const MOST_MARKERS = 200;
 const MOST_NAMES = 6;
@@ -59,8 +59,7 @@ class Targets {
   update(pills) {
     this.#pills = pills;
     const features = pills.length > MOST_MARKERS ? pills.map(featureOf) : [];
-    const collection = /** @type {FeatureCollection} */ ({ type: "FeatureCollection", features });
-    sourceOf(this.#map, "many-targets")?.setData(collection);
+    setFeatures(this.#map, "many-targets", features);
     this.#draw();
   }
 

@@ -6,7 +6,7 @@ import { TILES } from "./voltages.js";
 
 /** @import { LayerSpecification, SourceSpecification, StyleSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 /** @import { Palette } from "../../domain/palette.js" */
-/** @import { GeoJSONSource, MapLibreMap, RasterMap, StyleOptions } from "../types.d.ts" */
+/** @import { FeatureCollection, GeoJSONSource, MapLibreMap, RasterMap, StyleOptions } from "../types.d.ts" */
 
 /** @type {SourceSpecification} */
 const EMPTY = { type: "geojson", data: { type: "FeatureCollection", features: [] } };
@@ -97,3 +97,16 @@ export function setPaint(map, { id, paint = {} }) {
 export function sourceOf(map, name) {
   return map.getSource(name);
 }
+
+/** Puts GeoJSON features into a source of this name. @param {MapLibreMap} map @param {string} name @param {object[]} features */
+export function setFeatures(map, name, features) {
+  sourceOf(map, name)?.setData(/** @type {FeatureCollection} */ ({ type: "FeatureCollection", features }));
+}
+
+/** Adds empty GeoJSON sources. @param {MapLibreMap} map @param {string[]} names */
+export function addSources(map, names) {
+  for (const name of names) map.addSource(name, EMPTY);
+}
+
+/** The value of a token of the style sheet, such as "--ink". @param {string} token */
+export const readToken = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
