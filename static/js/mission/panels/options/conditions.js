@@ -7,12 +7,25 @@ import { SHORT_UNIT, SPEED_UNIT, TEMPERATURE_UNIT } from "../../../units.js";
 import { compassText, conditionsOf, MILD_C, MOST_LAYERS } from "../../flight_options.js";
 import { windArrow } from "../../wind_arrow.js";
 
+/** @import { Conditions } from "../../types.d.ts" */
+
+/** @typedef {Conditions["wind"][number]} WindLayer */
+/**
+ * @typedef {object} FigureHow
+ * @property {string} label
+ * @property {number} min
+ * @property {number} max
+ * @property {string} unit
+ * @property {(si: number) => number} [typed]
+ * @property {(typed: number) => number} [si]
+ */
+
 const FIRST_LAYER = { altitude_agl_m: 100, speed_mps: 5, from_deg: 270 };
 const [HIGHEST_M, STRONGEST_MPS] = [1000, 60]; // missions/serializers/limits.py
 const [COLDEST_C, HOTTEST_C] = [-60, 60];
 
-/** Typed in the reader's unit, read in SI; one that nobody touched is what it was. */
-function figure(value, { label, min, max, unit, typed = (si) => si, si = (shown) => shown, oninput }) {
+/** Typed in the reader's unit, read in SI; one that nobody touched is what it was. @param {number} value @param {FigureHow} how */
+function figure(value, { label, min, max, unit, typed = (si) => si, si = (shown) => shown }) {
   const shown = Number(typed(value).toPrecision(5));
   const input = h("input", {
     class: "input",
@@ -23,7 +36,6 @@ function figure(value, { label, min, max, unit, typed = (si) => si, si = (shown)
     max: Math.round(typed(max)),
     value: shown,
     "aria-label": label,
-    oninput,
   });
   return {
     element: h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)),
@@ -32,74 +44,51 @@ function figure(value, { label, min, max, unit, typed = (si) => si, si = (shown)
   };
 }
 
+/** @param {number} unit @returns {Pick<FigureHow, "typed" | "si">} */
 const per = (unit) => ({ typed: (si) => si / unit, si: (shown) => shown * unit });
 
-/** use(conditions or null for calm and mild). */
-export function askForConditions(conditions, use) {
-  const { wind, temperature_c } = conditionsOf(conditions) ?? { wind: [], temperature_c: MILD_C };
-  let rows = [];
-  const list = h("div", { class: "wind-rows" });
-  const calm = h("p", { class: "quiet-text" }, t("Calm at all heights."));
-  const more = h(
-    "button",
-    { type: "button", class: "button", onclick: addLayer },
-    icon("plus", "small"),
-    t("Add a height"),
-  );
-  const temperature = figure(temperature_c, {
-    label: t("Temperature"),
-    min: COLDEST_C,
-    max: HOTTEST_C,
-    unit: TEMPERATURE_UNIT.unit,
-    typed: TEMPERATURE_UNIT.typed,
-    si: TEMPERATURE_UNIT.celsius,
+/** The wind at one height. @param {WindLayer} layer @param {() => unknown} onRemove */
+function windRow(layer, onRemove) {
+  const height = figure(layer.altitude_agl_m, {
+    label: t("Height above ground"),
+    min: 0,
+    max: HIGHEST_M,
+    unit: SHORT_UNIT.unit,
+    ...per(SHORT_UNIT.metres),
   });
-
-  function rowOf(layer) {
-    const arrow = h("span", { class: "wind-from" });
-    const showSide = () => {
-      const from_deg = Number.isFinite(side.input.valueAsNumber) ? side.input.valueAsNumber : 0;
-      arrow.replaceChildren(windArrow(from_deg), h("small", {}, compassText(from_deg)));
-    };
-    const height = figure(layer.altitude_agl_m, {
-      label: t("Height above ground"),
-      min: 0,
-      max: HIGHEST_M,
-      unit: SHORT_UNIT.unit,
-      ...per(SHORT_UNIT.metres),
-    });
-    const speed = figure(layer.speed_mps, {
-      label: t("Wind speed"),
-      min: 0,
-      max: STRONGEST_MPS,
-      unit: SPEED_UNIT.unit,
-      ...per(SPEED_UNIT.mps),
-    });
-    const side = figure(layer.from_deg, {
-      label: t("Wind from, degrees clockwise from north"),
-      min: 0,
-      max: 360,
-      unit: "°",
-      oninput: () => showSide(),
-    });
-    const row = {
-      height,
-      speed,
-      side,
-      read: () => ({ altitude_agl_m: height.read(), speed_mps: speed.read(), from_deg: side.read() % 360 }),
-    };
-    const drop = h(
-      "button",
-      {
-        type: "button",
-        class: "icon-button tight",
-        "aria-label": t("Remove this height"),
-        title: t("Remove this height"),
-        onclick: () => ((rows = rows.filter((other) => other !== row)), draw(), more.focus()),
-      },
-      icon("x", "small"),
-    );
-    row.element = h(
+  const speed = figure(layer.speed_mps, {
+    label: t("Wind speed"),
+    min: 0,
+    max: STRONGEST_MPS,
+    unit: SPEED_UNIT.unit,
+    ...per(SPEED_UNIT.mps),
+  });
+  const side = figure(layer.from_deg, {
+    label: t("Wind from, degrees clockwise from north"),
+    min: 0,
+    max: 360,
+    unit: "°",
+  });
+  const arrow = h("span", { class: "wind-from" });
+  const showSide = () => {
+    const from_deg = Number.isFinite(side.input.valueAsNumber) ? side.input.valueAsNumber : 0;
+    arrow.replaceChildren(windArrow(from_deg), h("small", {}, compassText(from_deg)));
+  };
+  side.input.addEventListener("input", showSide);
+  showSide();
+  const drop = h(
+    "button",
+    {
+      type: "button",
+      class: "icon-button tight",
+      "aria-label": t("Remove this height"),
+      title: t("Remove this height"),
+      onclick: onRemove,
+    },
+    icon("x", "small"),
+  );
+  return {
+    element: h(
       "div",
       { class: "wind-row", role: "group", "aria-label": t("Wind at a height") },
       height.element,
@@ -107,16 +96,47 @@ export function askForConditions(conditions, use) {
       side.element,
       arrow,
       drop,
-    );
-    showSide();
+    ),
+    focus: () => height.input.focus(),
+    /** @returns {WindLayer} */
+    read: () => ({ altitude_agl_m: height.read(), speed_mps: speed.read(), from_deg: side.read() % 360 }),
+  };
+}
+
+/** The wind by height. @param {WindLayer[]} wind */
+function createWind(wind) {
+  /** @type {ReturnType<typeof windRow>[]} */
+  let rows = [];
+  const list = h("div", { class: "wind-rows" });
+  const calm = h("p", { class: "quiet-text" }, t("Calm at all heights."));
+  const heads = h(
+    "div",
+    { class: "wind-row heads", "aria-hidden": "true" },
+    [t("Height"), t("Speed"), t("From|wind")].map((words) => h("span", {}, words)),
+  );
+  const more = h(
+    "button",
+    { type: "button", class: "button", onclick: addLayer },
+    icon("plus", "small"),
+    t("Add a height"),
+  );
+
+  /** @param {WindLayer} layer */
+  function add(layer) {
+    const row = windRow(layer, () => {
+      rows = rows.filter((other) => other !== row);
+      draw();
+      more.focus();
+    });
+    rows.push(row);
     return row;
   }
 
   function addLayer() {
     const last = rows.at(-1)?.read();
-    rows.push(rowOf(last ? { ...last, altitude_agl_m: Math.min(HIGHEST_M, last.altitude_agl_m + 100) } : FIRST_LAYER));
+    const row = add(last ? { ...last, altitude_agl_m: Math.min(HIGHEST_M, last.altitude_agl_m + 100) } : FIRST_LAYER);
     draw();
-    rows.at(-1).height.input.focus();
+    row.focus();
   }
 
   function draw() {
@@ -126,13 +146,41 @@ export function askForConditions(conditions, use) {
     more.disabled = rows.length >= MOST_LAYERS;
   }
 
-  const heads = h(
-    "div",
-    { class: "wind-row heads", "aria-hidden": "true" },
-    [t("Height"), t("Speed"), t("From|wind")].map((words) => h("span", {}, words)),
-  );
-  const dialog = h("dialog", { class: "conditions", "aria-labelledby": "conditions-title" });
+  for (const layer of wind) add(layer);
+  draw();
+  return {
+    element: h(
+      "div",
+      { class: "stack tight" },
+      h("h3", { class: "field-label" }, t("Wind")),
+      calm,
+      heads,
+      list,
+      h("div", {}, more),
+    ),
+    read: () => rows.map((row) => row.read()),
+  };
+}
+
+/** Asks for the air. @param {Conditions | null} conditions @param {(conditions: Conditions | null) => unknown} use null: calm and mild */
+export function askForConditions(conditions, use) {
+  const known = conditionsOf(conditions) ?? { wind: [], temperature_c: MILD_C };
+  const wind = createWind(known.wind);
+  const temperature = figure(known.temperature_c, {
+    label: t("Temperature"),
+    min: COLDEST_C,
+    max: HOTTEST_C,
+    unit: TEMPERATURE_UNIT.unit,
+    typed: TEMPERATURE_UNIT.typed,
+    si: TEMPERATURE_UNIT.celsius,
+  });
   temperature.input.id = "conditions-temperature";
+  const dialog = h("dialog", { class: "conditions", "aria-labelledby": "conditions-title" });
+  /** @param {Conditions | null} chosen */
+  const finish = (chosen) => {
+    dialog.close();
+    use(chosen);
+  };
   const wrong = h("p", { class: "field-error", role: "alert" });
   const form = h(
     "form",
@@ -149,15 +197,7 @@ export function askForConditions(conditions, use) {
         ),
       ),
     ),
-    h(
-      "div",
-      { class: "stack tight" },
-      h("h3", { class: "field-label" }, t("Wind")),
-      calm,
-      heads,
-      list,
-      h("div", {}, more),
-    ),
+    wind.element,
     h(
       "div",
       { class: "field temperature" },
@@ -168,27 +208,18 @@ export function askForConditions(conditions, use) {
     h(
       "div",
       { class: "acts" },
-      h(
-        "button",
-        { type: "button", class: "button quiet", onclick: () => (dialog.close(), use(null)) },
-        t("Calm and mild"),
-      ),
+      h("button", { type: "button", class: "button quiet", onclick: () => finish(null) }, t("Calm and mild")),
       h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
       h("button", { class: "button primary" }, t("Use these")),
     ),
   );
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    const layers = rows.map((row) => row.read());
-    if (new Set(layers.map(({ altitude_agl_m }) => altitude_agl_m)).size < layers.length) {
+    const layers = wind.read();
+    if (new Set(layers.map(({ altitude_agl_m }) => altitude_agl_m)).size < layers.length)
       wrong.textContent = t("Two rows have the same height.");
-      return;
-    }
-    dialog.close();
-    use(conditionsOf({ wind: layers, temperature_c: temperature.read() }));
+    else finish(conditionsOf({ wind: layers, temperature_c: temperature.read() }));
   });
-  rows = wind.map(rowOf);
-  draw();
   dialog.append(form);
   open(dialog);
 }

@@ -1,10 +1,13 @@
 /** What the plan is to be best at, each with its figures once it is planned, and whether UAVs fly back. */
 
-import { byId, h } from "../../../dom.js";
+import { byId, find, h } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { endingsOf, figuresOf, OBJECTIVES } from "../../plan_view.js";
 import { basisOf } from "../../selection.js";
 
+/** @import { MissionActions, MissionPageState, MissionStore } from "../../types.d.ts" */
+
+/** @param {MissionStore} store @param {MissionActions} actions @param {boolean} canPlan */
 export function mountOptions(store, actions, canPlan) {
   const choices = OBJECTIVES.map(({ value, words, meaning }) => {
     const radio = h("input", {
@@ -28,12 +31,12 @@ export function mountOptions(store, actions, canPlan) {
   const meaning = h("p", { class: "caption objective-meaning" });
   home.after(meaning);
 
-  const back = byId("return-to-start");
-  const ending = back.closest("label").querySelector("small");
+  const back = byId("return-to-start", HTMLInputElement);
+  const ending = find(/** @type {HTMLElement} */ (back.closest("label")), "small");
   back.disabled = !canPlan;
   back.addEventListener("change", () => actions.setOption("return_to_start", back.checked));
 
-  /** Beside the routes once there are some: the choice is then between two results. */
+  /** Beside the routes once there are some: the choice is then between two results. @param {MissionPageState} state */
   function settle({ plan }) {
     const place = plan ? byId("objective-of-plan") : home;
     if (group.parentElement !== place) place.append(group);
@@ -41,7 +44,7 @@ export function mountOptions(store, actions, canPlan) {
   }
 
   store.listen(["plan"], settle);
-  store.listen(["selection", "figures", "planningBeside", "plan"], ({ selection, figures, planningBeside, plan }) => {
+  store.listen(["selection", "figures", "planningBeside", "plan"], ({ selection, figures, planningBeside }) => {
     for (const choice of choices) {
       choice.radio.checked = selection.objective === choice.value;
       const basis = basisOf({ ...selection, objective: choice.value });

@@ -7,6 +7,9 @@ import { conditionsText, departureText } from "../../flight_options.js";
 import { lostLinkText } from "../../lost_link.js";
 import { OBJECTIVES } from "../../plan_view.js";
 
+/** @import { MissionStore } from "../../types.d.ts" */
+
+/** @param {MissionStore} store */
 export function mountOptionsRead(store) {
   store.listen(["selection"], ({ selection }) => {
     const best = OBJECTIVES.find(({ value }) => value === selection.objective)?.words ?? "";
