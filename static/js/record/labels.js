@@ -7,7 +7,7 @@ import { routeLetter } from "../domain/palette.js";
 /** @typedef {{ label: string, place: number, number: number, position: number[] }} TargetLabel place: of its UAV */
 /** @typedef {Map<number, TargetLabel>} Labels by target */
 
-/** @param {readonly Pick<RecordRoute, "place" | "waypoints">[]} routes */
+/** @param {readonly { place: number, waypoints: readonly { target: number | null, position: number[] }[] }[]} routes */
 export function labelsOf(routes) {
   /** @type {Labels} */
   const labels = new Map();

@@ -11,12 +11,20 @@ const TRIES = [
   [-0.5, -1, 0, -36],
 ];
 
+/** @typedef {{ key: string, x: number, y: number, width: number, height: number, weight: number }} PlacedItem x, y: where it belongs */
+/** @typedef {{ left: number, top: number, right: number, bottom: number }} ScreenBox */
+/** @typedef {Map<string, { left: number, top: number, tried: number }>} LabelPlaces by key */
+
 /**
- * items: [{ key, x, y, width, height, weight }] with the point on the screen that each belongs to; the heavier ones are placed first.
- * → Map of key → { left, top }, without those that have no room. before: the last answer: a label stays where it stood, if it can.
- * covered: boxes { left, top, right, bottom } of what stands over the picture.
+ * Heavier ones are placed first; those that have no room are left out.
+ *
+ * @param {readonly PlacedItem[]} items
+ * @param {{ width: number, height: number }} size of the picture
+ * @param {LabelPlaces} [before] the last answer: a label stays where it stood, if it can
+ * @param {readonly ScreenBox[]} [covered] what stands over the picture
  */
 export function placeLabels(items, { width, height }, before = new Map(), covered = []) {
+  /** @type {LabelPlaces} */
   const placed = new Map();
   const taken = [...covered];
   for (const item of [...items].sort((a, b) => b.weight - a.weight)) {

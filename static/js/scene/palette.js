@@ -2,6 +2,8 @@
 
 import { readPalette } from "../domain/palette.js";
 
+/** @import { ScenePalette } from "./types.d.ts" */
+
 const MORE = {
   water: "--map-water",
   road: "--map-road",
@@ -11,11 +13,10 @@ const MORE = {
   accent: "--accent",
 };
 
+/** @param {(token: string) => string} [read] @returns {ScenePalette} */
 export function readScenePalette(
   read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim(),
 ) {
-  return {
-    ...readPalette(read),
-    ...Object.fromEntries(Object.entries(MORE).map(([name, token]) => [name, read(token)])),
-  };
+  const more = Object.fromEntries(Object.entries(MORE).map(([name, token]) => [name, read(token)]));
+  return { ...readPalette(read), .../** @type {{ [Name in keyof typeof MORE]: string }} */ (more) };
 }

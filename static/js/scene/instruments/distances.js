@@ -2,13 +2,27 @@
 
 import { countedAir } from "../geometry/counted.js";
 
+/** @import { Scene, SceneLimit } from "../../api_types.d.ts" */
+/** @import { Frame, HeightAt, Polylines, Ring, Vector } from "../types.d.ts" */
+
+/** @typedef {ReturnType<typeof surroundingsOf>} Surroundings */
+/** @typedef {Surroundings["towers"][number]} NearbyTower */
+/** @typedef {Surroundings["zones"][number]} NearbyZone */
+/** @typedef {Polylines & { boxes: Float64Array, isCounted: boolean }} HungLines boxes: of boxesOf */
+/** @typedef {{ away_m: number, line: number, point: Vector, isCounted: boolean }} NearWire isCounted: where planners count it, above the drawn one */
+/** @typedef {{ away_m: number, tower: NearbyTower, point: Vector }} NearTower */
+/** @typedef {{ away_m: number, zone: NearbyZone, isInside: boolean }} NearZone */
+
 const FOOT_SHARE = 0.1; // of a tower's height: half its feet's width
 const CLEAR_OF_ALL_M = 250; // so far over the ground nothing stands
 
 /**
  * Everything that can be near, in the frame: prepared once for a scene.
  *
- * sceneData: of GET /api/v1/scene; wires: { points, first } as the world draws them; groundAt(x, z) → y.
+ * @param {Scene} sceneData
+ * @param {Frame} frame
+ * @param {Polylines} wires as the world draws them
+ * @param {HeightAt} groundAt
  */
 export function surroundingsOf(sceneData, frame, wires, groundAt) {
   const origin_m = frame.origin.altitude_amsl_m;
@@ -50,7 +64,7 @@ export function surroundingsOf(sceneData, frame, wires, groundAt) {
   return { towers, hung, zones, groundAt, origin_m };
 }
 
-/** The box round each polyline: [least x, y, z, most x, y, z] each. */
+/** The box round each polyline: [least x, y, z, most x, y, z] each. @param {Polylines} lines */
 function boxesOf({ points, first }) {
   const boxes = new Float64Array(Math.max(first.length - 1, 0) * 6);
   for (let line = 0; line < first.length - 1; line += 1) {
@@ -68,17 +82,26 @@ function boxesOf({ points, first }) {
   return boxes;
 }
 
+/** @param {number} value @param {number} least @param {number} most */
 const beyond = (value, least, most) => (value < least ? least - value : value > most ? value - most : 0);
 
 /**
- * The nearest point of the wires: { away_m, line, point, isCounted } or null; nothing farther than reach_m is looked for. isCounted: it is where
- * planners count a wire above the one that is drawn.
+ * The nearest point of the wires; nothing farther than reach_m is looked for.
+ *
+ * @param {Pick<Surroundings, "hung">} surroundings
+ * @param {Vector} place
+ * @param {number} [reach_m]
  */
 export function nearestWire({ hung }, place, reach_m = Infinity) {
-  return hung.reduce((nearest, lines) => nearestOf(lines, place, nearest?.away_m ?? reach_m) ?? nearest, null);
+  return hung.reduce(
+    (nearest, lines) => nearestOf(lines, place, nearest?.away_m ?? reach_m) ?? nearest,
+    /** @type {NearWire | null} */ (null),
+  );
 }
 
+/** @param {HungLines} lines @param {Vector} place @param {number} reach_m @returns {NearWire | null} */
 function nearestOf({ points, first, boxes, isCounted }, [x, y, z], reach_m) {
+  /** @type {NearWire | null} */
   let nearest = null;
   let least = reach_m;
   for (let line = 0; line < first.length - 1; line += 1) {
@@ -109,32 +132,40 @@ function nearestOf({ points, first, boxes, isCounted }, [x, y, z], reach_m) {
               ),
             )
           : 0;
+      /** @type {Vector} */
       const point = [points[from] + share * dx, points[from + 1] + share * dy, points[from + 2] + share * dz];
       const away_m = Math.hypot(x - point[0], y - point[1], z - point[2]);
-      if (away_m < least) [least, nearest] = [away_m, { away_m, line, point, isCounted }];
+      if (away_m >= least) continue;
+      least = away_m;
+      nearest = { away_m, line, point, isCounted };
     }
   }
   return nearest;
 }
 
-/** The nearest tower as the pole that it stands round: { away_m, tower, point } or null. */
+/**
+ * The nearest tower as the pole that it stands round.
+ *
+ * @param {Pick<Surroundings, "towers">} surroundings
+ * @param {Vector} place
+ * @param {number} [reach_m]
+ */
 export function nearestTower({ towers }, [x, y, z], reach_m = Infinity) {
+  /** @type {NearTower | null} */
   let nearest = null;
   let least = reach_m;
   for (const tower of towers) {
     const beside = Math.hypot(x - tower.x, z - tower.z);
     if (beside >= least) continue;
     const away_m = Math.hypot(beside, beyond(y, tower.bottom, tower.top));
-    if (away_m < least)
-      [least, nearest] = [
-        away_m,
-        { away_m, tower, point: [tower.x, Math.min(tower.top, Math.max(tower.bottom, y)), tower.z] },
-      ];
+    if (away_m >= least) continue;
+    least = away_m;
+    nearest = { away_m, tower, point: [tower.x, Math.min(tower.top, Math.max(tower.bottom, y)), tower.z] };
   }
   return nearest;
 }
 
-/** How far from a place the nearest of ground, towers with their arms, wires and what is at `others` is. */
+/** How far from a place the nearest of ground, towers with their arms, wires and what is at `others` is. @param {Surroundings} surroundings @param {Vector} place @param {readonly Vector[]} [others] */
 export function roomRound(surroundings, [x, y, z], others = []) {
   const above_m = y - surroundings.groundAt(x, z);
   const apart_m = others.reduce(
@@ -156,11 +187,19 @@ export function roomRound(surroundings, [x, y, z], others = []) {
   return nearestWire(surroundings, [x, y, z], towers_m)?.away_m ?? towers_m;
 }
 
+/** @param {SceneLimit} limit @param {number} ground @param {number} origin_m @param {number} otherwise */
 const limitAt = ({ above, m }, ground, origin_m, otherwise) =>
   above === "open" || m === null ? otherwise : above === "ground" ? ground + m : m - origin_m;
 
-/** The nearest zone of those that keep(zone): { away_m, zone, isInside } or null; beside it and over or under it together. */
+/**
+ * The nearest zone; beside it and over or under it together.
+ *
+ * @param {Pick<Surroundings, "zones" | "groundAt" | "origin_m">} surroundings
+ * @param {Vector} place
+ * @param {(zone: NearbyZone) => boolean} [keep] which count
+ */
 export function nearestZone({ zones, groundAt, origin_m }, [x, y, z], keep = () => true) {
+  /** @type {NearZone | null} */
   let nearest = null;
   for (const zone of zones) {
     if (!keep(zone)) continue;
@@ -179,7 +218,7 @@ export function nearestZone({ zones, groundAt, origin_m }, [x, y, z], keep = () 
   return nearest;
 }
 
-/** Even-odd: inside the outline and in none of the holes. */
+/** Even-odd: inside the outline and in none of the holes. @param {readonly Ring[]} rings @param {number} x @param {number} z */
 function isWithin(rings, x, z) {
   let isIn = false;
   for (const ring of rings) {
@@ -191,6 +230,7 @@ function isWithin(rings, x, z) {
   return isIn;
 }
 
+/** @param {readonly Ring[]} rings @param {number} x @param {number} z */
 function edgeDistance(rings, x, z) {
   let least = Infinity;
   for (const ring of rings) {

@@ -6,7 +6,11 @@ import { markSimulated } from "../../simulated.js";
 import { t } from "../../text.js";
 import { certaintyText } from "./readings.js";
 
-/** show(route, drawn, readings, isMarked): isMarked where it is simulated and others are not. */
+/** @import { DrawnUav, FlightRoute } from "../types.d.ts" */
+/** @import { Reading } from "./readings.js" */
+
+/** @typedef {ReturnType<typeof createInstruments>} Instruments */
+
 export function createInstruments() {
   const letter = h("span", { class: "letter" });
   const name = h("strong", {});
@@ -20,22 +24,34 @@ export function createInstruments() {
     list,
     empty,
   );
+  /** @type {Map<string, { item: HTMLElement, value: HTMLElement, note: HTMLElement }>} by the reading's name */
   const rows = new Map();
 
+  /** @param {Reading} reading */
   function row({ name: key, words }) {
-    if (!rows.has(key)) {
-      const parts = { value: h("span", { class: "scene-value" }), note: h("small", {}) };
-      const item = h("div", { "data-reading": key }, h("dt", {}, words), h("dd", {}, parts.value, parts.note));
-      rows.set(key, { ...parts, item });
-      list.append(item);
-    }
-    return rows.get(key);
+    const known = rows.get(key);
+    if (known) return known;
+    const [value, note] = [h("span", { class: "scene-value" }), h("small", {})];
+    const item = h("div", { "data-reading": key }, h("dt", {}, words), h("dd", {}, value, note));
+    list.append(item);
+    const made = { item, value, note };
+    rows.set(key, made);
+    return made;
   }
 
-  const put = (element_, text) => element_.textContent !== text && (element_.textContent = text);
+  /** @param {HTMLElement} place @param {string} text */
+  const put = (place, text) => {
+    if (place.textContent !== text) place.textContent = text;
+  };
 
   return {
     element,
+    /**
+     * @param {FlightRoute | null} route
+     * @param {DrawnUav | null} drawn
+     * @param {readonly Reading[]} readings
+     * @param {boolean} [isMarked] it is simulated and others are not
+     */
     show(route, drawn, readings, isMarked = false) {
       element.hidden = !route;
       if (!route) return;

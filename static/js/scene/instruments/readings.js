@@ -4,6 +4,13 @@ import { t } from "../../text.js";
 import { exactClockText, exactHeightText, heightText, lengthText, percentText, speedText } from "../../units.js";
 import { ESTIMATED, LOST, PLANNED } from "../sources/pieces.js";
 
+/** @import { DrawnUav, Moment, Wind } from "../types.d.ts" */
+/** @import { NearTower, NearWire, NearZone } from "./distances.js" */
+/** @import { Task } from "./task.js" */
+
+/** @typedef {{ name: string, words: string, value: string, note: string, isBad?: boolean }} Reading */
+/** @typedef {ReadonlyMap<number, { label: string, name: string }>} TargetNames by the target's place */
+
 const POINTS = [
   t("north"),
   t("north-east"),
@@ -16,15 +23,15 @@ const POINTS = [
 ];
 export const NONE = "–";
 
-/** "214°, south-west". */
+/** "214°, south-west". @param {number} degrees */
 export function headingText(degrees) {
   const whole = Math.round(degrees) % 360;
   return `${`${whole}`.padStart(3, "0")}°, ${POINTS[Math.round(whole / 45) % 8]}`;
 }
 
-/** task: of task.js; labels: Map of target → { label, name }. */
+/** @param {Task} task @param {TargetNames} labels */
 export function taskText({ kind, target }, labels) {
-  const name = labels.get(target)?.label ?? (target === null ? "" : `${target + 1}`);
+  const name = target === null ? "" : (labels.get(target)?.label ?? `${target + 1}`);
   switch (kind) {
     case "at":
       return t("at {target}", { target: name });
@@ -43,6 +50,7 @@ export function taskText({ kind, target }, labels) {
   }
 }
 
+/** @param {Pick<Moment, "kind" | "bound" | "since_ms">} moment */
 export function certaintyText({ kind, bound, since_ms }) {
   if (kind === ESTIMATED)
     return t("estimated, ±{bound}", { bound: heightText(Math.max(bound?.along_m ?? 0, bound?.across_m ?? 0)) });
@@ -50,27 +58,39 @@ export function certaintyText({ kind, bound, since_ms }) {
   return kind === PLANNED ? t("planned") : t("measured");
 }
 
-const near = (found, words) =>
+/** @template {{ away_m: number }} Near @param {Near | null} found @param {string} guess @param {(found: Near) => string} words */
+const near = (found, guess, words) =>
   found
-    ? { value: found.away_m < 100 ? exactHeightText(found.away_m) : lengthText(found.away_m), note: words(found) }
+    ? {
+        value: `${guess}${found.away_m < 100 ? exactHeightText(found.away_m) : lengthText(found.away_m)}`,
+        note: words(found),
+      }
     : { value: NONE, note: "" };
 
 /**
- * drawn: a moment of drawn_flight.js; nearest: { wire, tower, zone } of distances.js, each null where none is near; wind or null.
  * A figure that is estimated has "~".
+ *
+ * @param {Pick<DrawnUav, "moment" | "height_agl_m">} drawn
+ * @param {object} known
+ * @param {{ wire: NearWire | null, tower: NearTower | null, zone: NearZone | null }} known.nearest each null where none is near
+ * @param {Task} known.task
+ * @param {Wind | null} known.wind
+ * @param {TargetNames} known.labels
+ * @returns {Reading[]}
  */
 export function readingsOf(drawn, { nearest, task, wind, labels }) {
   const { moment } = drawn;
   const guess = moment.kind === ESTIMATED ? "~" : "";
+  /** @param {number | null | undefined} value @param {(value: number) => string} text */
   const known = (value, text) =>
     typeof value === "number" && Number.isFinite(value) ? `${guess}${text(value)}` : NONE;
-  const zone = near(nearest.zone, ({ zone: { name }, isInside }) =>
+  const zone = near(nearest.zone, guess, ({ zone: { name }, isInside }) =>
     isInside ? t("inside {zone}", { zone: name }) : name,
   );
-  const tower = near(nearest.tower, ({ tower: { label } }) => label ?? "");
-  const wire = near(nearest.wire, ({ isCounted }) => (isCounted ? t("as high as planners count") : ""));
+  const tower = near(nearest.tower, guess, ({ tower: { label } }) => label ?? "");
+  const wire = near(nearest.wire, guess, ({ isCounted }) => (isCounted ? t("as high as planners count") : ""));
   return [
-    { name: "task", words: t("Task"), value: taskText(task, labels), note: labels.get(task.target)?.name ?? "" },
+    { name: "task", words: t("Task"), value: taskText(task, labels), note: labels.get(task.target ?? NaN)?.name ?? "" },
     { name: "agl", words: t("Above ground"), value: known(drawn.height_agl_m, exactHeightText), note: "" },
     {
       name: "relative",
@@ -86,25 +106,9 @@ export function readingsOf(drawn, { nearest, task, wind, labels }) {
     },
     { name: "heading", words: t("Heading"), value: known(moment.heading_deg, headingText), note: "" },
     { name: "battery", words: t("Battery"), value: known(moment.battery_percent, percentText), note: "" },
-    {
-      name: "wire",
-      words: t("Nearest wire"),
-      value: guess && wire.value !== NONE ? `${guess}${wire.value}` : wire.value,
-      note: wire.note,
-    },
-    {
-      name: "tower",
-      words: t("Nearest tower"),
-      value: guess && tower.value !== NONE ? `${guess}${tower.value}` : tower.value,
-      note: tower.note,
-    },
-    {
-      name: "zone",
-      words: t("Nearest zone"),
-      value: guess && zone.value !== NONE ? `${guess}${zone.value}` : zone.value,
-      note: zone.note,
-      isBad: nearest.zone?.isInside ?? false,
-    },
+    { name: "wire", words: t("Nearest wire"), ...wire },
+    { name: "tower", words: t("Nearest tower"), ...tower },
+    { name: "zone", words: t("Nearest zone"), ...zone, isBad: nearest.zone?.isInside ?? false },
     {
       name: "wind",
       words: t("Wind"),
@@ -114,6 +118,7 @@ export function readingsOf(drawn, { nearest, task, wind, labels }) {
   ];
 }
 
+/** @param {number | null | undefined} climb_mps */
 function climbText(climb_mps) {
   if (typeof climb_mps !== "number" || Math.abs(climb_mps) < 0.2) return "";
   const speed = speedText(Math.round(Math.abs(climb_mps) * 10) / 10);

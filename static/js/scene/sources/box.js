@@ -1,10 +1,16 @@
 /** How much of the ground a flight needs round it. Values in, values out. */
 
+/** @import { FlightSource } from "../types.d.ts" */
+
 const ROUND_M = 900; // on each side of what is flown
 const LONGEST_M = 39_000; // a side of what the server gives at once
 const METRES_PER_DEGREE = 111_195;
 
-/** places: [[lon, lat], …] → [west, south, east, north] round them, cut to what can be asked for; null without places. */
+/**
+ * Returns west, south, east, north round places, cut to what can be asked for; null without places.
+ *
+ * @param {readonly number[][]} places lon, lat
+ */
 export function boxRound(places) {
   if (!places.length) return null;
   const spans = [0, 1].map((axis) => {
@@ -24,7 +30,7 @@ export function boxRound(places) {
   return [west, south, east, north].map((degrees) => Number(degrees.toFixed(5)));
 }
 
-/** All places of a source: planned, flown, its targets. */
+/** All places of a source: planned, flown, its targets. @param {Pick<FlightSource, "routes" | "targets">} source */
 export function placesOf({ routes, targets }) {
   return [
     ...routes.flatMap(({ planned, pieces }) => [

@@ -1,12 +1,22 @@
 /** Heights of what flies as heights above sea level of the drawn ground. Values in, values out. */
 
+/** @import { GroundGrid } from "../../api_types.d.ts" */
+/** @import { SourceKind } from "../types.d.ts" */
+
+/** @typedef {"amsl" | "relative"} Trust which height is believed */
+/** @typedef {GroundGrid["kind"]} GroundKind */
+
 const ON_GROUND_M = 0.12; // of a UAV's middle above what it stands on
 
 /**
- * altitudeOf({ altitude_amsl_m, altitude_relative_m }, takeOff_amsl_m, trust) → height above sea level to draw at.
+ * Returns the height above sea level to draw at.
  *
  * What a plan or a simulation says above sea level is of the same ground as the one that is drawn, where there is a terrain model ("amsl").
  * What a UAV reports above sea level is off by metres: there its height above take-off counts, from the drawn ground ("relative").
+ *
+ * @param {{ altitude_amsl_m?: number | null, altitude_relative_m?: number | null }} heights
+ * @param {number} takeOff_amsl_m
+ * @param {Trust} trust
  */
 export function altitudeOf({ altitude_amsl_m = null, altitude_relative_m = null }, takeOff_amsl_m, trust) {
   if (trust === "amsl" && altitude_amsl_m !== null) return altitude_amsl_m;
@@ -14,12 +24,23 @@ export function altitudeOf({ altitude_amsl_m = null, altitude_relative_m = null 
   return altitude_amsl_m ?? takeOff_amsl_m;
 }
 
-/** Which height of a source to believe, over this ground ("terrain", "partly", "flat"). Flat ground is 0 everywhere, and so is what a rehearsal over it says. */
+/**
+ * Which height of a source to believe, over this ground ("terrain", "partly", "flat"). Flat ground is 0 everywhere, and so is what a rehearsal over it says.
+ *
+ * @param {SourceKind} sourceKind
+ * @param {GroundKind} groundKind
+ * @returns {Trust}
+ */
 export const trustIn = (sourceKind, groundKind) =>
   sourceKind === "rehearsal" || (sourceKind === "plan" && groundKind !== "flat") ? "amsl" : "relative";
 
-/** Planned heights: of the plan itself wherever it knows them and the ground is drawn. */
+/**
+ * Planned heights: of the plan itself wherever it knows them and the ground is drawn.
+ *
+ * @param {GroundKind} groundKind
+ * @returns {Trust}
+ */
 export const trustInPlan = (groundKind) => (groundKind === "flat" ? "relative" : "amsl");
 
-/** The middle of a UAV is never drawn below what it stands on. */
+/** The middle of a UAV is never drawn below what it stands on. @param {number} y @param {number} ground_y */
 export const aboveGround = (y, ground_y) => Math.max(y, ground_y + ON_GROUND_M);

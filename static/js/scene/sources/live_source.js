@@ -5,21 +5,34 @@ import { inAir } from "../../domain/in_air.js";
 import { tracksOf } from "../../record/track.js";
 import { completed, ESTIMATED, LOST, MEASURED, momentOf } from "./pieces.js";
 import { plannedOf, targetsOf } from "./plan_source.js";
+import { placedSamples } from "./record_source.js";
+
+/** @import { LiveUav, Mission, RecordFeature } from "../../api_types.d.ts" */
+/** @import { FlightRoute, FlightSample, Moment, Piece, Wind } from "../types.d.ts" */
+
+/** @typedef {ReturnType<typeof liveSource>} LiveSource */
+/** @typedef {{ from: Moment, to: Moment, at_ms: number }} Glide the last two words of a UAV, and when the last one came */
 
 const GLIDE_MS = 300; // as the marker on the map
 const SILENT_MS = 45_000; // no ribbon over a longer silence
 const MOST_SAMPLES = 4_000; // of a UAV's ribbon; the oldest half is thinned out then
 
-/** What is known of a UAV at the server's time: a sample with its kind; null while it was never seen. */
+/**
+ * What is known of a UAV at the server's time; null while it was never seen.
+ *
+ * @param {LiveUav} uav
+ * @param {number} now_ms
+ * @returns {Moment | null}
+ */
 export function liveSample(uav, now_ms) {
   const certainty = certaintyOf(uav, now_ms);
   if (certainty === null) return null;
   const { measured, estimated } = uav;
-  const isHeard = certainty === HEARD && measured?.position;
-  const from = isHeard ? measured : (estimated ?? measured);
+  const heard = certainty === HEARD && measured?.position ? measured : null;
+  const from = heard ?? estimated ?? measured;
   if (!from?.position) return null;
   return {
-    kind: certainty === UNHEARD ? LOST : isHeard ? MEASURED : ESTIMATED,
+    kind: certainty === UNHEARD ? LOST : heard ? MEASURED : ESTIMATED,
     at_ms: now_ms,
     since_ms: measured ? Date.parse(measured.measured_at) : null,
     position: from.position,
@@ -27,53 +40,45 @@ export function liveSample(uav, now_ms) {
     altitude_amsl_m: from.altitude_amsl_m ?? measured?.altitude_amsl_m ?? null,
     heading_deg: from.heading_deg ?? measured?.heading_deg ?? 0,
     speed_mps: from.speed_mps ?? null,
-    climb_mps: isHeard ? measured.climb_mps : null,
-    roll_deg: isHeard ? measured.roll_deg : 0,
-    pitch_deg: isHeard ? measured.pitch_deg : 0,
+    climb_mps: heard ? heard.climb_mps : null,
+    roll_deg: heard ? heard.roll_deg : 0,
+    pitch_deg: heard ? heard.pitch_deg : 0,
     battery_percent: measured?.battery_percent ?? null,
-    waypoint:
-      (isHeard ? measured.waypoint_sequence : estimated?.waypoint_sequence) ?? measured?.waypoint_sequence ?? null,
+    waypoint: (heard ? heard.waypoint_sequence : estimated?.waypoint_sequence) ?? measured?.waypoint_sequence ?? null,
     mode: measured?.mode ?? "",
     isInAir: inAir(uav) !== false,
-    bound: isHeard || !estimated ? null : estimated.bound,
+    bound: heard || !estimated ? null : estimated.bound,
   };
 }
 
-/** Puts a report behind a UAV's pieces; an older one, or the same, changes nothing. Returns whether it was put there. */
+/** Puts a report behind a UAV's pieces; an older one, or the same, changes nothing. Returns whether it was put there. @param {Piece[]} pieces @param {FlightSample} sample */
 export function addSample(pieces, sample) {
-  const last = pieces.at(-1)?.samples.at(-1);
+  const piece = pieces.at(-1);
+  const last = piece?.samples.at(-1);
   if (last && sample.at_ms <= last.at_ms) return false;
-  if (!last || sample.at_ms - last.at_ms > SILENT_MS) pieces.push({ kind: MEASURED, samples: [sample] });
-  else pieces.at(-1).samples.push(sample);
-  thinOut(pieces);
+  if (!piece || !last || sample.at_ms - last.at_ms > SILENT_MS) pieces.push({ kind: MEASURED, samples: [sample] });
+  else {
+    piece.samples.push(sample);
+    thinOut(piece);
+  }
   return true;
 }
 
-function thinOut(pieces) {
-  const longest = pieces.at(-1);
-  if (longest.samples.length <= MOST_SAMPLES) return;
+/** @param {Piece} piece */
+function thinOut(piece) {
+  if (piece.samples.length <= MOST_SAMPLES) return;
   const half = MOST_SAMPLES / 2;
-  longest.samples = [
-    ...longest.samples.slice(0, half).filter((_, index) => index % 2 === 0),
-    ...longest.samples.slice(half),
-  ];
+  piece.samples = [...piece.samples.slice(0, half).filter((_, index) => index % 2 === 0), ...piece.samples.slice(half)];
 }
 
-/**
- * A source that grows: take({ uavs, now_ms }) with each word of the feed; momentAt(route, now_ms) is where its UAV is shown.
- * detail: GET /missions/{id}; features: of the log until now.
- */
-export function liveSource({ detail, features = [] }) {
+/** @param {Mission} detail @param {readonly RecordFeature[]} features @returns {FlightRoute[]} */
+function routesOf(detail, features) {
   const flown = tracksOf(features);
-  const latest = new Map(); // place → { from, to }: the last two words, and what is between
-  const routes = (detail.plan?.routes ?? []).map((route, place) => {
-    const samples = completed(
-      (flown.get(route.uav_id) ?? [])
-        .filter(({ position }) => position)
-        .map((sample) => ({ ...sample, altitude_relative_m: sample.height_m })),
-    );
+  return (detail.plan?.routes ?? []).map((route, place) => {
+    /** @type {Piece[]} */
     const pieces = [];
-    for (const sample of samples) addSample(pieces, sample);
+    const own = route.uav_id === null ? [] : (flown.get(route.uav_id) ?? []);
+    for (const sample of completed(placedSamples(own))) addSample(pieces, sample);
     return {
       place,
       uav: route.uav_id,
@@ -83,11 +88,52 @@ export function liveSource({ detail, features = [] }) {
       pieces,
     };
   });
+}
+
+/** Where a UAV is shown between two words. @param {Glide} glide @param {number} now_ms @returns {Moment} */
+function glidingAt({ from, to, at_ms }, now_ms) {
+  const end_ms = at_ms + GLIDE_MS;
+  if (from === to || now_ms >= end_ms) return to;
+  const samples = [
+    { ...from, at_ms },
+    { ...to, at_ms: end_ms },
+  ];
+  const between = momentOf([{ kind: to.kind, samples }], Math.max(at_ms, now_ms));
+  return { ...to, ...between, bound: to.bound, since_ms: to.since_ms, waypoint: to.waypoint };
+}
+
+/**
+ * A source that grows: take() with each word of the feed; momentAt() is where a UAV is shown.
+ *
+ * @param {{ detail: Mission, features?: readonly RecordFeature[] }} flown features: of the log until now
+ */
+export function liveSource({ detail, features = [] }) {
+  const routes = routesOf(detail, features);
+  /** @type {Map<number, Glide>} by the place of the UAV */
+  const latest = new Map();
+  /** @type {Wind | null} */
+  let wind = null;
+
+  /** @param {FlightRoute} route @param {readonly LiveUav[]} uavs */
   const uavOfRoute = (route, uavs) =>
     uavs.find(({ id, mission, place }) => id === route.uav || (mission === detail.id && place === route.place));
 
+  /** @param {FlightRoute} route @param {number} now_ms */
+  function momentAt(route, now_ms) {
+    const known = latest.get(route.place);
+    return known ? glidingAt(known, now_ms) : null;
+  }
+
+  /** Puts the last word of a route's UAV in; returns whether it is another than before. @param {FlightRoute} route @param {Moment} sample @param {number} now_ms */
+  function hear(route, sample, now_ms) {
+    const known = latest.get(route.place);
+    if (known && !isOther(known.to, sample)) return false;
+    latest.set(route.place, { from: momentAt(route, now_ms) ?? sample, to: sample, at_ms: now_ms });
+    return true;
+  }
+
   const source = {
-    kind: "live",
+    kind: /** @type {const} */ ("live"),
     isSimulated: routes.length > 0 && routes.every(({ isSimulated }) => isSimulated),
     departs_ms: null,
     hasDate: true,
@@ -95,10 +141,10 @@ export function liveSource({ detail, features = [] }) {
     routes,
     targets: targetsOf(routes, detail.targets),
     events: [],
-    revision: 0, // of what was flown: a ribbon that has grown
-    wind: null,
-    windAt: () => source.wind,
-    /** Returns whether anything is another than before. */
+    /** of what was flown: a ribbon that has grown */
+    revision: 0,
+    windAt: () => wind,
+    /** Returns whether anything is another than before. @param {{ uavs: readonly LiveUav[], now_ms: number }} heard */
     take({ uavs, now_ms }) {
       let isNew = false;
       for (const route of routes) {
@@ -107,51 +153,25 @@ export function liveSource({ detail, features = [] }) {
         route.uavNow = uav;
         const sample = liveSample(uav, now_ms);
         if (!sample) continue;
-        const known = latest.get(route.place);
-        const was = known ? momentAt(route, now_ms) : null;
-        if (!known || isOther(known.to, sample)) {
-          latest.set(route.place, { from: was ?? sample, to: sample, at_ms: now_ms });
-          isNew = true;
-        }
+        if (hear(route, sample, now_ms)) isNew = true;
         const { measured } = uav;
-        if (
-          sample.kind === MEASURED &&
-          sample.isInAir &&
-          addSample(route.pieces, { ...sample, at_ms: Date.parse(measured.measured_at), bound: null })
-        )
+        if (!measured) continue;
+        const at_ms = Date.parse(measured.measured_at);
+        if (sample.kind === MEASURED && sample.isInAir && addSample(route.pieces, { ...sample, at_ms, bound: null }))
           source.revision += 1;
-        if (typeof measured?.wind_speed_mps === "number")
-          source.wind = { speed_mps: measured.wind_speed_mps, from_deg: measured.wind_from_deg ?? 0 };
+        if (typeof measured.wind_speed_mps === "number")
+          wind = { speed_mps: measured.wind_speed_mps, from_deg: measured.wind_from_deg ?? 0 };
       }
       return isNew;
     },
     momentAt,
+    /** @param {number} now_ms */
     isGliding: (now_ms) => [...latest.values()].some(({ at_ms }) => now_ms - at_ms < GLIDE_MS),
   };
-
-  function momentAt(route, now_ms) {
-    const known = latest.get(route.place);
-    if (!known) return null;
-    const { from, to, at_ms } = known;
-    if (from === to || now_ms >= at_ms + GLIDE_MS) return to;
-    const between = momentOf(
-      [
-        {
-          kind: to.kind,
-          samples: [
-            { ...from, at_ms },
-            { ...to, at_ms: at_ms + GLIDE_MS },
-          ],
-        },
-      ],
-      Math.max(at_ms, now_ms),
-    );
-    return { ...to, ...between, bound: to.bound, since_ms: to.since_ms, waypoint: to.waypoint };
-  }
-
   return source;
 }
 
+/** @type {(keyof Moment)[]} */
 const SEEN = [
   "kind",
   "altitude_relative_m",
@@ -163,6 +183,7 @@ const SEEN = [
   "isInAir",
   "since_ms",
 ];
+/** @param {Moment} a @param {Moment} b */
 const isOther = (a, b) =>
   SEEN.some((name) => a[name] !== b[name]) ||
   a.position[0] !== b.position[0] ||

@@ -2,11 +2,14 @@
 
 import { turn_deg } from "../cameras/vectors.js";
 
+/** @import { Bound, FlightSample, Moment, Piece } from "../types.d.ts" */
+
 export const MEASURED = "measured";
 export const ESTIMATED = "estimated";
 export const PLANNED = "planned";
 export const LOST = "lost"; // nobody knows where it is by now: where it was last
 
+/** @type {("altitude_amsl_m" | "altitude_relative_m" | "speed_mps" | "climb_mps" | "battery_percent" | "roll_deg" | "pitch_deg")[]} */
 const NUMBERS = [
   "altitude_amsl_m",
   "altitude_relative_m",
@@ -18,23 +21,29 @@ const NUMBERS = [
 ];
 const NO_BOUND = { along_m: 0, across_m: 0, bearing_deg: 0, height_m: 0 }; // at a report
 
+/** @param {Piece} piece */
+export const firstOf = ({ samples }) => samples[0];
+/** @param {Piece} piece */
+export const lastOf = ({ samples }) => samples[samples.length - 1];
+
 /**
- * A piece of a track: { kind, samples } with samples [{ at_ms, position: [lon, lat], heading_deg, …numbers, waypoint, isInAir, bound }] by time,
- * numbers as named above, null where they are not known; bound { along_m, across_m, bearing_deg, height_m } of what is estimated.
+ * Where a UAV is at a moment: numbers in proportion, headings the short way; null before the first sample. In a silence, and after the
+ * last sample, it is LOST where it was last; after a landing it stands there.
  *
- * → the same at a moment, numbers in proportion, headings the short way; with `kind`, `at_ms` and `since_ms` of the sample before it; null before
- * the first sample. In a silence, and after the last sample, it is LOST where it was last; after a landing it stands there.
+ * @param {readonly Piece[]} pieces by time
+ * @param {number} at_ms
+ * @returns {Moment | null}
  */
 export function momentOf(pieces, at_ms) {
+  /** @type {Piece | null} */
   let last = null;
   for (const piece of pieces) {
-    const { samples } = piece;
-    if (samples[0].at_ms > at_ms) break;
+    if (firstOf(piece).at_ms > at_ms) break;
     last = piece;
-    if (at_ms <= samples.at(-1).at_ms) return at(piece, at_ms);
+    if (at_ms <= lastOf(piece).at_ms) return at(piece, at_ms);
   }
   if (!last) return null;
-  const sample = last.samples.at(-1);
+  const sample = lastOf(last);
   return {
     ...sample,
     kind: sample.isInAir === false || last.kind === PLANNED ? last.kind : LOST,
@@ -45,11 +54,13 @@ export function momentOf(pieces, at_ms) {
   };
 }
 
+/** @param {Piece} piece @param {number} at_ms @returns {Moment} */
 function at({ kind, samples }, at_ms) {
   const after = samples[indexAfter(samples, at_ms)];
   const before = samples[Math.max(0, samples.indexOf(after) - 1)];
   if (after === before || after.at_ms === before.at_ms) return { ...after, kind, since_ms: after.at_ms };
   const share = (at_ms - before.at_ms) / (after.at_ms - before.at_ms);
+  /** @type {Moment} */
   const mixed = {
     ...before,
     kind,
@@ -57,18 +68,19 @@ function at({ kind, samples }, at_ms) {
     since_ms: before.at_ms,
     position: [0, 1].map((axis) => before.position[axis] + (after.position[axis] - before.position[axis]) * share),
   };
-  for (const name of NUMBERS)
-    mixed[name] =
-      isKnown(before[name]) && isKnown(after[name])
-        ? before[name] + (after[name] - before[name]) * share
-        : (before[name] ?? null);
+  for (const name of NUMBERS) {
+    const [from, to] = [before[name], after[name]];
+    mixed[name] = isKnown(from) && isKnown(to) ? from + (to - from) * share : (from ?? null);
+  }
   if (isKnown(before.heading_deg) && isKnown(after.heading_deg))
     mixed.heading_deg = (before.heading_deg + turn_deg(before.heading_deg, after.heading_deg) * share + 360) % 360;
   mixed.bound = kind === ESTIMATED ? boundBetween(before.bound ?? NO_BOUND, after.bound ?? NO_BOUND, share) : null;
   return mixed;
 }
 
+/** @param {Bound} before @param {Bound} after @param {number} share */
 function boundBetween(before, after, share) {
+  /** @param {"along_m" | "across_m" | "height_m"} name */
   const part = (name) => (before[name] ?? 0) + ((after[name] ?? 0) - (before[name] ?? 0)) * share;
   return {
     along_m: part("along_m"),
@@ -78,9 +90,10 @@ function boundBetween(before, after, share) {
   };
 }
 
+/** @param {number | null | undefined} value @returns {value is number} */
 const isKnown = (value) => typeof value === "number" && Number.isFinite(value);
 
-/** Number of the first sample at or after a moment. */
+/** Number of the first sample at or after a moment. @param {readonly FlightSample[]} samples @param {number} at_ms */
 function indexAfter(samples, at_ms) {
   let [low, high] = [0, samples.length - 1];
   while (low < high) {
@@ -93,7 +106,12 @@ function indexAfter(samples, at_ms) {
 
 const METRES_PER_DEGREE = 111_195; // of latitude, on a sphere: for courses and speeds between neighbours alone
 
-/** From one place to another: { metres, bearing_deg }, over a second's flight exact enough for a nose. */
+/**
+ * From one place to another: { metres, bearing_deg }, over a second's flight exact enough for a nose.
+ *
+ * @param {readonly number[]} from
+ * @param {readonly number[]} to
+ */
 export function stepOf([lon, lat], [toLon, toLat]) {
   const east_m = (toLon - lon) * METRES_PER_DEGREE * Math.cos(((lat + toLat) / 2) * (Math.PI / 180));
   const north_m = (toLat - lat) * METRES_PER_DEGREE;
@@ -103,8 +121,14 @@ export function stepOf([lon, lat], [toLon, toLat]) {
   };
 }
 
-/** Samples that lack a heading, a speed or a climb get those of their way to the next; one that stands keeps its heading. */
+/**
+ * Samples that lack a heading, a speed or a climb get those of their way to the next; one that stands keeps its heading.
+ *
+ * @param {readonly FlightSample[]} samples
+ * @returns {FlightSample[]}
+ */
 export function completed(samples) {
+  /** @type {number | null} */
   let heading_deg = null;
   const found = samples.map((sample, index) => {
     const next = samples[index + 1];

@@ -1,9 +1,4 @@
-/**
- * What the view shows of a mission, from the API: a rehearsal's run, its record, itself live, or its plan.
- *
- * A source: { kind, isSimulated, departs_ms, hasDate, span: { from_ms, to_ms } | null, routes: [{ place, uav, name, planned, pieces }], targets, events,
- * windAt(at_ms, height_m) → { speed_mps, from_deg } | null }; a live one besides take(), momentAt() and revision.
- */
+/** What the view shows of a mission, from the API: a rehearsal's run, its record, itself live, or its plan. */
 
 import { get } from "../../api.js";
 import { loadMission } from "../../record/load.js";
@@ -12,12 +7,23 @@ import { planSource } from "./plan_source.js";
 import { recordSource } from "./record_source.js";
 import { rehearsalSource } from "./rehearsal_source.js";
 
+/** @import { Answer } from "../../api.js" */
+/** @import { Mission, RecordCollection, Rehearsal, RehearsalDetail, RehearsalPage, RehearsalTrack } from "../../api_types.d.ts" */
+/** @import { FlightSource, SourceKind, WantedSource } from "../types.d.ts" */
+/** @import { LiveSource } from "./live_source.js" */
+
 const UNDER_WAY = ["dispatched", "active"];
 const OVER = ["completed", "aborted", "failed"];
 const MOST_RECORDS = 3_000; // of the line flown so far
 const ORDER = ["fail", "warnings", "pass"];
 
-/** What a mission is looked at by where nothing else is said. rehearsals: newest first. */
+/**
+ * What a mission is looked at by where nothing else is said.
+ *
+ * @param {Pick<Mission, "state">} mission
+ * @param {readonly Pick<Rehearsal, "level">[]} rehearsals newest first
+ * @returns {WantedSource}
+ */
 export function usualSource({ state }, rehearsals) {
   if (UNDER_WAY.includes(state)) return { kind: "live", rehearsal: null, run: null };
   if (OVER.includes(state)) return { kind: "record", rehearsal: null, run: null };
@@ -26,7 +32,7 @@ export function usualSource({ state }, rehearsals) {
     : { kind: "plan", rehearsal: null, run: null };
 }
 
-/** The worst of a rehearsal's runs that was flown; null where none was. */
+/** The worst of a rehearsal's runs that was flown; null where none was. @param {{ runs: Pick<RehearsalDetail["runs"][number], "level" | "sequence">[] }} rehearsal */
 export function worstRun({ runs }) {
   const flown = runs
     .filter(({ level }) => level)
@@ -34,49 +40,62 @@ export function worstRun({ runs }) {
   return flown[0]?.sequence ?? null;
 }
 
-async function readRehearsal(mission, { rehearsal, run }, rehearsals) {
+/** @param {Mission} mission @param {WantedSource} wanted @param {readonly Rehearsal[]} rehearsals */
+async function readRehearsal(mission, { rehearsal, run = null }, rehearsals) {
   const id = rehearsal ?? rehearsals.find(({ level }) => level)?.id;
   if (!id) return null;
-  const { data: detail } = await get(`/missions/${mission.id}/rehearsals/${id}`);
+  const { data: detail } = /** @type {Answer<RehearsalDetail>} */ (
+    await get(`/missions/${mission.id}/rehearsals/${id}`)
+  );
   const number = run !== null && detail.runs[run]?.level ? run : worstRun(detail);
   if (number === null) return null;
-  const { data: track } = await get(`/missions/${mission.id}/rehearsals/${id}/track?run=${number}`);
+  const { data: track } = /** @type {Answer<RehearsalTrack>} */ (
+    await get(`/missions/${mission.id}/rehearsals/${id}/track?run=${number}`)
+  );
   return {
     ...rehearsalSource({ detail, track, mission }),
     runs: detail.runs.filter(({ level }) => level).map(({ sequence, words }) => ({ sequence, words })),
   };
 }
 
+/** @param {Mission} mission */
 async function readLive(mission) {
-  const { data } = await get(
-    `/telemetry?mission=${mission.id}&most=${MOST_RECORDS}&limit=${MOST_RECORDS > 1_000 ? 1_000 : MOST_RECORDS}`,
+  const features = [];
+  let next = /** @type {string | null} */ (
+    `/telemetry?mission=${mission.id}&most=${MOST_RECORDS}&limit=${Math.min(MOST_RECORDS, 1_000)}`
   );
-  const features = [...data.features];
-  for (let { next } = data; next; ) {
-    const { data: more } = await get(next);
-    features.push(...more.features);
-    next = more.next;
+  while (next) {
+    const { data } = /** @type {Answer<RecordCollection>} */ (await get(next));
+    features.push(...data.features);
+    next = data.next;
   }
   return liveSource({ detail: mission, features });
 }
 
-/** mission: GET /missions/{id}; wanted: of link.js, or null for what is usual. Throws ApiError. */
+/**
+ * @param {Mission} mission
+ * @param {WantedSource | null} [wanted] null: what is usual
+ * @returns {Promise<{ source: FlightSource | LiveSource, choices: SourceKind[] }>}
+ * @throws {ApiError}
+ */
 export async function readSource(mission, wanted = null) {
-  const { data: listed } = await get(`/missions/${mission.id}/rehearsals`);
+  const { data: listed } = /** @type {Answer<RehearsalPage>} */ (await get(`/missions/${mission.id}/rehearsals`));
   const rehearsals = listed.results;
   const choice = wanted ?? usualSource(mission, rehearsals);
+  /** @type {Record<SourceKind, () => Promise<FlightSource | LiveSource | null>>} */
   const read = {
     rehearsal: () => readRehearsal(mission, choice, rehearsals),
     record: async () => recordSource(await loadMission(mission.id)),
     live: () => readLive(mission),
-    plan: () => planSource(mission),
+    plan: async () => planSource(mission),
   };
   const source = (await read[choice.kind]()) ?? planSource(mission);
   return { source, choices: choicesOf(mission, rehearsals, source) };
 }
 
-/** What can be looked at besides: kinds of sources. */
+/** What can be looked at besides. @param {Mission} mission @param {readonly Rehearsal[]} rehearsals @param {Pick<FlightSource, "kind">} source */
 function choicesOf({ state, plan }, rehearsals, { kind }) {
+  /** @type {SourceKind[]} */
   const found = [];
   if (plan) found.push("plan");
   if (rehearsals.some(({ level }) => level)) found.push("rehearsal");

@@ -1,12 +1,17 @@
 /** A run of a rehearsal as the view shows it: flown in simulation, at the mission's departure. */
 
-import { completed, MEASURED } from "./pieces.js";
-import { NO_DATE_MS, targetsOf, windAtHeight } from "./plan_source.js";
+import { completed, firstOf, lastOf, MEASURED } from "./pieces.js";
+import { NO_DATE_MS, spanOf, targetsOf, windAtHeight } from "./plan_source.js";
+
+/** @import { Mission, RehearsalDetail, RehearsalTrack, TrackFlight, Verdict } from "../../api_types.d.ts" */
+/** @import { ReplayEvent } from "../../record/timeline.js" */
+/** @import { FlightRoute, FlightSource } from "../types.d.ts" */
 
 const ON_GROUND_M = 0.3; // above take-off: lower, it stands
 
-/** Samples of one simulated flight: columns → rows. Tracks of before have no attitude: it hangs level, its nose along its way. */
+/** Samples of one simulated flight: columns → rows. Tracks of before have no attitude: it hangs level, its nose along its way. @param {TrackFlight} flight @param {number} departs_ms */
 export function samplesOf(flight, departs_ms) {
+  /** @param {"roll_deg" | "pitch_deg" | "heading_deg"} name @param {number} row */
   const value = (name, row) => flight[name]?.[row] ?? null;
   return completed(
     flight.t_s.map((at_s, row) => ({
@@ -24,10 +29,14 @@ export function samplesOf(flight, departs_ms) {
   );
 }
 
-/** detail: of the rehearsal; track: of one of its runs; mission: GET /missions/{id}. → a source, see sources/read.js. */
+/**
+ * @param {{ detail: RehearsalDetail, track: RehearsalTrack, mission: Mission }} rehearsal track: of one of its runs
+ * @returns {FlightSource}
+ */
 export function rehearsalSource({ detail, track, mission }) {
   const departs_ms = mission.departs_at ? Date.parse(mission.departs_at) : NO_DATE_MS;
   const run = detail.runs[track.run];
+  /** @type {FlightRoute[]} */
   const routes = track.routes.map(({ uav: place, name, flights, planned }) => ({
     place,
     name,
@@ -35,37 +44,38 @@ export function rehearsalSource({ detail, track, mission }) {
     planned: planned.map(({ waypoint, ...point }) => ({ ...point, sequence: waypoint })),
     pieces: flights.map((flight) => ({ kind: MEASURED, samples: samplesOf(flight, departs_ms) })),
   }));
-  const moments = routes.flatMap(({ pieces }) =>
-    pieces.flatMap(({ samples }) => [samples[0].at_ms, samples.at(-1).at_ms]),
-  );
   return {
     kind: "rehearsal",
     rehearsal: detail.id,
     run: track.run,
     isSimulated: true,
-    conditions: run.words,
     departs_ms,
     hasDate: Boolean(mission.departs_at),
     routes,
-    span: moments.length ? { from_ms: Math.min(...moments), to_ms: Math.max(...moments) } : null,
+    span: spanOf(routes),
     targets: targetsOf(routes, mission.targets),
     events: eventsOfRun(run.verdict, routes, departs_ms),
     windAt: (_at_ms, height_m) => windAtHeight(run.conditions.wind ?? [], height_m),
   };
 }
 
-/** Take-offs, targets and landings of a run, as the record page has them: [{ at_ms, kind, place, target? }]. */
+/**
+ * Take-offs, targets and landings of a run, as the record page has them.
+ *
+ * @param {Verdict | null | undefined} verdict
+ * @param {readonly FlightRoute[]} routes
+ * @param {number} departs_ms
+ */
 export function eventsOfRun(verdict, routes, departs_ms) {
-  const flights = routes.flatMap(({ place, pieces }) =>
-    pieces.flatMap(({ samples }) => [
-      { at_ms: samples[0].at_ms, kind: "take-off", place },
-      { at_ms: samples.at(-1).at_ms, kind: "landing", place },
+  /** @type {ReplayEvent[]} */
+  const events = routes.flatMap(({ place, pieces }) =>
+    pieces.flatMap((piece) => [
+      { at_ms: firstOf(piece).at_ms, kind: "take-off", place },
+      { at_ms: lastOf(piece).at_ms, kind: "landing", place },
     ]),
   );
-  const targets = (verdict?.routes ?? []).flatMap(({ uav, targets: flown }) =>
-    flown
-      .filter(({ at_s }) => at_s !== null)
-      .map(({ at_s, target }) => ({ at_ms: departs_ms + at_s * 1_000, kind: "target", place: uav, target })),
-  );
-  return [...flights, ...targets].sort((a, b) => a.at_ms - b.at_ms);
+  for (const { uav: place, targets } of verdict?.routes ?? [])
+    for (const { at_s, target } of targets)
+      if (at_s !== null) events.push({ at_ms: departs_ms + at_s * 1_000, kind: "target", place, target });
+  return events.sort((a, b) => a.at_ms - b.at_ms);
 }
