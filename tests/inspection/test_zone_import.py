@@ -39,9 +39,12 @@ def rows():
     return list(NoFlyZone.objects.order_by("pk").values())
 
 
-@pytest.mark.parametrize(("name", "layers"), [("switzerland-ed269-test-che-1", 10), ("bulgaria-2026-ed269-extract", 11)])
-def test_real_documents_are_stored_whole_and_the_same_file_again_changes_nothing(name, layers, shared_data):
-    path = shared_data(f"zones/{name}.json")
+@pytest.mark.parametrize(
+    ("name", "layers"),
+    [("ed269-features", 9), ("ed269-zone-list", 4), ("switzerland-ed269-test-che-1", 10), ("bulgaria-2026-ed269-extract", 11)],
+)
+def test_documents_are_stored_whole_and_the_same_file_again_changes_nothing(name, layers, zone_file):
+    path = zone_file(f"{name}.json")
     first = import_zones(path=path)
     before = rows()
     second = import_zones(path=path)
@@ -51,14 +54,27 @@ def test_real_documents_are_stored_whole_and_the_same_file_again_changes_nothing
     assert ZoneSet.objects.get().source_format == "ED-269"
 
 
-def test_bands_circles_and_schedules_are_stored_as_stated(shared_data):
-    import_zones(path=shared_data("zones/switzerland-ed269-test-che-1.json"))
-    concert = NoFlyZone.objects.get(identifier="Montreux Concert Area")
-    assert (concert.lower_limit_m, concert.lower_reference, concert.upper_limit_m, concert.upper_reference) == (0, "AGL", 6259, "AMSL")
-    assert concert.circle == {"centre": [6.913146, 46.430758], "radius_m": 3000.0}
-    assert concert.schedule[0]["schedule"][0]["day"] == ["SAT", "SUN"]
-    assert concert.properties["zoneAuthority"][0]["contactName"] == "Commune de Montreux"
-    assert NoFlyZone.objects.get(identifier="Lausanne Airport", layer=2).schedule is None
+@pytest.mark.parametrize(
+    ("name", "concert", "upper_limit_m", "circle", "contact", "permanent"),
+    [
+        (
+            "ed269-features.json", "Elmsgard Concert Meadow", 2400, {"centre": [26.541, 25.7065], "radius_m": 1200.0},
+            "Town of Elmsgard", ("EL-0003", 1),
+        ),
+        (
+            "switzerland-ed269-test-che-1.json", "Montreux Concert Area", 6259, {"centre": [6.913146, 46.430758], "radius_m": 3000.0},
+            "Commune de Montreux", ("Lausanne Airport", 2),
+        ),
+    ],
+)  # fmt: skip
+def test_bands_circles_and_schedules_are_stored_as_stated(name, concert, upper_limit_m, circle, contact, permanent, zone_file):
+    import_zones(path=zone_file(name))
+    zone = NoFlyZone.objects.get(identifier=concert)
+    assert (zone.lower_limit_m, zone.lower_reference, zone.upper_limit_m, zone.upper_reference) == (0, "AGL", upper_limit_m, "AMSL")
+    assert zone.circle == circle
+    assert zone.schedule[0]["schedule"][0]["day"] == ["SAT", "SUN"]
+    assert zone.properties["zoneAuthority"][0]["contactName"] == contact
+    assert NoFlyZone.objects.get(identifier=permanent[0], layer=permanent[1]).schedule is None
 
 
 def test_the_next_file_of_the_set_changes_adds_and_removes_and_keeps_the_rest(tmp_path):
@@ -184,11 +200,15 @@ def test_an_area_over_the_antimeridian_is_stored_on_both_sides(tmp_path):
     assert inside == [1, 1, 0]
 
 
-def test_the_command_prints_counts_as_json_and_faults_with_their_places(tmp_path, shared_data):
+@pytest.mark.parametrize(
+    ("name", "zones", "circles", "polygons", "with_schedule"),
+    [("ed269-features.json", 6, 4, 5, 5), ("switzerland-ed269-test-che-1.json", 6, 4, 6, 4)],
+)
+def test_the_command_prints_counts_as_json_and_faults_with_their_places(name, zones, circles, polygons, with_schedule, tmp_path, zone_file):
     out = StringIO()
-    call_command("import_zones", str(shared_data("zones/switzerland-ed269-test-che-1.json")), "--json", stdout=out)
+    call_command("import_zones", str(zone_file(name)), "--json", stdout=out)
     counts = json.loads(out.getvalue())
-    assert (counts["zones"], counts["circles"], counts["polygons"], counts["with_schedule"]) == (6, 4, 6, 4)
+    assert (counts["zones"], counts["circles"], counts["polygons"], counts["with_schedule"]) == (zones, circles, polygons, with_schedule)
     with pytest.raises(CommandError, match=r"features\[0\].geometry.coordinates\[0\]\[0\]: latitude 139.0 is beyond"):
         call_command("import_zones", str(write(tmp_path / "swapped.geojson", feature(square(35.0, 139.0), name="Tokyo"))))
     with pytest.raises(CommandError, match="no file"):

@@ -42,16 +42,21 @@ def make_so(path: Path, **parameters: Any) -> Any:
 @pytest.mark.parametrize(
     ("name", "source_format", "layers"),
     [
+        ("ed269-features.json", "ed269", 9),
+        ("ed269-zone-list.json", "ed269", 4),
+        ("ed318-collection.json", "ed318", 3),
+        ("enaire.json", "ed318", 2),
+        ("openair.txt", "openair", 7),
         ("switzerland-ed269-test-che-1.json", "ed269", 10),
         ("bulgaria-2026-ed269-extract.json", "ed269", 11),
         ("ed318-Example_Collection.json", "ed318", 3),
         ("czechia-2026-openair.txt", "openair", 270),
     ],
 )
-def test_real_files_say_after_the_import_what_they_said_before(
-    name: str, source_format: str, layers: int, shared_data: Callable[[str], Path]
+def test_files_say_after_the_import_what_they_said_before(
+    name: str, source_format: str, layers: int, zone_file: Callable[[str], Path]
 ) -> None:
-    path = shared_data(f"zones/{name}")
+    path = zone_file(name)
     assert look(path, format=source_format).numbers["new"] == layers
     make_so(path, format=source_format)
     again = look(path, format=source_format)
@@ -61,11 +66,15 @@ def test_real_files_say_after_the_import_what_they_said_before(
     assert (rolled.numbers["unchanged"], sum(rolled.numbers.values())) == (layers, layers)
 
 
-def test_the_validity_that_a_file_states_is_kept(shared_data: Callable[[str], Path]) -> None:
-    make_so(shared_data("zones/ed318-Example_Collection.json"))
+@pytest.mark.parametrize(
+    ("name", "valid_from"),
+    [("ed318-collection.json", "2026-01-01T06:00:00+00:00"), ("ed318-Example_Collection.json", "2018-12-31T15:59:59+00:00")],
+)
+def test_the_validity_that_a_file_states_is_kept(name: str, valid_from: str, zone_file: Callable[[str], Path]) -> None:
+    make_so(zone_file(name))
     source = ZoneSet.objects.select_related("data_import").get().data_import
     assert source is not None
-    assert (source.valid_from.isoformat(), source.valid_until) == ("2018-12-31T15:59:59+00:00", None)
+    assert (source.valid_from.isoformat(), source.valid_until) == (valid_from, None)
 
 
 @pytest.mark.parametrize(("stated", "words"), [("openair", "GeoJSON, not OpenAir"), ("shapefile", "known formats"), (7, "known formats")])

@@ -182,6 +182,24 @@ def test_sunset_may_end_what_a_time_began() -> None:
     assert found.to_s == pytest.approx(at("2026-12-21T14:38") + SUN_ALLOWANCE_S, abs=2 * A_MINUTE_S)
 
 
+def test_zones_of_both_standards(zone_file: Any) -> None:
+    timed = [zone for zone in read_zones(zone_file("ed318-collection.json").read_bytes()).zones if zone.schedule is not None]
+    box = timed[0].geometry.bounds
+    inside = spans(timed[0].schedule, "2026-03-07T00:00", "2026-03-09T12:00", box)  # a Saturday
+    assert ("Sat 15:00", "Sat 16:30") in inside
+    assert any(start.startswith("Sun 0") and end == "Sun 11:00" for start, end in inside)  # from sunrise on
+    assert spans(timed[0].schedule, "2027-03-07T00:00", "2027-03-09T00:00", box) == []
+
+    weekend, nights = (
+        next(zone for zone in read_zones(zone_file("ed269-features.json").read_bytes()).zones if zone.identifier == identifier)
+        for identifier in ("Elmsgard Concert Meadow", "EL-GT9990")
+    )
+    assert spans(weekend.schedule, "2026-07-03T00:00", "2026-07-07T00:00", weekend.geometry.bounds) == [
+        ("Sat 18:00", "Sun 00:00"), ("Sun 18:00", "Mon 00:00"),
+    ]  # fmt: skip
+    assert ("Fri 22:00", "Sat 04:00") in spans(nights.schedule, "2026-07-03T12:00", "2026-07-05T12:00", nights.geometry.bounds)
+
+
 def test_real_zones_of_both_standards(shared_data: Any) -> None:
     collection = read_zones(shared_data("zones/ed318-Example_Collection.json").read_bytes()).zones
     timed = [zone for zone in collection if zone.schedule is not None]

@@ -50,19 +50,42 @@ def ed269(**facts: Any) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(
-    ("name", "zones", "layers", "circles"),
-    [("ed318-Example_Collection", 2, 3, 1), ("ed318-Example_GeoZone_Circle", 1, 1, 1), ("ed318-Example_GeoZone_2_Layers", 1, 2, 0)],
+    ("name", "zones", "layers", "circles", "valid_from"),
+    [
+        ("ed318-collection", 2, 3, 1, "2026-01-01T06:00:00Z"),
+        ("ed318-Example_Collection", 2, 3, 1, "2018-12-31T15:59:59Z"),
+        ("ed318-Example_GeoZone_Circle", 1, 1, 1, "2018-12-31T15:59:59Z"),
+        ("ed318-Example_GeoZone_2_Layers", 1, 2, 0, "2018-12-31T15:59:59Z"),
+    ],
 )
-def test_published_examples_of_ed_318_are_read(
-    name: str, zones: int, layers: int, circles: int, shared_data: Callable[[str], Path]
+def test_ed_318_files_are_read_whole(
+    name: str, zones: int, layers: int, circles: int, valid_from: str, zone_file: Callable[[str], Path]
 ) -> None:
-    found = read_zones(shared_data(f"zones/{name}.json").read_bytes())
+    found = read_zones(zone_file(f"{name}.json").read_bytes())
     assert (found.source_format, found.zone_count, len(found.zones)) == ("ED-318", zones, layers)
     assert sum(zone.circle is not None for zone in found.zones) == circles
-    assert found.valid_from == "2018-12-31T15:59:59Z"
+    assert found.valid_from == valid_from
 
 
-def test_layers_schedules_and_names_of_an_example_are_as_stated(shared_data: Callable[[str], Path]) -> None:
+def test_layers_schedules_and_names_of_a_file_are_as_stated(zone_file: Callable[[str], Path]) -> None:
+    found = read_zones(zone_file("ed318-collection.json").read_bytes())
+    upper, lower, circle = found.zones
+    assert found.provider == "Elme Valley Demo Authority"
+    assert (upper.identifier, upper.layer, lower.layer, upper.name) == ("ELM0001", 0, 1, "Elmsgard Airport")
+    assert (upper.band.lower_limit_m, upper.band.lower_reference, upper.band.upper_limit_m) == (60.0, "AGL", 120.0)
+    assert lower.band.upper_limit_m == pytest.approx(60.96)  # 200 ft
+    assert upper.schedule is not None
+    assert [(entry["day"], entry["startTime"], entry["startEvent"]) for entry in upper.schedule[0]["schedule"]] == [
+        (["ANY"], "15:00:00Z", None), (["SUN"], None, "SR"),
+    ]  # fmt: skip
+    assert (circle.circle, circle.schedule, circle.reason) == (
+        {"centre": [26.69, 25.71], "radius_m": 750.0},
+        None,
+        "POPULATION, NATURE",
+    )
+
+
+def test_layers_schedules_and_names_of_a_published_example_are_as_stated(shared_data: Callable[[str], Path]) -> None:
     upper, lower, circle = read_zones(shared_data("zones/ed318-Example_Collection.json").read_bytes()).zones
     assert (upper.identifier, upper.layer, lower.layer, upper.name) == ("NFZ6547", 0, 1, "LFPG-2")
     assert (upper.band.lower_limit_m, upper.band.lower_reference, upper.band.upper_limit_m) == (50.0, "AGL", 150.0)
@@ -74,10 +97,28 @@ def test_layers_schedules_and_names_of_an_example_are_as_stated(shared_data: Cal
     )
 
 
-def test_the_invalid_example_is_refused_with_its_places(shared_data: Callable[[str], Path]) -> None:
+@pytest.mark.parametrize("name", ["ed318-invalid.json", "ed318-InvalidExample_GeoZone_2_Layers.json"])
+def test_an_invalid_file_is_refused_with_its_places(name: str, zone_file: Callable[[str], Path]) -> None:
     with pytest.raises(ZoneFileError) as refused:
-        read_zones(shared_data("zones/ed318-InvalidExample_GeoZone_2_Layers.json").read_bytes())
+        read_zones(zone_file(name).read_bytes())
     assert [fault.place for fault in refused.value.faults] == ["metadata.validFrom", "features[0].properties.type"]
+
+
+def test_enaires_nesting_empty_texts_and_heights_are_read(zone_file: Callable[[str], Path]) -> None:
+    """Zone, layer and times are members of the properties, and what is not known is an empty text."""
+    found = read_zones(zone_file("enaire.json").read_bytes())
+    tower, plant = found.zones
+    assert (found.source_format, found.zone_count) == ("ED-318", 2)
+    assert (tower.identifier, tower.name, tower.restriction) == ("ZZELME01_CTR", "CTR ELMSGARD", "REQ_AUTHORIZATION")
+    assert (tower.band.lower_limit_m, tower.band.upper_limit_m, tower.band.upper_reference) == (0.0, 60.0, "AGL")
+    assert tower.schedule is None
+    assert (tower.properties["message"], tower.properties["reasons"]) == (
+        "<b>Espacio aéreo controlado.</b><br>Consulte con la torre antes de volar.",
+        "AIR_TRAFFIC",
+    )
+    assert (plant.name, len(plant.geometry.geoms)) == ("ZZELME02", 2)
+    assert (plant.band.upper_limit_m, plant.band.upper_reference) == (pytest.approx(1371.6), "AMSL")  # 4500 ft
+    assert plant.schedule is not None and plant.schedule[0]["schedule"][0]["day"] == ["MON", "TUE", "WED", "THU", "FRI"]
 
 
 def test_both_envelopes_of_ed_269_are_read() -> None:
@@ -177,12 +218,16 @@ def test_an_area_across_the_antimeridian_is_two_either_side() -> None:
     assert sorted(round(part.bounds[0], 3) for part in record.geometry.geoms) == [-180.0, 179.5]
 
 
-def test_mutated_feeds_raise_nothing_but_the_named_error(shared_data: Callable[[str], Path]) -> None:
+@pytest.mark.parametrize(
+    "names",
+    [
+        pytest.param(["ed318-collection", "ed269-features", "ed269-zone-list", "enaire"], id="own"),
+        pytest.param(["ed318-Example_Collection", "switzerland-ed269-test-che-1", "ed318-Example_GeoZone_2_Layers"], id="real"),
+    ],
+)
+def test_mutated_feeds_raise_nothing_but_the_named_error(names: list[str], zone_file: Callable[[str], Path]) -> None:
     rng = random.Random(11)
-    documents = [
-        json.loads(shared_data(f"zones/{name}.json").read_text())
-        for name in ("ed318-Example_Collection", "switzerland-ed269-test-che-1", "ed318-Example_GeoZone_2_Layers")
-    ]
+    documents = [json.loads(zone_file(f"{name}.json").read_text("utf-8-sig")) for name in names]
     strange = [None, True, -1, 1e300, "", "x", [], {}, [[]], {"type": "Polygon"}, float("1e18"), "2026-99-99"]
     for _ in range(1_500):
         document = deepcopy(rng.choice(documents))

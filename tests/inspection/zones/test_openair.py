@@ -17,6 +17,7 @@ from inspection.zones.openair_values import NAUTICAL_MILE_M, height_of, length_m
 from inspection.zones.zone_file import ZoneFile, ZoneFileError, read_zones
 
 CENTRE = LonLat(14.5, 50.1)
+CZECH_CLASSES = {"R": 85, "GS": 76, "Q": 45, "D": 41, "P": 11, "C": 9, "E": 3}
 TRIANGLE = "DP 50:00:00 N 014:00:00 E\nDP 50:10:00 N 014:00:00 E\nDP 50:10:00 N 014:20:00 E\n"
 
 
@@ -30,27 +31,44 @@ def refusal(text: str) -> str:
     return str(refused.value)
 
 
-def test_the_czech_file_is_read_whole(shared_data: Callable[[str], Path]) -> None:
-    data = shared_data("zones/czechia-2026-openair.txt").read_bytes()
+@pytest.mark.parametrize(
+    ("name", "classes", "pens", "circles", "box", "crossing"),
+    [
+        ("openair.txt", {"Q": 1, "R": 1, "D": 1, "CTR": 1, "C": 1, "P": 1, "GS": 1}, 2, 2, (26.3, 25.4, 26.9, 26.0), "ELP3 SALTBECK"),
+        ("czechia-2026-openair.txt", CZECH_CLASSES, 18, 71, (11.0, 47.5, 20.0, 52.0), "LKR1 SUMAVA"),
+    ],
+)
+def test_a_file_is_read_whole(
+    name: str, classes: dict[str, int], pens: int, circles: int, box: tuple[float, ...], crossing: str, zone_file: Callable[[str], Path]
+) -> None:
+    data = zone_file(name).read_bytes()
     found = read_zones(data)
-    pens = int(found.notes[0].split()[0])
-    assert (found.source_format, len(found.zones), pens) == ("OpenAir", 270, 18)  # 288 AC records
-    classes = Counter(zone.properties["class"] for zone in found.zones)
-    assert (classes["E"], sum(classes.values())) == (3, 270)
+    assert (found.source_format, int(found.notes[0].split()[0])) == ("OpenAir", pens)
+    assert len(found.zones) + pens == sum(line.startswith(b"AC ") for line in data.splitlines())
+    assert Counter(zone.properties["class"] for zone in found.zones) == classes
     assert all(zone.geometry.is_valid and zone.geometry.area > 0 for zone in found.zones)
     west, south, east, north = shapely.total_bounds([zone.geometry for zone in found.zones])
-    assert 11.0 < west < east < 20.0 and 47.5 < south < north < 52.0
-    assert sum(zone.circle is not None for zone in found.zones) == 71
-    assert "LKR1 SUMAVA" in found.notes[1]
+    assert box[0] < west < east < box[2] and box[1] < south < north < box[3]
+    assert sum(zone.circle is not None for zone in found.zones) == circles
+    assert crossing in found.notes[1]
 
 
-def test_heights_names_and_facts_are_kept_as_stated(shared_data: Callable[[str], Path]) -> None:
-    found = read_zones(shared_data("zones/czechia-2026-openair.txt").read_bytes())
-    dropzone = next(zone for zone in found.zones if zone.name == "DROPZONE Breclav 119.655")
+@pytest.mark.parametrize(
+    ("file", "name", "centre"),
+    [
+        ("openair.txt", "Tarnfold 119.655", (26.49, 25.76)),
+        ("czechia-2026-openair.txt", "Breclav 119.655", (16.8925, 48.790833)),
+    ],
+)
+def test_heights_names_and_facts_are_kept_as_stated(
+    file: str, name: str, centre: tuple[float, float], zone_file: Callable[[str], Path]
+) -> None:
+    found = read_zones(zone_file(file).read_bytes())
+    dropzone = next(zone for zone in found.zones if zone.name == f"DROPZONE {name}")
     assert (dropzone.restriction, dropzone.properties["frequency"], dropzone.properties["station"]) == (
         "Danger",
         "119.655",
-        "Breclav RADIO",
+        f"{name.split()[0]} RADIO",
     )
     band = dropzone.band
     assert (band.lower_limit_m, band.lower_reference, band.upper_limit_m, band.upper_reference) == (
@@ -60,7 +78,30 @@ def test_heights_names_and_facts_are_kept_as_stated(shared_data: Callable[[str],
         "STD",
     )
     assert band.as_stated == {"lower": "0 AGL", "upper": "FL 95"}
-    assert dropzone.circle == {"centre": [pytest.approx(16.8925), pytest.approx(48.790833)], "radius_m": 2 * NAUTICAL_MILE_M}
+    assert dropzone.circle == {"centre": [pytest.approx(part) for part in centre], "radius_m": 2 * NAUTICAL_MILE_M}
+
+
+def test_arcs_of_a_file_bulge_to_their_side(zone_file: Callable[[str], Path]) -> None:
+    """A DA counter-clockwise over the west, and a DB clockwise over the east, of 3 and 5 nautical miles."""
+    areas = {zone.name: zone.geometry for zone in read_zones(zone_file("openair.txt").read_bytes()).zones}
+    for name, centre, side_deg, radius_nm in (
+        ("ELD2 Wickenfell Training Area", LonLat(26 + 44 / 60, 25 + 46 / 60), 270.0, 3.0),
+        ("CTR Elmsgard", LonLat(26 + 32 / 60, 25.7), 90.0, 5.0),
+    ):
+        inside, outside = (
+            shapely.Point(WGS84.fwd(*centre, side_deg, (radius_nm + more_nm) * NAUTICAL_MILE_M)[:2]) for more_nm in (-0.05, 0.05)
+        )
+        assert areas[name].contains(inside) and not areas[name].contains(outside), name
+    assert not areas["ELD2 Wickenfell Training Area"].contains(shapely.Point(26.75, 25.7667)), "open to the east"
+
+
+def test_line_ends_a_byte_order_mark_and_latin_letters_change_nothing(zone_file: Callable[[str], Path]) -> None:
+    text = zone_file("openair.txt").read_text().replace("Tarnfold", "Tårnfäld")
+    plain = read(text)
+    windows = read_zones(text.replace("\n", "\r\n").encode("cp1252"))
+    assert windows.zones == read_zones(text.encode("utf-8-sig")).zones == plain.zones
+    assert windows.notes == ("The text is not UTF-8 and was read as Windows-1252.", *plain.notes)
+    assert "DROPZONE Tårnfäld 119.655" in {zone.name for zone in windows.zones}
 
 
 @pytest.mark.parametrize("radius_m", [50.0, 1_852.0, 18_520.0, 120_000.0])
@@ -162,8 +203,9 @@ def test_a_random_ring_is_refused_at_once() -> None:
     assert "self-intersection" in refusal(f"AC R\nAN a\n{points}")
 
 
-def test_mutated_files_raise_nothing_but_the_named_error(shared_data: Callable[[str], Path]) -> None:
-    lines = shared_data("zones/czechia-2026-openair.txt").read_text().splitlines()
+@pytest.mark.parametrize("name", ["openair.txt", "czechia-2026-openair.txt"])
+def test_mutated_files_raise_nothing_but_the_named_error(name: str, zone_file: Callable[[str], Path]) -> None:
+    lines = zone_file(name).read_text().splitlines()
     rng = random.Random(7)
     for _ in range(400):
         start = rng.randrange(len(lines) - 60)

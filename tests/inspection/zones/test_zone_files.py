@@ -40,6 +40,39 @@ def faults(document):
     return [(fault.place, fault.message) for fault in refusal.value.faults]
 
 
+def test_the_first_envelope_of_ed_269_is_read_whole(zone_file):
+    file = read_zones(zone_file("ed269-features.json").read_bytes())
+    assert (file.source_format, file.zone_count, len(file.zones)) == ("ED-269", 6, 9)
+    assert sum(zone.circle is not None for zone in file.zones) == 4
+    concert = file.zones[0]
+    assert concert.circle == {"centre": [26.541, 25.7065], "radius_m": 1200.0}
+    assert concert.schedule[0]["schedule"] == [
+        {"day": ["SAT", "SUN"], "startTime": "18:00:00Z", "startEvent": None, "endTime": "23:59:59Z", "endEvent": None}
+    ]
+    assert (concert.band.lower_limit_m, concert.band.lower_reference) == (0.0, "AGL")
+    assert (concert.band.upper_limit_m, concert.band.upper_reference) == (2400.0, "AMSL")
+    airfield = [zone for zone in file.zones if zone.identifier == "Varneck Airfield"]
+    assert [(zone.layer, zone.band.lower_limit_m, zone.circle["radius_m"]) for zone in airfield] == [
+        (0, 0.0, 900.0), (1, 45.0, 2200.0), (2, 90.0, 3300.0),
+    ]  # fmt: skip
+    park = [zone for zone in file.zones if zone.identifier == "Tarnfold Moor Nature Park"]
+    assert [(zone.layer, zone.restriction) for zone in park] == [(0, "NO_RESTRICTION"), (1, "REQ_AUTHORISATION")]
+    assert park[0].band.upper_limit_m == pytest.approx(91.44)  # 300 ft
+    assert park[0].band.as_stated["upperLimit"] == 300
+    assert file.zones[-1].band.upper_limit_m is None  # 99999 m
+
+
+def test_the_second_envelope_of_ed_269_is_read_whole(zone_file):
+    """With a byte-order mark, texts in Cyrillic letters, and a zone that states no limits."""
+    data = zone_file("ed269-zone-list.json").read_bytes()
+    assert data.startswith(b"\xef\xbb\xbf")
+    file = read_zones(data)
+    assert (file.source_format, file.zone_count, len(file.zones)) == ("ED-269", 4, 4)
+    assert [len(zone.geometry.geoms[0].exterior.coords) for zone in file.zones] == [13, 13, 13, 13]
+    assert [zone.band.upper_limit_m for zone in file.zones] == [120.0, 120.0, None, 120.0]
+    assert file.zones[0].properties["zoneAuthority"][0]["name"] == "Общество Куилмур"
+
+
 def test_the_swiss_test_document_is_read_whole(shared_data):
     file = read_zones(shared_data("zones/switzerland-ed269-test-che-1.json").read_bytes())
     assert (file.source_format, file.zone_count, len(file.zones)) == ("ED-269", 6, 10)
