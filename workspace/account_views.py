@@ -4,7 +4,6 @@ from django.contrib.auth import update_session_auth_hash
 from django.db.models import F
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiResponse, extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -29,9 +28,10 @@ from workspace.proof import PASSWORD_NEEDED, require_proof
 from workspace.schema import PAGE_PARAMETERS
 from workspace.sign_in_attempts import PASSWORD_CHANGES, HeldBack, take_turn
 from workspace.sign_in_log import record_sign_in
+from workspace.signed_in import SignedInRequest
 
 
-def check_password(request: Request, name: str, password: str) -> None:
+def check_password(request: SignedInRequest, name: str, password: str) -> None:
     """Of whoever is signed in. Raises ApiProblem: 400 where it is another one, 429 after too many tries."""
     try:
         take_turn(PASSWORD_CHANGES, str(request.user.pk))
@@ -47,7 +47,7 @@ class Account(APIView):
     write_roles = EVERYBODY
 
     @extend_schema(operation_id="get_account", summary="Who is signed in, and what they prefer", responses=AccountSerializer)
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         return Response(AccountSerializer(request.user).data)
 
     @extend_schema(
@@ -56,7 +56,7 @@ class Account(APIView):
         request=AccountChangeSerializer,
         responses=AccountSerializer,
     )
-    def patch(self, request: Request) -> Response:
+    def patch(self, request: SignedInRequest) -> Response:
         body = AccountChangeSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         return Response(AccountSerializer(accounts.change_account(user=request.user, **body.validated_data)).data)
@@ -73,7 +73,7 @@ class AccountPassword(APIView):
         request=PasswordChangeSerializer,
         responses={204: OpenApiResponse(description="Changed.")},
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = PasswordChangeSerializer(data=request.data, context={"user": request.user})
         body.is_valid(raise_exception=True)
         check_password(request, "old_password", body.validated_data["old_password"])
@@ -91,7 +91,7 @@ class AccountTokens(APIView):
     @extend_schema(
         operation_id="list_tokens", summary="One's own tokens, those that work first, then the newest", responses=TokenListSerializer
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         tokens = request.user.api_tokens.order_by(F("revoked_at").desc(nulls_first=True), "-created_at")[:200]
         return Response({"results": TokenSerializer(tokens, many=True).data})
 
@@ -102,7 +102,7 @@ class AccountTokens(APIView):
         request=TokenInputSerializer,
         responses={201: NewTokenSerializer, 403: PASSWORD_NEEDED, 409: OpenApiResponse(description="There are too many that work.")},
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         require_proof(request)
         body = TokenInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
@@ -119,7 +119,7 @@ class AccountToken(APIView):
     permission_classes = [InTheBrowserAlone]
 
     @extend_schema(operation_id="revoke_token", summary="Revoke one of one's own tokens", responses=TokenSerializer)
-    def delete(self, request: Request, token_id: int) -> Response:
+    def delete(self, request: SignedInRequest, token_id: int) -> Response:
         token = request.user.api_tokens.filter(pk=token_id).first()
         if token is None:
             raise ApiProblem(404, "not_found", _("You have no such token."))
@@ -133,6 +133,6 @@ class AccountSignIns(APIView):
         parameters=PAGE_PARAMETERS,
         responses=SignInPageSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         page = page_of(request, request.user.sign_ins.select_related("user"), order=("-recorded_at", "-pk"))
         return Response({"results": SignInSerializer(page.rows, many=True).data, "next": page.next})

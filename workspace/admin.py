@@ -15,6 +15,7 @@ from workspace.admin_history import HistoryAdmin, as_table, what_changed
 from workspace.invitations import InvitationState, in_state, revoke_invitation
 from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, AuditEntry, Invitation, Job, Organisation, Role, SignInEntry, User
 from workspace.services import NoAdministratorLeft, change_people, delete_person, save_person
+from workspace.signed_in import user_of
 
 admin.site.unregister(Group)  # what somebody may do follows from the role
 
@@ -84,15 +85,15 @@ class UserAdmin(HistoryAdmin, DjangoUserAdmin):
         return self._unless_last(request, super().changelist_view, *args, **options)
 
     def save_model(self, request: HttpRequest, obj: User, form: Any, change: bool) -> None:
-        save_person(user=obj, actor=request.user)
+        save_person(user=obj, actor=user_of(request))
 
     def delete_model(self, request: HttpRequest, obj: User) -> None:
-        delete_person(user=obj, actor=request.user)
+        delete_person(user=obj, actor=user_of(request))
 
     def delete_queryset(self, request: HttpRequest, queryset: QuerySet[User]) -> None:
         with transaction.atomic():
             for user in queryset:
-                delete_person(user=user, actor=request.user)
+                delete_person(user=user, actor=user_of(request))
 
     @admin.action(description="Let the chosen sign in", permissions=["change"])
     def let_in(self, request: HttpRequest, queryset: QuerySet[User]) -> None:
@@ -119,7 +120,7 @@ class UserAdmin(HistoryAdmin, DjangoUserAdmin):
         self._change(request, queryset, "made administrators", role=Role.ADMINISTRATOR)
 
     def _change(self, request: HttpRequest, queryset: QuerySet[User], words: str, **change: Any) -> None:
-        changed = change_people(users=queryset, actor=request.user, **change)
+        changed = change_people(users=queryset, actor=user_of(request), **change)
         self.message_user(request, f"{changed} {words}.")
 
     def _unless_last(self, request: HttpRequest, view: Any, *args: Any, **options: Any) -> HttpResponse:
@@ -138,8 +139,8 @@ class ApiTokenAdmin(admin.ModelAdmin):
     list_filter = ["expires_at", "revoked_at"]
     list_select_related = ["user"]
     search_fields = ["name", "user__username"]
-    fields = ["name", "user", "created_at", "expires_at", "revoked_at", "last_used_at"]
-    readonly_fields = fields
+    readonly_fields = ["name", "user", "created_at", "expires_at", "revoked_at", "last_used_at"]
+    fields = readonly_fields
     actions = ["revoke"]
 
     def has_add_permission(self, request: HttpRequest) -> bool:
@@ -165,7 +166,7 @@ class InvitationAdmin(ReadOnlyAdmin):
     @admin.action(description="Take the chosen invitations back", permissions=["view"])
     def take_back(self, request: HttpRequest, queryset: QuerySet[Invitation]) -> None:
         waiting = queryset.filter(in_state(InvitationState.OPEN))
-        revoked = [revoke_invitation(invitation=invitation, actor=request.user) for invitation in waiting]
+        revoked = [revoke_invitation(invitation=invitation, actor=user_of(request)) for invitation in waiting]
         self.message_user(request, f"{len(revoked)} taken back.")
 
 

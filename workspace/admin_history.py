@@ -24,7 +24,7 @@ def what_changed(entry: AuditEntry) -> list[tuple[str, str, str]]:
     before, after = entry.before, entry.after
     if not isinstance(before, dict | None) or not isinstance(after, dict | None):
         return [("", _shown(before), _shown(after))]
-    names = {**(before or {}), **(after or {})}
+    names = list({**(before or {}), **(after or {})})
     if before and after:
         names = [name for name in names if before.get(name) != after.get(name)]
     return [
@@ -52,7 +52,7 @@ class HistoryAdmin(admin.ModelAdmin):
     def history_view(self, request: HttpRequest, object_id: str, extra_context: dict[str, Any] | None = None) -> HttpResponse:
         row = self.get_object(request, object_id)
         if row is None:
-            return self._get_obj_does_not_exist_redirect(request, self.opts, object_id)
+            return super().history_view(request, object_id, extra_context)  # Django's answer to what is not there
         if not self.has_view_or_change_permission(request, row):
             raise PermissionDenied
         entries = AuditEntry.objects.select_related("actor").filter(subject_type=self.history_subject, subject_id=str(row.pk))

@@ -72,7 +72,7 @@ def holder_of_session(request: HttpRequest) -> Holder | None:
     """Who has signed in and asks with the CSRF token of their page; None, or an APIException, where SessionAuthentication has to look."""
     if not isinstance(request.user, User) or not request.user.is_active:
         return None
-    SessionAuthentication().enforce_csrf(request)
+    SessionAuthentication().enforce_csrf(request)  # type: ignore[arg-type] # it hands any request to Django's own check
     return Holder(request.user.pk, Role(request.user.role))
 
 

@@ -17,6 +17,7 @@ from rest_framework.response import Response
 
 from workspace.errors import ApiProblem
 from workspace.models import IdempotencyKey
+from workspace.signed_in import SignedInRequest
 
 LONGEST_KEY = 200
 KEPT_HEADERS = ("Location", "ETag")
@@ -28,7 +29,7 @@ def idempotent(handler: Handler) -> Handler:
     """Decorate a view's method; it must answer with a `Response` and do its work after the commit by `transaction.on_commit`."""
 
     @wraps(handler)
-    def answer_once(view: Any, request: Request, *args: Any, **kwargs: Any) -> Response:
+    def answer_once(view: Any, request: SignedInRequest, *args: Any, **kwargs: Any) -> Response:
         key = request.headers.get("Idempotency-Key")
         if key is None:
             return handler(view, request, *args, **kwargs)

@@ -1,6 +1,7 @@
 """Who works here, and what has been asked for: organisations, users, tokens, jobs, history."""
 
 import uuid
+from typing import Any, ClassVar
 
 from django.contrib.auth.models import AbstractUser
 from django.contrib.auth.models import UserManager as DjangoUserManager
@@ -58,21 +59,21 @@ class Language(models.TextChoices):
 class UserManager(DjangoUserManager["User"]):
     """What Django calls staff and superuser follows from the role, so neither is stored or asked for."""
 
-    def create_user(self, username, email=None, password=None, **fields):  # type: ignore[no-untyped-def]
+    def create_user(self, username: str, email: str | None = None, password: str | None = None, **fields: Any) -> "User":
         user = self.model(username=self.model.normalize_username(username), email=self.normalize_email(email), **fields)
         user.set_password(password)
         user.save(using=self._db)
         return user
 
-    def create_superuser(self, username, email=None, password=None, **fields):  # type: ignore[no-untyped-def]
+    def create_superuser(self, username: str, email: str | None = None, password: str | None = None, **fields: Any) -> "User":
         return self.create_user(username, email, password, **{"role": Role.ADMINISTRATOR, **fields})
 
 
 class User(AbstractUser):
     """Somebody who signs in. The role says what they may do: see workspace/permissions.py."""
 
-    groups = None
-    user_permissions = None
+    groups = None  # type: ignore[assignment]
+    user_permissions = None  # type: ignore[assignment]
     organisation = models.ForeignKey(Organisation, on_delete=models.PROTECT, default=DEFAULT_ORGANISATION_ID, related_name="users")
     role = models.CharField(max_length=20, choices=Role.choices, default=Role.VIEWER)
     theme = models.CharField(max_length=10, choices=Theme.choices, default=Theme.SYSTEM)
@@ -85,7 +86,7 @@ class User(AbstractUser):
     last_seen_at = models.DateTimeField(null=True, blank=True, editable=False, help_text="to the minute")
     session_generation = models.PositiveIntegerField(default=0, editable=False, help_text="a session of an earlier one has ended")
 
-    objects = UserManager()
+    objects: ClassVar[UserManager] = UserManager()
 
     class Meta:
         constraints = [models.CheckConstraint(condition=models.Q(role__in=Role.values), name="user_role_known")]
@@ -96,12 +97,12 @@ class User(AbstractUser):
         return salted_hmac("workspace.session", text, secret=secret, algorithm="sha256").hexdigest()
 
     @property
-    def is_staff(self) -> bool:
+    def is_staff(self) -> bool:  # type: ignore[override]
         """May enter the admin."""
         return self.can_curate
 
     @property
-    def is_superuser(self) -> bool:
+    def is_superuser(self) -> bool:  # type: ignore[override]
         return self.role == Role.ADMINISTRATOR
 
     @property

@@ -7,15 +7,16 @@ from django.contrib.auth.mixins import LoginRequiredMixin
 from django.views.generic import TemplateView
 
 from workspace.browser_sessions import seconds_left
-from workspace.models import User
+from workspace.signed_in import SignedInPageRequest
 
 
 class SignedInPage(LoginRequiredMixin, TemplateView):
     """An HTML shell for somebody who has signed in."""
 
+    request: SignedInPageRequest
+
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         user = self.request.user
-        assert isinstance(user, User)  # noqa: S101 (LoginRequiredMixin lets nobody else in)
         page = {
             "userId": user.pk, "userName": user.username, "role": user.role, "canPlan": user.can_plan, "canCurate": user.can_curate,
             "sessionEndsIn_s": seconds_left(self.request.session),

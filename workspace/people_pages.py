@@ -26,7 +26,6 @@ class AccountPage(SignedInPage):
 
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         user = self.request.user
-        assert isinstance(user, User)  # noqa: S101 (SignedInPage lets nobody else in)
         has_one = has_second_factor(user)
         return super().get_context_data(**kwargs) | {
             "has_second_factor": has_one,

@@ -14,6 +14,7 @@ from workspace.invitations import LONGEST_DAYS, state_of
 from workspace.invitations import InvitationState as State
 from workspace.models import ApiToken, BrowserSession, Invitation, Language, Role, SignInEntry, SignInOutcome, Theme, Units, User
 from workspace.preferences import TIME_ZONES
+from workspace.serializers import Declared
 
 InvitationState = [state.value for state in State]
 LONGEST_TOKEN_DAYS = 3_650
@@ -62,7 +63,7 @@ class PasswordChangeSerializer(serializers.Serializer):
 class TokenSerializer(serializers.ModelSerializer):
     """A bearer token, without the token itself."""
 
-    is_valid = serializers.SerializerMethodField()
+    is_valid: Declared = serializers.SerializerMethodField()
 
     class Meta:
         model = ApiToken
@@ -124,7 +125,7 @@ class BrowserSessionListSerializer(serializers.Serializer):
 
 
 class SecondFactorRuleSerializer(serializers.Serializer):
-    required = serializers.BooleanField(help_text="of everybody in the organisation, from their next sign-in on")
+    required: Declared = serializers.BooleanField(help_text="of everybody in the organisation, from their next sign-in on")
     is_of_the_installation = serializers.BooleanField(read_only=True, help_text="required whatever the organisation says")
 
 
@@ -178,10 +179,10 @@ class InvitationSerializer(serializers.ModelSerializer):
         return state_of(invitation).value
 
     def get_invited_by(self, invitation: Invitation) -> str | None:
-        return invitation.invited_by and invitation.invited_by.username
+        return invitation.invited_by.username if invitation.invited_by else None
 
     def get_accepted_by(self, invitation: Invitation) -> str | None:
-        return invitation.accepted_by and invitation.accepted_by.username
+        return invitation.accepted_by.username if invitation.accepted_by else None
 
 
 class NewInvitationSerializer(InvitationSerializer):
@@ -218,7 +219,7 @@ class SignInSerializer(serializers.ModelSerializer):
         read_only_fields = fields
 
     def get_username(self, entry: SignInEntry) -> str | None:
-        return entry.user and entry.user.username
+        return entry.user.username if entry.user else None
 
 
 class SignInPageSerializer(serializers.Serializer):

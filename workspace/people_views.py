@@ -36,6 +36,7 @@ from workspace.permissions import ADMINISTRATORS, AdministratorsAlone, Administr
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
 from workspace.services import NoAdministratorLeft
+from workspace.signed_in import SignedInRequest
 
 HERE_WITHIN = timedelta(minutes=5)
 
@@ -48,14 +49,14 @@ def _one_of(request: Request, name: str, known: list[str]) -> str:
     return value
 
 
-def _people(request: Request) -> QuerySet[User]:
+def _people(request: SignedInRequest) -> QuerySet[User]:
     valid = Q(api_tokens__revoked_at=None, api_tokens__expires_at__gt=timezone.now())
     return User.objects.filter(organisation_id=request.user.organisation_id).annotate(
         valid_tokens=Count("api_tokens", filter=valid), has_second_factor=Exists(SecondFactor.objects.filter(user=OuterRef("pk")))
     )
 
 
-def _person(request: Request, user_id: int) -> User:
+def _person(request: SignedInRequest, user_id: int) -> User:
     try:
         return _people(request).get(pk=user_id)
     except User.DoesNotExist as error:
@@ -88,7 +89,7 @@ class PersonList(APIView):
         ],
         responses=PersonPageSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         people = _people(request).filter(_named(request.query_params.get("text", "")[:200]))
         if role := _one_of(request, "role", Role.values):
             people = people.filter(role=role)
@@ -107,7 +108,7 @@ class PersonDetail(APIView):
     permission_classes = [AdministratorsInTheBrowser]
 
     @extend_schema(operation_id="get_person", summary="One person", responses=PersonSerializer)
-    def get(self, request: Request, user_id: int) -> Response:
+    def get(self, request: SignedInRequest, user_id: int) -> Response:
         return self._answer(request, user_id)
 
     @extend_schema(
@@ -118,7 +119,7 @@ class PersonDetail(APIView):
         request=PersonChangeSerializer,
         responses={200: PersonSerializer, 409: OpenApiResponse(description="No administrator would be left."), **PRECONDITION_ANSWERS},
     )
-    def patch(self, request: Request, user_id: int) -> Response:
+    def patch(self, request: SignedInRequest, user_id: int) -> Response:
         body = PersonChangeSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         _person(request, user_id)
@@ -133,7 +134,7 @@ class PersonDetail(APIView):
         return self._answer(request, user_id)
 
     @staticmethod
-    def _answer(request: Request, user_id: int) -> Response:
+    def _answer(request: SignedInRequest, user_id: int) -> Response:
         person = _person(request, user_id)
         return Response(PersonSerializer(person).data, headers=etag_of(accounts.revision_of_person(person)))
 
@@ -148,7 +149,7 @@ class PersonSessions(APIView):
         request=None,
         responses={204: OpenApiResponse(description="Ended.")},
     )
-    def post(self, request: Request, user_id: int) -> Response:
+    def post(self, request: SignedInRequest, user_id: int) -> Response:
         accounts.end_sessions(user=_person(request, user_id), actor=request.user)
         return Response(status=204)
 
@@ -161,7 +162,7 @@ class PersonTokens(APIView):
         summary="Revoke all tokens of somebody",
         responses={204: OpenApiResponse(description="Revoked.")},
     )
-    def delete(self, request: Request, user_id: int) -> Response:
+    def delete(self, request: SignedInRequest, user_id: int) -> Response:
         for token in ApiToken.objects.filter(user=_person(request, user_id), revoked_at=None):
             accounts.revoke_token(token=token, actor=request.user)
         return Response(status=204)
@@ -176,7 +177,7 @@ class PersonSecondFactor(APIView):
         description="Their sessions end. Where the organisation asks for one, their next sign-in sets another one up. Not with a token.",
         responses={204: OpenApiResponse(description="There is none any more.")},
     )
-    def delete(self, request: Request, user_id: int) -> Response:
+    def delete(self, request: SignedInRequest, user_id: int) -> Response:
         person = _person(request, user_id)
         if person.pk == request.user.pk:
             raise ApiProblem(409, "own_second_factor", _("Your own is on the page of your account, where a code is asked for."))
@@ -193,7 +194,7 @@ class SecondFactorRule(APIView):
         summary="Whether everybody of one's organisation signs in with a second factor",
         responses=SecondFactorRuleSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         return self._answer(request)
 
     @extend_schema(
@@ -203,7 +204,7 @@ class SecondFactorRule(APIView):
         request=SecondFactorRuleSerializer,
         responses={200: SecondFactorRuleSerializer, 409: OpenApiResponse(description="The administrator has none.")},
     )
-    def put(self, request: Request) -> Response:
+    def put(self, request: SignedInRequest) -> Response:
         body = SecondFactorRuleSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         try:
@@ -214,7 +215,7 @@ class SecondFactorRule(APIView):
         return self._answer(request)
 
     @staticmethod
-    def _answer(request: Request) -> Response:
+    def _answer(request: SignedInRequest) -> Response:
         required = second_factors.is_required_of(request.user)
         return Response({"required": required, "is_of_the_installation": settings.REQUIRES_SECOND_FACTOR})
 
@@ -230,7 +231,7 @@ class InvitationList(APIView):
         parameters=[OpenApiParameter("state", str, enum=[state.value for state in InvitationState]), *PAGE_PARAMETERS],
         responses=InvitationPageSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         rows = invitations.invitations_of(request.user).select_related("invited_by", "accepted_by")
         if state := _one_of(request, "state", [state.value for state in InvitationState]):
             rows = rows.filter(invitations.in_state(InvitationState(state)))
@@ -243,7 +244,7 @@ class InvitationList(APIView):
         request=InvitationInputSerializer,
         responses={201: NewInvitationSerializer},
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = InvitationInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         invitation, token = invitations.invite(actor=request.user, **body.validated_data)
@@ -258,7 +259,7 @@ class InvitationDetail(APIView):
     @extend_schema(
         operation_id="revoke_invitation", summary="Make an invitation's link stop working", responses={200: InvitationSerializer}
     )
-    def delete(self, request: Request, invitation_id: int) -> Response:
+    def delete(self, request: SignedInRequest, invitation_id: int) -> Response:
         try:
             invitation = invitations.invitations_of(request.user).get(pk=invitation_id)
         except Invitation.DoesNotExist as error:
@@ -282,7 +283,7 @@ class SignInList(APIView):
         ],
         responses=SignInPageSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         entries = SignInEntry.objects.filter(Q(user__organisation_id=request.user.organisation_id) | Q(user=None)).select_related("user")
         if text := request.query_params.get("text", "")[:200].strip():
             entries = entries.filter(_named(text, "user__"))

@@ -37,7 +37,7 @@ class RolePermission(BasePermission):
         write_roles = getattr(view, "write_roles", PLANNERS)
         if request.method in SAFE_METHODS or user.role in write_roles:
             return True
-        wanted = [role for role in Role if role in write_roles and role != Role.ADMINISTRATOR] or [Role.ADMINISTRATOR]
+        wanted: list[Role] = [role for role in Role if role in write_roles and role != Role.ADMINISTRATOR] or [Role.ADMINISTRATOR]
         self.message = _("{people} cannot do this. Ask an administrator for the {wanted} role.").format(
             people=SEVERAL[Role(user.role)], wanted=_(" or ").join(str(ONE[role]) for role in wanted)
         )

@@ -67,8 +67,8 @@ def _rows_at_once(server: psycopg.Connection[Any], statement: str, parameters: S
     return transformer.load_rows(0, result.ntuples, tuple)
 
 
-_NOT_PREPARED = psycopg.errors.InvalidSqlStatementName.sqlstate.encode()  # somebody made the server forget: DEALLOCATE ALL
-_TYPES_CHANGED = psycopg.errors.FeatureNotSupported.sqlstate.encode()  # "cached plan must not change result type"
+_NOT_PREPARED = b"26000"  # invalid_sql_statement_name: somebody made the server forget: DEALLOCATE ALL
+_TYPES_CHANGED = b"0A000"  # feature_not_supported: "cached plan must not change result type"
 
 
 @lru_cache(maxsize=64)

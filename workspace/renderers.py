@@ -1,5 +1,6 @@
 """Writing answers."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import orjson
@@ -13,5 +14,5 @@ class FastJSONRenderer(BaseRenderer):
     format = "json"
     charset = None
 
-    def render(self, data: Any, accepted_media_type: str | None = None, renderer_context: dict[str, Any] | None = None) -> bytes:
+    def render(self, data: Any, accepted_media_type: str | None = None, renderer_context: Mapping[str, Any] | None = None) -> bytes:
         return b"" if data is None else orjson.dumps(data, default=str)

@@ -20,6 +20,7 @@ from workspace.sealing import CannotUnseal, seal, unseal
 from workspace.second_factors import TooManyCodes, WrongCode
 from workspace.sign_in_attempts import PASSWORD_CHANGES, HeldBack, take_turn
 from workspace.sign_in_log import record_sign_in
+from workspace.signed_in import SignedInPageRequest
 from workspace.way_in import sign_in, who_is_half_in
 
 SEED = "workspace.new_seed"  # in the session, sealed, until an app has shown that it has it
@@ -152,6 +153,7 @@ class SetUpPage(AccessMixin, FormView):
 class _OwnCodePage(LoginRequiredMixin, FormView):
     """Something that wants the password and a code of the app once more; not there for whoever has none."""
 
+    request: SignedInPageRequest
     form_class = CodeAndPasswordForm
 
     def get_form_kwargs(self) -> dict[str, Any]:

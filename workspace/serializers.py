@@ -1,12 +1,14 @@
 """Shapes of the workspace's API."""
 
-from typing import Any
+from typing import Any, TypeAlias
 
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
 from workspace.models import Job, JobState
 from workspace.stored_words import in_words
+
+Declared: TypeAlias = Any  # a serializer's field named as an attribute of DRF's own, such as `label`: DRF takes it out of the class
 
 
 class ErrorDetailSerializer(serializers.Serializer):

@@ -254,7 +254,7 @@ def save_person(*, user: User, actor: User) -> User:
         _refuse_without_administrator(before)
         if before and _administrates(before) and not (_administrates(user) and before.organisation_id == user.organisation_id):
             _withdraw_invitations(user, actor)
-        _record_person(actor, user.pk, before and person_facts(before), person_facts(user))
+        _record_person(actor, user.pk, person_facts(before) if before else None, person_facts(user))
     return user
 
 

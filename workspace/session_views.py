@@ -15,6 +15,7 @@ from workspace.models import BrowserSession
 from workspace.people_serializers import BrowserSessionListSerializer, BrowserSessionSerializer, ProofSerializer, SessionTimesSerializer
 from workspace.permissions import EVERYBODY, InTheBrowserAlone
 from workspace.proof import PASSWORD_NEEDED, note_proof, require_proof
+from workspace.signed_in import SignedInRequest
 
 
 class ThisSession(APIView):
@@ -61,7 +62,7 @@ class Proof(APIView):
         request=ProofSerializer,
         responses={204: OpenApiResponse(description="It is the password.")},
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = ProofSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         check_password(request, "password", body.validated_data["password"])
@@ -77,7 +78,7 @@ class AccountSessionList(APIView):
         summary="One's own sessions in browsers that have not ended, the last used first",
         responses=BrowserSessionListSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         own = None if request.auth is not None else _row_of(request)
         shape = BrowserSessionSerializer(open_sessions(request.user), many=True, context={"own": own and own.pk})
         return Response({"results": shape.data})
@@ -93,7 +94,7 @@ class AccountSession(APIView):
         description="Its open pages are told within 5 s. Not with a token.",
         responses={204: OpenApiResponse(description="Ended."), 403: PASSWORD_NEEDED},
     )
-    def delete(self, request: Request, session_id: int) -> Response:
+    def delete(self, request: SignedInRequest, session_id: int) -> Response:
         require_proof(request)
         row = request.user.browser_sessions.filter(pk=session_id).first()
         if row is None:
@@ -113,7 +114,7 @@ class AccountSessions(APIView):
         request=None,
         responses={204: OpenApiResponse(description="Ended."), 403: PASSWORD_NEEDED},
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         require_proof(request)
         accounts.end_sessions(user=request.user, actor=request.user)
         update_session_auth_hash(request, request.user)

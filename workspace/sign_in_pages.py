@@ -19,6 +19,8 @@ from workspace.way_in import let_in
 class SignInForm(AuthenticationForm):
     """Django's form, with limits on wrong tries and one message that does not tell which half was wrong."""
 
+    request: HttpRequest  # the page gives it always
+
     def clean(self) -> dict[str, Any]:
         name = self.cleaned_data.get("username", "")
         request = self.request

@@ -52,7 +52,8 @@ class ScopedRate(ScopedRateThrottle):
         self.scope = getattr(view, self.scope_attr, None)
         if not self.scope:
             return True
-        return self.has_room(self.scope, self.get_cache_key(request, view))
+        key = self.get_cache_key(request, view)
+        return key is None or self.has_room(self.scope, key)
 
     @classmethod
     def allows(cls, scope: str, user: int) -> bool:
@@ -85,7 +86,7 @@ class ScopedRate(ScopedRateThrottle):
         return True
 
     def wait(self) -> float | None:
-        _, duration_s = _rate(self.THROTTLE_RATES[self.scope])
+        _, duration_s = _rate(self.THROTTLE_RATES[self.scope] if self.scope else None)
         return None if duration_s is None else duration_s - time.time() % duration_s
 
     @classmethod

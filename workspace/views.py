@@ -4,7 +4,6 @@ from uuid import UUID
 
 from django.http import Http404
 from drf_spectacular.utils import OpenApiParameter, extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -15,6 +14,7 @@ from workspace.paging import page_of
 from workspace.permissions import CURATORS, PLANNERS
 from workspace.schema import PAGE_PARAMETERS
 from workspace.serializers import JobPageSerializer, JobSerializer, ListedJobSerializer
+from workspace.signed_in import SignedInRequest
 
 
 def _job(user: User, job_id: UUID) -> Job:
@@ -36,7 +36,7 @@ class JobList(APIView):
         ],
         responses=JobPageSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         jobs = selectors.jobs_of_organisation(request.user.organisation)
         if state := request.query_params.get("state"):
             if state not in JobState.values:
@@ -53,7 +53,7 @@ class JobList(APIView):
 
 class JobDetail(APIView):
     @extend_schema(operation_id="get_job", summary="One job: how far it is, and its result", responses=JobSerializer)
-    def get(self, request: Request, job_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, job_id: UUID) -> Response:
         return Response(JobSerializer(_job(request.user, job_id)).data)
 
 
@@ -67,6 +67,6 @@ class JobCancel(APIView):
         request=None,
         responses=JobSerializer,
     )
-    def post(self, request: Request, job_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, job_id: UUID) -> Response:
         job = services.cancel_job(job=_job(request.user, job_id))
         return Response(JobSerializer(job).data)

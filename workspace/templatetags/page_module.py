@@ -5,6 +5,7 @@ from functools import cache
 from posixpath import dirname, join, normpath
 
 from django import template
+from django.conf import settings
 from django.contrib.staticfiles.storage import staticfiles_storage
 from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString
@@ -25,7 +26,7 @@ def page_module(name: str) -> SafeString:
 @cache
 def imported_by(address: str) -> tuple[str, ...]:
     """Addresses of all modules behind one, the nearest first; a hashed name's imports never change. None before files are collected."""
-    root = staticfiles_storage.base_url
+    root = settings.STATIC_URL
     found: dict[str, None] = {}
     waiting = [address]
     while waiting:
