@@ -26,6 +26,7 @@ from workspace.paging import page_of
 from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 
 class AssetList(APIView):
@@ -58,7 +59,7 @@ class AssetList(APIView):
         operation_id="create_asset", summary="Draw an asset", request=AssetInputSerializer, responses={201: AssetDetailFeatureSerializer}
     )
     @idempotent
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = AssetInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         with edits(lambda: None):
@@ -84,7 +85,7 @@ class AssetDetail(APIView):
         request=AssetInputSerializer(partial=True),
         responses={200: AssetDetailFeatureSerializer} | PRECONDITION_ANSWERS,
     )
-    def patch(self, request: Request, asset_id: int) -> Response:
+    def patch(self, request: SignedInRequest, asset_id: int) -> Response:
         revision = expected_revision(request)
         asset = self._asset(asset_id)
         body = AssetInputSerializer(asset, data=request.data, partial=True)
@@ -102,7 +103,7 @@ class AssetDetail(APIView):
         parameters=[IF_MATCH_REQUIRED],
         responses={204: None} | PRECONDITION_ANSWERS,
     )
-    def delete(self, request: Request, asset_id: int) -> Response:
+    def delete(self, request: SignedInRequest, asset_id: int) -> Response:
         revision = expected_revision(request)
         with edits(lambda: asset_now(asset_id)):
             delete_asset(asset=self._asset(asset_id), actor=request.user, expected_revision=revision)

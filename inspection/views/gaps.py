@@ -35,6 +35,7 @@ from workspace.errors import ApiProblem
 from workspace.paging import page_of
 from workspace.permissions import CURATORS
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 CANNOT = {409: OpenApiResponse(description="The ground has changed since, or somebody has decided already.")}
 
@@ -81,7 +82,7 @@ class GapRepair(APIView):
         request=RepairSerializer,
         responses={200: RepairedSerializer} | CANNOT,
     )
-    def post(self, request: Request, gap_id: int) -> Response:
+    def post(self, request: SignedInRequest, gap_id: int) -> Response:
         body = RepairSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         parameters = dict(body.validated_data)
@@ -100,7 +101,7 @@ class GapUndo(APIView):
         request=UndoRepairSerializer,
         responses={200: GapFeatureSerializer, 204: OpenApiResponse(description="The gap has gone with its asset.")} | CANNOT,
     )
-    def post(self, request: Request, gap_id: int) -> Response:
+    def post(self, request: SignedInRequest, gap_id: int) -> Response:
         body = UndoRepairSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         with _repairs():
@@ -116,7 +117,7 @@ class GapDismiss(APIView):
     @extend_schema(
         operation_id="dismiss_gap", summary="Leave it as it is", request=DismissSerializer, responses={200: GapFeatureSerializer}
     )
-    def post(self, request: Request, gap_id: int) -> Response:
+    def post(self, request: SignedInRequest, gap_id: int) -> Response:
         body = DismissSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         dismiss_gap(gap=_gap(gap_id), note=body.validated_data["note"], actor=request.user)
@@ -127,7 +128,7 @@ class GapReopen(APIView):
     write_roles = CURATORS
 
     @extend_schema(operation_id="reopen_gap", summary="Put it on the open list again", request=None, responses={200: GapFeatureSerializer})
-    def post(self, request: Request, gap_id: int) -> Response:
+    def post(self, request: SignedInRequest, gap_id: int) -> Response:
         reopen_gap(gap=_gap(gap_id), actor=request.user)
         return Response(_feature(_gap(gap_id)))
 

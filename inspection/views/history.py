@@ -23,6 +23,7 @@ from workspace.paging import page_of
 from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 CANNOT = {409: OpenApiResponse(description="It was changed again since, or there is nothing to go back to.")}
 
@@ -92,7 +93,7 @@ class HistoryUndo(APIView):
         request=None,
         responses={200: AssetDetailFeatureSerializer, 204: OpenApiResponse(description="What was created is gone.")} | CANNOT,
     )
-    def post(self, request: Request, entry_id: int) -> Response:
+    def post(self, request: SignedInRequest, entry_id: int) -> Response:
         entry = changes_of_the_ground().filter(pk=entry_id).first()
         if entry is None:
             raise Http404
@@ -136,7 +137,7 @@ class AssetRevert(APIView):
         request=RevertSerializer,
         responses={200: AssetDetailFeatureSerializer} | PRECONDITION_ANSWERS | CANNOT,
     )
-    def post(self, request: Request, asset_id: int) -> Response:
+    def post(self, request: SignedInRequest, asset_id: int) -> Response:
         entry, revision = _entry("asset", asset_id, request), expected_revision(request)
         asset = _asset(asset_id)
         with edits(lambda: asset_now(asset_id)):
@@ -154,7 +155,7 @@ class AssetFollowSource(APIView):
         request=None,
         responses={200: AssetDetailFeatureSerializer} | PRECONDITION_ANSWERS | CANNOT,
     )
-    def post(self, request: Request, asset_id: int) -> Response:
+    def post(self, request: SignedInRequest, asset_id: int) -> Response:
         revision = expected_revision(request)
         asset = _asset(asset_id)
         with edits(lambda: asset_now(asset_id)):
@@ -183,7 +184,7 @@ class ZoneRevert(APIView):
         request=RevertSerializer,
         responses={200: ZoneDetailFeatureSerializer} | PRECONDITION_ANSWERS | CANNOT,
     )
-    def post(self, request: Request, zone_id: int) -> Response:
+    def post(self, request: SignedInRequest, zone_id: int) -> Response:
         entry, revision = _entry("zone", zone_id, request), expected_revision(request)
         zone = NoFlyZone.objects.filter(pk=zone_id).first()
         if zone is None:

@@ -34,6 +34,7 @@ from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 from workspace.tasks import send_job_on_commit
 
 IN_ANOTHER_STATE = {409: OpenApiResponse(description="It is in another state; somebody else may have been faster.")}
@@ -90,7 +91,7 @@ class ImportList(APIView):
         responses={202: ProposalSerializer},
     )
     @idempotent
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = ImportInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         values = body.validated_data
@@ -147,7 +148,7 @@ class ImportDetail(APIView):
         request=ParametersSerializer,
         responses={202: ProposalSerializer} | IN_ANOTHER_STATE,
     )
-    def patch(self, request: Request, proposal_id: UUID) -> Response:
+    def patch(self, request: SignedInRequest, proposal_id: UUID) -> Response:
         parameters = _parameters(request)
         try:
             with transaction.atomic():
@@ -184,7 +185,7 @@ class ImportApply(APIView):
         request=ParametersSerializer,
         responses={202: ProposalSerializer} | IN_ANOTHER_STATE,
     )
-    def post(self, request: Request, proposal_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, proposal_id: UUID) -> Response:
         parameters = _parameters(request)
         try:
             with transaction.atomic():
@@ -200,7 +201,7 @@ class ImportDiscard(APIView):
     @extend_schema(
         operation_id="discard_import", summary="Throw a proposal away", request=None, responses={200: ProposalSerializer} | IN_ANOTHER_STATE
     )
-    def post(self, request: Request, proposal_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, proposal_id: UUID) -> Response:
         try:
             pipeline.discard_proposal(proposal=_proposal(proposal_id), actor=request.user)
         except pipeline.WrongState as error:

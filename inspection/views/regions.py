@@ -5,7 +5,6 @@ from typing import Any
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema
 from rest_framework import serializers
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -13,6 +12,7 @@ from inspection.models import AssetSet, DataImport
 from inspection.services.regions import Region, counts_of_region, delete_region
 from inspection.views.parameters import invalid
 from workspace.permissions import CURATORS
+from workspace.signed_in import SignedInRequest
 
 
 class RegionInputSerializer(serializers.Serializer):
@@ -49,7 +49,7 @@ class RegionDelete(APIView):
         request=RegionInputSerializer,
         responses=RegionCountsSerializer,
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = RegionInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         region = self._region(body.validated_data)

@@ -33,6 +33,7 @@ from inspection.terrain.profile import samples_along
 from inspection.views.parameters import invalid
 from workspace.models import Role
 from workspace.permissions import CURATORS
+from workspace.signed_in import SignedInRequest
 
 EVERYBODY = frozenset(Role)
 
@@ -47,7 +48,7 @@ class TerrainDetail(APIView):
     write_roles = CURATORS
 
     @extend_schema(operation_id="delete_terrain", summary="Take a terrain model away", responses={204: None})
-    def delete(self, request: Request, import_id: int) -> Response:
+    def delete(self, request: SignedInRequest, import_id: int) -> Response:
         row = DataImport.objects.filter(pk=import_id, kind=ImportKind.TERRAIN, terrain_tiles__isnull=False).first()
         if row is None:
             raise Http404

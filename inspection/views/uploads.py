@@ -16,12 +16,13 @@ from inspection.services.uploads import UploadGap, UploadInUse, UploadRefused, U
 from workspace.errors import ApiProblem
 from workspace.parsers import OctetParser
 from workspace.permissions import CURATORS, RolePermission
+from workspace.signed_in import SignedInRequest
 
 
 class CuratorsAlone(RolePermission):
     """What comes in is for curators to see, too."""
 
-    def has_permission(self, request: Request, view: object) -> bool:
+    def has_permission(self, request: SignedInRequest, view: object) -> bool:
         self.message = "Only curators bring data in. Ask an administrator for the curator role."
         return request.user.is_authenticated and request.user.role in CURATORS
 
@@ -37,7 +38,7 @@ class UploadList(APIView):
     permission_classes = [CuratorsAlone]
 
     @extend_schema(operation_id="begin_upload", summary="Announce a file", request=UploadInputSerializer, responses={201: UploadSerializer})
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = UploadInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         try:

@@ -37,6 +37,7 @@ from workspace.idempotency import idempotent
 from workspace.paging import page_of
 from workspace.permissions import CURATORS
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 from workspace.tasks import send_job_on_commit
 
 
@@ -80,7 +81,7 @@ class ZoneSetDetail(APIView):
         description="The set stays, without zones: each of its versions can be brought back. What is fetched for it is paused.",
         responses={204: None},
     )
-    def delete(self, request: Request, set_id: int) -> Response:
+    def delete(self, request: SignedInRequest, set_id: int) -> Response:
         empty_zone_set(zone_set=_zone_set(set_id), actor=request.user)
         return Response(status=204)
 
@@ -108,7 +109,7 @@ class ZoneSetRollBack(APIView):
         responses={202: ProposalSerializer},
     )
     @idempotent
-    def post(self, request: Request, set_id: int) -> Response:
+    def post(self, request: SignedInRequest, set_id: int) -> Response:
         body = RollBackSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         zone_set = _zone_set(set_id)
@@ -148,7 +149,7 @@ class ZoneSubscriptionList(APIView):
         responses={201: ZoneSubscriptionSerializer},
     )
     @idempotent
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = SubscriptionInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         try:
@@ -173,7 +174,7 @@ class ZoneSubscriptionDetail(APIView):
         request=SubscriptionChangeSerializer(partial=True),
         responses=ZoneSubscriptionSerializer,
     )
-    def patch(self, request: Request, subscription_id: int) -> Response:
+    def patch(self, request: SignedInRequest, subscription_id: int) -> Response:
         subscription = _subscription(subscription_id)
         body = SubscriptionChangeSerializer(data=request.data, partial=True)
         body.is_valid(raise_exception=True)
@@ -186,7 +187,7 @@ class ZoneSubscriptionDetail(APIView):
         description="The set and its zones stay.",
         responses={204: None},
     )
-    def delete(self, request: Request, subscription_id: int) -> Response:
+    def delete(self, request: SignedInRequest, subscription_id: int) -> Response:
         unsubscribe(subscription=_subscription(subscription_id), actor=request.user)
         return Response(status=204)
 
@@ -201,7 +202,7 @@ class ZoneSubscriptionFetch(APIView):
         request=None,
         responses={202: FetchJobSerializer},
     )
-    def post(self, request: Request, subscription_id: int) -> Response:
+    def post(self, request: SignedInRequest, subscription_id: int) -> Response:
         with transaction.atomic():
             job = ask_to_fetch(subscription=_subscription(subscription_id), actor=request.user)
             send_job_on_commit(job)

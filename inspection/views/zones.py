@@ -21,6 +21,7 @@ from workspace.paging import page_of
 from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 
 class ZoneList(APIView):
@@ -46,7 +47,7 @@ class ZoneList(APIView):
         operation_id="create_zone", summary="Draw a no-fly zone", request=ZoneInputSerializer, responses={201: ZoneDetailFeatureSerializer}
     )
     @idempotent
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = ZoneInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         with edits(lambda: None):
@@ -72,7 +73,7 @@ class ZoneDetail(APIView):
         request=ZoneInputSerializer(partial=True),
         responses={200: ZoneDetailFeatureSerializer} | PRECONDITION_ANSWERS,
     )
-    def patch(self, request: Request, zone_id: int) -> Response:
+    def patch(self, request: SignedInRequest, zone_id: int) -> Response:
         revision = expected_revision(request)
         zone = self._zone(zone_id)
         body = ZoneInputSerializer(zone, data=request.data, partial=True)
@@ -90,7 +91,7 @@ class ZoneDetail(APIView):
         parameters=[IF_MATCH_REQUIRED],
         responses={204: None} | PRECONDITION_ANSWERS,
     )
-    def delete(self, request: Request, zone_id: int) -> Response:
+    def delete(self, request: SignedInRequest, zone_id: int) -> Response:
         revision = expected_revision(request)
         with edits(lambda: zone_now(zone_id)):
             delete_zone(zone=self._zone(zone_id), actor=request.user, expected_revision=revision)
