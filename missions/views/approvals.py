@@ -20,6 +20,7 @@ from missions.views.missions import IF_MATCH, answer_mission, expected_revision,
 from missions.views.problems import api_problems, refusals
 from workspace.idempotency import idempotent
 from workspace.models import User
+from workspace.signed_in import SignedInRequest
 
 REFUSED = {
     409: OpenApiResponse(description="It cannot be done: `details.reasons` has each reason; or somebody else was faster."),
@@ -49,7 +50,7 @@ class MissionApproval(APIView):
     @extend_schema(
         operation_id="get_mission_approval", summary="What was approved, word for word", responses=shapes.ApprovalDocumentSerializer
     )
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         approval = selectors.approval_in_force(mission_or_404(request.user, mission_id))
         if approval is None:
             raise Http404
@@ -67,7 +68,7 @@ class MissionApprove(APIView):
         responses={200: MissionSerializer, **REFUSED},
     )
     @idempotent
-    def post(self, request: Request, mission_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
         values = _body(shapes.ApproveInputSerializer, request)
@@ -86,7 +87,7 @@ class MissionRevoke(APIView):
         responses={200: MissionSerializer, **REFUSED},
     )
     @idempotent
-    def post(self, request: Request, mission_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
         values = _body(shapes.ReasonInputSerializer, request)
@@ -105,7 +106,7 @@ class MissionDispatch(APIView):
         responses={200: shapes.SentSerializer, **REFUSED},
     )
     @idempotent
-    def post(self, request: Request, mission_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
         values = _body(shapes.DispatchInputSerializer, request)
@@ -130,7 +131,7 @@ class MissionAbort(APIView):
         responses={200: shapes.SentSerializer, **REFUSED},
     )
     @idempotent
-    def post(self, request: Request, mission_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
         values = _body(shapes.WhyInputSerializer, request)

@@ -16,6 +16,7 @@ from missions.serializers import by_hand, shapes
 from missions.views.missions import CHANGED, IF_MATCH, answer_mission, expected_revision, mission_or_404
 from missions.views.problems import api_problems
 from workspace.models import Role
+from workspace.signed_in import SignedInRequest
 from workspace.throttling import ScopedRate
 
 
@@ -32,7 +33,7 @@ class RouteWaypoints(APIView):
         request=by_hand.HandRouteSerializer,
         responses={200: shapes.MissionSerializer, 400: OpenApiResponse(description="What is wrong, by waypoint or leg."), **CHANGED},
     )
-    def put(self, request: Request, mission_id: UUID, uav: int) -> Response:
+    def put(self, request: SignedInRequest, mission_id: UUID, uav: int) -> Response:
         expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
         body = by_hand.HandRouteSerializer(data=request.data)
@@ -53,7 +54,7 @@ class RouteWaypointsLook(APIView):
         request=by_hand.HandRouteSerializer,
         responses=by_hand.HandLookSerializer,
     )
-    def post(self, request: Request, mission_id: UUID, uav: int) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID, uav: int) -> Response:
         try:
             mission = selectors.mission_alone(request.user.organisation, mission_id)
         except Mission.DoesNotExist as error:
@@ -78,7 +79,7 @@ class RouteWaypointsUndo(APIView):
         request=None,
         responses={200: shapes.MissionSerializer, 400: OpenApiResponse(description="What is wrong, by waypoint or leg."), **CHANGED},
     )
-    def post(self, request: Request, mission_id: UUID, uav: int) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID, uav: int) -> Response:
         expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
         with api_problems(has_precondition=expected is not None):
@@ -105,7 +106,7 @@ class LegChecks(APIView):
         found = faults_of_legs(legs, departs_at, self._flyer(request, body.validated_data, legs))
         return Response(by_hand.LegChecksSerializer({"legs": found}).data)
 
-    def _flyer(self, request: Request, body: dict[str, Any], legs: list[Leg]) -> LegFlyer | None:
+    def _flyer(self, request: SignedInRequest, body: dict[str, Any], legs: list[Leg]) -> LegFlyer | None:
         """Who flies the legs that have a speed."""
         if all(leg.speed_mps is None for leg in legs):
             return None

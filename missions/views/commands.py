@@ -5,7 +5,6 @@ from uuid import UUID
 from django.shortcuts import get_object_or_404
 from django.urls import reverse
 from drf_spectacular.utils import extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -20,6 +19,7 @@ from missions.views.uavs import uav_or_404
 from workspace.idempotency import idempotent
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 NEWEST_FIRST = ("-created_at", "-pk")
 
@@ -38,7 +38,7 @@ class MissionCommands(APIView):
         parameters=PAGE_PARAMETERS,
         responses=shapes.CommandPageSerializer,
     )
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         page = page_of(request, commands_of_mission(mission_or_404(request.user, mission_id)), order=NEWEST_FIRST)
         return Response({"results": [shapes.command_json(command) for command in page.rows], "next": page.next})
 
@@ -50,7 +50,7 @@ class UavCommands(APIView):
         parameters=PAGE_PARAMETERS,
         responses=shapes.CommandPageSerializer,
     )
-    def get(self, request: Request, uav_id: int) -> Response:
+    def get(self, request: SignedInRequest, uav_id: int) -> Response:
         page = page_of(request, commands_of_uav(uav_or_404(request.user, uav_id)), order=NEWEST_FIRST)
         return Response({"results": [shapes.command_json(command) for command in page.rows], "next": page.next})
 
@@ -63,7 +63,7 @@ class UavCommands(APIView):
         responses={201: shapes.CommandDetailSerializer, **REFUSED},
     )
     @idempotent
-    def post(self, request: Request, uav_id: int) -> Response:
+    def post(self, request: SignedInRequest, uav_id: int) -> Response:
         uav = uav_or_404(request.user, uav_id)
         body = shapes.CommandInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
@@ -82,5 +82,5 @@ class UavCommands(APIView):
 
 class CommandDetail(APIView):
     @extend_schema(operation_id="get_command", summary="A command and its way so far", responses=shapes.CommandDetailSerializer)
-    def get(self, request: Request, command_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, command_id: UUID) -> Response:
         return Response(_detail(get_object_or_404(commands_of_organisation(request.user.organisation), pk=command_id)))

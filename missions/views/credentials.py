@@ -2,7 +2,6 @@
 
 from django.shortcuts import get_object_or_404
 from drf_spectacular.utils import extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -12,6 +11,7 @@ from missions.serializers.fleet import CredentialInputSerializer, CredentialPage
 from missions.views.uavs import uav_or_404
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 
 class UavCredentials(APIView):
@@ -21,7 +21,7 @@ class UavCredentials(APIView):
         parameters=PAGE_PARAMETERS,
         responses=CredentialPageSerializer,
     )
-    def get(self, request: Request, uav_id: int) -> Response:
+    def get(self, request: SignedInRequest, uav_id: int) -> Response:
         credentials = fleet_selectors.credentials_of_uav(uav_or_404(request.user, uav_id))
         page = page_of(request, credentials, order=("-created_at", "-pk"), default_limit=20)
         return Response({"results": [credential_json(credential) for credential in page.rows], "next": page.next})
@@ -36,7 +36,7 @@ class UavCredentials(APIView):
         request=CredentialInputSerializer,
         responses={201: NewCredentialSerializer},
     )
-    def post(self, request: Request, uav_id: int) -> Response:
+    def post(self, request: SignedInRequest, uav_id: int) -> Response:
         uav = uav_or_404(request.user, uav_id)
         serializer = CredentialInputSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)
@@ -47,7 +47,7 @@ class UavCredentials(APIView):
 
 class UavCredentialDetail(APIView):
     @extend_schema(operation_id="revoke_uav_credential", summary="Revoke a token or a key", responses={204: None})
-    def delete(self, request: Request, uav_id: int, credential_id: int) -> Response:
+    def delete(self, request: SignedInRequest, uav_id: int, credential_id: int) -> Response:
         credentials = fleet_selectors.credentials_of_uav(uav_or_404(request.user, uav_id)).select_related("uav__organisation")
         services.revoke_credential(credential=get_object_or_404(credentials, pk=credential_id), actor=request.user)
         return Response(status=204)

@@ -23,6 +23,7 @@ from missions.views.plans import is_small
 from missions.views.problems import api_problems
 from workspace.errors import ApiProblem
 from workspace.models import Role
+from workspace.signed_in import SignedInRequest
 from workspace.throttling import ScopedRate
 
 EVERYBODY = frozenset(Role)
@@ -41,7 +42,7 @@ class WhyTarget(_Explanation):
         request=explanations.WhyTargetInputSerializer,
         responses=explanations.TargetExplanationSerializer,
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         organisation = request.user.organisation
         body = explanations.WhyTargetInputSerializer(data=request.data, context={"organisation": organisation})
         body.is_valid(raise_exception=True)
@@ -58,7 +59,7 @@ class WhyRoute(_Explanation):
         request=explanations.WhyRouteInputSerializer,
         responses=explanations.RouteExplanationSerializer,
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = explanations.WhyRouteInputSerializer(data=request.data, context={"organisation": request.user.organisation})
         body.is_valid(raise_exception=True)
         values = body.validated_data
@@ -77,7 +78,7 @@ class LaterDeparture(_Explanation):
         request=PlanInputSerializer,
         responses=explanations.LaterDepartureSerializer,
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = PlanInputSerializer(data=request.data, context={"organisation": request.user.organisation})
         body.is_valid(raise_exception=True)
         asked = replace(body.to_request(), organisation=request.user.organisation_id)  # with a departure it is kept apart from others
@@ -103,7 +104,7 @@ class MissionExplanation(_Explanation):
             409: OpenApiResponse(description="The mission has no plan."),
         },
     )
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         if mission.planned_at is None:
             raise ApiProblem(409, "not_planned", _("The mission has no routes yet."))

@@ -25,6 +25,7 @@ from workspace.models import User
 from workspace.paging import page_of
 from workspace.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 TEXT = OpenApiParameter("text", str, description="part of the name")
 
@@ -55,7 +56,7 @@ class UavTypeList(APIView):
     @extend_schema(
         operation_id="list_uav_types", summary="UAV types, by name", parameters=[TEXT, *PAGE_PARAMETERS], responses=UavTypePageSerializer
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         types = fleet_selectors.types_of_organisation(request.user.organisation, text=_text(request))
         page = page_of(request, types, order=("name", "pk"))
         return Response({"results": [uav_type_json(row) for row in page.rows], "next": page.next})
@@ -64,7 +65,7 @@ class UavTypeList(APIView):
         operation_id="create_uav_type", summary="Add a UAV type", request=UavTypeSerializer, responses={201: UavTypeSerializer, **TAKEN}
     )
     @idempotent
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         serializer = UavTypeSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)
         with fleet_problems():
@@ -74,7 +75,7 @@ class UavTypeList(APIView):
 
 class UavTypeDetail(APIView):
     @extend_schema(operation_id="get_uav_type", summary="One UAV type", responses=UavTypeSerializer)
-    def get(self, request: Request, type_id: int) -> Response:
+    def get(self, request: SignedInRequest, type_id: int) -> Response:
         return _type_answer(request.user, type_id)
 
     @extend_schema(
@@ -85,7 +86,7 @@ class UavTypeDetail(APIView):
         request=UavTypeSerializer,
         responses={200: UavTypeSerializer, **CHANGE_ANSWERS},
     )
-    def patch(self, request: Request, type_id: int) -> Response:
+    def patch(self, request: SignedInRequest, type_id: int) -> Response:
         row, revision = _type(request.user, type_id), expected_revision(request)
         serializer = UavTypeSerializer(row, data=request.data, partial=True)
         serializer.is_valid(raise_exception=True)
@@ -99,7 +100,7 @@ class UavTypeDetail(APIView):
         parameters=[IF_MATCH_REQUIRED],
         responses=DELETE_ANSWERS,
     )
-    def delete(self, request: Request, type_id: int) -> Response:
+    def delete(self, request: SignedInRequest, type_id: int) -> Response:
         row, revision = _type(request.user, type_id), expected_revision(request)
         with fleet_problems(lambda: _type_now(request.user, type_id)):
             services.delete_uav_type(uav_type=row, actor=request.user, expected_revision=revision)
@@ -113,7 +114,7 @@ class UavTypeRestore(APIView):
         request=None,
         responses={200: UavTypeSerializer, **RESTORE_CONFLICT},
     )
-    def post(self, request: Request, type_id: int) -> Response:
+    def post(self, request: SignedInRequest, type_id: int) -> Response:
         with fleet_problems():
             services.restore_uav_type(organisation=request.user.organisation, actor=request.user, key=type_id)
         return _type_answer(request.user, type_id)
@@ -139,14 +140,14 @@ def _base_now(user: User, base_id: int) -> Any:
 
 class BaseList(APIView):
     @extend_schema(operation_id="list_bases", summary="Bases, by name", parameters=[TEXT, *PAGE_PARAMETERS], responses=BasePageSerializer)
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         bases = fleet_selectors.bases_of_organisation(request.user.organisation, text=_text(request))
         page = page_of(request, bases, order=("name", "pk"))
         return Response({"results": [base_json(row) for row in page.rows], "next": page.next})
 
     @extend_schema(operation_id="create_base", summary="Add a base", request=BaseSerializer, responses={201: BaseSerializer, **TAKEN})
     @idempotent
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         serializer = BaseSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)
         values = dict(serializer.validated_data)
@@ -158,7 +159,7 @@ class BaseList(APIView):
 
 class BaseDetail(APIView):
     @extend_schema(operation_id="get_base", summary="One base", responses=BaseSerializer)
-    def get(self, request: Request, base_id: int) -> Response:
+    def get(self, request: SignedInRequest, base_id: int) -> Response:
         return _base_answer(request.user, base_id)
 
     @extend_schema(
@@ -169,7 +170,7 @@ class BaseDetail(APIView):
         request=BaseSerializer,
         responses={200: BaseSerializer, **CHANGE_ANSWERS},
     )
-    def patch(self, request: Request, base_id: int) -> Response:
+    def patch(self, request: SignedInRequest, base_id: int) -> Response:
         row, revision = _base(request.user, base_id), expected_revision(request)
         serializer = BaseSerializer(data=request.data, partial=True)
         serializer.is_valid(raise_exception=True)
@@ -182,7 +183,7 @@ class BaseDetail(APIView):
     @extend_schema(
         operation_id="delete_base", summary="Remove a base that no UAV has", parameters=[IF_MATCH_REQUIRED], responses=DELETE_ANSWERS
     )
-    def delete(self, request: Request, base_id: int) -> Response:
+    def delete(self, request: SignedInRequest, base_id: int) -> Response:
         row, revision = _base(request.user, base_id), expected_revision(request)
         with fleet_problems(lambda: _base_now(request.user, base_id)):
             services.delete_base(base=row, actor=request.user, expected_revision=revision)
@@ -196,7 +197,7 @@ class BaseRestore(APIView):
         request=None,
         responses={200: BaseSerializer, **RESTORE_CONFLICT},
     )
-    def post(self, request: Request, base_id: int) -> Response:
+    def post(self, request: SignedInRequest, base_id: int) -> Response:
         with fleet_problems():
             services.restore_base(organisation=request.user.organisation, actor=request.user, key=base_id)
         return _base_answer(request.user, base_id)

@@ -19,6 +19,7 @@ from missions.views.missions import mission_or_404
 from missions.zone_selectors import flown_route, legal_windows
 from workspace.errors import ApiProblem
 from workspace.models import Role
+from workspace.signed_in import SignedInRequest
 from workspace.throttling import ScopedRate
 
 AHEAD_S = 48 * 3_600.0
@@ -38,7 +39,7 @@ class MissionLegalWindows(_LegalWindows):
         parameters=[FROM],
         responses={200: LegalWindowsSerializer, 409: OpenApiResponse(description="The mission has no routes.")},
     )
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         begin = request.query_params.get("from")
         span = _window(None if begin is None else _moment(begin))

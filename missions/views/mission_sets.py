@@ -5,7 +5,6 @@ from uuid import UUID
 
 from django.http import Http404
 from drf_spectacular.utils import extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -23,6 +22,7 @@ from missions.views.problems import api_problems, refusals
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import Role
+from workspace.signed_in import SignedInRequest
 
 
 class MissionFilterChoices(APIView):
@@ -31,7 +31,7 @@ class MissionFilterChoices(APIView):
         summary="Authors and UAVs that the list of missions can be filtered by",
         responses=shapes.MissionFiltersSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         return Response(choices_of_filters(request.user.organisation))
 
 
@@ -43,7 +43,7 @@ class MissionDuplicate(APIView):
         responses={201: shapes.MissionSerializer},
     )
     @idempotent
-    def post(self, request: Request, mission_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         serializer = inputs.MissionCopySerializer(data=request.data)
         serializer.is_valid(raise_exception=True)
@@ -60,7 +60,7 @@ class MissionFollowUp(APIView):
         responses={201: shapes.MissionSerializer, **REFUSED},
     )
     @idempotent
-    def post(self, request: Request, mission_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         serializer = inputs.FollowUpSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)
@@ -69,7 +69,7 @@ class MissionFollowUp(APIView):
         return answer_mission(request.user, draft.pk, status=201)
 
 
-def _each(request: Request, do: Callable[[Mission], object], *, deleted: bool) -> Response:
+def _each(request: SignedInRequest, do: Callable[[Mission], object], *, deleted: bool) -> Response:
     """What can be done is done, each mission for itself; what cannot be says why."""
     serializer = inputs.MissionsInputSerializer(data=request.data)
     serializer.is_valid(raise_exception=True)
@@ -93,7 +93,7 @@ class MissionsDelete(APIView):
         request=inputs.MissionsInputSerializer,
         responses=shapes.MissionsDoneSerializer,
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         return _each(request, lambda mission: services.delete_mission(mission=mission, actor=request.user), deleted=False)
 
 
@@ -104,7 +104,7 @@ class MissionsRestore(APIView):
         request=inputs.MissionsInputSerializer,
         responses=shapes.MissionsDoneSerializer,
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         return _each(request, lambda mission: services.restore_mission(mission=mission, actor=request.user), deleted=True)
 
 
@@ -119,7 +119,7 @@ class MissionPresence(APIView):
         request=inputs.PresenceInputSerializer,
         responses=shapes.PresenceSerializer,
     )
-    def post(self, request: Request, mission_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         user = request.user
         if selectors.revision_of_mission(user.organisation_id, mission_id) is None:
             raise Http404

@@ -29,6 +29,7 @@ from workspace.idempotency import idempotent
 from workspace.models import Job, User
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 from workspace.throttling import ScopedRate
 
 IF_MATCH = OpenApiParameter(
@@ -109,7 +110,7 @@ class MissionList(_PlansWhenAsked):
         parameters=[*FILTER_PARAMETERS, *PAGE_PARAMETERS],
         responses=shapes.MissionPageSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         organisation, asked = request.user.organisation, asked_filter(request)
         rows = mission_rows(missions_found(organisation, asked))
         page = page_of(request, rows, order=asked_order(request), default_limit=50, max_limit=200)
@@ -132,7 +133,7 @@ class MissionList(_PlansWhenAsked):
         responses={201: shapes.MissionSerializer, **PLANNED_LATER},
     )
     @idempotent
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         user = request.user
         serializer = inputs.MissionInputSerializer(data=request.data, context={"organisation": user.organisation})
         serializer.is_valid(raise_exception=True)
@@ -153,7 +154,7 @@ class MissionDetail(_PlansWhenAsked):
         parameters=[IF_NONE_MATCH],
         responses={200: shapes.MissionSerializer, 304: OpenApiResponse(description="It is as it was.")},
     )
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         known = request.headers.get("If-None-Match")
         if known is not None:
             revision = selectors.revision_of_mission(request.user.organisation_id, mission_id)
@@ -169,7 +170,7 @@ class MissionDetail(_PlansWhenAsked):
         request=inputs.MissionPatchSerializer,
         responses={200: shapes.MissionSerializer, **PLANNED_LATER, **CHANGED},
     )
-    def patch(self, request: Request, mission_id: UUID) -> Response:
+    def patch(self, request: SignedInRequest, mission_id: UUID) -> Response:
         user = request.user
         expected = expected_revision(request)
         mission = mission_or_404(user, mission_id)
@@ -192,7 +193,7 @@ class MissionDetail(_PlansWhenAsked):
         parameters=[IF_MATCH],
         responses={204: None, **CHANGED},
     )
-    def delete(self, request: Request, mission_id: UUID) -> Response:
+    def delete(self, request: SignedInRequest, mission_id: UUID) -> Response:
         expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
         with api_problems(has_precondition=expected is not None):
@@ -209,7 +210,7 @@ class MissionPlan(_PlansWhenAsked):
         responses={200: shapes.MissionSerializer, **PLANNED_LATER, **CHANGED},
     )
     @idempotent
-    def post(self, request: Request, mission_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         expected = expected_revision(request)
         mission = mission_or_404(request.user, mission_id)
         with api_problems(has_precondition=expected is not None):
@@ -220,7 +221,7 @@ class MissionRestore(APIView):
     @extend_schema(
         operation_id="restore_mission", summary="Bring a deleted mission back", request=None, responses={200: shapes.MissionSerializer}
     )
-    def post(self, request: Request, mission_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id, deleted=True)
         services.restore_mission(mission=mission, actor=request.user)
         return answer_mission(request.user, mission_id)
@@ -233,6 +234,6 @@ class MissionHistory(APIView):
         parameters=PAGE_PARAMETERS,
         responses=shapes.HistoryPageSerializer,
     )
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         page = page_of(request, selectors.history_of_mission(mission_or_404(request.user, mission_id)), order=("-recorded_at", "-pk"))
         return Response({"results": shapes.HistoryEntrySerializer(page.rows, many=True).data, "next": page.next})

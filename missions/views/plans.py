@@ -22,6 +22,7 @@ from workspace.idempotency import idempotent
 from workspace.models import Job, JobState, User
 from workspace.renderers import FastJSONRenderer
 from workspace.services import TooManyJobs, create_job_within, refuse_jobs_beyond
+from workspace.signed_in import SignedInRequest
 from workspace.stored_words import in_words
 from workspace.tasks import send_job_on_commit
 from workspace.throttling import ScopedRate
@@ -71,7 +72,7 @@ class PlanList(APIView):
         return response
 
     @idempotent
-    def _answer(self, request: Request) -> Response:
+    def _answer(self, request: SignedInRequest) -> Response:
         if not is_small(_target_count(request.data)):
             refuse_too_many_jobs(request.user)
         asked = plain_request(request.data) or _read(request)
@@ -82,7 +83,7 @@ class PlanList(APIView):
         return job_answer(planning_job(request.user, SOLVE_PLAN, {"request": services.request_to_json(asked)}, len(asked.targets)))
 
 
-def _read(request: Request) -> services.PlanRequest:
+def _read(request: SignedInRequest) -> services.PlanRequest:
     serializer = PlanInputSerializer(data=request.data, context={"organisation": request.user.organisation})
     serializer.is_valid(raise_exception=True)
     return serializer.to_request()

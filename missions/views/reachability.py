@@ -1,7 +1,6 @@
 """Which assets can be inspected. Nothing is stored: whoever may read the map may ask."""
 
 from drf_spectacular.utils import extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -10,6 +9,7 @@ from missions.services.reachability import reachability
 from missions.views.problems import api_problems
 from workspace.models import Role
 from workspace.renderers import FastJSONRenderer
+from workspace.signed_in import SignedInRequest
 from workspace.throttling import ScopedRate
 
 
@@ -26,7 +26,7 @@ class Reachability(APIView):
         request=ReachabilityInputSerializer,
         responses=ReachabilitySerializer,
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = ReachabilityInputSerializer(data=request.data, context={"organisation": request.user.organisation})
         body.is_valid(raise_exception=True)
         values = body.validated_data

@@ -20,6 +20,7 @@ from workspace.idempotency import idempotent
 from workspace.models import User
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 from workspace.tasks import send_job_on_commit
 
 NEWEST_FIRST = ("-created_at", "-pk")
@@ -36,7 +37,7 @@ class MissionReplanOffers(APIView):
         parameters=PAGE_PARAMETERS,
         responses=shapes.ReplanOfferPageSerializer,
     )
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         page = page_of(request, mission.replan_offers.select_related("decided_by"), order=NEWEST_FIRST)
         return Response({"results": [shapes.offer_json(offer) for offer in page.rows], "next": page.next})
@@ -49,7 +50,7 @@ class MissionReplanOffers(APIView):
         responses={202: shapes.ReplanAskedSerializer, **REFUSED},
     )
     @idempotent
-    def post(self, request: Request, mission_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         with refusals():
             offer, job = ask_for_offer(mission=mission, actor=request.user)
@@ -59,7 +60,7 @@ class MissionReplanOffers(APIView):
 
 class ReplanOfferDetail(APIView):
     @extend_schema(operation_id="get_replan_offer", summary="One offer of another plan", responses=shapes.ReplanOfferSerializer)
-    def get(self, request: Request, offer_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, offer_id: UUID) -> Response:
         return _answer(offer_or_404(request.user, offer_id))
 
 
@@ -99,7 +100,7 @@ def offer_or_404(user: User, offer_id: UUID) -> ReplanOffer:
     return offer
 
 
-def _decided(request: Request, offer_id: UUID, decide: Callable[..., ReplanOffer]) -> Response:
+def _decided(request: SignedInRequest, offer_id: UUID, decide: Callable[..., ReplanOffer]) -> Response:
     expected = expected_revision(request)
     offer = offer_or_404(request.user, offer_id)
     if expected is not None and shapes.offer_json(offer)["revision"] != expected:

@@ -4,7 +4,6 @@ from dataclasses import asdict
 from uuid import UUID
 
 from drf_spectacular.utils import extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -12,6 +11,7 @@ from missions.serializers.returns import ReturnChecksSerializer
 from missions.services.own_return import return_checks
 from missions.views.missions import mission_or_404
 from missions.views.problems import api_problems
+from workspace.signed_in import SignedInRequest
 
 
 class MissionReturns(APIView):
@@ -22,7 +22,7 @@ class MissionReturns(APIView):
         " each route that way is looked at against zones, the ground, towers and wires, at the height that was last read from the UAV.",
         responses=ReturnChecksSerializer,
     )
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         with api_problems():
             checks = return_checks(mission)

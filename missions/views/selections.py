@@ -7,7 +7,6 @@ from django.http import Http404
 from django.urls import reverse
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -28,6 +27,7 @@ from workspace.models import User
 from workspace.paging import page_of
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 NAME_TAKEN = {409: OpenApiResponse(description="Another selection has this name.")}
 
@@ -66,7 +66,7 @@ class SelectionList(APIView):
         parameters=[OpenApiParameter("text", str, description="part of the name"), *PAGE_PARAMETERS],
         responses=SelectionPageSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         text = request.query_params.get("text", "").strip()[:100].replace("\0", "")
         page = page_of(request, selections_of_organisation(request.user.organisation, text=text), order=("name", "pk"))
         return Response({"results": [selection_summary(selection) for selection in page.rows], "next": page.next})
@@ -78,7 +78,7 @@ class SelectionList(APIView):
         responses={201: SelectionSerializer, **NAME_TAKEN},
     )
     @idempotent
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         user = request.user
         body = SelectionInputSerializer(data=request.data, context={"organisation": user.organisation})
         body.is_valid(raise_exception=True)
@@ -90,7 +90,7 @@ class SelectionList(APIView):
 
 class SelectionDetail(APIView):
     @extend_schema(operation_id="get_selection", summary="A saved selection with its targets", responses=SelectionSerializer)
-    def get(self, request: Request, selection_id: int) -> Response:
+    def get(self, request: SignedInRequest, selection_id: int) -> Response:
         return _answer(_selection(request.user, selection_id))
 
     @extend_schema(
@@ -100,7 +100,7 @@ class SelectionDetail(APIView):
         request=SelectionInputSerializer(partial=True),
         responses={200: SelectionSerializer, **NAME_TAKEN, **PRECONDITION_ANSWERS},
     )
-    def patch(self, request: Request, selection_id: int) -> Response:
+    def patch(self, request: SignedInRequest, selection_id: int) -> Response:
         user = request.user
         expected = expected_revision(request)
         selection = _selection(user, selection_id)
@@ -119,7 +119,7 @@ class SelectionDetail(APIView):
         parameters=[IF_MATCH_REQUIRED],
         responses={204: None, **PRECONDITION_ANSWERS},
     )
-    def delete(self, request: Request, selection_id: int) -> Response:
+    def delete(self, request: SignedInRequest, selection_id: int) -> Response:
         expected = expected_revision(request)
         selection = _selection(request.user, selection_id)
         with _problems(request.user, selection_id):

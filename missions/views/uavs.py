@@ -23,6 +23,7 @@ from workspace.paging import page_of
 from workspace.permissions import ADMINISTRATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 WAIVES_SAFETY = ("is_simulated", "allows_unsigned")
 
@@ -53,7 +54,7 @@ def _answer(user: User, uav_id: int, *, status: int = 200) -> Response:
     return Response(uav_feature(uav), status=status, headers=headers)
 
 
-def _values(request: Request, uav: Uav | None = None) -> dict[str, Any]:
+def _values(request: SignedInRequest, uav: Uav | None = None) -> dict[str, Any]:
     """Of a new one, or what is to be changed of one that is stored."""
     context = {"organisation": request.user.organisation}
     serializer = UavFlatSerializer(uav, data=flat_uav(request.data), partial=uav is not None, context=context)
@@ -100,7 +101,7 @@ class UavList(APIView):
         ],
         responses=UavCollectionSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         filters = _filters(request)
         found = fleet_selectors.uavs_that_match(request.user.organisation, **filters)
         in_any_state = fleet_selectors.uavs_that_match(request.user.organisation, **filters | {"state": fleet_selectors.EVERY_STATE})
@@ -116,7 +117,7 @@ class UavList(APIView):
 
     @extend_schema(operation_id="create_uav", summary="Register a UAV", request=INPUT, responses={201: UavFeatureSerializer, **TAKEN})
     @idempotent
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         values = _values(request)
         position = values.pop("position", None)
         with fleet_problems():
@@ -126,7 +127,7 @@ class UavList(APIView):
 
 class UavDetail(APIView):
     @extend_schema(operation_id="get_uav", summary="One UAV", responses=UavFeatureSerializer)
-    def get(self, request: Request, uav_id: int) -> Response:
+    def get(self, request: SignedInRequest, uav_id: int) -> Response:
         return _answer(request.user, uav_id)
 
     @extend_schema(
@@ -137,7 +138,7 @@ class UavDetail(APIView):
         request=INPUT,
         responses={200: UavFeatureSerializer, **CHANGE_ANSWERS},
     )
-    def patch(self, request: Request, uav_id: int) -> Response:
+    def patch(self, request: SignedInRequest, uav_id: int) -> Response:
         uav, revision = uav_or_404(request.user, uav_id), expected_revision(request)
         values = _values(request, uav)
         position = values.pop("position", None)
@@ -152,7 +153,7 @@ class UavDetail(APIView):
         parameters=[IF_MATCH_REQUIRED],
         responses=DELETE_ANSWERS,
     )
-    def delete(self, request: Request, uav_id: int) -> Response:
+    def delete(self, request: SignedInRequest, uav_id: int) -> Response:
         uav, revision = uav_or_404(request.user, uav_id), expected_revision(request)
         with fleet_problems(lambda: _feature_now(request.user, uav_id)):
             services.delete_uav(uav=uav, actor=request.user, expected_revision=revision)
@@ -166,7 +167,7 @@ class UavRestore(APIView):
         request=None,
         responses={200: UavFeatureSerializer, **RESTORE_CONFLICT},
     )
-    def post(self, request: Request, uav_id: int) -> Response:
+    def post(self, request: SignedInRequest, uav_id: int) -> Response:
         with fleet_problems():
             services.restore_uav(organisation=request.user.organisation, actor=request.user, key=uav_id)
         return _answer(request.user, uav_id)
@@ -179,7 +180,7 @@ class UavMissions(APIView):
         parameters=PAGE_PARAMETERS,
         responses=UavMissionPageSerializer,
     )
-    def get(self, request: Request, uav_id: int) -> Response:
+    def get(self, request: SignedInRequest, uav_id: int) -> Response:
         missions = fleet_selectors.missions_of_uav(uav_or_404(request.user, uav_id))
         page = page_of(request, missions, order=("-updated_at", "-pk"), default_limit=20)
         return Response({"results": [_mission_json(mission) for mission in page.rows], "next": page.next})
