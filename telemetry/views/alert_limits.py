@@ -7,7 +7,6 @@ from uuid import UUID
 from django.shortcuts import get_object_or_404
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -18,6 +17,7 @@ from telemetry.alerting.limits import BOUNDS, InvalidLimits, Limits, limits_of
 from telemetry.serializers.alerts import AlertLimitsSerializer
 from telemetry.services.alert_limits import state_alert_limits
 from workspace.models import User
+from workspace.signed_in import SignedInRequest
 
 DESCRIPTION = "All that is stated, by name, in one object; what is left out or null is as usual. See docs/alerts.md."
 
@@ -26,14 +26,14 @@ class UavTypeAlertLimits(APIView):
     @extend_schema(
         operation_id="get_alert_limits_of_uav_type", summary="Where alerts of a type's UAVs begin", responses=AlertLimitsSerializer
     )
-    def get(self, request: Request, type_id: int) -> Response:
+    def get(self, request: SignedInRequest, type_id: int) -> Response:
         return _answer(_type(request.user, type_id))
 
     @extend_schema(
         operation_id="state_alert_limits_of_uav_type", summary="Say where alerts of a type's UAVs begin", description=DESCRIPTION,
         request=OpenApiTypes.OBJECT, responses=AlertLimitsSerializer,
     )  # fmt: skip
-    def put(self, request: Request, type_id: int) -> Response:
+    def put(self, request: SignedInRequest, type_id: int) -> Response:
         return _state(_type(request.user, type_id), request)
 
 
@@ -41,14 +41,14 @@ class MissionAlertLimits(APIView):
     @extend_schema(
         operation_id="get_alert_limits_of_mission", summary="Where alerts of a mission begin", responses=AlertLimitsSerializer
     )  # fmt: skip
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         return _answer(_mission(request.user, mission_id))
 
     @extend_schema(
         operation_id="state_alert_limits_of_mission", summary="Say where alerts of a mission begin, also while it flies",
         description=DESCRIPTION, request=OpenApiTypes.OBJECT, responses=AlertLimitsSerializer,
     )  # fmt: skip
-    def put(self, request: Request, mission_id: UUID) -> Response:
+    def put(self, request: SignedInRequest, mission_id: UUID) -> Response:
         return _state(_mission(request.user, mission_id), request)
 
 
@@ -60,7 +60,7 @@ def _mission(user: User, mission_id: UUID) -> Mission:
     return get_object_or_404(Mission, organisation=user.organisation, pk=mission_id, deleted_at=None)
 
 
-def _state(row: UavType | Mission, request: Request) -> Response:
+def _state(row: UavType | Mission, request: SignedInRequest) -> Response:
     try:
         state_alert_limits(row=row, limits=request.data, actor=request.user)
     except InvalidLimits as error:

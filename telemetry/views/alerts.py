@@ -15,6 +15,7 @@ from telemetry.views.log_filters import mission_of, time_of, uav_of
 from workspace.idempotency import idempotent
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 STATES = ("open", "closed")
 NEWEST_FIRST = ("-opened_at", "-pk")
@@ -36,7 +37,7 @@ class Alerts(APIView):
         operation_id="list_alerts", summary="Alerts, the newest first", parameters=[*FILTERS, *PAGE_PARAMETERS],
         responses=shapes.AlertPageSerializer,
     )  # fmt: skip
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         page = page_of(request, alerts_that_match(request.user.organisation, _asked(request)), order=NEWEST_FIRST)
         return Response({"results": [shapes.alert_json(row, note_count=row.note_count) for row in page.rows], "next": page.next})
 
@@ -56,7 +57,7 @@ class AlertAcknowledgement(APIView):
         responses=shapes.AlertDetailSerializer,
     )
     @idempotent
-    def post(self, request: Request, alert_id: int) -> Response:
+    def post(self, request: SignedInRequest, alert_id: int) -> Response:
         alert = _alert(request, alert_id)
         body = shapes.AcknowledgementInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
@@ -70,7 +71,7 @@ class AlertNotes(APIView):
         responses={201: shapes.AlertNoteSerializer},
     )  # fmt: skip
     @idempotent
-    def post(self, request: Request, alert_id: int) -> Response:
+    def post(self, request: SignedInRequest, alert_id: int) -> Response:
         alert = _alert(request, alert_id)
         body = shapes.AlertNoteInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
@@ -80,7 +81,7 @@ class AlertNotes(APIView):
         return Response(shapes.note_json(note), status=201)
 
 
-def _alert(request: Request, alert_id: int) -> Alert:
+def _alert(request: SignedInRequest, alert_id: int) -> Alert:
     return get_object_or_404(alerts_of_organisation(request.user.organisation), pk=alert_id)
 
 

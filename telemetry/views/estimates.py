@@ -15,6 +15,7 @@ from telemetry.views.log_filters import THINNED, sampled, time_of, uav_of
 from workspace.paging import page_of
 from workspace.renderers import FastJSONRenderer
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 FILTERS = [
     OpenApiParameter("from", str, description="of moments at or after this time, with its zone"),
@@ -39,7 +40,7 @@ class MissionEstimates(APIView):
         parameters=[*FILTERS, *PAGE_PARAMETERS],
         responses=EstimateCollectionSerializer,
     )
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         estimates = estimates_of_mission(
             mission_or_404(request.user, mission_id),
             uav_id=uav_of(request),

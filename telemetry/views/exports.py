@@ -9,7 +9,6 @@ from django.db.models import QuerySet
 from django.http import Http404, StreamingHttpResponse
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, extend_schema
-from rest_framework.request import Request
 from rest_framework.views import APIView
 
 from missions.models import Mission
@@ -23,6 +22,7 @@ from telemetry.models import TelemetryRecord
 from telemetry.selectors.log import LogFilter, logged, records_that_match
 from telemetry.views.log_filters import TIMES, time_of
 from workspace.negotiation import OneAnswer
+from workspace.signed_in import SignedInRequest
 
 BY_TIME = ("measured_at", "pk")
 BY_STREAM = ("uav_id", "stream_id", "sequence")  # as each counter ran: a track is drawn in this order
@@ -56,7 +56,7 @@ class MissionTelemetryFile(APIView):
         operation_id="export_mission_telemetry", summary="What was flown in a mission, as CSV, GPX, KML or GeoJSON", description=ABOUT,
         parameters=[KIND, *TIMES], responses=FILES,
     )  # fmt: skip
-    def get(self, request: Request, mission_id: UUID, kind: str) -> StreamingHttpResponse:
+    def get(self, request: SignedInRequest, mission_id: UUID, kind: str) -> StreamingHttpResponse:
         organisation = request.user.organisation
         mission = Mission.objects.filter(organisation=organisation, deleted_at=None, pk=mission_id).first()
         if mission is None:
@@ -72,7 +72,7 @@ class UavTelemetryFile(APIView):
         operation_id="export_uav_telemetry", summary="What a UAV has flown, as CSV, GPX, KML or GeoJSON", description=ABOUT,
         parameters=[KIND, *TIMES], responses=FILES,
     )  # fmt: skip
-    def get(self, request: Request, uav_id: int, kind: str) -> StreamingHttpResponse:
+    def get(self, request: SignedInRequest, uav_id: int, kind: str) -> StreamingHttpResponse:
         uav = uav_or_404(request.user, uav_id)
         wanted = LogFilter(uav.pk, None, time_of(request, "from"), time_of(request, "to"))
         return _file(records_that_match(request.user.organisation, wanted), kind, uav.name)

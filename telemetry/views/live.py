@@ -13,6 +13,7 @@ from rest_framework.views import APIView
 from telemetry.live.look import etag_of, look_once
 from telemetry.live.messages import live_text, server_time
 from telemetry.serializers.live import LiveAnswerSerializer
+from workspace.signed_in import SignedInRequest
 from workspace.spoken import language_of_request
 
 
@@ -33,7 +34,7 @@ class Live(APIView):
         ],
         responses={200: LiveAnswerSerializer, 304: OpenApiResponse(description="Nothing has changed.")},
     )
-    def get(self, request: Request) -> HttpResponse:
+    def get(self, request: SignedInRequest) -> HttpResponse:
         mission = _asked_mission(request)
         language = language_of_request(request.user, request)
         known = request.headers.get("If-None-Match", "").removeprefix("W/")  # a proxy that packs answers makes it a weak one

@@ -2,7 +2,6 @@
 
 from django.http import Http404
 from drf_spectacular.utils import extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -14,6 +13,7 @@ from telemetry.views.log_filters import FILTERS, asked_log, sampled
 from workspace.paging import page_of
 from workspace.renderers import FastJSONRenderer
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 
 class TelemetryLog(APIView):
@@ -30,7 +30,7 @@ class TelemetryLog(APIView):
         parameters=[*FILTERS, *PAGE_PARAMETERS],
         responses=RecordCollectionSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         records = records_that_match(request.user.organisation, asked_log(request))
         chosen = sampled(request, records, of=in_time)
         page = page_of(request, chosen.rows.select_related("uav", "stream"), order=("measured_at", "pk"))
@@ -50,7 +50,7 @@ class LatestTelemetry(APIView):
         summary="What a UAV measured last; never a record from the future",
         responses=RecordFeatureSerializer,
     )
-    def get(self, request: Request, uav_id: int) -> Response:
+    def get(self, request: SignedInRequest, uav_id: int) -> Response:
         record = latest_record(uav_or_404(request.user, uav_id))
         if record is None:
             raise Http404

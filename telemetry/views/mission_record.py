@@ -15,9 +15,10 @@ from telemetry.serializers.mission_record import MissionRecordSerializer
 from telemetry.services.record_file import record_file
 from telemetry.views.exports import file_stem
 from workspace.negotiation import OneAnswer
+from workspace.signed_in import SignedInRequest
 
 
-def _mission(request: Request, mission_id: UUID) -> Mission:
+def _mission(request: SignedInRequest, mission_id: UUID) -> Mission:
     mission = mission_on_record(request.user.organisation, mission_id)
     if mission is None:
         raise Http404
@@ -48,7 +49,7 @@ class MissionRecordFile(APIView):
         description="Plan as approved, telemetry, estimates, alerts, commands, results, MAVLink logs. README.txt in it says what is where.",
         responses={(200, "application/zip"): OpenApiTypes.BINARY},
     )
-    def get(self, request: Request, mission_id: UUID) -> FileResponse:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> FileResponse:
         mission = _mission(request, mission_id)
         response = FileResponse(
             record_file(request.user.organisation, mission),

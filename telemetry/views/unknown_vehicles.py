@@ -20,6 +20,7 @@ from workspace.errors import ApiProblem
 from workspace.paging import page_of
 from workspace.permissions import AdministratorsAlone
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 SETTLED = {409: OpenApiResponse(description="The vehicle has been adopted, or the name or the system id is taken.")}
 
@@ -53,7 +54,7 @@ class UnknownVehicleAdoption(APIView):
         request=AdoptionSerializer,
         responses={200: UavFeatureSerializer, **TAKEN, **SETTLED},
     )
-    def post(self, request: Request, vehicle_id: int) -> Response:
+    def post(self, request: SignedInRequest, vehicle_id: int) -> Response:
         vehicle = get_object_or_404(UnknownVehicle, pk=vehicle_id)
         serializer = AdoptionSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)
@@ -77,7 +78,7 @@ class UnknownVehicleIgnoring(APIView):
         operation_id="ignore_unknown_vehicle", summary="Do not tell of a vehicle any more", request=None,
         responses={200: UnknownVehicleSerializer, **SETTLED},
     )  # fmt: skip
-    def post(self, request: Request, vehicle_id: int) -> Response:
+    def post(self, request: SignedInRequest, vehicle_id: int) -> Response:
         vehicle = get_object_or_404(UnknownVehicle, pk=vehicle_id)
         try:
             ignore_vehicle(vehicle=vehicle, actor=request.user)
@@ -90,7 +91,7 @@ class UnknownVehicleIgnoring(APIView):
         summary="Tell of an ignored vehicle again",
         responses={200: UnknownVehicleSerializer, **SETTLED},
     )
-    def delete(self, request: Request, vehicle_id: int) -> Response:
+    def delete(self, request: SignedInRequest, vehicle_id: int) -> Response:
         vehicle = get_object_or_404(UnknownVehicle, pk=vehicle_id)
         try:
             heed_vehicle(vehicle=vehicle, actor=request.user)
@@ -99,7 +100,7 @@ class UnknownVehicleIgnoring(APIView):
         return Response(vehicle_json(unknown_vehicles().get(pk=vehicle_id)))
 
 
-def _adopted(vehicle: UnknownVehicle, request: Request, uav: object) -> int:
+def _adopted(vehicle: UnknownVehicle, request: SignedInRequest, uav: object) -> int:
     try:
         with refusals():
             return adopt_vehicle(vehicle=vehicle, actor=request.user, uav=uav).pk

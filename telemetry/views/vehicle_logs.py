@@ -8,7 +8,6 @@ from django.urls import reverse
 from django.utils import timezone
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -20,6 +19,7 @@ from telemetry.serializers.vehicles import UavConnectionSerializer, connection_j
 from workspace.negotiation import OneAnswer
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 TLOG_TYPE = "application/octet-stream"
 
@@ -30,7 +30,7 @@ class UavConnection(APIView):
         summary="When a UAV was heard last and by which door, its mode, and the mission that is on it",
         responses=UavConnectionSerializer,
     )
-    def get(self, request: Request, uav_id: int) -> Response:
+    def get(self, request: SignedInRequest, uav_id: int) -> Response:
         uav = uav_or_404(request.user, uav_id)
         return Response(connection_json(uav, connection_of(uav), timezone.now()))
 
@@ -42,7 +42,7 @@ class VehicleTexts(APIView):
         parameters=PAGE_PARAMETERS,
         responses=VehicleTextPageSerializer,
     )
-    def get(self, request: Request, uav_id: int) -> Response:
+    def get(self, request: SignedInRequest, uav_id: int) -> Response:
         page = page_of(request, texts_of(uav_or_404(request.user, uav_id)), order=("-received_at", "-pk"))
         return Response({"results": VehicleTextSerializer(page.rows, many=True).data, "next": page.next})
 
@@ -54,7 +54,7 @@ class FlightLogs(APIView):
         parameters=PAGE_PARAMETERS,
         responses=FlightLogPageSerializer,
     )
-    def get(self, request: Request, uav_id: int) -> Response:
+    def get(self, request: SignedInRequest, uav_id: int) -> Response:
         page = page_of(request, flight_logs_of(uav_or_404(request.user, uav_id)), order=("-started_at", "-pk"))
         return Response({"results": [_log_json(log) for log in page.rows], "next": page.next})
 
@@ -67,7 +67,7 @@ class FlightLogFile(APIView):
         summary="The log of a flight, every MAVLink frame in both directions, as a tlog file",
         responses={(200, TLOG_TYPE): OpenApiTypes.BINARY},
     )
-    def get(self, request: Request, uav_id: int, log_id: int) -> FileResponse:
+    def get(self, request: SignedInRequest, uav_id: int, log_id: int) -> FileResponse:
         uav = uav_or_404(request.user, uav_id)
         log = get_object_or_404(flight_logs_of(uav), pk=log_id)
         try:
