@@ -18,6 +18,7 @@ from simulation.services.airframes import NoSuchAirframe, choose_airframe
 from simulation.services.fleet import airframe_of_type
 from simulation.services.green_verdict import set_rule
 from workspace.permissions import ADMINISTRATORS
+from workspace.signed_in import SignedInRequest
 
 
 class Airframes(APIView):
@@ -45,7 +46,7 @@ class UavTypeAirframe(APIView):
         summary="Which simulated airframe flies for a type's UAVs",
         responses=shapes.TypeAirframeSerializer,
     )
-    def get(self, request: Request, type_id: int) -> Response:
+    def get(self, request: SignedInRequest, type_id: int) -> Response:
         return _answer(get_object_or_404(types_of_organisation(request.user.organisation), pk=type_id))
 
     @extend_schema(
@@ -55,7 +56,7 @@ class UavTypeAirframe(APIView):
         request=shapes.TypeAirframeSerializer,
         responses=shapes.TypeAirframeSerializer,
     )
-    def put(self, request: Request, type_id: int) -> Response:
+    def put(self, request: SignedInRequest, type_id: int) -> Response:
         uav_type = get_object_or_404(types_of_organisation(request.user.organisation), pk=type_id)
         body = shapes.TypeAirframeSerializer(data=request.data)
         body.is_valid(raise_exception=True)
@@ -74,7 +75,7 @@ class RehearsalRuleView(APIView):
         summary="Whether approval asks for a rehearsal that passed",
         responses=shapes.RehearsalRuleSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         return Response({"requires_green": selectors.requires_green(request.user.organisation_id)})
 
     @extend_schema(
@@ -84,7 +85,7 @@ class RehearsalRuleView(APIView):
         request=shapes.RehearsalRuleSerializer,
         responses=shapes.RehearsalRuleSerializer,
     )
-    def put(self, request: Request) -> Response:
+    def put(self, request: SignedInRequest) -> Response:
         body = shapes.RehearsalRuleSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         rule = set_rule(organisation=request.user.organisation, actor=request.user, requires=body.validated_data["requires_green"])

@@ -32,6 +32,7 @@ from workspace.models import User
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
 from workspace.services import TooManyJobs
+from workspace.signed_in import SignedInRequest
 from workspace.tasks import send_job_on_commit
 
 NEWEST_FIRST = ("-created_at", "-pk")
@@ -51,7 +52,7 @@ class MissionRehearsals(APIView):
         parameters=PAGE_PARAMETERS,
         responses=shapes.RehearsalPageSerializer,
     )
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         page = page_of(
             request, selectors.rehearsals_of_mission(request.user.organisation, mission_id), order=NEWEST_FIRST, default_limit=20
@@ -72,7 +73,7 @@ class MissionRehearsals(APIView):
         responses={202: shapes.RehearsalSerializer, **REFUSED},
     )
     @idempotent
-    def post(self, request: Request, mission_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         body = shapes.RehearsalInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
@@ -96,7 +97,7 @@ class RehearsalDetail(APIView):
         description="Levels: pass, warnings, fail. Each reason stands in words; the limits with their sources stand beside the figures.",
         responses=shapes.RehearsalDetailSerializer,
     )
-    def get(self, request: Request, mission_id: UUID, rehearsal_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID, rehearsal_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         return Response(rehearsal_detail_json(rehearsal_or_404(request.user, mission_id, rehearsal_id), mission, **_known(mission)))
 
@@ -109,7 +110,7 @@ class RehearsalTrackOfRun(APIView):
         parameters=[OpenApiParameter("run", int, description="which of its conditions, from 0; 0 by default")],
         responses=shapes.RehearsalTrackSerializer,
     )
-    def get(self, request: Request, mission_id: UUID, rehearsal_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID, rehearsal_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         rehearsal = rehearsal_or_404(request.user, mission_id, rehearsal_id)
         run = _run_number(request)
@@ -128,7 +129,7 @@ class RehearsalCancel(APIView):
         request=None,
         responses=shapes.RehearsalSerializer,
     )
-    def post(self, request: Request, mission_id: UUID, rehearsal_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID, rehearsal_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         cancel_rehearsal(rehearsal=rehearsal_or_404(request.user, mission_id, rehearsal_id), actor=request.user)
         return Response(rehearsal_json(rehearsal_or_404(request.user, mission_id, rehearsal_id), **_known(mission)))

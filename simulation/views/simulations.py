@@ -38,6 +38,7 @@ from workspace.idempotency import idempotent
 from workspace.models import User
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
 
 NEWEST_FIRST = ("-created_at", "-pk")
 CALM = Conditions()
@@ -58,7 +59,7 @@ class MissionSimulatedFlights(APIView):
         parameters=[STATE, *PAGE_PARAMETERS],
         responses=shapes.SimulationPageSerializer,
     )
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         return _listed(request, simulations_of_mission(request.user.organisation, mission.pk))
 
@@ -74,7 +75,7 @@ class MissionSimulatedFlights(APIView):
         responses={201: shapes.SimulationSerializer, **FLIGHT_REFUSED, **QUOTA},
     )
     @idempotent
-    def post(self, request: Request, mission_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         body = shapes.SimulatedFlightsInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
@@ -102,7 +103,7 @@ class Simulations(APIView):
         parameters=[STATE, *PAGE_PARAMETERS],
         responses=shapes.SimulationPageSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         return _listed(request, simulations_of_organisation(request.user.organisation))
 
     @extend_schema(
@@ -117,7 +118,7 @@ class Simulations(APIView):
         responses={201: shapes.SimulationSerializer, **QUOTA},
     )
     @idempotent
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = shapes.SimulationInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         values = body.validated_data
@@ -146,7 +147,7 @@ class Simulations(APIView):
 
 class SimulationDetail(APIView):
     @extend_schema(operation_id="get_simulation", summary="A simulation with each of its UAVs", responses=shapes.SimulationSerializer)
-    def get(self, request: Request, simulation_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, simulation_id: UUID) -> Response:
         return _answer(request.user, simulation_id)
 
     @extend_schema(
@@ -156,7 +157,7 @@ class SimulationDetail(APIView):
         request=shapes.SimulationChangeSerializer,
         responses={200: shapes.SimulationSerializer, **OVER},
     )
-    def patch(self, request: Request, simulation_id: UUID) -> Response:
+    def patch(self, request: SignedInRequest, simulation_id: UUID) -> Response:
         simulation = _simulation_or_404(request.user, simulation_id)
         body = shapes.SimulationChangeSerializer(data=request.data)
         body.is_valid(raise_exception=True)
@@ -169,14 +170,14 @@ class SimulationDetail(APIView):
         description="Its UAVs are gone within a second, wherever they are; of one in the air the gateway loses the link.",
         responses={204: None},
     )
-    def delete(self, request: Request, simulation_id: UUID) -> Response:
+    def delete(self, request: SignedInRequest, simulation_id: UUID) -> Response:
         end_simulation(simulation=_simulation_or_404(request.user, simulation_id), actor=request.user)
         return Response(status=204)
 
 
 class SimulatedVehicleDetail(APIView):
     @extend_schema(operation_id="get_simulated_vehicle", summary="One simulated UAV", responses=shapes.SimulatedVehicleSerializer)
-    def get(self, request: Request, vehicle_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, vehicle_id: UUID) -> Response:
         return Response(shapes.vehicle_json(_vehicle_or_404(request.user, vehicle_id)))
 
     @extend_schema(
@@ -186,7 +187,7 @@ class SimulatedVehicleDetail(APIView):
         request=shapes.VehicleChangeSerializer,
         responses={200: shapes.SimulatedVehicleSerializer, **OVER},
     )
-    def patch(self, request: Request, vehicle_id: UUID) -> Response:
+    def patch(self, request: SignedInRequest, vehicle_id: UUID) -> Response:
         vehicle = _vehicle_or_404(request.user, vehicle_id)
         body = shapes.VehicleChangeSerializer(data=request.data)
         body.is_valid(raise_exception=True)
@@ -201,7 +202,7 @@ class SimulatedVehicleDetail(APIView):
         request=None,
         responses={204: None},
     )
-    def delete(self, request: Request, vehicle_id: UUID) -> Response:
+    def delete(self, request: SignedInRequest, vehicle_id: UUID) -> Response:
         end_vehicle(vehicle=_vehicle_or_404(request.user, vehicle_id), actor=request.user)
         return Response(status=204)
 
