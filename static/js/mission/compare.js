@@ -4,7 +4,15 @@ import { distance_m } from "../domain/geodesy.js";
 import { profileOf } from "../domain/route_profile.js";
 import { keyOf, wishesOf } from "./selection.js";
 
-/** A plan on the page in the short shape that the server remembers of the one before: see LastPlanSerializer. */
+/** @import { LastTarget, Plan } from "../api_types.d.ts" */
+/** @import { PickedTarget, ShortPlan, ShortRoute, ShownPlan } from "./types.d.ts" */
+
+/**
+ * A plan on the page in the short shape that the server remembers of the one before: see LastPlanSerializer.
+ *
+ * @param {Pick<ShownPlan, "result" | "targets">} plan
+ * @returns {ShortPlan}
+ */
 export function summaryOfPlan({ result, targets }) {
   return {
     planned_at: null,
@@ -23,8 +31,9 @@ export function summaryOfPlan({ result, targets }) {
         length_m: route.length_m,
         duration_s: route.duration_s,
         stops: profile.targets
-          .filter(({ target }) => targets[target])
-          .map(({ target, at }) => ({ ...pickOf(targets[target]), at_m: at })),
+          .map(({ target, at }) => ({ target: targets[target ?? -1], at_m: at }))
+          .filter(({ target }) => target)
+          .map(({ target, at_m }) => ({ ...pickOf(target), at_m })),
         off_network: profile.legs.filter((leg) => leg.offNetwork).map(({ from, to }) => [from, to]),
       };
     }),
@@ -32,6 +41,7 @@ export function summaryOfPlan({ result, targets }) {
   };
 }
 
+/** @param {PickedTarget} target @returns {LastTarget} */
 const pickOf = ({ asset, position, stretch, label }) => ({
   asset,
   position: position ?? null,
@@ -39,12 +49,20 @@ const pickOf = ({ asset, position, stretch, label }) => ({
   label,
 });
 
+/** @param {Pick<ShortRoute, "uav" | "uav_id">} a @param {Pick<ShortRoute, "uav" | "uav_id">} b */
 const isSameUav = (a, b) => (a.uav_id !== null && b.uav_id !== null ? a.uav_id === b.uav_id : a.uav === b.uav);
 
-/** Whether two plans fly the same: planning again what has not changed is not another plan. */
+/**
+ * Whether two plans fly the same: planning again what has not changed is not another plan.
+ *
+ * @param {ShortPlan} a
+ * @param {ShortPlan} b
+ */
 export function isSamePlan(a, b) {
+  /** @param {ShortPlan} plan */
   const essence = ({ routes }) =>
     JSON.stringify(routes.map(({ uav, length_m, stops }) => [uav, Math.round(length_m), stopsOf(stops).map(keyOf)]));
+  /** @param {ShortRoute} route */
   const beginsAndEndsAlike = (route) => {
     const { moved_m, to } = endsBetween(counterpart(route, a), route);
     return moved_m === 0 && to === null;
@@ -56,54 +74,76 @@ const LEAST_MOVED_M = 1;
 const PRIORITIES = ["high", "normal", "low"];
 const AS_GOOD = 0.05; // metres or seconds, as they are rounded in a plan
 
-/** Whether a plan does less of what was asked than another of the same selection on the same ground: less reached, then longer. */
+/**
+ * Whether a plan does less of what was asked than another of the same selection on the same ground: less reached, then longer.
+ *
+ * @param {ShownPlan} plan
+ * @param {ShownPlan} than
+ */
 export function isWorse(plan, than) {
   const [mine, theirs] = [plan, than].map(meritOf);
   const first = mine.findIndex((value, index) => Math.abs(value - theirs[index]) > AS_GOOD);
   return isOnSameGround(plan.result, than.result) && first !== -1 && mine[first] > theirs[first];
 }
 
-/** Less is better, in this order; as the planner counts. */
+/** Less is better, in this order; as the planner counts. @param {ShownPlan} plan */
 function meritOf({ result, targets }) {
   const missed = PRIORITIES.map(
     (priority) =>
       result.unassigned.filter(({ target }) => wishesOf(targets[target] ?? {}).priority === priority).length,
   );
   const [total, longest] = [result.total_length_m, Math.max(0, ...result.routes.map((route) => route.duration_s))];
-  const first =
-    { total, time: result.total_duration_s ?? longest, energy: result.total_energy_wh ?? total }[result.objective] ??
-    longest;
-  return [...missed, first, ...(result.objective === "total" ? [longest] : [total])];
+  const { objective, total_duration_s, total_energy_wh } = result;
+  const [time, energy] = [total_duration_s ?? longest, total_energy_wh ?? total];
+  const first = { total, time, energy, makespan: longest }[objective];
+  return [...missed, first, ...(objective === "total" ? [longest] : [total])];
 }
 
-/** Nothing stands between the two but the search: the same network, zones, heights, and UAVs that can fly; bases may have moved. */
+/**
+ * Nothing stands between the two but the search: the same network, zones, heights, and UAVs that can fly; bases may have moved.
+ *
+ * @param {Plan} a
+ * @param {Plan} b
+ */
 function isOnSameGround(a, b) {
+  /** @param {Plan} plan */
   const ground = ({ graph_version, ground_revision, warnings }) =>
     JSON.stringify([graph_version, ground_revision, (warnings ?? []).map(({ code, uav }) => [code, uav])]);
+  /** @param {Plan} plan */
   const landsAtBase = ({ routes }) => routes.some(({ end_action }) => end_action === "base");
   return ground(a) === ground(b) && !landsAtBase(a) && !landsAtBase(b);
 }
 
-/** A stretch has several waypoints of one target: the first of them is the stop. */
+/** A stretch has several waypoints of one target: the first of them is the stop. @param {ShortRoute["stops"]} stops */
 function stopsOf(stops) {
   return stops.filter((stop, index) => index === 0 || keyOf(stop) !== keyOf(stops[index - 1]));
 }
 
-/** Where each target is in a short plan: key → { route, number, label }; without a route: not reached. */
+/**
+ * Where each target is in a short plan: key → { route, number, label }; without a route: not reached.
+ *
+ * @param {ShortPlan} plan
+ */
 function placesIn(plan) {
+  /** @type {Map<string, { route: ShortRoute | null, number: number, label: string }>} */
   const places = new Map();
-  plan.unassigned.forEach((target) => places.set(keyOf(target), { route: null, number: 0, label: target.label }));
-  plan.routes.forEach((route) =>
-    stopsOf(route.stops).forEach((stop, index) =>
-      places.set(keyOf(stop), { route, number: index + 1, label: stop.label }),
-    ),
-  );
+  for (const target of plan.unassigned) places.set(keyOf(target), { route: null, number: 0, label: target.label });
+  for (const route of plan.routes)
+    stopsOf(route.stops).forEach((stop, index) => {
+      places.set(keyOf(stop), { route, number: index + 1, label: stop.label });
+    });
   return places;
 }
 
-/** before and now are plans in short. [{ key, label, from, to }]: from and to are routes, null where it is not reached; undefined where it is not in that plan. */
+/**
+ * before and now are plans in short. [{ key, label, from, to }]: from and to are routes, null where it is not reached; undefined where it is not in that plan.
+ *
+ * @param {ShortPlan} before
+ * @param {ShortPlan} now
+ */
 export function movesBetween(before, now) {
   const [old, fresh] = [placesIn(before), placesIn(now)];
+  /** @type {{ key: string, label: string, from: ShortRoute | null | undefined, to: ShortRoute | null | undefined }[]} */
   const moves = [];
   for (const [key, { route, label }] of fresh) {
     const was = old.get(key);
@@ -115,13 +155,23 @@ export function movesBetween(before, now) {
   return moves;
 }
 
-/** The route of the same UAV in another plan, or null. */
+/**
+ * The route of the same UAV in another plan, or null.
+ *
+ * @param {Pick<ShortRoute, "uav" | "uav_id">} route
+ * @param {ShortPlan | null | undefined} plan
+ */
 export function counterpart(route, plan) {
   return plan?.routes.find((other) => isSameUav(other, route)) ?? null;
 }
 
-/** What differs of where a route begins and how it ends from the same UAV's in another plan: { moved_m, from, to }; from and to are
- * { end_action, base }, null where they are the same. Of plans that are remembered without these, nothing differs. */
+/**
+ * What differs of where a route begins and how it ends from the same UAV's in another plan: { moved_m, from, to }; from and to are
+ * { end_action, base }, null where they are the same. Of plans that are remembered without these, nothing differs.
+ *
+ * @param {ShortRoute | null | undefined} old
+ * @param {ShortRoute} now
+ */
 export function endsBetween(old, now) {
   const moved_m = old?.start && now.start ? distance_m(old.start, now.start) : 0;
   const isSame = !old?.end_action || (old.end_action === now.end_action && old.base === now.base);
@@ -129,11 +179,12 @@ export function endsBetween(old, now) {
   return { moved_m: moved_m < LEAST_MOVED_M ? 0 : moved_m, from, to };
 }
 
-/** A route in short, as the drawing of a strip takes it. */
+/** A route in short, as the drawing of a strip takes it. @param {ShortRoute} route */
 export function profileOfSummary({ length_m, stops, off_network }) {
   const cuts = [...new Set([0, length_m, ...off_network.flat()])]
     .filter((at) => at >= 0 && at <= length_m)
     .sort((a, b) => a - b);
+  /** @param {number} at */
   const isOff = (at) => off_network.some(([from, to]) => at >= from && at < to);
   const legs = cuts.slice(1).map((to, index) => ({ from: cuts[index], to, offNetwork: isOff(cuts[index]) }));
   return {

@@ -9,6 +9,12 @@ import { ordersOf, wishedOrders } from "./locks.js";
 import { inWords } from "./plan_words.js";
 import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";
 
+/** @import { Plan, Unassigned } from "../api_types.d.ts" */
+/** @import { BestSoFar, HandEdit, Lock, MissionPageState, MissionSelection, PickedTarget, ShownPlan, ShownRoute } from "./types.d.ts" */
+
+/** @typedef {{ sequence: number, letter: string, number: number }} Place of a target in the plan */
+
+/** @type {Record<Unassigned["reason"], string>} */
 const REASONS = {
   no_path: t("No way along the network leads there."),
   inside_zone: t("It stands inside a no-fly zone."),
@@ -22,6 +28,7 @@ const REASONS = {
   most_targets: t("Every UAV that could fly it has as many targets as it may."),
 };
 
+/** @type {{ value: Plan["objective"], words: string, meaning: string }[]} */
 export const OBJECTIVES = [
   { value: "makespan", words: t("Finish soonest"), meaning: t("The last UAV is done as early as possible") },
   { value: "total", words: t("Fly least"), meaning: t("All routes together as short as possible") },
@@ -37,13 +44,27 @@ export const OBJECTIVES = [
   },
 ];
 
-/** The one to set beside another: the soonest end, beside which the fewest metres. */
+/**
+ * The one to set beside another: the soonest end, beside which the fewest metres.
+ *
+ * @param {Plan["objective"]} objective
+ * @returns {Plan["objective"]}
+ */
 export const otherObjective = (objective) => (objective === "makespan" ? "total" : "makespan");
 
-/** A plan that counts no energy is of UAVs without a battery: least energy means nothing for them. */
+/**
+ * A plan that counts no energy is of UAVs without a battery: least energy means nothing for them.
+ *
+ * @param {ShownPlan | null} plan
+ */
 export const isWithoutBattery = (plan) => plan !== null && (plan.result.total_energy_wh ?? null) === null;
 
-/** Routes with their place in the mission: [{ sequence, letter, name, route, targets }]. */
+/**
+ * Routes with their place in the mission: [{ sequence, letter, name, route, targets }].
+ *
+ * @param {Pick<ShownPlan, "result"> | null} plan
+ * @returns {ShownRoute[]}
+ */
 export function routesOf(plan) {
   if (!plan) return [];
   return plan.result.routes.map((route, sequence) => ({
@@ -54,18 +75,32 @@ export function routesOf(plan) {
   }));
 }
 
-/** Where each target stands in the plan, or would stand with what is locked: key → { sequence, letter, number }. */
+/**
+ * Where each target stands in the plan, or would stand with what is locked: key → { sequence, letter, number }.
+ *
+ * @param {ShownPlan | null} plan
+ * @param {Lock[]} [locks]
+ */
 export function placesOf(plan, locks = []) {
+  /** @type {Map<string, Place>} */
   const places = new Map();
   const wished = wishedOrders(ordersOf(plan), locks);
   for (const { sequence, letter } of routesOf(plan)) {
-    wished[sequence].targets.forEach((key, index) => places.set(key, { sequence, letter, number: index + 1 }));
+    wished[sequence].targets.forEach((key, index) => {
+      places.set(key, { sequence, letter, number: index + 1 });
+    });
   }
   return places;
 }
 
-/** Targets in the order of the plan, those without a place last, in the order they were picked. */
+/**
+ * Targets in the order of the plan, those without a place last, in the order they were picked.
+ *
+ * @param {PickedTarget[]} targets
+ * @param {Map<string, Place>} places
+ */
 export function inPlanOrder(targets, places) {
+  /** @param {PickedTarget} target */
   const rank = (target) => {
     const place = places.get(target.key);
     return place ? place.sequence * 100_000 + place.number : Number.MAX_SAFE_INTEGER;
@@ -76,7 +111,7 @@ export function inPlanOrder(targets, places) {
     .map(({ target }) => target);
 }
 
-/** [{ target, sentence, reason }] for the targets that no route visits. */
+/** [{ target, sentence, reason }] for the targets that no route visits. @param {ShownPlan | null} plan */
 export function unreachedOf(plan) {
   if (!plan) return [];
   return plan.result.unassigned.map((entry) => ({
@@ -86,17 +121,17 @@ export function unreachedOf(plan) {
   }));
 }
 
-/** From the mission's departure until the last UAV is done. */
+/** From the mission's departure until the last UAV is done. @param {Pick<Plan, "routes">} result */
 export function longestDuration_s(result) {
   return Math.max(0, ...result.routes.map((route) => route.duration_s + (route.departs_s ?? 0)));
 }
 
-/** "56 min, 79.5 km": what an objective gives, where it has been planned. */
+/** "56 min, 79.5 km": what an objective gives, where it has been planned. @param {Plan} result */
 export function figuresOf(result) {
   return `${durationText(longestDuration_s(result))}, ${lengthText(result.total_length_m)}`;
 }
 
-/** The sentence first, then the figures. */
+/** The sentence first, then the figures. @param {Pick<ShownPlan, "result" | "targets">} plan */
 export function sentenceOf(plan) {
   const { routes, unassigned, total_length_m } = plan.result;
   const flying = routes.filter((route) => route.geometry).length;
@@ -125,18 +160,23 @@ export function sentenceOf(plan) {
   };
 }
 
+/** @param {Pick<Plan, "total_energy_wh">} result */
 const energyFacts = ({ total_energy_wh }) =>
   total_energy_wh === null || total_energy_wh === undefined ? [] : [energyText(total_energy_wh)];
 
+/** @param {number} share */
 const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
 const LEAST_SHARE = 0.0005; // less is not told from nothing
 
 const LEFT_TO_THE_SEARCH = ["beyond_range", "beyond_energy", "most_targets"]; // others no plan reaches
 
-/** How good a plan is: { isProven, words, detail }; null where that is not known or says nothing, or nobody flies.
+/**
+ * How good a plan is: { isProven, words, detail }; null where that is not known or says nothing, or nobody flies.
  *
  * A bound is of the plans that reach as many targets. Which ones can be reached together is not bounded: where the search has left some
  * out, a figure would be taken for more than it is.
+ *
+ * @param {Plan} result
  */
 export function qualityOf({
   objective,
@@ -152,13 +192,13 @@ export function qualityOf({
 }) {
   const isKnown = is_proven || (gap !== null && gap !== undefined && gap < 1);
   if (!isKnown || !routes.some((route) => route.geometry)) return null;
-  const above = gap / (1 - gap); // `gap` is a share of this plan
   if (is_proven)
     return { isProven: true, words: provenWords(objective, Boolean(wish), unassigned.length > 0), detail: "" };
-  if (unassigned.some(({ reason }) => LEFT_TO_THE_SEARCH.includes(reason))) return null;
-  const bound =
-    { total: lower_bound_m, energy: lower_bound_wh }[objective] ??
-    (["makespan", "time"].includes(objective) ? lower_bound_s : null);
+  if (gap === null || unassigned.some(({ reason }) => LEFT_TO_THE_SEARCH.includes(reason))) return null;
+  const above = gap / (1 - gap); // `gap` is a share of this plan
+  const bound = { total: lower_bound_m, energy: lower_bound_wh, makespan: lower_bound_s, time: lower_bound_s }[
+    objective
+  ];
   const share = shareText(above);
   if (gap_of === "without_timed_zones")
     return { isProven: false, words: beyondTimedZones(above < LEAST_SHARE ? null : share, Boolean(wish)), detail: "" };
@@ -171,7 +211,12 @@ export function qualityOf({
   return { isProven: false, words, detail: bound === null || bound === undefined ? "" : boundWords(objective, bound) };
 }
 
-/** Against the best plan without the zones that come or go meanwhile: it may be that none is as good that keeps clear of them. share: null: nothing. */
+/**
+ * Against the best plan without the zones that come or go meanwhile: it may be that none is as good that keeps clear of them. share: null: nothing.
+ *
+ * @param {string | null} share
+ * @param {boolean} isLocked
+ */
 function beyondTimedZones(share, isLocked) {
   if (share === null) return t("No worse than the best plan without the zones that come or go meanwhile.");
   if (isLocked)
@@ -181,6 +226,7 @@ function beyondTimedZones(share, isLocked) {
   return t("At most {share} above the best plan without the zones that come or go meanwhile.", { share });
 }
 
+/** @param {Plan["objective"]} objective @param {number} bound */
 function boundWords(objective, bound) {
   if (objective === "total") return t("No plan can fly less than {length}.", { length: lengthText(bound) });
   if (objective === "energy") return t("No plan can use less than {energy}.", { energy: energyText(bound) });
@@ -188,7 +234,11 @@ function boundWords(objective, bound) {
   return t("No plan can be done in less than {time}.", { time: durationText(bound) });
 }
 
-/** By objective: as it is, with locks, where targets are left out, with both. */
+/**
+ * By objective: as it is, with locks, where targets are left out, with both.
+ *
+ * @type {Record<Plan["objective"], string[]>}
+ */
 const PROVEN = {
   total: [
     t("Proven shortest."),
@@ -216,9 +266,14 @@ const PROVEN = {
   ],
 };
 
+/** @param {Plan["objective"]} objective @param {boolean} isLocked @param {boolean} leavesOut */
 const provenWords = (objective, isLocked, leavesOut) => PROVEN[objective][(isLocked ? 1 : 0) + (leavesOut ? 2 : 0)];
 
-/** What the locked parts of a plan cost: "Your wish costs 2.3 km more (+4.0 %)." Empty where nothing is locked. */
+/**
+ * What the locked parts of a plan cost: "Your wish costs 2.3 km more (+4.0 %)." Empty where nothing is locked.
+ *
+ * @param {Pick<Plan, "objective" | "wish">} result
+ */
 export function wishWordsOf({ objective, wish }) {
   if (!wish) return "";
   const isTotal = objective !== "makespan"; // what it costs in time in the air or in energy is not told: its metres are
@@ -239,14 +294,18 @@ export function wishWordsOf({ objective, wish }) {
   return [words, leftOut].filter(Boolean).join(" ");
 }
 
-/** The best of a search until now: "51.2 km so far, at most 3.1 % above what is possible (49.7 km)". */
+/**
+ * The best of a search until now: "51.2 km so far, at most 3.1 % above what is possible (49.7 km)".
+ *
+ * @param {BestSoFar | null} best
+ */
 export function bestWordsOf(best) {
   if (!best) return "";
   const { unit, value, bound, left_out } = best;
   const textOf = { m: lengthText, s: durationText, Wh: energyText }[unit];
   const figure = textOf(value);
   const words =
-    bound > 0 && !left_out
+    bound !== null && bound > 0 && !left_out
       ? t("{figure} so far, at most {share} above what is possible ({least})", {
           figure,
           share: shareText(Math.max(0, value / bound - 1)),
@@ -258,7 +317,11 @@ export function bestWordsOf(best) {
     .join(", ");
 }
 
-/** How a route's flight ends: "ends hovering at A2". */
+/**
+ * How a route's flight ends: "ends hovering at A2".
+ *
+ * @param {Pick<ShownRoute, "end_action" | "base" | "letter" | "targets">} route
+ */
 export function endingOf({ end_action, base, letter, targets }) {
   if (end_action === "return") return t("returns to start");
   if (end_action === "base")
@@ -269,7 +332,11 @@ export function endingOf({ end_action, base, letter, targets }) {
     : t("ends hovering at {target}", { target: last });
 }
 
-/** The same for what is picked, before it is planned. */
+/**
+ * The same for what is picked, before it is planned.
+ *
+ * @param {Pick<MissionSelection, "return_to_start" | "uavs">} selection
+ */
 export function endingsOf({ return_to_start, uavs }) {
   if (return_to_start) return t("Each UAV flies back to where it took off");
   const actions = new Set(uavs.map((uav) => uav.end_action));
@@ -280,7 +347,12 @@ export function endingsOf({ return_to_start, uavs }) {
   return actions.size ? t("Each UAV ends as set for it, see its row") : t("Each UAV ends at its last target");
 }
 
-/** targets: in the order flown: [{ label, isLocked? }]. */
+/**
+ * targets: in the order flown: [{ label, isLocked? }].
+ *
+ * @param {ShownRoute} route
+ * @param {{ label?: string, isLocked?: boolean }[]} targets
+ */
 export function stripLabel(route, targets) {
   const names = targets
     .map(({ label, isLocked }, index) => `${index + 1} ${label ?? t("Target")}${isLocked ? ` ${t("(locked)")}` : ""}`)
@@ -295,18 +367,33 @@ export function stripLabel(route, targets) {
   return t("{name} flies {length} in {time} and {ending}: {targets}.", values);
 }
 
-/** The plan to compare the present one with: the one before it on the page, else the one that the mission remembers. */
+/**
+ * The plan to compare the present one with: the one before it on the page, else the one that the mission remembers.
+ *
+ * @param {Pick<MissionPageState, "lastPlan" | "mission">} state
+ */
 export function lastPlanOf({ lastPlan, mission }) {
   return lastPlan ?? mission?.last_plan ?? null;
 }
 
-/** The route that is changed by hand, as it would be flown: with the waypoints of the server's last look at it. */
+/**
+ * The route that is changed by hand, as it would be flown: with the waypoints of the server's last look at it.
+ *
+ * @param {ShownRoute} route
+ * @param {Pick<HandEdit, "look" | "points" | "original">} hand
+ * @returns {ShownRoute}
+ */
 function wishedRoute(route, { look, points, original }) {
   if (!look?.flown || !changesOf(points, original)) return route;
-  return { ...route, ...look.flown, length_m: look.length_m, duration_s: look.duration_s, isWished: true };
+  const [length_m, duration_s] = [look.length_m ?? route.length_m, look.duration_s ?? route.duration_s]; // known where it can be flown
+  return { ...route, ...look.flown, length_m, duration_s, isWished: true };
 }
 
-/** Whose profile and reasons are shown: the route that is changed by hand; where nobody has chosen one, the longest. Null where nobody flies. */
+/**
+ * Whose profile and reasons are shown: the route that is changed by hand; where nobody has chosen one, the longest. Null where nobody flies.
+ *
+ * @param {Pick<MissionPageState, "plan" | "lookedAt" | "chosenRoute" | "hand">} state
+ */
 export function shownRoute({ plan, lookedAt, chosenRoute, hand }) {
   const flown = routesOf(plan).filter((route) => route.geometry);
   const changed = hand && flown.find((route) => route.sequence === hand.sequence);
@@ -321,6 +408,8 @@ export function shownRoute({ plan, lookedAt, chosenRoute, hand }) {
 /**
  * Where on the map the pointer on a strip or a profile is, lon lat. along: { sequence, at_m, isWished }: isWished where it is on the profile
  * of a route as it is changed by hand. Null where that is not shown any more.
+ *
+ * @param {Pick<MissionPageState, "along" | "plan" | "lookedAt" | "chosenRoute" | "hand">} state
  */
 export function pointAlong(state) {
   const { along, plan } = state;
@@ -331,33 +420,39 @@ export function pointAlong(state) {
   return route ? positionAt(route.waypoints, profileOf(route.waypoints, route.length_m).places, along.at_m) : null;
 }
 
-/** Whether the plan on the page is the plan of what is picked. */
+/**
+ * Whether the plan on the page is the plan of what is picked.
+ *
+ * @param {Pick<MissionPageState, "plan" | "selection">} state
+ */
 export function isPlanCurrent(state) {
   return state.plan !== null && state.plan.basis === basisOf(state.selection);
 }
 
-/** Whether the plan on the page is that, but for locks and wishes of targets that are younger: they can be shown in it. */
+/**
+ * Whether the plan on the page is that, but for locks and wishes of targets that are younger: they can be shown in it.
+ *
+ * @param {Pick<MissionPageState, "plan" | "selection">} state
+ */
 export function isPlanInSight(state) {
   return (
     isPlanCurrent(state) || (state.plan !== null && state.plan.freeBasis === basisOf(withoutWishes(state.selection)))
   );
 }
 
-/** Places of what is picked, none where the plan is of something else; and the keys that no route visits. */
+/**
+ * Places of what is picked, none where the plan is of something else; and the keys that no route visits.
+ *
+ * @param {Pick<MissionPageState, "plan" | "selection">} state
+ */
 export function shownPlaces(state) {
-  if (!isPlanInSight(state)) return { places: new Map(), missed: new Set() };
+  if (!isPlanInSight(state)) return { places: placesOf(null), missed: new Set() };
   const places = placesOf(state.plan, state.selection.locks);
-  return {
-    places,
-    missed: new Set(
-      unreachedOf(state.plan)
-        .map(({ target }) => target?.key)
-        .filter((key) => !places.has(key)),
-    ),
-  };
+  const unreached = unreachedOf(state.plan).map(({ target }) => target?.key);
+  return { places, missed: new Set(unreached.filter((key) => !places.has(key))) };
 }
 
-/** Whether leaving the page would lose something. */
+/** Whether leaving the page would lose something. @param {Pick<MissionPageState, "mission" | "selection" | "name" | "plan" | "planIsStored" | "savedBasis">} state */
 export function isUnsaved(state) {
   if (!state.mission) return state.selection.targets.length > 0 || state.name.trim() !== "";
   const planUnsaved = isPlanCurrent(state) && !state.planIsStored;

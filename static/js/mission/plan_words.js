@@ -3,26 +3,30 @@
 import { language, t } from "../text.js";
 import { numberText } from "../units.js";
 
+/** @import { Plan } from "../api_types.d.ts" */
+
 const WALL = /^the \S+ m around a mast or wires that cannot be flown over$/;
 
-/** A zone's name in the reader's language, where it is no name but a description. */
+/** A zone's name in the reader's language, where it is no name but a description. @param {string} words */
 export function zoneOf(words) {
   if (WALL.test(words)) return t("the surroundings of a mast or wires that cannot be flown over");
   return /^the \S+ m around a no-fly zone$/.test(words) ? t("the margin round a no-fly zone") : words;
 }
-/** "1,234.5" of an English sentence as the reader writes it. */
+/** "1,234.5" of an English sentence as the reader writes it. @param {string} text */
 function figure(text) {
   const decimals = text.split(".")[1]?.length ?? 0;
   return numberText(Number(text.replaceAll(",", "")), decimals);
 }
 
 const THERE = "(there and on to the nearest base|there and back|there)";
+/** @type {Record<string, string>} */
 const WAYS = {
   there: t("there|way"),
   "there and back": t("there and back|way"),
   "there and on to the nearest base": t("there and on to the nearest base|way"),
 };
 
+/** @type {[RegExp, (...parts: string[]) => string][]} */
 const SENTENCES = [
   [/^It stands inside (.+)\.$/, (zone) => t("It stands inside {zones}.", { zones: zoneOf(zone) })],
   [/^It runs through (.+)\.$/, (zone) => t("It runs through {zones}.", { zones: zoneOf(zone) })],
@@ -176,15 +180,21 @@ const SENTENCES = [
   ],
 ];
 
-/** Whether a plan leaves the preferred ways for the shortest ones. */
+/** Whether a plan leaves the preferred ways for the shortest ones. @param {Pick<Plan, "warnings">} plan */
 export const takesShortestWays = ({ warnings }) => (warnings ?? []).some(({ code }) => code === "shortest_ways");
-/** What a plan warns of where a UAV stays on the ground. */
+/** What a plan warns of where a UAV stays on the ground. @type {string[]} */
 export const GROUNDING = ["uav_inside_zone", "uav_out_of_service"];
 
 const LOCKED = " It is locked to others: the run is left out as a whole.";
 const MINUTES = /^(.+): ([\d,.]+) min of flight\.$/;
 
-/** `fallback` where a language has no sentence for it; English as it is stored. */
+/**
+ * `fallback` where a language has no sentence for it; English as it is stored.
+ *
+ * @param {string} message
+ * @param {string} [fallback]
+ * @returns {string}
+ */
 export function inWords(message, fallback = message) {
   if (language === "en" || !message) return message || fallback;
   if (message.endsWith(LOCKED)) {
