@@ -1,15 +1,21 @@
 /** Gaps on the map: dots for those in the list, the chosen one drawn whole, and what a repair would draw. */
 
-const NOTHING = { type: "FeatureCollection", features: [] };
+import { addSources, readToken, setFeatures, setPaint } from "../map/look/style.js";
+
+/** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { MapLibreMap, ScreenPoint } from "../map/types.d.ts" */
+/** @import { Collection, Gap } from "./types.d.ts" */
+
 const SOURCES = ["gaps", "gap", "gap-repair"];
 const DOTS = "gaps-dots";
 const REACH_PX = matchMedia("(pointer: coarse)").matches ? 16 : 7;
 
-const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
+/** @param {number} far @param {number} near [px] */
 const byZoom = (far, near) => ["interpolate", ["linear"], ["zoom"], 9, far, 13, near]; // a hundred places of one line must not become a blot
 const isPoint = ["==", ["geometry-type"], "Point"];
 const isLine = ["==", ["geometry-type"], "LineString"];
 
+/** @returns {LayerSpecification[]} */
 function layers() {
   const [mark, casing, ground, accent, raised] = [
     "--warning-mark",
@@ -17,9 +23,9 @@ function layers() {
     "--ground",
     "--accent",
     "--raised",
-  ].map(read);
+  ].map(readToken);
   const round = { "line-cap": "round", "line-join": "round" };
-  return [
+  const layers = [
     {
       id: DOTS,
       type: "circle",
@@ -89,47 +95,68 @@ function layers() {
       },
     },
   ];
+  return /** @type {LayerSpecification[]} */ (layers);
 }
 
+/** @param {MapLibreMap} map */
 export function addTo(map) {
-  for (const source of SOURCES) map.addSource(source, { type: "geojson", data: NOTHING });
+  addSources(map, SOURCES);
   for (const layer of layers()) map.addLayer(layer);
 }
 
+/** @param {MapLibreMap} map */
 export function recolour(map) {
-  for (const layer of layers()) {
-    for (const [name, value] of Object.entries(layer.paint)) map.setPaintProperty(layer.id, name, value);
-  }
+  for (const layer of layers()) setPaint(map, layer);
 }
 
+/** @param {object} geometry @param {object} [properties] */
 const feature = (geometry, properties = {}) => ({ type: "Feature", properties, geometry });
+/** @param {number[][]} positions */
 const points = (positions) => positions.map((coordinates) => feature({ type: "Point", coordinates }));
 
+/** @param {MapLibreMap} map @param {Gap[]} gaps */
 export function showAll(map, gaps) {
   const features = gaps.map((gap) => feature({ type: "Point", coordinates: gap.properties.position }, { id: gap.id }));
-  map.getSource("gaps").setData({ type: "FeatureCollection", features });
+  setFeatures(map, "gaps", features);
 }
 
-/** The gap's own geometry, with a ring at each of its places; of a dead end also the way to the next part of the network. */
+/**
+ * The gap's own geometry, with a ring at each of its places; of a dead end also the way to the next part of the network.
+ *
+ * @param {MapLibreMap} map
+ * @param {Gap | null} gap
+ */
 export function showGap(map, gap) {
   const features = gap ? [feature(gap.geometry), ...points(placesOf(gap.geometry))] : [];
   const nearest = gap?.properties.details.nearest;
   if (nearest) features.unshift(feature({ type: "LineString", coordinates: [gap.properties.position, nearest] }));
-  map.getSource("gap").setData({ type: "FeatureCollection", features });
+  setFeatures(map, "gap", features);
 }
 
-/** A FeatureCollection, or null. Lines first, so that towers stand on them. */
+/**
+ * A FeatureCollection, or null. Lines first, so that towers stand on them.
+ *
+ * @param {MapLibreMap} map
+ * @param {Collection | null} preview
+ */
 export function showRepair(map, preview) {
   const features =
     preview?.features.filter(({ geometry }) => geometry.type === "Point" || geometry.type === "LineString") ?? [];
-  map.getSource("gap-repair").setData({ type: "FeatureCollection", features });
+  setFeatures(map, "gap-repair", features);
 }
 
+/** @param {MapLibreMap} map @param {number[][]} positions */
 export function showPlaces(map, positions) {
-  map.getSource("gap-repair").setData({ type: "FeatureCollection", features: points(positions) });
+  setFeatures(map, "gap-repair", points(positions));
 }
 
-/** The id of the gap whose dot is within reach of a point of the screen, or null. */
+/**
+ * The id of the gap whose dot is within reach of a point of the screen, or null.
+ *
+ * @param {MapLibreMap} map
+ * @param {ScreenPoint} point
+ * @returns {number | null}
+ */
 export function gapAt(map, { x, y }) {
   if (!map.getLayer(DOTS)) return null;
   const met = map.queryRenderedFeatures(
@@ -139,13 +166,16 @@ export function gapAt(map, { x, y }) {
     ],
     { layers: [DOTS] },
   );
+  /** @param {{ geometry: object }} feature */
   const away = ({ geometry }) => {
-    const place = map.project(geometry.coordinates);
+    const { coordinates } = /** @type {{ coordinates: [number, number] }} */ (geometry);
+    const place = map.project(coordinates);
     return Math.hypot(place.x - x, place.y - y);
   };
   return met.sort((a, b) => away(a) - away(b))[0]?.properties.id ?? null;
 }
 
+/** @param {Gap["geometry"]} geometry @returns {number[][]} */
 export function placesOf(geometry) {
   return geometry.type === "Point" ? [geometry.coordinates] : geometry.coordinates;
 }

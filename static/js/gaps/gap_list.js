@@ -1,97 +1,199 @@
 /** The side of the page: which gaps, and the list of them. */
 
-import { byId, h, icon, keyedList, refill } from "../dom.js";
+import { byId, h, icon, keyedList, refill, setChildren } from "../dom.js";
 import { t } from "../text.js";
 import { numberText } from "../units.js";
 import { cutOffText, KINDS, STATES } from "./kinds.js";
 
+/** @import { Gap, GapFilter } from "./types.d.ts" */
+
 const TYPED_MS = 250;
 
-/** on: { narrow(filter), choose(id), point(gap or null), more() }. Returns { filter, busy(whether), show(…), counts(…), mark(id), step(±1), openNext(), focusText() }. */
-export function mountGapList(on) {
-  const filter = { state: "open", kinds: new Set(), text: "", inView: false };
-  const list = byId("gap-list");
-  const end = byId("gap-list-end");
-  const states = byId("gap-states");
-  const kinds = byId("gap-kinds");
-  const text = byId("gap-text");
-  const change = () => on.narrow(filter);
-  let chosenId = null;
-  let chosenIndex = 0; // of the row that is or was chosen: what follows takes its place
-  let typing = 0;
+/**
+ * @typedef {object} ListHandlers
+ * @property {(filter: GapFilter) => void} narrow
+ * @property {(id: number) => void} choose
+ * @property {(gap: Gap | null) => void} point
+ * @property {() => void} more
+ */
 
-  const radios = STATES.map(({ state, name }) => {
-    const input = h("input", { type: "radio", name: "gap-state", value: state, checked: state === filter.state });
+/** @param {ListHandlers} on */
+export const mountGapList = (on) => new GapList(on);
+
+class GapList {
+  #on;
+  #list = byId("gap-list");
+  #end = byId("gap-list-end");
+  #text = byId("gap-text", HTMLInputElement);
+  #inView = byId("gap-in-view", HTMLInputElement);
+  #states;
+  #chips;
+  #draw;
+  /** @type {number | null} */
+  #chosenId = null;
+  #chosenIndex = 0; // of the row that is or was chosen: what follows takes its place
+  /** @type {GapFilter} */
+  filter = { state: "open", kinds: new Set(), text: "", inView: false };
+
+  /** @param {ListHandlers} on */
+  constructor(on) {
+    this.#on = on;
+    this.#states = STATES.map(({ state, name }) => this.#stateRadio(state, name));
+    this.#chips = Object.entries(KINDS).map(([kind, { name }]) => this.#kindChip(kind, name));
+    this.#draw = keyedList(
+      this.#list,
+      (/** @type {Gap} */ gap) => gap.id,
+      () => this.#makeRow(),
+      (item, gap) => this.#refreshRow(item, gap),
+    );
+    this.#watchText();
+    this.#inView.addEventListener("change", () => {
+      this.filter.inView = this.#inView.checked;
+      this.#narrow();
+    });
+  }
+
+  focusText = () => this.#text.focus();
+
+  /** Whether the list is still that of the filter before. @param {boolean} isBusy */
+  busy(isBusy) {
+    this.#list.setAttribute("aria-busy", String(isBusy));
+  }
+
+  /** The loaded gaps, and whether there are more. @param {Gap[]} gaps @param {{ hasMore: boolean, hasSearched: boolean }} how */
+  show(gaps, { hasMore, hasSearched }) {
+    this.#draw(gaps);
+    const more = { class: "button quiet more", type: "button", onclick: this.#on.more };
+    setChildren(
+      this.#end,
+      gaps.length === 0 && h("div", { class: "empty" }, this.#empty(hasSearched)),
+      hasMore && h("button", more, t("Show more")),
+    );
+  }
+
+  /** @param {Record<string, Record<string, number>>} numbers by kind, then state */
+  counts(numbers) {
+    for (const { state, count } of this.#states)
+      count.textContent = numberText(sum(Object.values(numbers).map((byState) => byState[state])));
+    for (const { kind, count, chip } of this.#chips) {
+      const number = numbers[kind]?.[this.filter.state] ?? 0;
+      count.textContent = numberText(number);
+      chip.hidden = !number && !this.filter.kinds.has(kind);
+    }
+  }
+
+  /** @param {number | null} id */
+  mark(id) {
+    this.#chosenId = id;
+    for (const [index, row] of this.#rows().entries()) {
+      const isChosen = idOf(row) === id;
+      row.setAttribute("aria-current", String(isChosen));
+      if (!isChosen) continue;
+      this.#chosenIndex = index;
+      row.scrollIntoView({ block: "nearest" });
+    }
+  }
+
+  /** Moves the focus along the rows; from outside to the one beside the chosen one. @param {1 | -1} by */
+  step(by) {
+    const rows = this.#rows();
+    const focused = rows.findIndex((row) => row.matches(":focus"));
+    const isThere = idOf(rows[this.#chosenIndex]) === this.#chosenId;
+    const from = focused >= 0 ? focused : isThere ? this.#chosenIndex : this.#chosenIndex - (by > 0 ? 1 : 0);
+    rows[Math.max(0, Math.min(rows.length - 1, from + by))]?.focus();
+  }
+
+  /** Opens the gap that has taken the place of the chosen one, which is off the list. */
+  openNext() {
+    const rows = this.#rows();
+    rows[Math.min(this.#chosenIndex, rows.length - 1)]?.click();
+  }
+
+  #narrow() {
+    this.#on.narrow(this.filter);
+  }
+
+  /** @returns {HTMLElement[]} */
+  #rows() {
+    return [.../** @type {NodeListOf<HTMLElement>} */ (this.#list.querySelectorAll(".gap-row"))];
+  }
+
+  /** @param {GapFilter["state"]} state @param {string} name */
+  #stateRadio(state, name) {
+    const checked = state === this.filter.state;
+    const input = h("input", { type: "radio", name: "gap-state", value: state, checked });
     const count = h("span", { class: "count" });
     input.addEventListener("change", () => {
-      filter.state = state;
-      change();
+      this.filter.state = state;
+      this.#narrow();
     });
-    states.append(h("label", {}, input, h("span", { class: "segment" }, h("span", {}, name), count)));
+    byId("gap-states").append(h("label", {}, input, h("span", { class: "segment" }, h("span", {}, name), count)));
     return { state, count };
-  });
-  const chips = Object.entries(KINDS).map(([kind, { name }]) => {
+  }
+
+  /** @param {string} kind @param {string} name */
+  #kindChip(kind, name) {
     const count = h("span", { class: "count" });
     const chip = h("button", { class: "kind-chip", type: "button", "aria-pressed": "false" }, name, count);
     chip.addEventListener("click", () => {
-      if (!filter.kinds.delete(kind)) filter.kinds.add(kind);
-      chip.setAttribute("aria-pressed", String(filter.kinds.has(kind)));
-      change();
+      const { kinds } = this.filter;
+      if (!kinds.delete(kind)) kinds.add(kind);
+      chip.setAttribute("aria-pressed", String(kinds.has(kind)));
+      this.#narrow();
     });
-    kinds.append(chip);
+    byId("gap-kinds").append(chip);
     return { kind, count, chip };
-  });
-  text.addEventListener("input", () => {
-    clearTimeout(typing);
-    typing = setTimeout(() => {
-      filter.text = text.value.trim();
-      change();
-    }, TYPED_MS);
-  });
-  byId("gap-in-view").addEventListener("change", (event) => {
-    filter.inView = event.target.checked;
-    change();
-  });
+  }
 
-  const draw = keyedList(list, (gap) => gap.id, makeRow, refreshRow);
+  #watchText() {
+    /** @type {ReturnType<typeof setTimeout> | undefined} */
+    let typing;
+    this.#text.addEventListener("input", () => {
+      clearTimeout(typing);
+      typing = setTimeout(() => {
+        this.filter.text = this.#text.value.trim();
+        this.#narrow();
+      }, TYPED_MS);
+    });
+  }
 
-  function makeRow() {
+  #makeRow() {
     const row = h("button", { class: "gap-row", type: "button" });
     const item = h("li", {}, row);
-    row.addEventListener("click", () => on.choose(Number(item.dataset.id)));
+    row.addEventListener("click", () => this.#on.choose(Number(item.dataset.id)));
     return item;
   }
 
-  function refreshRow(item, gap) {
+  /** @param {HTMLElement} item @param {Gap} gap */
+  #refreshRow(item, gap) {
     const { kind, title, asset, cut_off_m, details } = gap.properties;
-    const row = item.firstElementChild;
-    item.dataset.id = gap.id;
-    const words = [
-      title,
-      whose(asset),
-      cutOffText({ kind, cut_off_m }) || (details.is_advisory ? t("may be right") : ""),
-    ];
+    const row = /** @type {HTMLElement} */ (item.firstElementChild);
+    item.dataset.id = String(gap.id);
+    const figure = cutOffText({ kind, cut_off_m }) || (details.is_advisory ? t("may be right") : "");
+    const words = [title, asset ? [asset.label, asset.detail].filter(Boolean).join(", ") : "", figure];
     refill(row, [kind, ...words].join("\n"), () => [
       icon(KINDS[kind].icon),
       h("span", { class: "what" }, h("strong", {}, words[0]), h("small", {}, words[1])),
       h("span", { class: "figure" }, words[2]),
     ]);
-    row.onpointerenter = row.onfocus = () => on.point(gap);
-    row.onpointerleave = row.onblur = () => on.point(null);
-    row.setAttribute("aria-current", String(gap.id === chosenId));
+    const come = () => this.#on.point(gap);
+    const leave = () => this.#on.point(null);
+    Object.assign(row, { onpointerenter: come, onfocus: come, onpointerleave: leave, onblur: leave });
+    row.setAttribute("aria-current", String(gap.id === this.#chosenId));
   }
 
-  const rowsNow = () => [...list.querySelectorAll(".gap-row")];
+  #clearFilters() {
+    this.filter.kinds.clear();
+    this.filter.text = "";
+    this.filter.inView = false;
+    this.#text.value = "";
+    this.#inView.checked = false;
+    for (const { chip } of this.#chips) chip.setAttribute("aria-pressed", "false");
+    this.#narrow();
+  }
 
-  const clearFilters = () => {
-    filter.kinds.clear();
-    filter.text = text.value = "";
-    filter.inView = byId("gap-in-view").checked = false;
-    chips.forEach(({ chip }) => chip.setAttribute("aria-pressed", "false"));
-    change();
-  };
-
-  function empty(hasSearched) {
+  /** @param {boolean} hasSearched */
+  #empty(hasSearched) {
     if (!hasSearched)
       return [
         h("strong", {}, t("The ground is being searched.")),
@@ -99,79 +201,25 @@ export function mountGapList(on) {
         h("div", { class: "skeleton" }),
         h("div", { class: "skeleton" }),
       ];
-    if (filter.kinds.size || filter.text || filter.inView) {
-      const what = filter.text ? t("No gap matches “{text}”.", { text: filter.text }) : t("No gap like that here.");
-      return [
-        h("strong", {}, what),
-        h("button", { class: "button", type: "button", onclick: clearFilters }, t("Clear the filter")),
-      ];
+    const { kinds, text, inView, state } = this.filter;
+    if (kinds.size || text || inView) {
+      const what = text ? t("No gap matches “{text}”.", { text }) : t("No gap like that here.");
+      const clear = { class: "button", type: "button", onclick: () => this.#clearFilters() };
+      return [h("strong", {}, what), h("button", clear, t("Clear the filter"))];
     }
-    if (filter.state === "open")
+    if (state === "open")
       return [
         icon("circle-check"),
         h("strong", {}, t("Nothing looks wrong here.")),
         h("p", {}, t("The ground is searched again after each change.")),
       ];
-    return [
-      h(
-        "strong",
-        {},
-        filter.state === "repaired" ? t("Nothing has been repaired yet.") : t("Nothing has been left as it is."),
-      ),
-    ];
+    const none = state === "repaired" ? t("Nothing has been repaired yet.") : t("Nothing has been left as it is.");
+    return [h("strong", {}, none)];
   }
-
-  return {
-    filter,
-    focusText: () => text.focus(),
-    /** Whether the list is still that of the filter before. */
-    busy: (isBusy) => list.setAttribute("aria-busy", String(isBusy)),
-    /** The loaded gaps, and whether there are more. */
-    show(gaps, { hasMore, hasSearched }) {
-      draw(gaps);
-      end.replaceChildren(
-        ...(gaps.length ? [] : [h("div", { class: "empty" }, empty(hasSearched))]),
-        ...(hasMore
-          ? [h("button", { class: "button quiet more", type: "button", onclick: on.more }, t("Show more"))]
-          : []),
-      );
-    },
-    /** kinds: number by kind, then state. */
-    counts(numbers) {
-      for (const { state, count } of radios)
-        count.textContent = numberText(sum(Object.values(numbers).map((byState) => byState[state])));
-      for (const { kind, count, chip } of chips) {
-        const number = numbers[kind]?.[filter.state] ?? 0;
-        count.textContent = numberText(number);
-        chip.hidden = !number && !filter.kinds.has(kind);
-      }
-    },
-    mark(id) {
-      chosenId = id;
-      rowsNow().forEach((row, index) => {
-        const isChosen = Number(row.parentElement.dataset.id) === id;
-        row.setAttribute("aria-current", String(isChosen));
-        if (!isChosen) return;
-        chosenIndex = index;
-        row.scrollIntoView({ block: "nearest" });
-      });
-    },
-    /** Moves the focus along the rows; from outside to the one beside the chosen one. */
-    step(by) {
-      const rows = rowsNow();
-      const focused = rows.indexOf(document.activeElement);
-      const isThere = Number(rows[chosenIndex]?.parentElement.dataset.id) === chosenId;
-      const from = focused >= 0 ? focused : isThere ? chosenIndex : chosenIndex - (by > 0 ? 1 : 0);
-      rows[Math.max(0, Math.min(rows.length - 1, from + by))]?.focus();
-    },
-    /** The gap that has taken the place of the chosen one, which is off the list. */
-    openNext() {
-      const rows = rowsNow();
-      rows[Math.min(chosenIndex, rows.length - 1)]?.click();
-    },
-  };
 }
 
+/** @param {number[]} numbers */
 const sum = (numbers) => numbers.reduce((total, number) => total + number, 0);
 
-const whose = (asset) => (asset ? [asset.label, asset.detail].filter(Boolean).join(", ") : "");
+/** The gap of a row. @param {HTMLElement | undefined} row */
+const idOf = (row) => Number(row?.parentElement?.dataset.id);

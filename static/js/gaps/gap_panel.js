@@ -1,152 +1,145 @@
 /** The dock: the chosen gap in one sentence, its facts, and what can be done about it. */
 
-import { byId, h, icon } from "../dom.js";
+import { byId, h, icon, setChildren } from "../dom.js";
 import { t, tn } from "../text.js";
 import { coordinateText, whenText } from "../units.js";
 import { cautionOf, dismissWords, factsOf } from "./kinds.js";
 
+/** @import { Collection, Gap, GapOffer } from "./types.d.ts" */
+
 const LONGEST_NOTE = 500;
 
 /**
- * on: { repair(body), dismiss(note), reopen(), preview(collection or null), place(tell), placeDone(offer), placeBack(), placeCancel(), next(), close() };
- * canCurate says whether they are offered. `place` begins to take places from the map and tells how many there are.
- * Returns { show(gap or null), refresh(the same gap), busy(whether), fault(sentence) }. `refresh` leaves alone what is being done in the panel.
+ * What the acts of the panel do; curators are offered them.
+ *
+ * @typedef {object} PanelHandlers
+ * @property {(body: Record<string, unknown> & { action: string }) => void} repair
+ * @property {(note: string) => void} dismiss
+ * @property {() => void} reopen
+ * @property {(collection: Collection | null) => void} preview
+ * @property {(tell: (count: number) => void) => void} place begins to take places from the map and tells how many there are
+ * @property {(offer: GapOffer) => void} placeDone
+ * @property {() => void} placeBack
+ * @property {() => void} placeCancel
+ * @property {() => void} next
+ * @property {() => void} close
  */
-export function mountGapPanel(canCurate, on) {
-  const dock = byId("dock");
-  const panel = byId("gap-panel");
-  let acts = null;
-  let said = null;
-  let drawn = ""; // the gap as it is shown
-  let noting = null; // the form of a note, with the gap's id: it outlives a new drawing of the gap
 
-  function show(gap) {
-    dock.hidden = !gap;
-    drawn = JSON.stringify(gap);
-    if (gap?.id !== noting?.id || gap?.properties.state !== "open") noting = null;
+/** @param {boolean} canCurate @param {PanelHandlers} on */
+export const mountGapPanel = (canCurate, on) => new GapPanel(canCurate, on);
+
+class GapPanel {
+  #canCurate;
+  #on;
+  #dock = byId("dock");
+  #panel = byId("gap-panel");
+  #acts = h("div", { class: "gap-acts" });
+  #fault = h("p", { class: "field-error", role: "alert" });
+  #drawn = ""; // the gap as it is shown
+  /** The form of a note, with the gap's id: it outlives a new drawing of the gap. @type {{ id: number, form: HTMLElement } | null} */
+  #noting = null;
+
+  /** @param {boolean} canCurate @param {PanelHandlers} on */
+  constructor(canCurate, on) {
+    this.#canCurate = canCurate;
+    this.#on = on;
+  }
+
+  /** @param {Gap | null} gap */
+  show(gap) {
+    this.#dock.hidden = !gap;
+    this.#drawn = JSON.stringify(gap);
+    if (gap?.id !== this.#noting?.id || gap?.properties.state !== "open") this.#noting = null;
     if (!gap) {
-      panel.replaceChildren();
+      this.#panel.replaceChildren();
       return;
     }
-    const { properties } = gap;
-    acts = h("div", { class: "gap-acts" }, ...actsOf(gap));
-    said = h("p", { class: "field-error", role: "alert" });
-    const caution = properties.state === "open" ? cautionOf(properties) : "";
-    panel.replaceChildren(
-      h(
-        "div",
-        { class: "gap-words" },
-        h("h2", { class: "gap-sentence" }, properties.sentence),
-        h("p", { class: "gap-assets" }, assetWords(properties)),
-        h(
-          "dl",
-          { class: "gap-facts" },
-          [...factsOf(properties), [t("Place"), coordinateText(properties.position)]].map(([term, value]) =>
-            h("div", {}, h("dt", {}, term), h("dd", {}, value)),
-          ),
-        ),
-        caution && h("p", { class: "caption" }, caution),
-        properties.state !== "open" &&
-          h(
-            "p",
-            { class: "gap-decided" },
-            icon(properties.state === "repaired" ? "circle-check" : "hand"),
-            decidedWords(properties),
-          ),
-      ),
-      h("div", { class: "gap-do" }, acts, said),
-      h(
-        "button",
-        {
-          class: "icon-button tight gap-close",
-          type: "button",
-          "aria-label": t("Close"),
-          title: t("Close (Esc)"),
-          onclick: on.close,
-        },
-        icon("x"),
-      ),
+    const words = t("Close");
+    const close = {
+      class: "icon-button tight gap-close",
+      type: "button",
+      "aria-label": words,
+      onclick: this.#on.close,
+    };
+    this.fault("");
+    setChildren(this.#acts, this.#actsOf(gap));
+    setChildren(
+      this.#panel,
+      wordsOf(gap.properties),
+      h("div", { class: "gap-do" }, this.#acts, this.#fault),
+      h("button", { ...close, title: t("Close (Esc)") }, icon("x")),
     );
   }
 
-  function refresh(gap) {
-    if (JSON.stringify(gap) === drawn) return;
-    const focused = panel.contains(document.activeElement) ? document.activeElement : null;
-    show(gap);
+  /** The same gap again: leaves alone what is being done in the panel. @param {Gap} gap */
+  refresh(gap) {
+    if (JSON.stringify(gap) === this.#drawn) return;
+    const { activeElement } = document;
+    const focused = activeElement instanceof HTMLElement && this.#panel.contains(activeElement) ? activeElement : null;
+    this.show(gap);
     if (focused?.isConnected) focused.focus();
   }
 
-  function actsOf(gap) {
-    const { repairs, state } = gap.properties;
-    if (!canCurate) return [h("p", { class: "caption" }, state === "open" ? t("Curators can repair this.") : "")];
-    const following = h("button", { class: "button primary", type: "button", onclick: on.next }, t("Next gap"));
-    if (state === "dismissed")
-      return [
-        following,
-        h("button", { class: "button", type: "button", onclick: on.reopen }, icon("undo-2"), t("Open it again")),
-      ];
-    if (state === "repaired") return [following];
-    return [...repairs.flatMap((offer, index) => offerActs(offer, index === 0)), dismissAct(gap)];
+  /** @param {boolean} isBusy */
+  busy(isBusy) {
+    this.#panel.setAttribute("aria-busy", String(isBusy));
+    for (const button of this.#acts.querySelectorAll("button")) button.setAttribute("aria-disabled", String(isBusy));
   }
 
-  function offerActs(offer, isFirst) {
-    if (offer.parameter === "way") return [choiceOf(offer)];
-    const refused = offer.refused;
+  /** @param {string} sentence "" clears it */
+  fault(sentence) {
+    setChildren(this.#fault, sentence && [icon("circle-alert"), sentence]);
+  }
+
+  /** @param {Gap} gap @returns {(Node | null)[]} */
+  #actsOf(gap) {
+    const { repairs, state } = gap.properties;
+    if (!this.#canCurate) return [h("p", { class: "caption" }, state === "open" ? t("Curators can repair this.") : "")];
+    const next = h("button", { class: "button primary", type: "button", onclick: this.#on.next }, t("Next gap"));
+    const reopen = { class: "button", type: "button", onclick: this.#on.reopen };
+    if (state === "dismissed") return [next, h("button", reopen, icon("undo-2"), t("Open it again"))];
+    if (state === "repaired") return [next];
+    return [...repairs.flatMap((offer, index) => this.#offerActs(offer, index === 0)), this.#dismissAct(gap)];
+  }
+
+  /** @param {GapOffer} offer @param {boolean} isFirst @returns {(HTMLElement | null)[]} */
+  #offerActs(offer, isFirst) {
+    if (offer.parameter === "way") return [this.#choiceOf(offer)];
+    const { refused, preview, action } = offer;
     const style = isFirst ? "button primary" : "button";
-    const act = h(
-      "button",
-      { class: style, type: "button", disabled: Boolean(refused), title: refused || null },
-      offer.words,
-    );
-    previews(act, offer.preview);
-    act.addEventListener("click", () => on.repair({ action: offer.action }));
-    if (offer.parameter === "positions") {
-      return [
-        act,
-        h(
-          "button",
-          {
-            class: "button",
-            type: "button",
-            onclick: () => (on.place((count) => placing(offer, count)), placing(offer, 0)),
-          },
-          icon("map-pin"),
-          t("Place them on the map"),
-        ),
-      ];
+    const how = { class: style, type: "button", disabled: Boolean(refused), title: refused || null };
+    const act = h("button", { ...how, onclick: () => this.#on.repair({ action }) }, offer.words);
+    if (preview) {
+      for (const come of ["pointerenter", "focus"]) act.addEventListener(come, () => this.#on.preview(preview));
+      for (const go of ["pointerleave", "blur"]) act.addEventListener(go, () => this.#on.preview(null));
     }
     if (offer.parameter === "voltages_v")
-      return [offer.choices.length ? act : null, voltageForm(offer, !offer.choices.length)];
-    return [act];
+      return [offer.choices.length ? act : null, this.#voltageForm(offer, !offer.choices.length)];
+    if (offer.parameter !== "positions") return [act];
+    const place = () => {
+      this.#on.place((count) => this.#placing(offer, count));
+      this.#placing(offer, 0);
+    };
+    const placing = { class: "button", type: "button", onclick: place };
+    return [act, h("button", placing, icon("map-pin"), t("Place them on the map"))];
   }
 
-  function previews(act, collection) {
-    if (!collection) return;
-    for (const come of ["pointerenter", "focus"]) act.addEventListener(come, () => on.preview(collection));
-    for (const go of ["pointerleave", "blur"]) act.addEventListener(go, () => on.preview(null));
-  }
-
-  function choiceOf(offer) {
-    const choices = offer.choices.map(({ value, words }) =>
-      h(
-        "button",
-        {
-          class: "button",
-          type: "button",
-          onclick: () => on.repair({ action: offer.action, [offer.parameter]: value }),
-        },
-        words,
-      ),
-    );
+  /** @param {GapOffer} offer */
+  #choiceOf({ action, parameter, choices, words: question }) {
+    const buttons = choices.map(({ value, words }) => {
+      const act = () => this.#on.repair({ action, [parameter]: value });
+      return h("button", { class: "button", type: "button", onclick: act }, words);
+    });
     return h(
       "div",
-      { class: "gap-choice", role: "group", "aria-label": offer.words },
-      h("span", { class: "field-label" }, offer.words),
-      choices,
+      { class: "gap-choice", role: "group", "aria-label": question },
+      h("span", { class: "field-label" }, question),
+      buttons,
     );
   }
 
-  function voltageForm(offer, isFirst) {
+  /** @param {GapOffer} offer @param {boolean} isFirst */
+  #voltageForm({ action }, isFirst) {
     const input = h("input", {
       class: "input",
       id: "gap-volts",
@@ -155,15 +148,13 @@ export function mountGapPanel(canCurate, on) {
       autocomplete: "off",
       required: true,
     });
-    const submit = (event) => {
+    const submit = (/** @type {Event} */ event) => {
       event.preventDefault();
-      const kilovolts = input.value
-        .split(/[,;\s]+/)
-        .filter(Boolean)
-        .map(Number);
+      const parts = input.value.split(/[,;\s]+/).filter(Boolean);
+      const kilovolts = parts.map(Number);
       if (!kilovolts.length || kilovolts.some((value) => !(value > 0)))
-        return fault("Give one voltage or several in kV, with commas.");
-      on.repair({ action: offer.action, voltages_v: kilovolts.map((value) => Math.round(value * 1000)) });
+        this.fault(t("Give one voltage or several in kV, with commas."));
+      else this.#on.repair({ action, voltages_v: kilovolts.map((value) => Math.round(value * 1000)) });
     };
     return h(
       "form",
@@ -174,85 +165,96 @@ export function mountGapPanel(canCurate, on) {
     );
   }
 
-  function dismissAct({ id, properties }) {
-    if (noting) return noting.form;
+  /** @param {Gap} gap */
+  #dismissAct({ id, properties }) {
+    if (this.#noting) return this.#noting.form;
     const opener = h("button", { class: "button quiet", type: "button" }, dismissWords(properties.kind));
-    opener.addEventListener("click", () => {
-      const note = h("input", {
-        class: "input",
-        id: "gap-note",
-        maxlength: LONGEST_NOTE,
-        placeholder: t("Why it is right"),
-        "aria-label": t("Note"),
-        autocomplete: "off",
-      });
-      const form = h(
-        "form",
-        { class: "gap-form", onsubmit: (event) => (event.preventDefault(), on.dismiss(note.value.trim())) },
-        note,
-        h("button", { class: "button primary" }, t("Leave it")),
-        h(
-          "button",
-          {
-            class: "button quiet",
-            type: "button",
-            onclick: () => ((noting = null), form.replaceWith(opener), opener.focus()),
-          },
-          t("Cancel"),
-        ),
-      );
-      noting = { id, form };
-      opener.replaceWith(form);
-      note.focus();
-    });
+    opener.addEventListener("click", () => this.#note(id, opener));
     return opener;
   }
 
-  /** While places are clicked on the map the acts say how many there are. */
-  function placing(offer, count) {
-    drawn = "";
+  /** Asks for a note in the place of the button that opened it. @param {number} id @param {HTMLElement} opener */
+  #note(id, opener) {
+    const note = h("input", {
+      class: "input",
+      id: "gap-note",
+      maxlength: LONGEST_NOTE,
+      placeholder: t("Why it is right"),
+      "aria-label": t("Note"),
+      autocomplete: "off",
+    });
+    const submit = (/** @type {Event} */ event) => {
+      event.preventDefault();
+      this.#on.dismiss(note.value.trim());
+    };
+    const cancel = () => {
+      this.#noting = null;
+      form.replaceWith(opener);
+      opener.focus();
+    };
+    /** @type {HTMLFormElement} */
+    const form = h(
+      "form",
+      { class: "gap-form", onsubmit: submit },
+      note,
+      h("button", { class: "button primary" }, t("Leave it")),
+      h("button", { class: "button quiet", type: "button", onclick: cancel }, t("Cancel")),
+    );
+    this.#noting = { id, form };
+    opener.replaceWith(form);
+    note.focus();
+  }
+
+  /** While places are clicked on the map the acts say how many there are. @param {GapOffer} offer @param {number} count */
+  #placing(offer, count) {
+    this.#drawn = "";
     const words = count ? tn(count, "Place {count} tower", "Place {count} towers") : t("Click along the span");
-    acts.replaceChildren(
+    /** @param {string} kind @param {() => void} act @param {boolean} disabled */
+    const how = (kind, act, disabled) => ({ class: kind, type: "button", disabled, onclick: act });
+    setChildren(
+      this.#acts,
       h(
         "button",
-        { class: "button primary", type: "button", disabled: !count, onclick: () => on.placeDone(offer) },
+        how("button primary", () => this.#on.placeDone(offer), !count),
         words,
       ),
-      h(
-        "button",
-        { class: "button", type: "button", disabled: !count, onclick: () => on.placeBack() },
-        icon("undo-2"),
-        t("Take one back"),
-      ),
-      h("button", { class: "button quiet", type: "button", onclick: () => on.placeCancel() }, t("Cancel")),
+      h("button", how("button", this.#on.placeBack, !count), icon("undo-2"), t("Take one back")),
+      h("button", how("button quiet", this.#on.placeCancel, false), t("Cancel")),
     );
   }
-
-  function fault(sentence) {
-    said?.replaceChildren(...(sentence ? [icon("circle-alert"), sentence] : []));
-  }
-
-  return {
-    show,
-    refresh,
-    fault,
-    busy(isBusy) {
-      panel.setAttribute("aria-busy", String(isBusy));
-      for (const button of panel.querySelectorAll(".gap-acts button"))
-        button.setAttribute("aria-disabled", String(isBusy));
-    },
-  };
 }
 
+/** @param {Gap["properties"]} properties */
+function wordsOf(properties) {
+  const { state, sentence, position } = properties;
+  const facts = [...factsOf(properties), [t("Place"), coordinateText(position)]];
+  const caution = state === "open" ? cautionOf(properties) : "";
+  const decided = () => [icon(state === "repaired" ? "circle-check" : "hand"), decidedWords(properties)];
+  return h(
+    "div",
+    { class: "gap-words" },
+    h("h2", { class: "gap-sentence" }, sentence),
+    h("p", { class: "gap-assets" }, assetWords(properties)),
+    h(
+      "dl",
+      { class: "gap-facts" },
+      facts.map(([term, value]) => h("div", {}, h("dt", {}, term), h("dd", {}, value))),
+    ),
+    caution && h("p", { class: "caption" }, caution),
+    state !== "open" && h("p", { class: "gap-decided" }, decided()),
+  );
+}
+
+/** @param {Gap["properties"]} properties */
 function assetWords({ asset, other_asset: other }) {
-  const name = (thing) => [thing.label, thing.detail].filter(Boolean).join(", ");
-  return [asset, other].filter(Boolean).map(name).join(" · ");
+  return [asset, other]
+    .flatMap((thing) => (thing ? [[thing.label, thing.detail].filter(Boolean).join(", ")] : []))
+    .join(" · ");
 }
 
+/** @param {Gap["properties"]} properties */
 function decidedWords({ state, decided_by: who, decided_at: when, note }) {
-  const words = {
-    repaired: who ? t("Repaired by {name}", { name: who }) : t("No longer found"),
-    dismissed: who ? t("Left as it is by {name}", { name: who }) : t("Left as it is"),
-  };
-  return `${words[state]}${when ? `, ${whenText(when)}` : ""}${note ? `: ${note}` : ""}`;
+  const repaired = who ? t("Repaired by {name}", { name: who }) : t("No longer found");
+  const dismissed = who ? t("Left as it is by {name}", { name: who }) : t("Left as it is");
+  return `${state === "repaired" ? repaired : dismissed}${when ? `, ${whenText(when)}` : ""}${note ? `: ${note}` : ""}`;
 }

@@ -3,6 +3,12 @@
 import { t } from "../text.js";
 import { lengthText } from "../units.js";
 
+/** @import { GapKind } from "../api_types.d.ts" */
+/** @import { Gap } from "./types.d.ts" */
+
+/** @typedef {Gap["properties"]} Properties */
+
+/** @type {Record<GapKind, { name: string, icon: string }>} */
 export const KINDS = {
   ends_apart: { name: t("Should join"), icon: "line" },
   dead_end: { name: t("Dead ends"), icon: "line" },
@@ -14,13 +20,18 @@ export const KINDS = {
   impossible_voltage: { name: t("Voltages"), icon: "line" },
 };
 
+/** @type {{ state: Properties["state"], name: string }[]} */
 export const STATES = [
   { state: "open", name: t("Open") },
   { state: "dismissed", name: t("Left as it is") },
   { state: "repaired", name: t("Repaired") },
 ];
 
-/** "cuts off 34.2 km", or nothing where the gap cuts off nothing. */
+/**
+ * "cuts off 34.2 km", or nothing where the gap cuts off nothing.
+ *
+ * @param {Pick<Properties, "kind" | "cut_off_m">} gap
+ */
 export function cutOffText({ kind, cut_off_m: cutOff_m }) {
   if (!cutOff_m) return "";
   return onlyConcerns(kind)
@@ -28,10 +39,17 @@ export function cutOffText({ kind, cut_off_m: cutOff_m }) {
     : t("cuts off {length}", { length: lengthText(cutOff_m) });
 }
 
+/** @param {GapKind} kind */
 const onlyConcerns = (kind) => kind === "line_without_towers" || kind === "tower_on_no_line";
 
-/** Facts for the panel, beside what the sentence says: [term, value]. */
+/**
+ * Facts for the panel, beside what the sentence says: [term, value].
+ *
+ * @param {Pick<Properties, "kind" | "details" | "cut_off_m">} gap
+ * @returns {[string, string][]}
+ */
 export function factsOf({ kind, details, cut_off_m: cutOff_m }) {
+  /** @type {[string, string][]} */
   const cut = cutOff_m ? [[onlyConcerns(kind) ? t("Concerns") : t("Cuts off"), lengthText(cutOff_m)]] : [];
   switch (kind) {
     case "long_span":
@@ -53,7 +71,7 @@ export function factsOf({ kind, details, cut_off_m: cutOff_m }) {
   }
 }
 
-/** What Spanwise cannot know, where that matters. */
+/** What Spanwise cannot know, where that matters. @param {Pick<Properties, "kind" | "details">} gap */
 export function cautionOf({ kind, details }) {
   if (kind === "dead_end") return t("Spanwise keeps no substations: if one stands here, leave the end as it is.");
   if (kind === "missing_support") return t("Vertices inside a substation may hang on its portals.");
@@ -61,6 +79,7 @@ export function cautionOf({ kind, details }) {
   return "";
 }
 
+/** @param {GapKind} kind */
 export function dismissWords(kind) {
   return kind === "dead_end" ? t("It is meant to end here") : t("Leave it as it is");
 }

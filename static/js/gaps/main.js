@@ -3,6 +3,7 @@
 import { get, post } from "../api.js";
 import { byId } from "../dom.js";
 import { mountGroundPage } from "../ground/ground_page.js";
+import { coordinatesOf } from "../ground/record_list.js";
 import { boxAround } from "../map/map_view.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
@@ -11,16 +12,26 @@ import * as layer from "./gap_layer.js";
 import { mountGapList } from "./gap_list.js";
 import { mountGapPanel } from "./gap_panel.js";
 
-const PAGE = 100;
+/** @import { Answer, ApiError } from "../api.js" */
+/** @import { GapSummary, Repaired } from "../api_types.d.ts" */
+/** @import { Box } from "../map/types.d.ts" */
+/** @import { Gap } from "./types.d.ts" */
+
+const PAGE = "100";
 const SEARCHING_MS = 2_000; // between looks while the ground is searched
 const RESTING_MS = 15_000;
 const ROUND_DEG = 0.0015; // what is shown around a gap at least, some 150 m
 
+/** @type {Gap[]} */
 let gaps = [];
+/** Address of the next page. @type {string | null} */
 let next = null;
+/** @type {Gap | null} */
 let chosen = null;
+/** @type {GapSummary | null} */
 let summary = null;
-let placed = null; // positions that are being clicked, with what to tell of them
+/** Positions that are being clicked, with what to tell of them. @type {{ positions: number[][], tell: (count: number) => void } | null} */
+let placed = null;
 let asked = 0; // for the list
 let choices = 0;
 let refreshes = 0; // of the chosen gap
@@ -30,7 +41,7 @@ let lastLook = 0; // of those that were answered
 const { page, map, layout, open } = mountGroundPage({
   ringsItself: true,
   isBusy: () => placed !== null,
-  click: (thing, position, point) => {
+  click: (_thing, _position, point) => {
     const id = layer.gapAt(map.map, point);
     if (id) choose(id, { stay: true });
   },
@@ -44,21 +55,16 @@ const list = mountGapList({
 });
 const panel = mountGapPanel(page.canCurate, {
   repair,
-  dismiss: (note) =>
-    act(
-      () => post(`/gaps/${chosen.id}/dismiss`, { note }),
-      t("Left as it is."),
-      (id) => post(`/gaps/${id}/reopen`),
-    ),
-  reopen: () => act(() => post(`/gaps/${chosen.id}/reopen`), t("On the open list again.")),
+  dismiss: (note) => act((id) => post(`/gaps/${id}/dismiss`, { note }), t("Left as it is."), reopen),
+  reopen: () => act(reopen, t("On the open list again.")),
   preview: (collection) => layer.showRepair(map.map, collection),
   place: startPlacing,
-  placeDone: (offer) => repair({ action: offer.action, positions: placed.positions }),
-  placeBack: () => {
-    placed.positions.pop();
+  placeDone: ({ action }) => repair({ action, positions: placed?.positions }),
+  placeBack() {
+    placed?.positions.pop();
     tellPlaces();
   },
-  placeCancel: () => (stopPlacing(), panel.show(chosen)),
+  placeCancel,
   next: () => list.openNext(),
   close: () => choose(null),
 });
@@ -68,28 +74,30 @@ function query() {
   const parts = new URLSearchParams({ state, limit: PAGE });
   if (kinds.size) parts.set("kind", [...kinds].join(","));
   if (text) parts.set("text", text);
-  if (inView)
-    parts.set(
-      "bbox",
-      map
-        .box()
-        .map((degrees) => degrees.toFixed(6))
-        .join(","),
-    );
+  if (inView) parts.set("bbox", coordinatesOf(map.box()));
   return `/gaps?${parts}`;
 }
 
+/** @param {unknown} error */
+const messageOf = (error) => /** @type {Error} */ (error).message;
+
+/** @param {number} id */
+const reopen = (id) => post(`/gaps/${id}/reopen`);
+
+/** @param {{ more?: boolean }} [how] whether the next page is added */
 async function load({ more = false } = {}) {
-  const turn = ++asked;
+  asked += 1;
+  const turn = asked;
   list.busy(true);
   try {
-    const { data } = await get(more && next ? next : query());
+    const address = more && next ? next : query();
+    const { data } = /** @type {Answer<{ features: Gap[], next: string | null }>} */ (await get(address));
     if (turn !== asked) return; // the filter has changed since
     gaps = more ? [...gaps, ...data.features] : data.features;
     next = data.next;
     draw();
   } catch (error) {
-    if (turn === asked) toast(error.message, { label: t("Try again"), act: () => load({ more }) });
+    if (turn === asked) toast(messageOf(error), { label: t("Try again"), act: () => load({ more }) });
   } finally {
     if (turn === asked) list.busy(false);
   }
@@ -102,15 +110,16 @@ function draw() {
 }
 
 async function look() {
-  const turn = ++looks;
+  looks += 1;
+  const turn = looks;
   try {
-    const { data } = await get("/gaps/summary");
+    const { data } = /** @type {Answer<GapSummary>} */ (await get("/gaps/summary"));
     if (turn < lastLook) return; // a later look was answered first
     lastLook = turn;
     const before = summary?.searched_at;
     summary = data;
     list.counts(summary.kinds);
-    tellFacts();
+    tellFacts(summary);
     if (before !== undefined && before !== summary.searched_at) {
       await load();
       if (chosen && placed === null) await refreshChosen();
@@ -128,23 +137,31 @@ async function keepLooking() {
   }
 }
 
-function tellFacts() {
-  const open = Object.values(summary.kinds).reduce((total, byState) => total + byState.open, 0);
+/** @param {GapSummary} summary */
+function tellFacts({ kinds, is_current, searched_at }) {
+  const open = Object.values(kinds).reduce((total, byState) => total + byState.open, 0);
   const facts = byId("page-facts");
-  facts.dataset.searching = String(!summary.is_current);
-  if (!summary.searched_at)
-    facts.textContent = summary.is_current ? t("Nothing to search yet") : t("Searching the ground…");
-  else
-    facts.textContent = `${tn(open, "{count} gap open", "{count} gaps open")} · ${summary.is_current ? t("searched {when}", { when: whenText(summary.searched_at) }) : t("searching the changed ground…")}`;
+  facts.dataset.searching = String(!is_current);
+  if (!searched_at) {
+    facts.textContent = is_current ? t("Nothing to search yet") : t("Searching the ground…");
+    return;
+  }
+  const when = is_current ? t("searched {when}", { when: whenText(searched_at) }) : t("searching the changed ground…");
+  facts.textContent = `${tn(open, "{count} gap open", "{count} gaps open")} · ${when}`;
 }
 
+/** @param {number | null} id @param {{ stay?: boolean }} [how] stay: the map does */
 async function choose(id, { stay = false } = {}) {
-  const turn = ++choices;
+  choices += 1;
+  const turn = choices;
   stopPlacing();
   layer.showRepair(map.map, null);
-  if (id === null) return chooseNone();
+  if (id === null) {
+    chooseNone();
+    return;
+  }
   try {
-    const { data } = await get(`/gaps/${id}`);
+    const { data } = /** @type {Answer<Gap>} */ (await get(`/gaps/${id}`));
     if (turn !== choices) return; // another has been chosen since
     chosen = data;
     panel.show(data);
@@ -156,12 +173,13 @@ async function choose(id, { stay = false } = {}) {
     if (!stay) map.fit(boxOf(data));
     say(data.properties.sentence);
   } catch (error) {
-    if (turn === choices)
-      toast(error.status === 404 ? t("This gap is gone: its asset was taken away.") : error.message);
+    const { status, message } = /** @type {ApiError} */ (error);
+    if (turn === choices) toast(status === 404 ? t("This gap is gone: its asset was taken away.") : message);
   }
 }
 
 function chooseNone() {
+  /** @type {HTMLElement | null} */
   const row = document.querySelector(".gap-row[aria-current=true]");
   const hadFocus = byId("gap-panel").contains(document.activeElement);
   chosen = null;
@@ -174,11 +192,13 @@ function chooseNone() {
 
 /** What has become of the chosen gap; nothing where another has been chosen, or places are being clicked, before the answer comes. */
 async function refreshChosen() {
-  const turn = ++refreshes;
+  if (!chosen) return;
+  refreshes += 1;
+  const turn = refreshes;
   const { id } = chosen;
   const isLate = () => turn !== refreshes || chosen?.id !== id || placed !== null;
   try {
-    const { data } = await get(`/gaps/${id}`);
+    const { data } = /** @type {Answer<Gap>} */ (await get(`/gaps/${id}`));
     if (isLate()) return;
     chosen = data;
     panel.refresh(data);
@@ -191,62 +211,74 @@ async function refreshChosen() {
 
 function remember() {
   const address = new URL(location.href);
-  if (chosen) address.searchParams.set("gap", chosen.id);
+  if (chosen) address.searchParams.set("gap", String(chosen.id));
   else address.searchParams.delete("gap");
   history.replaceState(history.state, "", address);
 }
 
+/** @param {Gap} gap @returns {Box} */
 function boxOf({ geometry, properties }) {
   const { nearest } = properties.details;
-  const [west, south, east, north] = boxAround([...layer.placesOf(geometry), ...(nearest ? [nearest] : [])]);
+  const places = [...layer.placesOf(geometry), ...(nearest ? [nearest] : [])];
+  const [west, south, east, north] = /** @type {Box} */ (boxAround(places));
   const wide = Math.max(0, ROUND_DEG - (east - west) / 2) / Math.cos((south * Math.PI) / 180);
   const high = Math.max(0, ROUND_DEG - (north - south) / 2);
   return [west - wide, south - high, east + wide, north + high];
 }
 
+/** @param {Record<string, unknown>} body */
 async function repair(body) {
+  if (!chosen) return;
   const { id } = chosen;
   panel.busy(true);
   panel.fault("");
   try {
-    const { data } = await post(`/gaps/${id}/repair`, body);
+    const { data } = /** @type {Answer<Repaired>} */ (await post(`/gaps/${id}/repair`, body));
     stopPlacing();
     const undo = () => settle(post(`/gaps/${id}/undo`, { entries: data.entries }), t("Taken back."), id);
     toast(data.said, { label: t("Undo"), act: undo });
     await afterChange(id);
   } catch (error) {
-    panel.fault(error.message);
+    panel.fault(messageOf(error));
   } finally {
     panel.busy(false);
   }
 }
 
-/** A decision about the chosen gap; `back(id)` takes it back. */
+/**
+ * Takes a decision about the chosen gap; `back(id)` takes it back.
+ *
+ * @param {(id: number) => Promise<unknown>} change
+ * @param {string} words
+ * @param {((id: number) => Promise<unknown>) | null} [back]
+ */
 async function act(change, words, back = null) {
+  if (!chosen) return;
   const { id } = chosen;
   panel.busy(true);
   try {
-    await change();
+    await change(id);
     toast(words, back && { label: t("Undo"), act: () => settle(back(id), t("On the open list again."), id) });
     await afterChange(id);
   } catch (error) {
-    panel.fault(error.message);
+    panel.fault(messageOf(error));
   } finally {
     panel.busy(false);
   }
 }
 
+/** @param {Promise<unknown>} promise @param {string} words @param {number} id */
 async function settle(promise, words, id) {
   try {
     await promise;
     toast(words);
     await afterChange(id);
   } catch (error) {
-    toast(error.message);
+    toast(messageOf(error));
   }
 }
 
-/** The list and the map anew; the changed gap stays in sight, so that one sees what has become of it. */
+/** The list and the map anew; the changed gap stays in sight, so that one sees what has become of it. @param {number} id */
 async function afterChange(id) {
   map.refreshTiles();
   layer.showRepair(map.map, null);
@@ -255,6 +287,7 @@ async function afterChange(id) {
   if (chosen?.id === id) await refreshChosen();
 }
 
+/** @param {(count: number) => void} tell */
 function startPlacing(tell) {
   placed = { positions: [], tell };
   layer.showPlaces(map.map, []);
@@ -262,6 +295,7 @@ function startPlacing(tell) {
 }
 
 function tellPlaces() {
+  if (!placed) return;
   layer.showPlaces(map.map, placed.positions);
   placed.tell(placed.positions.length);
 }
@@ -273,16 +307,23 @@ function stopPlacing() {
   layer.showPlaces(map.map, []);
 }
 
+function placeCancel() {
+  stopPlacing();
+  panel.show(chosen);
+}
+
 map.map.on("click", (event) => {
   if (!placed) return;
   placed.positions.push([event.lngLat.lng, event.lngLat.lat].map((degrees) => Number(degrees.toFixed(7))));
   tellPlaces();
 });
-map.map.on("moveend", () => list.filter.inView && load());
+map.map.on("moveend", () => {
+  if (list.filter.inView) load();
+});
 
 const showChosen = () => {
   const row = document.activeElement;
-  if (!row?.classList.contains("gap-row")) return false;
+  if (!(row instanceof HTMLElement) || !row.classList.contains("gap-row")) return false;
   row.click();
   return true;
 };
@@ -293,7 +334,7 @@ open({
     { keys: ["j"], words: t("Next gap"), act: () => list.step(1) },
     { keys: ["k"], words: t("Previous gap"), act: () => list.step(-1) },
     { keys: ["enter"], words: t("Show it on the map"), act: showChosen },
-    { keys: ["escape"], act: () => (placed ? (stopPlacing(), panel.show(chosen)) : chosen ? choose(null) : false) },
+    { keys: ["escape"], act: () => (placed ? placeCancel() : chosen ? choose(null) : false) },
   ],
   async load() {
     layer.addTo(map.map);
