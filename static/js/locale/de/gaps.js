@@ -1,6 +1,7 @@
 /** Gaps in the data. English → German; [one, other] where there is a plural. */
 
 export default {
+  "Give one voltage or several in kV, with commas.": "Eine oder mehrere Spannungen in kV angeben, mit Komma getrennt.",
   "A valley or a river may be crossed in one span.": "Ein Tal oder ein Fluss kann in einem Spannfeld überquert werden.",
   "also reached another way": "auch anders erreichbar",
   "As tagged": "Wie angegeben",
