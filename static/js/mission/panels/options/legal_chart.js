@@ -4,17 +4,7 @@ import { find, h } from "../../../dom.js";
 import { scheduleText } from "../../../domain/schedule_words.js";
 import { t } from "../../../text.js";
 import { departureText } from "../../flight_options.js";
-import {
-  legalTimesOf,
-  legsText,
-  momentAt,
-  STEP_MS,
-  shareOf,
-  spanAt,
-  spanText,
-  stepWithin,
-  ticksOf,
-} from "../../legal_times.js";
+import { legsText, momentAt, STEP_MS, shareOf, spanAt, spanText, stepWithin, ticksOf } from "../../legal_times.js";
 
 /** @import { Child } from "../../../dom.js" */
 /** @import { legalTimesOf } from "../../legal_times.js" */

@@ -1,0 +1,288 @@
+/** What a rehearsal says: the sentence, its runs, then each route with its figures, curves and targets. */
+
+import { byId, h, icon, refill } from "../../../dom.js";
+import { routeLetter, routeNumber } from "../../../domain/palette.js";
+import { t } from "../../../text.js";
+import { exactHeightText, heightText, numberText, percentText, speedText, whenText } from "../../../units.js";
+import { figuresOf, LEVELS, levelWords, nearestOther, sentenceOf } from "../../rehearsal.js";
+import { drawCharts } from "../../rehearsal_charts.js";
+
+/**
+ * @import { RehearsalConditions, RehearsalDetail, RehearsalRunWithVerdict, RehearsalTrack, RehearsedRoute, RehearsedTarget,
+ *   Verdict, VerdictLevel } from "../../../api_types.d.ts"
+ */
+/** @import { Child } from "../../../dom.js" */
+/** @import { MissionStore, RehearsalState } from "../../types.d.ts" */
+/** @import { Rehearsing } from "./rehearsal.js" */
+
+/** @typedef {{ canRehearse: boolean, seeInSpace: () => unknown }} VerdictHow */
+
+/** @param {MissionStore} store @param {Rehearsing} rehearsing @param {VerdictHow} how */
+export function createVerdict(store, rehearsing, { canRehearse, seeInSpace }) {
+  const place = byId("rehearsal-verdict");
+  /** @type {number | null} */
+  let chosenRoute = null;
+
+  /** Only one route is open. @param {number} uav */
+  function choose(uav) {
+    if (chosenRoute === uav) return;
+    chosenRoute = uav;
+    for (const details of /** @type {NodeListOf<HTMLDetailsElement>} */ (place.querySelectorAll(".rehearsal-route")))
+      if (!details.classList.contains(`route-${routeNumber(uav)}`)) details.open = false;
+  }
+
+  /** @param {RehearsalDetail} detail @returns {Child} */
+  const againButton = (detail) => [
+    " ",
+    h(
+      "button",
+      {
+        type: "button",
+        class: "text-button",
+        disabled: store.state.rehearsal.running !== null,
+        onclick: () =>
+          void rehearsing.start(
+            detail.runs.map(({ conditions }) => askedAgain(conditions)),
+            { afresh: true },
+          ),
+      },
+      t("Fly it again"),
+    ),
+  ];
+
+  /** @param {RehearsalDetail} detail @param {number} number of the run @param {RehearsalTrack | null} track @returns {Child} */
+  function content(detail, number, track) {
+    const run = detail.runs[number];
+    return [
+      h("h3", { class: "rehearsal-sentence", id: "rehearsal-sentence" }, sentenceOf(detail)),
+      h(
+        "p",
+        { class: "caption" },
+        t("Simulated {time}", { time: whenText(detail.created_at) }),
+        detail.created_by && ` · ${detail.created_by}`,
+      ),
+      ageNotice(detail),
+      detail.runs.length > 1 && runButtons(detail, number, (sequence) => void rehearsing.chooseRun(sequence)),
+      run?.is_reused && reusedNote(run, canRehearse && !detail.is_outdated && againButton(detail)),
+      run?.verdict && [
+        h("p", { class: "rehearsal-air" }, airWords(run.conditions)),
+        h(
+          "button",
+          { type: "button", class: "button small", onclick: seeInSpace },
+          icon("move-3d", "small"),
+          t("See it in 3D"),
+        ),
+        routesOf(run.verdict, detail, track, { open: chosenRoute ?? worstRoute(run.verdict), choose }),
+      ],
+      limitsOf(detail),
+    ];
+  }
+
+  return {
+    /** @param {RehearsalState} rehearsal @param {number | undefined} revision of the mission */
+    draw({ detail, run, track }, revision) {
+      if (!detail?.runs) {
+        refill(place, "", () => []);
+        return;
+      }
+      const { id, state, level, is_outdated, ground_changed } = detail;
+      const key = [id, state, level, is_outdated, ground_changed, run, Boolean(track), chosenRoute, revision];
+      refill(place, JSON.stringify(key), () => content(detail, run, track));
+    },
+  };
+}
+
+/** Whether it is of another plan, or on another ground. @param {RehearsalDetail} detail */
+function ageNotice({ is_outdated, ground_changed }) {
+  if (is_outdated)
+    return h(
+      "p",
+      { class: "notice warning", role: "status" },
+      icon("triangle-alert"),
+      h(
+        "span",
+        {},
+        h("strong", {}, t("Out of date.")),
+        " ",
+        t("The plan is another one by now: this says nothing about it. Rehearse it again."),
+      ),
+    );
+  if (!ground_changed) return null;
+  return h(
+    "p",
+    { class: "notice advisory" },
+    icon("info"),
+    h("span", {}, t("Zones, assets or terrain have changed somewhere since.")),
+  );
+}
+
+/** @param {RehearsalDetail} detail @param {number} shown @param {(sequence: number) => void} choose */
+const runButtons = ({ runs }, shown, choose) =>
+  h(
+    "div",
+    { class: "rehearsal-runs", role: "group", "aria-label": t("Conditions") },
+    runs.map(({ sequence, level, words }) =>
+      h(
+        "button",
+        {
+          type: "button",
+          class: "button small",
+          "aria-pressed": `${sequence === shown}`,
+          disabled: !level,
+          onclick: () => choose(sequence),
+        },
+        icon(iconOf(level), "small"),
+        words,
+      ),
+    ),
+  );
+
+/** @param {RehearsalRunWithVerdict} run @param {Child} again */
+const reusedNote = (run, again) =>
+  h(
+    "p",
+    { class: "caption rehearsal-reused" },
+    t("Flown {time}: the same plan in the same air flies alike, and was not flown again.", {
+      time: run.finished_at ? whenText(run.finished_at) : "",
+    }),
+    again,
+  );
+
+/** @param {RehearsalDetail} detail */
+const limitsOf = ({ uavs, limits }) =>
+  h(
+    "details",
+    { class: "rehearsal-limits" },
+    h("summary", {}, t("Limits and what flew")),
+    uavs.map(({ words }) => h("p", { class: "caption" }, words)),
+    h(
+      "dl",
+      {},
+      limits.map(({ words, value, name, source }) => [
+        h("dt", {}, words),
+        h("dd", {}, limitText(name, value), h("small", {}, source)),
+      ]),
+    ),
+  );
+
+/**
+ * @param {Verdict} verdict
+ * @param {RehearsalDetail} detail
+ * @param {RehearsalTrack | null} track
+ * @param {{ open: number | undefined, choose: (uav: number) => void }} chosen
+ */
+const routesOf = (verdict, { limits }, track, { open, choose }) =>
+  verdict.routes.map((route) => {
+    const flown = track?.routes.find(({ uav }) => uav === route.uav);
+    const element = h(
+      "details",
+      { class: `rehearsal-route route-${routeNumber(route.uav)}`, open: open === route.uav },
+      h(
+        "summary",
+        {},
+        h("span", { class: "letter" }, routeLetter(route.uav)),
+        h("strong", {}, route.name),
+        levelMark(route.level),
+        icon("chevron-down", "small"),
+      ),
+      route.reasons.length > 0 &&
+        h(
+          "ul",
+          { class: "rehearsal-reasons" },
+          route.reasons.map((words) => h("li", {}, words)),
+        ),
+      figuresTable(route, limits, verdict),
+      flown && drawCharts(flown, route.reserve_percent),
+      h("h4", {}, t("Targets")),
+      h("ol", { class: "rehearsal-targets" }, route.targets.map(targetRow)),
+    );
+    element.addEventListener("toggle", () => {
+      if (element.open) choose(route.uav);
+    });
+    return element;
+  });
+
+/** @param {RehearsedRoute} route @param {RehearsalDetail["limits"]} limits @param {Verdict} verdict */
+function figuresTable(route, limits, verdict) {
+  const other = nearestOther(verdict, route.uav);
+  const rows = [
+    ...figuresOf(route, limits).map(({ words, flown, beside }) => [words, flown, beside]),
+    ...(other ? [[t("From another UAV"), heightText(other.away_m), routeLetter(other.other)]] : []),
+  ];
+  return h(
+    "table",
+    { class: "rehearsal-table" },
+    h("caption", { class: "unseen" }, t("Flown in simulation, and planned or allowed")),
+    h(
+      "tbody",
+      {},
+      rows.map(([words, value, beside]) =>
+        h("tr", {}, h("th", { scope: "row" }, words), h("td", { class: "number" }, value), h("td", {}, beside)),
+      ),
+    ),
+  );
+}
+
+/** @param {RehearsedTarget} target */
+function targetRow({ target, label, level, closest_m, is_reached, battery_percent, reasons }) {
+  const reached =
+    closest_m === null
+      ? t("not flown to")
+      : is_reached
+        ? t("reached, {away} off", { away: heightText(closest_m) })
+        : t("not reached, {away} off", { away: heightText(closest_m) });
+  const battery = battery_percent !== null && t("battery {percent}", { percent: percentText(battery_percent) });
+  return h(
+    "li",
+    { class: level },
+    icon(LEVELS[level], "small"),
+    h(
+      "div",
+      {},
+      h("p", {}, h("strong", {}, `${target + 1} ${label}`), h("span", { class: "unseen" }, ` ${levelWords(level)}`)),
+      h("p", { class: "caption" }, [reached, battery].filter(Boolean).join(" · ")),
+      reasons.map((words) => h("p", { class: "rehearsal-why" }, words)),
+    ),
+  );
+}
+
+/** @param {VerdictLevel | ""} level */
+const iconOf = (level) => (level ? LEVELS[level] : "circle-dashed");
+
+/** @param {VerdictLevel} level */
+const levelMark = (level) =>
+  h("span", { class: `rehearsal-level ${level || "open"}` }, icon(iconOf(level), "small"), levelWords(level));
+
+/** Conditions as a request names them: those of a run once more. @param {RehearsalConditions} conditions */
+const askedAgain = ({ code, name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent }) =>
+  code === "own" ? { name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent } : code;
+
+/** @param {Verdict} verdict */
+const worstRoute = ({ routes }) =>
+  (routes.find(({ level }) => level === "fail") ?? routes.find(({ level }) => level === "warnings") ?? routes.at(0))
+    ?.uav;
+
+/** @param {string} name ends with its unit @param {number} value */
+const limitText = (name, value) =>
+  name.endsWith("_percent")
+    ? percentText(value)
+    : name.endsWith("_s")
+      ? `${numberText(value)}\u00a0s`
+      : exactHeightText(value);
+
+/** @param {RehearsalConditions} conditions */
+function airWords({ wind, gusts_mps, battery_percent }) {
+  const first = wind.at(0);
+  const words = [
+    first && first.speed_mps > 0
+      ? t("wind {speed} from {from}° at {height}", {
+          speed: speedText(first.speed_mps),
+          from: Math.round(first.from_deg),
+          height: heightText(first.altitude_agl_m),
+        })
+      : t("no wind"),
+  ];
+  if (gusts_mps > 0) words.push(t("gusts {speed}", { speed: speedText(gusts_mps) }));
+  if (battery_percent < 100) words.push(t("battery holds {percent}", { percent: percentText(battery_percent) }));
+  return words.join(", ");
+}
