@@ -2,6 +2,13 @@
 
 import { Color, DirectionalLight, Group, HemisphereLight, Vector3 } from "../three.js";
 
+/** @import { PerspectiveCamera } from "../three.js" */
+/** @import { HeightAt, ScenePalette } from "../types.d.ts" */
+
+/** @typedef {ReturnType<typeof mood>} Mood */
+/** @typedef {Exclude<keyof ScenePalette, "routes" | "fonts" | "isDark">} ColourName */
+/** @typedef {{ altitude_deg: number, azimuth_deg: number }} SunPlace */
+
 const RADIANS = Math.PI / 180;
 const SHADOW_PX = 2_048;
 const SIZES_M = [90, 160, 280, 500, 900]; // half the side of what has shadows
@@ -11,16 +18,19 @@ const DUSK = { light: "#f2cdaa", dark: "#2b2a32" };
 const SUN_SHARE = 0.52; // of the light on level ground in full day
 const MOON_DEG = 40;
 
-/** 0 below `low`, 1 above `high`, smooth between. */
+/** 0 below `low`, 1 above `high`, smooth between. @param {number} value @param {number} low @param {number} high */
 function step(value, low, high) {
   const share = Math.min(Math.max((value - low) / (high - low), 0), 1);
   return share * share * (3 - 2 * share);
 }
 
 /**
- * The colours and strengths of an hour: { phase, night (0 to 1), ground (its colour before light), line (the graticule's at night), horizon, glow (above it, while the sun is low), sky,
- * sun: { colour, strength }, moon, fill: { sky, ground, strength } }. A level surface in the sun has its own colour at every hour of the
- * day; at night the theme's night lies over the ground, and shapes stay legible.
+ * The colours and strengths of an hour. night: 0 to 1; ground: its colour before light; line: the graticule's at night; glow: above the
+ * horizon, while the sun is low. A level surface in the sun has its own colour at every hour of the day; at night the theme's night lies
+ * over the ground, and shapes stay legible.
+ *
+ * @param {Pick<ScenePalette, "isDark" | "ground" | "water">} palette
+ * @param {number} altitude_deg of the sun
  */
 export function mood(palette, altitude_deg) {
   const day = step(altitude_deg, -7, 6);
@@ -62,9 +72,14 @@ export function mood(palette, altitude_deg) {
 /**
  * The palette of things that are not lit as the ground is: at night, in the light theme, lines and towers become pale and surfaces dark, so
  * that both stay apart from the ground.
+ *
+ * @param {ScenePalette} palette
+ * @param {number} night 0 to 1
+ * @returns {ScenePalette}
  */
 export function nightPalette(palette, night) {
   if (palette.isDark || night < 0.02) return palette;
+  /** @param {ColourName[]} names @param {string} colour @param {number} share */
   const towards = (names, colour, share) =>
     names.map((name) => [name, `#${new Color(palette[name]).lerp(new Color(colour), share).getHexString()}`]);
   const pale = step(night, 0.68, 0.82); // all at once, when the ground is as far from dark lines as from pale ones
@@ -78,7 +93,7 @@ export function nightPalette(palette, night) {
   };
 }
 
-/** Gives { group, pixel_m (of the shadow map), apply(mood, sun), follow(camera, heightAt), dispose() }. */
+/** pixel_m: of the shadow map. @param {{ shadows: boolean }} how */
 export function makeLights({ shadows }) {
   const group = new Group();
   const fill = new HemisphereLight();
@@ -100,6 +115,7 @@ export function makeLights({ shadows }) {
     get pixel_m() {
       return (2 * size_m) / SHADOW_PX;
     },
+    /** @param {Mood} now @param {SunPlace} sun */
     apply(now, { altitude_deg, azimuth_deg }) {
       const isUp = altitude_deg > -4;
       const altitude = (isUp ? Math.max(altitude_deg, 4) : MOON_DEG) * RADIANS;
@@ -112,13 +128,13 @@ export function makeLights({ shadows }) {
       fill.intensity = now.fill.strength;
       size_m = 0;
     },
-    /** The shadows' box goes where the camera looks; it moves by whole pixels of the shadow map, so that edges stand still. */
+    /** The shadows' box goes where the camera looks; it moves by whole pixels of the shadow map, so that edges stand still. @param {PerspectiveCamera} camera @param {HeightAt} heightAt */
     follow(camera, heightAt) {
       camera.getWorldDirection(look);
       const above_m = Math.max(camera.position.y - heightAt(camera.position.x, camera.position.z), 5);
       const far_m = Math.min(look.y < -0.05 ? above_m / -look.y : above_m * 6, 700, Math.max(above_m * 6, 120));
       focus.copy(camera.position).addScaledVector(look, far_m);
-      const wanted_m = SIZES_M.find((size) => size >= far_m * 0.8) ?? SIZES_M.at(-1);
+      const wanted_m = SIZES_M.find((size) => size >= far_m * 0.8) ?? SIZES_M[SIZES_M.length - 1];
       const pixel_m = (2 * wanted_m) / SHADOW_PX;
       const grain = pixel_m * 32;
       focus.set(Math.round(focus.x / grain) * grain, heightAt(focus.x, focus.z), Math.round(focus.z / grain) * grain);

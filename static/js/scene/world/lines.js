@@ -78,8 +78,9 @@ const FRAGMENT = /* glsl */ `
 const CORNERS = new Float32Array([-1, 0, 0, 1, 0, 0, -1, 1, 0, 1, 1, 0]);
 
 /**
- * fade: [metres from where on lines are faint, how faint]. Gives { mesh, reach(times), set(segments, tints, sizes), recolour(tints), dispose() };
- * set: Float32Array of 6, 4 (colour in the working space, dash) and 2 (pixels, metres) for each segment.
+ * Lines of 6 figures (ends), 4 (colour in the working space, dash) and 2 (pixels, metres) for each segment.
+ *
+ * @param {{ fade?: [from_m: number, share: number], order?: number }} [how] fade: from where on lines are faint, and how faint
  */
 export function screenLines({ fade = [6_000, 0.4], order = 2 } = {}) {
   const material = new ShaderMaterial({
@@ -104,10 +105,11 @@ export function screenLines({ fade = [6_000, 0.4], order = 2 } = {}) {
   };
   return {
     mesh,
-    /** So many times farther than usual lines become faint; never nearer. */
+    /** So many times farther than usual lines become faint; never nearer. @param {number} times */
     reach(times) {
       material.uniforms.fade.value = [fade[0] * Math.max(times, 1), fade[1]];
     },
+    /** @param {Float32Array} segments @param {Float32Array} tints @param {Float32Array} sizes */
     set(segments, tints, sizes) {
       mesh.geometry.dispose();
       const geometry = empty();
@@ -121,6 +123,7 @@ export function screenLines({ fade = [6_000, 0.4], order = 2 } = {}) {
       mesh.geometry = geometry;
       mesh.visible = count > 0;
     },
+    /** @param {Float32Array} tints */
     recolour(tints) {
       const attribute = mesh.geometry.getAttribute("tint");
       if (!attribute) return;
@@ -142,6 +145,7 @@ function empty() {
   return geometry;
 }
 
+/** @param {Float32Array} segments */
 function interleavedEnds(segments) {
   const count = segments.length / 6;
   const [start, end] = [new Float32Array(count * 3), new Float32Array(count * 3)];

@@ -8,14 +8,17 @@ import {
   InstancedMesh,
   MeshDepthMaterial,
   MeshLambertMaterial,
+  PerspectiveCamera,
   Vector2,
 } from "../three.js";
+
+/** @import { Members } from "../types.d.ts" */
 
 const LEAST_PX = 0.9; // an outline is never thinner on the screen
 const LEAST_SHADOW_PX = 2.4; // nor its shadow in the shadow map
 const SIZE = new Vector2();
 
-/** fog and light as every Lambert surface; far members are made as wide as a pixel. */
+/** fog and light as every Lambert surface; far members are made as wide as a pixel. @param {number} leastPx */
 function memberMaterial(leastPx) {
   const material = new MeshLambertMaterial();
   const uniforms = { leastPx: { value: leastPx }, tanPerPx: { value: 0.001 } };
@@ -36,7 +39,7 @@ function memberMaterial(leastPx) {
   return { material, uniforms };
 }
 
-/** What shadows are made of. */
+/** What shadows are made of. @param {{ value: number }} leastShadow */
 function shadowMaterial(leastShadow) {
   const material = new MeshDepthMaterial();
   material.onBeforeCompile = (shader) => {
@@ -51,7 +54,11 @@ function shadowMaterial(leastShadow) {
   return material;
 }
 
-/** Gives { mesh, shadowPixel(metres), set({ ends, width_m, tone }, colours), recolour(colours), dispose() }; colours: Float32Array of 3 for each member, in the working space. */
+/**
+ * Colours are Float32Arrays of 3 for each member, in the working space.
+ *
+ * @param {{ leastPx?: number, castShadow?: boolean }} [how]
+ */
 export function memberMesh({ leastPx = LEAST_PX, castShadow = true } = {}) {
   const prism = new CylinderGeometry(0.5, 0.5, 1, 4, 1, true);
   const { material, uniforms } = memberMaterial(leastPx);
@@ -59,6 +66,7 @@ export function memberMesh({ leastPx = LEAST_PX, castShadow = true } = {}) {
   const depth = shadowMaterial(leastShadow);
   const holder = { mesh: new InstancedMesh(prism, material, 1) };
 
+  /** @param {number} capacity */
   function reserve(capacity) {
     if (capacity <= holder.mesh.instanceMatrix.count) return;
     const next = new InstancedMesh(prism, material, capacity);
@@ -71,6 +79,7 @@ export function memberMesh({ leastPx = LEAST_PX, castShadow = true } = {}) {
     holder.mesh = next;
     dress(next);
   }
+  /** @param {InstancedMesh} own */
   function dress(own) {
     own.frustumCulled = false;
     own.castShadow = castShadow;
@@ -78,8 +87,18 @@ export function memberMesh({ leastPx = LEAST_PX, castShadow = true } = {}) {
     own.onBeforeRender = (renderer, _scene, camera) => {
       const height = renderer.getDrawingBufferSize(SIZE).y;
       uniforms.tanPerPx.value =
-        (2 * Math.tan(((camera.fov ?? 50) * Math.PI) / 360) * renderer.getPixelRatio()) / Math.max(height, 1);
+        (2 *
+          Math.tan(((camera instanceof PerspectiveCamera ? camera.fov : 50) * Math.PI) / 360) *
+          renderer.getPixelRatio()) /
+        Math.max(height, 1);
     };
+  }
+  /** @param {Float32Array} colours */
+  function recolour(colours) {
+    const { instanceColor } = holder.mesh;
+    if (!instanceColor) return;
+    instanceColor.array.set(colours);
+    instanceColor.needsUpdate = true;
   }
   holder.mesh.setColorAt(0, new Color());
   holder.mesh.count = 0;
@@ -88,24 +107,22 @@ export function memberMesh({ leastPx = LEAST_PX, castShadow = true } = {}) {
     get mesh() {
       return holder.mesh;
     },
-    /** How wide a pixel of the shadow map is. */
+    /** How wide a pixel of the shadow map is. @param {number} metres */
     shadowPixel(metres) {
       leastShadow.value = LEAST_SHADOW_PX * metres;
     },
+    /** @param {Members} members @param {Float32Array} colours */
     set(members, colours) {
       const count = members.width_m.length;
       reserve(Math.max(Math.ceil(count * 1.25), 64));
-      memberMatrices(members, holder.mesh.instanceMatrix.array);
-      holder.mesh.instanceColor.array.set(colours);
-      holder.mesh.count = count;
-      holder.mesh.visible = count > 0;
-      holder.mesh.instanceMatrix.needsUpdate = true;
-      holder.mesh.instanceColor.needsUpdate = true;
+      const { mesh } = holder;
+      memberMatrices(members, /** @type {Float32Array} */ (mesh.instanceMatrix.array));
+      mesh.count = count;
+      mesh.visible = count > 0;
+      mesh.instanceMatrix.needsUpdate = true;
+      recolour(colours);
     },
-    recolour(colours) {
-      holder.mesh.instanceColor.array.set(colours);
-      holder.mesh.instanceColor.needsUpdate = true;
-    },
+    recolour,
     dispose() {
       holder.mesh.dispose();
       prism.dispose();

@@ -2,6 +2,8 @@
 
 import { BackSide, Color, Mesh, ShaderMaterial, SphereGeometry } from "../three.js";
 
+/** @import { Mood } from "./lighting.js" */
+
 const VERTEX = /* glsl */ `
   varying float vUp;
   void main() {
@@ -22,7 +24,6 @@ const FRAGMENT = /* glsl */ `
     gl_FragColor.rgb += (grain - 0.5) / 255.0; // no bands
   }`;
 
-/** Gives { mesh, apply(mood), dispose() }. */
 export function makeSky() {
   const uniforms = { sky: { value: new Color() }, horizon: { value: new Color() }, glow: { value: new Color() } };
   const material = new ShaderMaterial({
@@ -39,6 +40,7 @@ export function makeSky() {
   mesh.renderOrder = -10;
   return {
     mesh,
+    /** @param {Pick<Mood, "sky" | "horizon" | "glow">} mood */
     apply(mood) {
       uniforms.sky.value.copy(mood.sky);
       uniforms.horizon.value.copy(mood.horizon);

@@ -2,8 +2,11 @@
 
 import { BufferAttribute, BufferGeometry, Color, DoubleSide, Mesh, MeshLambertMaterial } from "../three.js";
 
-/** Arrays { vertices, index, uv? } of many pieces as one. */
+/** @import { Surface } from "../types.d.ts" */
+
+/** Many pieces as one. @param {readonly Surface[]} pieces */
 export function merged(pieces) {
+  /** @param {"vertices" | "uv" | "index"} of */
   const count = (of) => pieces.reduce((sum, piece) => sum + (piece[of]?.length ?? 0), 0);
   const [vertices, uv, index] = [
     new Float32Array(count("vertices")),
@@ -22,7 +25,7 @@ export function merged(pieces) {
   return { vertices, uv, index };
 }
 
-/** A geometry of arrays; faces are flat unless normals are told. */
+/** A geometry of arrays; faces are flat unless normals are told. @param {Surface} surface */
 export function geometryOf({ vertices, uv, index }) {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(vertices, 3));
@@ -31,7 +34,6 @@ export function geometryOf({ vertices, uv, index }) {
   return geometry;
 }
 
-/** Gives { mesh, show(pieces), apply(colour), dispose() }; bridges. */
 export function makeBridges() {
   const material = new MeshLambertMaterial({ flatShading: true, side: DoubleSide });
   const mesh = new Mesh(new BufferGeometry(), material);
@@ -71,16 +73,19 @@ export function makeBeds() {
   return { ...solid(mesh, material), ties: uniforms.tieColour.value, dams: uniforms.damColour.value };
 }
 
+/** @param {Mesh<BufferGeometry, MeshLambertMaterial>} mesh @param {MeshLambertMaterial} material */
 function solid(mesh, material) {
   mesh.visible = false;
   return {
     mesh,
+    /** @param {readonly Surface[]} pieces */
     show(pieces) {
       mesh.geometry.dispose();
       mesh.geometry = geometryOf(merged(pieces));
       mesh.geometry.computeVertexNormals();
       mesh.visible = pieces.length > 0;
     },
+    /** @param {Color} colour */
     apply(colour) {
       material.color.copy(colour);
     },

@@ -8,128 +8,177 @@ import { memberMesh } from "./members.js";
 const MOST_A_FRAME = 6; // supports that get their bracing
 const LOOK_AGAIN_M = 40; // the camera has moved so far since the near ones were chosen
 
+/** @import { Support } from "../../api_types.d.ts" */
+/** @import { PerspectiveCamera, Vector3 } from "../three.js" */
+/** @import { Frame, HeightAt, Members, ScenePalette } from "../types.d.ts" */
+
+/** @typedef {{ isMast: true }} Mast of a railway */
+/** @typedef {[of: Support | Mast, members: Members][]} OwnedMembers */
+/** @typedef {ReturnType<typeof coloursFor>} SupportColours */
+/** @typedef {{ near_m: number, most: number }} Bracing of supports so near, at most so many */
+
+/** @type {Mast} */
 const MAST = { isMast: true };
 
-/** bracing: of supports within near_m, at most so many. Gives { group, show(supports, frame, masts, groundAt), apply(palette), update(camera), shadowPixel(metres), dispose() }. */
-export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
-  const group = new Group();
-  const [outline, fine] = [memberMesh(), memberMesh({ leastPx: 0.55 })];
-  group.add(outline.mesh, fine.mesh);
-  let supports = [];
-  let frame = null;
-  let ground = () => Infinity;
-  let masts = [];
-  let outlines = [];
+/** @param {ScenePalette} palette */
+function coloursFor(palette) {
+  const mast = new Color(palette.tower);
+  /** @type {Map<number | null, Color>} by voltage */
+  const body = new Map();
+  return {
+    insulator: new Color(palette.tower).lerp(new Color(palette.raised), palette.isDark ? 0.1 : 0.45),
+    foundation: new Color(palette.pressed).lerp(new Color(palette.inkSecond), 0.25),
+    /** @param {Support | Mast} own */
+    of(own) {
+      if ("isMast" in own) return mast;
+      const { voltage_v } = own;
+      const known = body.get(voltage_v);
+      if (known) return known;
+      const colour = new Color(voltage_v === null ? palette.tower : voltageColour(palette, voltage_v / 1_000));
+      body.set(voltage_v, colour);
+      return colour;
+    },
+  };
+}
+
+/** Three figures for each member. @param {OwnedMembers} pairs @param {SupportColours} colours */
+function colourValues(pairs, colours) {
+  const values = new Float32Array(pairs.reduce((sum, [, members]) => sum + members.tone.length * 3, 0));
+  let at = 0;
+  for (const [support, { tone }] of pairs) {
+    const own = colours.of(support);
+    for (let member = 0; member < tone.length; member += 1) {
+      const colour =
+        tone[member] === INSULATOR ? colours.insulator : tone[member] === FOUNDATION ? colours.foundation : own;
+      values[at] = colour.r;
+      values[at + 1] = colour.g;
+      values[at + 2] = colour.b;
+      at += 3;
+    }
+  }
+  return values;
+}
+
+/** @typedef {{ supports: readonly Support[], frame: Frame, groundAt: HeightAt }} Standing what stands where */
+
+/**
+ * The fine members of the supports near the camera, worked out a few a frame.
+ *
+ * @param {Bracing} bracing
+ */
+function nearMembers({ near_m, most }) {
+  /** @type {Standing | null} */
+  let standing = null;
   let feet = new Float32Array(0);
-  let near = new Map(); // place in supports → its fine members
-  let colours = null;
-  let lookedFrom = null;
+  /** @type {Map<number, Members | null>} by place in supports; null: not worked out */
+  let near = new Map();
+  /** @type {number[]} */
   let wanted = [];
   let isStale = false;
+  /** @type {Vector3 | null} */
+  let lookedFrom = null;
 
-  function outlineColours() {
-    return coloursOf([
-      ...supports.map((support, place) => [support, outlines[place]]),
-      ...masts.map((own) => [MAST, own]),
-    ]);
-  }
-
-  function coloursOf(pairs) {
-    const values = new Float32Array(pairs.reduce((sum, [, members]) => sum + members.tone.length * 3, 0));
-    let at = 0;
-    for (const [support, { tone }] of pairs) {
-      const own = colours.of(support);
-      for (let member = 0; member < tone.length; member += 1) {
-        const colour =
-          tone[member] === INSULATOR ? colours.insulator : tone[member] === FOUNDATION ? colours.foundation : own;
-        values[at] = colour.r;
-        values[at + 1] = colour.g;
-        values[at + 2] = colour.b;
-        at += 3;
-      }
-    }
-    return values;
-  }
-
-  function paintNear() {
-    const pairs = [...near].filter(([, members]) => members).map(([place, members]) => [supports[place], members]);
-    fine.set(joined(pairs.map(([, members]) => members)), coloursOf(pairs));
-  }
-
-  /** The nearest supports within reach become wanted; what is already worked out stays, what is far is let go. */
+  /** The nearest supports within reach become wanted; what is already worked out stays, what is far is let go. @param {Vector3} eye */
   function choose({ x, y, z }) {
+    /** @type {[far_m: number, place: number][]} */
     const found = [];
-    for (let place = 0; place < supports.length; place += 1) {
+    for (let place = 0; place < feet.length / 3; place += 1) {
       const far = Math.hypot(feet[place * 3] - x, feet[place * 3 + 1] - y, feet[place * 3 + 2] - z);
-      if (far < bracing.near_m) found.push([far, place]);
+      if (far < near_m) found.push([far, place]);
     }
     found.sort((one, other) => one[0] - other[0]);
-    const chosen = found.slice(0, bracing.most).map(([, place]) => place);
+    const chosen = found.slice(0, most).map(([, place]) => place);
     if (chosen.length === near.size && chosen.every((place) => near.has(place))) return;
     near = new Map(chosen.map((place) => [place, near.get(place) ?? null]));
     wanted = chosen.filter((place) => near.get(place) === null);
     isStale = true;
   }
 
-  function belowFoot({ position, ground_amsl_m }) {
-    const [x, y, z] = frame.toLocal(...position, ground_amsl_m);
-    return y - ground(x, z);
+  /** @param {Standing} standing @param {number} place */
+  function fineMembers({ supports, frame, groundAt }, place) {
+    const { position, ground_amsl_m } = supports[place];
+    const [x, y, z] = frame.toLocal(position[0], position[1], ground_amsl_m);
+    return supportMembers(supports[place], frame, y - groundAt(x, z)).fine;
   }
 
-  /** A few a frame, so that no frame is late; drawn once all are there. */
-  function workOut() {
-    for (const place of wanted.splice(0, MOST_A_FRAME))
-      near.set(place, supportMembers(supports[place], frame, belowFoot(supports[place])).fine);
-    if (wanted.length) return;
-    isStale = false;
-    paintNear();
+  return {
+    /** @param {Standing} next */
+    show(next) {
+      [standing, near, wanted, isStale, lookedFrom] = [next, new Map(), [], false, null];
+      feet = Float32Array.from(
+        next.supports.flatMap(({ position, ground_amsl_m, height_m }) =>
+          next.frame.toLocal(position[0], position[1], ground_amsl_m + height_m / 2),
+        ),
+      );
+    },
+    /** A few a frame, so that no frame is late; "new" once all are there. @param {Vector3} eye @returns {"same" | "working" | "new"} */
+    follow(eye) {
+      if (!lookedFrom || lookedFrom.distanceTo(eye) >= LOOK_AGAIN_M) {
+        lookedFrom = eye.clone();
+        choose(eye);
+      }
+      if (!isStale || !standing) return "same";
+      for (const place of wanted.splice(0, MOST_A_FRAME)) near.set(place, fineMembers(standing, place));
+      if (wanted.length) return "working";
+      isStale = false;
+      return "new";
+    },
+    /** @returns {OwnedMembers} */
+    worked: () =>
+      [...near].flatMap(([place, members]) => (members && standing ? [[standing.supports[place], members]] : [])),
+  };
+}
+
+/** @param {{ bracing?: Bracing }} [how] */
+export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
+  const group = new Group();
+  const [outline, fine] = [memberMesh(), memberMesh({ leastPx: 0.55 })];
+  group.add(outline.mesh, fine.mesh);
+  const near = nearMembers(bracing);
+  /** @type {OwnedMembers} */
+  let outlines = [];
+  let count = 0;
+  /** @type {SupportColours | null} */
+  let colours = null;
+
+  /** @param {OwnedMembers} pairs */
+  const coloursOf = (pairs) => (colours ? colourValues(pairs, colours) : new Float32Array(0));
+  function paintNear() {
+    const pairs = near.worked();
+    fine.set(joined(pairs.map(([, members]) => members)), coloursOf(pairs));
   }
 
   return {
     group,
-    /** along: masts of railways, as members; groundAt(x, z): of the drawn ground. */
-    show(next, ownFrame, along = [], groundAt = () => Infinity) {
-      ground = groundAt;
-      [supports, frame, masts, near, lookedFrom, wanted, isStale] = [next, ownFrame, along, new Map(), null, [], false];
-      feet = Float32Array.from(
-        supports.flatMap(({ position, ground_amsl_m, height_m }) =>
-          ownFrame.toLocal(...position, ground_amsl_m + height_m / 2),
-        ),
-      );
-      group.visible = supports.length + masts.length > 0;
-      outlines = supports.map((support) => supportMembers(support, frame).outline);
-      outline.set(joined([...outlines, ...masts]), colours ? outlineColours() : new Float32Array(0));
+    /**
+     * @param {readonly Support[]} supports
+     * @param {Frame} frame
+     * @param {readonly Members[]} [masts] of railways
+     * @param {HeightAt} [groundAt] of the drawn ground
+     */
+    show(supports, frame, masts = [], groundAt = () => Infinity) {
+      near.show({ supports, frame, groundAt });
+      count = supports.length;
+      group.visible = count + masts.length > 0;
+      outlines = [];
+      for (const support of supports) outlines.push([support, supportMembers(support, frame).outline]);
+      for (const own of masts) outlines.push([MAST, own]);
+      outline.set(joined(outlines.map(([, members]) => members)), coloursOf(outlines));
       paintNear();
     },
+    /** @param {ScenePalette} palette */
     apply(palette) {
-      const body = new Map();
-      const mast = new Color(palette.tower);
-      colours = {
-        insulator: new Color(palette.tower).lerp(new Color(palette.raised), palette.isDark ? 0.1 : 0.45),
-        foundation: new Color(palette.pressed).lerp(new Color(palette.inkSecond), 0.25),
-        of({ voltage_v, isMast }) {
-          if (isMast) return mast;
-          if (!body.has(voltage_v))
-            body.set(
-              voltage_v,
-              new Color(voltage_v === null ? palette.tower : voltageColour(palette, voltage_v / 1_000)),
-            );
-          return body.get(voltage_v);
-        },
-      };
-      outline.recolour(outlineColours());
+      colours = coloursFor(palette);
+      outline.recolour(coloursOf(outlines));
       paintNear();
     },
-    update(camera) {
-      if (!supports.length) return false;
-      if (!lookedFrom || lookedFrom.distanceTo(camera.position) >= LOOK_AGAIN_M) {
-        lookedFrom = camera.position.clone();
-        choose(camera.position);
-      }
-      if (!isStale) return false;
-      workOut();
-      return true;
+    /** Returns whether the next picture is another one. @param {Pick<PerspectiveCamera, "position">} camera */
+    update({ position }) {
+      const state = count ? near.follow(position) : "same";
+      if (state === "new") paintNear();
+      return state !== "same";
     },
+    /** @param {number} metres */
     shadowPixel(metres) {
       outline.shadowPixel(metres);
       fine.shadowPixel(metres);
@@ -141,6 +190,7 @@ export function makeSupports({ bracing = { near_m: 900, most: 50 } } = {}) {
   };
 }
 
+/** @param {readonly Members[]} lists @returns {Members} */
 function joined(lists) {
   const count = lists.reduce((sum, { tone }) => sum + tone.length, 0);
   const whole = { ends: new Float32Array(count * 6), width_m: new Float32Array(count), tone: new Uint8Array(count) };

@@ -3,6 +3,9 @@
 import { groundMesh } from "../geometry/ground.js";
 import { BufferAttribute, BufferGeometry, Color, Mesh, MeshLambertMaterial } from "../three.js";
 
+/** @import { Ground } from "../geometry/ground.js" */
+/** @import { Frame } from "../types.d.ts" */
+
 const RELIEF = 2.2;
 const PARS = /* glsl */ `
   uniform vec3 lineColour;
@@ -27,7 +30,6 @@ const LINES = /* glsl */ `
     }
   }`;
 
-/** Gives { mesh, show(ground, frame), apply(colours), dispose() }. */
 export function makeTerrain() {
   const material = new MeshLambertMaterial();
   const uniforms = {
@@ -50,6 +52,7 @@ export function makeTerrain() {
   mesh.frustumCulled = false;
   return {
     mesh,
+    /** @param {Ground} ground @param {Frame} frame */
     show(ground, frame) {
       mesh.geometry.dispose();
       const { vertices, normals, index } = groundMesh(ground);
@@ -64,7 +67,7 @@ export function makeTerrain() {
       uniforms.contour_m.value = range_m < 2 ? 0 : range_m < 60 ? 5 : range_m < 250 ? 10 : range_m < 800 ? 20 : 50;
       uniforms.origin.value = { x: 0, y: -frame.origin.altitude_amsl_m, z: 0 };
     },
-    /** Colours: ground, graticule, contour. */
+    /** @param {{ ground: Color, graticule: Color, contour: Color }} colours */
     apply({ ground, graticule, contour }) {
       material.color.copy(ground);
       uniforms.lineColour.value.copy(graticule);
@@ -77,7 +80,7 @@ export function makeTerrain() {
   };
 }
 
-/** Slopes are lit as if they were steeper, so that gentle hills show; the surface stays as it is. */
+/** Slopes are lit as if they were steeper, so that gentle hills show; the surface stays as it is. @param {Float32Array} normals */
 function steeper(normals) {
   const lit = new Float32Array(normals.length);
   for (let at = 0; at < normals.length; at += 3) {

@@ -12,6 +12,11 @@ import {
 } from "../three.js";
 import { merged } from "./solids.js";
 
+/** @import { ZoneVolume } from "../geometry/zones.js" */
+/** @import { ScenePalette } from "../types.d.ts" */
+
+/** @typedef {ZoneVolume & { isInForce: boolean }} ShownVolume */
+
 const VERTEX = /* glsl */ `
   attribute vec2 uv2;
   attribute vec2 look; // how strong, hatching
@@ -41,7 +46,6 @@ const FRAGMENT = /* glsl */ `
     #include <fog_fragment>
   }`;
 
-/** Gives { mesh, show(volumes), apply(palette), dispose() }; volumes: of geometry/zones.js with { isInForce }. */
 export function makeZones() {
   const uniforms = UniformsUtils.merge([
     UniformsLib.fog,
@@ -65,6 +69,7 @@ export function makeZones() {
   mesh.visible = false;
   return {
     mesh,
+    /** @param {readonly ShownVolume[]} volumes */
     show(volumes) {
       mesh.geometry.dispose();
       mesh.geometry = new BufferGeometry();
@@ -79,6 +84,7 @@ export function makeZones() {
       mesh.geometry.setIndex(new BufferAttribute(index, 1));
       mesh.visible = index.length > 0;
     },
+    /** @param {Pick<ScenePalette, "zone" | "isDark">} palette */
     apply(palette) {
       uniforms.colour.value.set(palette.zone);
       uniforms.strength.value = palette.isDark ? 0.13 : 0.1;
@@ -90,8 +96,9 @@ export function makeZones() {
   };
 }
 
-/** A zone that is not in force has no hatching and half the colour; walls up to no limit fade out. */
+/** A zone that is not in force has no hatching and half the colour; walls up to no limit fade out. @param {readonly ShownVolume[]} volumes */
 function looks(volumes) {
+  /** @type {number[]} */
   const values = [];
   for (const { walls, caps, isInForce } of volumes) {
     const strength = isInForce ? 1 : 0.5;
