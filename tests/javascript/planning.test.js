@@ -10,7 +10,7 @@ import {
   summaryOfPlan,
 } from "../../static/js/mission/compare.js";
 import { canFly, choicesOf, isAskedFor, standingUavs } from "../../static/js/mission/fleet.js";
-import { moreOrLess } from "../../static/js/mission/panels/routes/routes.js";
+import { moreOrLess } from "../../static/js/mission/panels/routes/row.js";
 import { partsOf } from "../../static/js/mission/panels/why/route.js";
 import { fullUavs, reasonWords } from "../../static/js/mission/panels/why/target.js";
 import { withResult } from "../../static/js/mission/planning.js";

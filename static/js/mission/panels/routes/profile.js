@@ -1,6 +1,6 @@
 /** Under the strips: the flight of the route that is looked at from the side, with the figures at the pointer. */
 
-import { byId, h } from "../../../dom.js";
+import { byId, h, setChildren } from "../../../dom.js";
 import { routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
 import { heightText, lengthText, percentText } from "../../../units.js";
@@ -9,37 +9,58 @@ import { isPlanCurrent, lastPlanOf, shownRoute } from "../../plan_view.js";
 import { drawProfile, flightOf, profileTable, readingAt } from "../../profile.js";
 import { batteryOf, landing_s, stayText } from "../../route_times.js";
 import { marginWords, zoneLegend, zoneWords } from "../../zones_passed.js";
-import { stripRoom } from "./routes.js";
+import { mainOf, stripRoom } from "./room.js";
+
+/** @import { MissionPageState, MissionStore, ShownPlan, ShownRoute } from "../../types.d.ts" */
+/** @import { Grounds } from "./strips.js" */
+
+/** @typedef {Awaited<ReturnType<Grounds>>} RouteGround */
+/** @typedef {ReturnType<typeof flightOf>} RouteFlight */
+/**
+ * @typedef {object} Drawn
+ * @property {ShownRoute} route
+ * @property {RouteFlight} flight
+ * @property {ReturnType<typeof drawProfile>} chart
+ * @property {number} width_px
+ * @property {number} longest_m
+ * @property {string} fault why the ground could not be read
+ */
 
 const MOST_WAITS = 3;
 
+/** What the axis reaches to. @param {MissionPageState} state @param {ShownPlan} plan @param {ShownRoute} route */
+const longestOf = (state, plan, route) =>
+  Math.max(
+    plan.result.longest_route_m,
+    route.length_m,
+    ...(state.why?.compare ? (lastPlanOf(state)?.routes ?? []) : []).map(({ length_m }) => length_m),
+  );
+
+/** @param {MissionStore} store @param {{ grounds: Grounds }} how */
 export function mountProfile(store, { grounds }) {
   const dock = byId("dock");
   const place = byId("route-profile");
-  let drawn = null; // { route, flight, chart, width_px, longest_m }
-
-  const longestOf = ({ plan, why, ...state }, route) =>
-    Math.max(
-      plan.result.longest_route_m,
-      route.length_m,
-      ...(why?.compare ? (lastPlanOf(state)?.routes ?? []) : []).map((route) => route.length_m),
-    );
+  /** @type {Drawn | null} */
+  let drawn = null;
 
   const departsAt = () => store.state.plan?.result.departs_at ?? null;
 
+  /** @param {MissionPageState} state */
   async function draw(state) {
     if (state.hand?.dragged) return; // the ground is asked about once it is dropped
-    const route = state.plan ? shownRoute(state) : null;
+    const { plan } = state;
+    const route = plan ? shownRoute(state) : null;
     place.hidden = !route;
-    if (!route) {
+    if (!plan || !route) {
       drawn = null;
       byId("zone-keys").hidden = true;
       place.replaceChildren();
       return;
     }
-    const [width_px, longest_m] = [stripRoom(dock), longestOf(state, route)];
+    const [width_px, longest_m] = [stripRoom(dock), longestOf(state, plan, route)];
     if (drawn?.route.waypoints === route.waypoints && drawn.width_px === width_px && drawn.longest_m === longest_m)
       return;
+    /** @type {RouteGround | null} */
     let ground = null;
     let fault = "";
     try {
@@ -47,25 +68,11 @@ export function mountProfile(store, { grounds }) {
     } catch {
       fault = t("The ground could not be read.");
     }
-    if (store.state.plan && shownRoute(store.state)?.waypoints === route.waypoints)
-      put(route, ground, fault, width_px, longest_m);
-  }
-
-  function put(route, ground, fault, width_px, longest_m) {
-    const { targets, uavs } = store.state.plan;
-    const flight = flightOf(route, ground, uavs[route.sequence]?.battery_wh ?? null, departsAt());
-    const chart = drawProfile({
-      route,
-      flight,
-      longest_m,
-      width_px,
-      reserve_percent: store.state.plan.uavs[route.sequence]?.reserve_percent ?? null,
-      onAlong: (at_m) =>
-        store.update({
-          along: at_m === null ? null : { sequence: route.sequence, at_m, isWished: Boolean(route.isWished) },
-        }),
-      onTask: (target) => store.update({ litTarget: target === null ? null : (targets[target]?.key ?? null) }),
-    });
+    const now = store.state.plan;
+    if (!now || shownRoute(store.state)?.waypoints !== route.waypoints) return;
+    const uav = now.uavs[route.sequence];
+    const flight = flightOf(route, ground, uav?.battery_wh ?? null, departsAt());
+    const chart = chartOf(route, flight, now, { longest_m, width_px }, store);
     drawn = { route, flight, chart, width_px, longest_m, fault };
     place.className = `route-profile route-${routeNumber(route.sequence)}`;
     place.replaceChildren(
@@ -79,7 +86,7 @@ export function mountProfile(store, { grounds }) {
         "div",
         { class: "profile-place" },
         chart.element,
-        h("div", {}, profileTable(route, flight, targets, departsAt())),
+        h("div", {}, profileTable(route, flight, now.targets, departsAt())),
       ),
     );
     showZoneKeys(flight);
@@ -87,19 +94,22 @@ export function mountProfile(store, { grounds }) {
     light(store.state);
   }
 
-  /** Figures at the pointer, else what the whole flight is like. */
+  /** Figures at the pointer, else what the whole flight is like. @param {MissionPageState} state */
   function follow({ along }) {
     if (!drawn) return;
     const { route, flight, chart, fault } = drawn;
-    const isHere = along?.sequence === route.sequence && Boolean(along.isWished) === Boolean(route.isWished);
-    chart.point(isHere ? along.at_m : null);
-    byId("profile-words").replaceChildren(
-      ...(isHere
-        ? readingWords(readingAt(flight, along.at_m), flight, departsAt())
-        : wholeWords(route, flight, fault, departsAt())),
+    const isHere = along?.sequence === route.sequence && along.isWished === Boolean(route.isWished);
+    const at_m = along && isHere ? along.at_m : null;
+    chart.point(at_m);
+    setChildren(
+      byId("profile-words"),
+      at_m === null
+        ? wholeWords(route, flight, fault, departsAt())
+        : readingWords(readingAt(flight, at_m), flight, departsAt()),
     );
   }
 
+  /** @param {MissionPageState} state */
   function light(state) {
     if (!drawn) return;
     const target =
@@ -114,10 +124,30 @@ export function mountProfile(store, { grounds }) {
   store.listen(["litTarget"], light);
   new ResizeObserver(() => {
     if (drawn && stripRoom(dock) !== drawn.width_px) draw(store.state);
-  }).observe(dock.querySelector(".dock-main"));
+  }).observe(mainOf(dock));
 }
 
-/** What the drawn zones mean, and by how much they count beyond their times and heights. */
+/**
+ * @param {ShownRoute} route
+ * @param {RouteFlight} flight
+ * @param {ShownPlan} plan
+ * @param {{ longest_m: number, width_px: number }} size
+ * @param {MissionStore} store
+ */
+const chartOf = (route, flight, { uavs, targets }, size, store) =>
+  drawProfile({
+    route,
+    flight,
+    ...size,
+    reserve_percent: uavs[route.sequence]?.reserve_percent ?? null,
+    onAlong: (at_m) =>
+      store.update({
+        along: at_m === null ? null : { sequence: route.sequence, at_m, isWished: Boolean(route.isWished) },
+      }),
+    onTask: (target) => store.update({ litTarget: target === null ? null : (targets[target]?.key ?? null) }),
+  });
+
+/** What the drawn zones mean, and by how much they count beyond their times and heights. @param {RouteFlight} flight */
 function showZoneKeys({ zones, margins }) {
   const keys = zoneLegend(zones).map(({ kind, words }) =>
     h("span", { class: "zone-key" }, h("i", { class: `zone-swatch ${kind}`, "aria-hidden": "true" }), words),
@@ -126,14 +156,16 @@ function showZoneKeys({ zones, margins }) {
   byId("zone-keys").replaceChildren(...keys, h("span", {}, marginWords(margins)));
 }
 
+/** @param {string} words @param {boolean} [isStrong] */
 const line = (words, isStrong = false) => h(isStrong ? "strong" : "span", {}, words);
 
+/** @param {ReturnType<typeof readingAt>} reading @param {RouteFlight} flight @param {string | null} departs_at */
 function readingWords(
   { at_m, height_m, ground_m, above_m, arrival_s, battery_percent, zones },
   { isFlat },
   departs_at,
 ) {
-  const height = heightText(height_m);
+  const height = heightText(height_m ?? 0);
   const place = t("at {distance}", { distance: lengthText(at_m) });
   return [
     line(arrival_s === null ? place : `${place} · ${timeAt(departs_at, arrival_s)}`, true),
@@ -143,13 +175,14 @@ function readingWords(
         ? t("flat ground assumed")
         : ground_m === null
           ? t("ground not known")
-          : t("{height} above ground", { height: heightText(above_m) }),
+          : t("{height} above ground", { height: heightText(above_m ?? 0) }),
     ),
     battery_percent !== null && line(t("battery {percent}", { percent: percentText(battery_percent) })),
     ...[...new Set(zones.map(zoneWords))].map((words) => h("span", { class: "beside-zone" }, words)),
-  ].filter(Boolean);
+  ];
 }
 
+/** @param {ShownRoute} route @param {RouteFlight} flight @param {string} fault @param {string | null} departs_at */
 function wholeWords(route, flight, fault, departs_at) {
   const heights = flight.path.map(({ height_m }) => height_m);
   const height = heightText(Math.max(...heights));

@@ -5,7 +5,7 @@ import { routeLetter, routeNumber } from "../../../domain/palette.js";
 import { t, tn } from "../../../text.js";
 import { durationText, lengthText } from "../../../units.js";
 import { counterpart, endsBetween, movesBetween, summaryOfPlan } from "../../compare.js";
-import { moreOrLess } from "../routes/routes.js";
+import { moreOrLess } from "../routes/row.js";
 
 /** @import { ShortPlan, ShortRoute, ShownPlan } from "../../types.d.ts" */
 

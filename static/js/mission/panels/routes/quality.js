@@ -1,0 +1,59 @@
+/** Above the strips: how good the plan is, how its UAVs are kept apart, what locking costs, and the way back. */
+
+import { byId, h, icon, setChildren } from "../../../dom.js";
+import { t } from "../../../text.js";
+import { checkStateOf, checkText } from "../../lost_link.js";
+import { isPlanCurrent, qualityOf, wishWordsOf } from "../../plan_view.js";
+import { separationOf } from "../../route_times.js";
+
+/** @import { Child } from "../../../dom.js" */
+/** @import { MissionActions, MissionPageState, ShownPlan } from "../../types.d.ts" */
+
+/** @param {string} image @param {boolean} isFault @param {...Child} words */
+const bound = (image, isFault, ...words) =>
+  h("span", { class: `plan-bound${isFault ? " fault" : ""}` }, icon(image, "small"), h("span", {}, words));
+
+/** @param {MissionPageState} state @param {ShownPlan} plan @param {{ canPlan: boolean, actions: MissionActions }} how */
+export function drawQuality(state, plan, { canPlan, actions }) {
+  const isCurrent = isPlanCurrent(state);
+  const quality = isCurrent ? qualityOf(plan.result) : null;
+  const separation = isCurrent ? separationOf(plan.result) : null;
+  const locked = state.selection.locks?.length ?? 0;
+  const linkState = checkStateOf(state.selection.lost_link, plan, isCurrent);
+  const isLost = linkState === "lost";
+  const place = byId("plan-quality");
+  place.hidden = !quality && !locked && !separation && !isLost;
+  setChildren(
+    place,
+    quality &&
+      bound(quality.isProven ? "circle-check" : "info", false, h("strong", {}, quality.words), " ", quality.detail),
+    separation && bound(separation.isFault ? "triangle-alert" : "replace", separation.isFault, separation.words),
+    isLost &&
+      bound(
+        "triangle-alert",
+        true,
+        t("If the link is lost:"),
+        " ",
+        checkText(linkState, plan),
+        h("button", { type: "button", class: "text-button", onclick: showLostLink }, t("Show")),
+      ),
+    locked > 0 &&
+      h(
+        "span",
+        { class: "plan-wish" },
+        icon("lock", "small"),
+        h("span", {}, isCurrent ? wishWordsOf(plan.result) : t("Your wish is not planned yet.")),
+        canPlan && [
+          !isCurrent && h("button", { type: "button", class: "text-button", onclick: actions.plan }, t("Plan again")),
+          h("button", { type: "button", class: "text-button", onclick: actions.unlockAll }, t("Unlock all")),
+        ],
+      ),
+  );
+}
+
+function showLostLink() {
+  const place = byId("lost-link");
+  const scroll = place.closest(".side-scroll"); // alone: scrollIntoView would move what must not scroll
+  scroll?.scrollBy({ top: place.getBoundingClientRect().top - scroll.getBoundingClientRect().top });
+  /** @type {HTMLElement | null} */ (place.querySelector(".link-failures button"))?.focus({ preventScroll: true });
+}

@@ -1,0 +1,161 @@
+/** The row of a route: who flies it, its strip, its figures, and the doors to changing and to explaining it. */
+
+import { h, icon } from "../../../dom.js";
+import { routeNumber } from "../../../domain/palette.js";
+import { t, tn } from "../../../text.js";
+import { durationText, lengthText } from "../../../units.js";
+import { timeAt } from "../../flight_options.js";
+import { endingOf } from "../../plan_view.js";
+import { GROUNDING } from "../../plan_words.js";
+import { batteryOf, delayText, landing_s, staysText } from "../../route_times.js";
+
+/** @import { Child } from "../../../dom.js" */
+/** @import { PlanResult, ShortRoute, ShownRoute } from "../../types.d.ts" */
+
+/**
+ * @typedef {object} RowContext
+ * @property {PlanResult} result of the plan
+ * @property {boolean} canPlan
+ * @property {boolean} isChosen
+ * @property {boolean} showsBattery
+ * @property {ShortRoute | null} before the route of the same UAV in the plan that it is compared with
+ * @property {Child} strips
+ * @property {RowActs} acts
+ */
+/**
+ * @typedef {object} RowActs
+ * @property {() => void} look
+ * @property {() => void} leave
+ * @property {() => void} choose
+ * @property {() => void} change by hand
+ * @property {() => void} explain
+ */
+
+/**
+ * "+1.2 km", "−3 min", "=": more or less than before.
+ *
+ * @param {number} difference
+ * @param {number} least
+ * @param {(value: number) => string} textOf
+ */
+export function moreOrLess(difference, least, textOf) {
+  if (Math.abs(difference) < least) return "=";
+  return `${difference > 0 ? "+" : "−"}${textOf(Math.abs(difference))}`;
+}
+
+/** One that cannot take off; the notice and the row of the UAV say which. @param {PlanResult} result @param {ShownRoute} route */
+const isGrounded = ({ warnings }, { sequence }) =>
+  (warnings ?? []).some(({ code, uav }) => GROUNDING.includes(code) && uav === sequence);
+
+/** @param {ShownRoute} route @param {PlanResult} result */
+function secondWords(route, result) {
+  if (route.geometry)
+    return [
+      tn(route.targets.length, "{count} target", "{count} targets"),
+      route.by_hand?.length > 0 && t("changed by hand"),
+      staysText(route),
+      delayText(route),
+      endingOf(route),
+    ]
+      .filter(Boolean)
+      .join(" · ");
+  if (isGrounded(result, route)) return t("cannot take off");
+  return result.unassigned.length ? t("reaches none of what is left") : t("not needed");
+}
+
+/** @param {ShownRoute} route @param {RowContext} context */
+export function routeRow(route, context) {
+  const { result, isChosen, strips, acts } = context;
+  const second = secondWords(route, result);
+  return h(
+    "li",
+    {
+      class: `route route-${routeNumber(route.sequence)}`,
+      dataset: { sequence: route.sequence },
+      onpointerenter: acts.look,
+      onpointerleave: acts.leave,
+      onfocusin: acts.look,
+      onfocusout: acts.leave,
+    },
+    h(
+      "button",
+      {
+        type: "button",
+        class: "who",
+        disabled: !route.geometry,
+        "aria-pressed": String(isChosen),
+        title: second,
+        onclick: acts.choose,
+      },
+      h("span", { class: "letter" }, route.letter),
+      h("span", {}, h("strong", {}, route.name), h("small", {}, second)),
+    ),
+    h("div", { class: "strip-place" }, strips),
+    figuresOf(route, context),
+    route.geometry && actsOf(route, context),
+  );
+}
+
+/** Length, time and battery; beside a plan before also the differences. @param {ShownRoute} route @param {RowContext} context */
+function figuresOf(route, { result, before, showsBattery }) {
+  const isUsed = Boolean(route.geometry);
+  const landing = isUsed && result.departs_at && !before ? landing_s(route) : null;
+  const battery = isUsed ? batteryOf(route) : null;
+  return [
+    h(
+      "span",
+      { class: "figure length-figure" },
+      isUsed ? lengthText(route.length_m) : "—",
+      before && h("small", {}, moreOrLess(route.length_m - before.length_m, 50, lengthText)),
+    ),
+    h(
+      "span",
+      { class: "figure" },
+      isUsed ? durationText(route.duration_s) : "—",
+      before && h("small", {}, moreOrLess(route.duration_s - before.duration_s, 30, durationText)),
+      landing !== null && h("small", {}, t("until {time}", { time: timeAt(result.departs_at, landing) })),
+    ),
+    showsBattery &&
+      h(
+        "span",
+        {
+          class: "figure battery-figure",
+          title: battery ? t("{percent} left, {energy} used", { percent: battery.left, energy: battery.used }) : null,
+        },
+        battery?.left ?? "—",
+        battery && h("small", {}, t("at landing")),
+      ),
+  ];
+}
+
+/** @param {ShownRoute} route @param {RowContext} context */
+function actsOf({ name, charging }, { canPlan, acts }) {
+  const charges = Boolean(charging?.length);
+  return h(
+    "span",
+    { class: "route-acts" },
+    canPlan &&
+      h(
+        "button",
+        {
+          type: "button",
+          class: "icon-button tight",
+          "aria-label": t("Change the route of {name} by hand", { name }),
+          title: charges ? t("A route with stops to charge cannot be changed by hand.") : t("Change by hand"),
+          disabled: charges,
+          onclick: acts.change,
+        },
+        icon("hand", "small"),
+      ),
+    h(
+      "button",
+      {
+        type: "button",
+        class: "text-button why-button",
+        "aria-label": t("Why does {name} fly this route?", { name }),
+        onclick: acts.explain,
+      },
+      t("Why?"),
+    ),
+  );
+}
