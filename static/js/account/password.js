@@ -5,8 +5,11 @@ import { byId, h, icon } from "../dom.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
 
+/** @import { Reporter } from "../page/problem.js" */
+
 const FIELDS = ["old_password", "new_password", "once_more"];
 
+/** @param {string} name of a field @param {string} words */
 function fault(name, words) {
   const input = byId(name);
   const place = `${name}-fault`;
@@ -25,24 +28,32 @@ function forgetFaults() {
   }
 }
 
+/** @param {Reporter} reporter */
 export function mountPassword({ tell, settle }) {
-  byId("password-form").addEventListener("submit", async (event) => {
+  const form = byId("password-form", HTMLFormElement);
+  form.addEventListener("submit", async (event) => {
     event.preventDefault();
     forgetFaults();
-    const [old_password, new_password, once_more] = FIELDS.map((name) => byId(name).value);
-    if (!old_password) return fault("old_password", t("Type the password that you have now."));
-    if (!new_password) return fault("new_password", t("Type a new password."));
-    if (new_password !== once_more) return fault("once_more", t("The two are not the same."));
+    const [old_password, new_password, once_more] = FIELDS.map((name) => byId(name, HTMLInputElement).value);
+    if (!old_password) fault("old_password", t("Type the password that you have now."));
+    else if (!new_password) fault("new_password", t("Type a new password."));
+    else if (new_password !== once_more) fault("once_more", t("The two are not the same."));
+    else await change({ old_password, new_password });
+  });
+
+  /** @param {{ old_password: string, new_password: string }} passwords */
+  async function change(passwords) {
     try {
-      await post("/account/password", { old_password, new_password });
+      await post("/account/password", passwords);
     } catch (error) {
       const faults = error instanceof ApiError ? Object.entries(error.details ?? {}) : [];
       const [name, words] = faults.find(([place]) => FIELDS.includes(place)) ?? [];
-      if (name) return fault(name, words.join(" "));
-      return tell(t("The password is not changed."), error);
+      if (name) fault(name, words.join(" "));
+      else tell(t("The password is not changed."), error);
+      return;
     }
     settle();
-    byId("password-form").reset();
+    form.reset();
     toast(t("The password is changed. Other browsers are signed out."));
-  });
+  }
 }

@@ -5,7 +5,13 @@ import { h, icon } from "../dom.js";
 import { open } from "../page/keyboard.js";
 import { t } from "../text.js";
 
-/** `send()` as it is, or once more after the password was said. Null where somebody would rather not. */
+/**
+ * Sends, and once more after the password was confirmed if the server asks for that. Null where the user cancels.
+ *
+ * @template Result
+ * @param {() => Promise<Result>} send
+ * @returns {Promise<Result | null>}
+ */
 export async function proved(send) {
   try {
     return await send();
@@ -15,6 +21,7 @@ export async function proved(send) {
   return (await askForPassword()) ? send() : null;
 }
 
+/** @returns {Promise<boolean>} */
 function askForPassword() {
   return new Promise((resolve) => {
     const input = h("input", {
@@ -40,6 +47,7 @@ function askForPassword() {
         h("button", { class: "button primary" }, t("Go on")),
       ),
     );
+    /** @type {HTMLDialogElement} */
     const dialog = h("dialog", { "aria-labelledby": "proof-title" }, form);
     let isProved = false;
     dialog.addEventListener("close", () => resolve(isProved));
@@ -57,7 +65,8 @@ function askForPassword() {
             h("span", {}, error.details?.password?.join(" ") ?? error.message),
           ),
         );
-        return input.focus();
+        input.focus();
+        return;
       }
       isProved = true;
       dialog.close();

@@ -8,7 +8,13 @@ import { exactText, whenText } from "../units.js";
 import { proved } from "./proof.js";
 import { browserName } from "./sign_in_row.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { BrowserSession, BrowserSessionList } from "../api_types.d.ts" */
+/** @import { Reporter } from "../page/problem.js" */
+
+/** @param {Reporter} reporter */
 export function mountSessions({ tell, settle }) {
+  /** @param {BrowserSession} session */
   function row(session) {
     const name = browserName(session.user_agent);
     const times = session.is_this_one
@@ -45,13 +51,14 @@ export function mountSessions({ tell, settle }) {
 
   async function load() {
     try {
-      const { data } = await get("/account/sessions");
+      const { data } = /** @type {Answer<BrowserSessionList>} */ (await get("/account/sessions"));
       byId("sessions").replaceChildren(...data.results.map(row));
     } catch (error) {
       tell(t("Sessions could not be loaded."), error);
     }
   }
 
+  /** @param {() => Promise<unknown>} send @param {string} words */
   async function act(send, words) {
     try {
       if ((await proved(send)) === null) return;
@@ -64,6 +71,7 @@ export function mountSessions({ tell, settle }) {
     byId("sessions").querySelector("button")?.focus({ preventScroll: true });
   }
 
+  /** @param {BrowserSession} session @param {string} name */
   const end = (session, name) =>
     act(() => remove(`/account/sessions/${session.id}`), t("{name} is signed out.", { name }));
   byId("sign-out-everywhere").addEventListener("click", () =>

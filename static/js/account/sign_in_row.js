@@ -4,6 +4,9 @@ import { h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { exactText, whenText } from "../units.js";
 
+/** @import { SignIn } from "../api_types.d.ts" */
+
+/** @type {Record<SignIn["outcome"], { icon: string, words: string }>} */
 export const OUTCOMES = {
   "signed-in": { icon: "check", words: t("Signed in") },
   wrong: { icon: "circle-x", words: t("Wrong name or password") },
@@ -12,6 +15,7 @@ export const OUTCOMES = {
   "signed-out": { icon: "log-out", words: t("Signed out") },
 };
 
+/** @type {[RegExp, string][]} */
 const BROWSERS = [
   [/Edg\//, "Edge"],
   [/OPR\//, "Opera"],
@@ -19,6 +23,7 @@ const BROWSERS = [
   [/Chrome\/|Chromium\/|CriOS\//, "Chrome"],
   [/Safari\//, "Safari"],
 ];
+/** @type {[RegExp, string][]} */
 const SYSTEMS = [
   [/Android/, "Android"],
   [/iPhone|iPad/, "iOS"],
@@ -27,14 +32,16 @@ const SYSTEMS = [
   [/Linux|X11/, "Linux"],
 ];
 
+/** @param {[RegExp, string][]} names @param {string} agent */
 const firstOf = (names, agent) => names.find(([sign]) => sign.test(agent))?.[1];
 
-/** "Firefox, Windows"; what is none of the usual is shown as it calls itself. */
+/** "Firefox, Windows"; what is none of the usual is shown as it calls itself. @param {string} agent */
 export function browserName(agent) {
   const names = [firstOf(BROWSERS, agent), firstOf(SYSTEMS, agent)].filter(Boolean);
   return names.length ? names.join(", ") : agent.slice(0, 40) || "—";
 }
 
+/** @param {SignIn} entry */
 export function signInRow(entry) {
   const outcome = OUTCOMES[entry.outcome];
   return h(

@@ -1,44 +1,54 @@
 /** The admin's geometry fields: the map shows what the text says; a point can be dragged or set by a click. */
 
+import { find, h } from "../dom.js";
+import { addSources, setFeatures } from "../map/look/style.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { maplibre } from "../map/maplibre.js";
 import { t } from "../text.js";
 import { outlineOf, parseGeometry, pointText, positionsOf } from "./geometry_text.js";
 
-const NOTHING = { type: "FeatureCollection", features: [] };
+/** @import { LngLatLike } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 
-for (const field of document.querySelectorAll("[data-geometry]")) {
-  const text = field.querySelector("textarea");
-  const note = field.querySelector(".geometry-note");
+/** @type {NodeListOf<HTMLElement>} */
+const fields = document.querySelectorAll("[data-geometry]");
+for (const field of fields) {
+  const text = find(field, "textarea", HTMLTextAreaElement);
+  const note = find(field, ".geometry-note");
   const hint = note.textContent;
   const isPoint = "isPoint" in field.dataset;
-  const view = createMap(field.querySelector(".geometry-map"), { under: "", describe: t("Map of the geometry") });
+  const view = createMap(find(field, ".geometry-map"), { under: "", describe: t("Map of the geometry") });
+  /** @type {InstanceType<typeof maplibre.Marker> | null} */
   let point = null;
 
+  /** @param {string | null | undefined} fault */
   const tell = (fault) => {
     note.textContent = fault ?? hint;
     note.classList.toggle("fault", Boolean(fault));
   };
 
+  /** @param {LngLatLike} position */
   function placePoint(position) {
-    if (point) return point.setLngLat(position);
-    const element = document.createElement("div");
-    element.className = "geometry-point";
-    point = new maplibre.Marker({ element, draggable: !text.readOnly }).setLngLat(position).addTo(view.map);
-    point.on("dragend", () => write(point.getLngLat()));
-    return point;
+    if (point) {
+      point.setLngLat(position);
+      return;
+    }
+    const marker = new maplibre.Marker({ element: h("div", { class: "geometry-point" }), draggable: !text.readOnly });
+    marker.on("dragend", () => write(marker.getLngLat()));
+    point = marker.setLngLat(position).addTo(view.map);
   }
 
+  /** @param {{ lng: number, lat: number }} place */
   function write({ lng, lat }) {
     text.value = pointText(lng, lat);
     tell(null);
   }
 
+  /** @param {{ move: boolean }} how */
   function show({ move }) {
     const { geometry, fault } = parseGeometry(text.value);
     tell(fault);
-    if (geometry?.type === "Point") placePoint(geometry.coordinates);
-    else view.map.getSource("drawn").setData(geometry ? outlineOf(geometry) : NOTHING);
+    if (geometry?.type === "Point") placePoint([geometry.coordinates[0], geometry.coordinates[1]]);
+    else setFeatures(view.map, "drawn", geometry ? [outlineOf(geometry)] : []);
     if (move && geometry) view.fit(boxAround(positionsOf(geometry)), { animate: false });
   }
 
@@ -48,7 +58,7 @@ for (const field of document.querySelectorAll("[data-geometry]")) {
   }
 
   view.ready.then(() => {
-    view.map.addSource("drawn", { type: "geojson", data: NOTHING });
+    addSources(view.map, ["drawn"]);
     view.map.addLayer({
       id: "drawn",
       type: "line",

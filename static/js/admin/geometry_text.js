@@ -2,9 +2,16 @@
 
 import { t } from "../text.js";
 
+/** @import { Geometry } from "../map/types.d.ts" */
+
 const DIGITS = 7; // about a centimetre
 
-/** { geometry } or { fault: sentence }; neither for empty text. */
+/**
+ * { geometry } or { fault: sentence }; neither for empty text.
+ *
+ * @param {string} text
+ * @returns {{ geometry?: Geometry, fault?: string }}
+ */
 export function parseGeometry(text) {
   if (!text.trim()) return {};
   let geometry;
@@ -16,6 +23,7 @@ export function parseGeometry(text) {
   if (!geometry?.type || !Array.isArray(geometry.coordinates))
     return { fault: t("A GeoJSON geometry has a type and coordinates.") };
   const positions = positionsOf(geometry);
+  /** @param {number[]} position */
   const isSound = ([longitude, latitude]) =>
     Number.isFinite(longitude) && Number.isFinite(latitude) && Math.abs(longitude) <= 180 && Math.abs(latitude) <= 90;
   if (!positions.length || !positions.every(isSound))
@@ -23,21 +31,28 @@ export function parseGeometry(text) {
   return { geometry };
 }
 
-export function positionsOf(geometry) {
-  const positions = [];
-  const walk = (value) => (Array.isArray(value[0]) ? value.forEach(walk) : positions.push(value));
-  if (geometry.coordinates.length) walk(geometry.coordinates);
-  return positions;
+/** All positions of a geometry. @param {Geometry} geometry @returns {number[][]} */
+export function positionsOf({ coordinates }) {
+  if (!coordinates.length) return [];
+  return Array.isArray(coordinates[0])
+    ? ringsIn(/** @type {unknown[][]} */ (coordinates)).flat()
+    : [/** @type {number[]} */ (coordinates)];
 }
 
-/** The paths that are drawn, as a feature: an area that crosses itself would not be drawn as an area at all. */
-export function outlineOf(geometry) {
-  const paths = [];
-  const walk = (value) => (Array.isArray(value[0]?.[0]) ? value.forEach(walk) : paths.push(value));
-  walk(geometry.coordinates);
+/** The lists of positions in nested coordinates. @param {unknown[][]} nested @returns {number[][][]} */
+function ringsIn(nested) {
+  return Array.isArray(nested[0]?.[0])
+    ? /** @type {unknown[][][]} */ (nested).flatMap(ringsIn)
+    : [/** @type {number[][]} */ (nested)];
+}
+
+/** The paths that are drawn, as a feature: an area that crosses itself would not be drawn as an area at all. @param {Geometry} geometry */
+export function outlineOf({ coordinates }) {
+  const paths = ringsIn(/** @type {unknown[][]} */ (coordinates));
   return { type: "Feature", properties: {}, geometry: { type: "MultiLineString", coordinates: paths } };
 }
 
+/** @param {number} longitude @param {number} latitude */
 export function pointText(longitude, latitude) {
   return JSON.stringify({
     type: "Point",

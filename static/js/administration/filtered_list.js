@@ -4,16 +4,35 @@ import { get } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { t } from "../text.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { Reporter } from "../page/problem.js" */
+
 const TYPING_ENDS_MS = 250;
 
-/** filters: names of the query's parameters, each with a control #<list>-<name>. */
+/**
+ * @template Row
+ * @typedef {object} ListOptions
+ * @property {string} list prefix of the ids of its elements
+ * @property {string} path in the API
+ * @property {string[]} filters names of the query's parameters, each with a control #<list>-<name>
+ * @property {(entry: Row) => HTMLElement} row
+ * @property {(count: number) => string} countWords
+ * @property {{ icon: string, title: string, words: string }} none
+ * @property {Reporter["tell"]} tell
+ * @property {string} titleOfFault
+ */
+
+/** @template Row @param {ListOptions<Row>} options */
 export function filteredList({ list, path, filters, row, countWords, none, tell, titleOfFault }) {
-  const controls = filters.map((name) => [name, byId(`${list}-${name}`)]);
+  /** @type {[string, HTMLInputElement | HTMLSelectElement][]} */
+  const controls = filters.map((name) => [name, byId(`${list}-${name}`, HTMLInputElement)]);
   const rows = byId(`${list}-rows`);
   const more = byId(`${list}-more`);
+  /** @type {string | null} */
   let next = null;
   let asked = 0;
-  let timer = 0;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
 
   function query() {
     const wanted = controls.map(([name, control]) => [name, control.value.trim()]).filter(([, value]) => value);
@@ -22,10 +41,12 @@ export function filteredList({ list, path, filters, row, countWords, none, tell,
 
   const isFiltered = () => controls.some(([, control]) => control.value.trim());
 
+  /** @param {string} address */
   async function ask(address) {
-    const turn = ++asked;
+    asked += 1;
+    const turn = asked;
     try {
-      const { data } = await get(address);
+      const { data } = /** @type {Answer<{ results: Row[], next: string | null }>} */ (await get(address));
       return turn === asked ? data : null;
     } catch (error) {
       tell(titleOfFault, error);
@@ -41,19 +62,22 @@ export function filteredList({ list, path, filters, row, countWords, none, tell,
   }
 
   async function loadMore() {
-    const data = await ask(next);
+    const data = next && (await ask(next));
     if (!data) return;
     const added = data.results.map(row);
     rows.append(...added);
     shown(data.next);
-    added[0]?.querySelector("button, select, a")?.focus();
+    /** @type {HTMLElement | null | undefined} */
+    const first = added[0]?.querySelector("button, select, a");
+    first?.focus();
   }
 
+  /** @param {string | null} following address of the next page */
   function shown(following) {
     next = following;
     more.hidden = next === null;
     const count = rows.children.length;
-    rows.closest("table").hidden = count === 0;
+    /** @type {HTMLElement} */ (rows.closest("table")).hidden = count === 0;
     byId(`${list}-count`).textContent =
       count === 0 ? "" : next === null ? countWords(count) : t("The first {what}", { what: countWords(count) });
     const empty = byId(`${list}-none`);

@@ -11,6 +11,11 @@ import { clockText, dayText, exactText, whenText } from "../units.js";
 import { filteredList } from "./filtered_list.js";
 import { MAY, ROLES } from "./roles.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { Invitation, NewInvitation, Role } from "../api_types.d.ts" */
+/** @import { Reporter } from "../page/problem.js" */
+
+/** @type {Record<string, [string, string]>} */
 const STATES = {
   open: [t("Open"), "active"],
   accepted: [t("Accepted"), ""],
@@ -19,6 +24,7 @@ const STATES = {
 };
 const DAYS = [1, 7, 14, 30];
 
+/** @param {Reporter & { show: () => Promise<unknown> }} options show: turns to the tab */
 export function mountInvitations({ tell, settle, show }) {
   const list = filteredList({
     list: "invitations",
@@ -31,6 +37,7 @@ export function mountInvitations({ tell, settle, show }) {
     titleOfFault: t("Invitations could not be loaded."),
   });
 
+  /** @param {Invitation} invitation */
   function row(invitation) {
     const [words, style] = STATES[invitation.state];
     const whom = invitation.email || t("whoever has the link");
@@ -68,6 +75,7 @@ export function mountInvitations({ tell, settle, show }) {
     );
   }
 
+  /** @param {Invitation} invitation */
   async function revoke(invitation) {
     try {
       await remove(`/invitations/${invitation.id}`);
@@ -81,99 +89,117 @@ export function mountInvitations({ tell, settle, show }) {
     }
   }
 
+  /** Asks for a role and an address, makes the link, and shows it once. */
   function invite() {
-    const fault = h("div", {});
-    const roles = Object.entries(ROLES).map(([value, words]) =>
-      h(
-        "label",
-        { class: "role-choice" },
-        h("input", { type: "radio", name: "role", value, checked: value === "operator" }),
-        h("span", {}, h("strong", {}, words), h("span", { class: "caption" }, ` ${MAY[value]}`)),
-      ),
-    );
-    const mail = readPage().mailLeavesHere
-      ? t("The link is sent there, and shown to you.")
-      : t("No mail leaves this server: you hand the link over yourself.");
-    const form = h(
-      "form",
-      { class: "stack", novalidate: true },
-      h("h2", { id: "invite-title" }, t("Invite somebody")),
-      h("fieldset", { class: "role-choices" }, h("legend", { class: "field-label" }, t("Role")), roles),
-      h(
-        "div",
-        { class: "field" },
-        h("label", { for: "invite-email" }, t("E-mail address, if you like")),
-        h("input", {
-          class: "input",
-          id: "invite-email",
-          type: "email",
-          maxlength: 254,
-          autocomplete: "off",
-          "aria-describedby": "invite-mail",
-        }),
-        h("p", { class: "caption", id: "invite-mail" }, mail),
-      ),
-      h(
-        "div",
-        { class: "field" },
-        h("label", { for: "invite-days" }, t("Works for")),
-        h(
-          "select",
-          { class: "input", id: "invite-days" },
-          DAYS.map((days) =>
-            h("option", { value: days, selected: days === 7 }, days === 1 ? t("1 day") : t("{days} days", { days })),
-          ),
-        ),
-      ),
-      fault,
-      h(
-        "div",
-        { class: "acts" },
-        h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
-        h("button", { class: "button primary" }, t("Make the link")),
-      ),
-    );
-    const dialog = h("dialog", { "aria-labelledby": "invite-title" }, form);
-    form.addEventListener("submit", async (event) => {
-      event.preventDefault();
-      const body = {
-        role: form.elements.role.value,
-        email: form.querySelector("#invite-email").value.trim(),
-        days: Number(form.querySelector("#invite-days").value),
-      };
-      try {
-        const { data } = await post("/invitations", body);
-        dialog.close();
-        await show();
-        present(data);
-      } catch (error) {
-        if (!(error instanceof ApiError)) throw error;
-        fault.replaceChildren(
-          h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", {}, error.message)),
-        );
-      }
+    askInvitation(async (invitation) => {
+      await show();
+      present(invitation);
     });
-    open(dialog);
-  }
-
-  function present(invitation) {
-    const role = ROLES[invitation.role];
-    const title = t("A link for one account with the role {role}. Copy it now: it is not shown again.", { role });
-    const words = invitation.was_mailed
-      ? t("It was sent to {email}.", { email: invitation.email })
-      : invitation.email
-        ? t("It was not sent: hand it over yourself.")
-        : "";
-    byId("new-link").replaceChildren(
-      shownOnce({
-        title,
-        secret: invitation.link,
-        label: t("Link of the invitation"),
-        more: words && h("p", { class: "caption" }, words),
-      }),
-    );
-    byId("new-link").querySelector("button").focus();
   }
 
   return { ...list, invite };
+}
+
+/** @param {(invitation: NewInvitation) => void} made */
+function askInvitation(made) {
+  const fault = h("div", {});
+  const { elements, read } = invitationFields();
+  const close = () => dialog.close();
+  const form = h(
+    "form",
+    { class: "stack", novalidate: true },
+    h("h2", { id: "invite-title" }, t("Invite somebody")),
+    elements,
+    fault,
+    h(
+      "div",
+      { class: "acts" },
+      h("button", { type: "button", class: "button", onclick: close }, t("Cancel")),
+      h("button", { class: "button primary" }, t("Make the link")),
+    ),
+  );
+  /** @type {HTMLDialogElement} */
+  const dialog = h("dialog", { "aria-labelledby": "invite-title" }, form);
+  form.addEventListener("submit", async (event) => {
+    event.preventDefault();
+    try {
+      const { data } = /** @type {Answer<NewInvitation>} */ (await post("/invitations", read()));
+      dialog.close();
+      made(data);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      fault.replaceChildren(
+        h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", {}, error.message)),
+      );
+    }
+  });
+  open(dialog);
+}
+
+function invitationFields() {
+  const roles = Object.entries(ROLES).map(([value, words]) => {
+    const may = MAY[/** @type {Role} */ (value)];
+    const input = h("input", { type: "radio", name: "role", value, checked: value === "operator" });
+    const label = h(
+      "label",
+      { class: "role-choice" },
+      input,
+      h("span", {}, h("strong", {}, words), h("span", { class: "caption" }, ` ${may}`)),
+    );
+    return { input, label };
+  });
+  const email = h("input", {
+    class: "input",
+    id: "invite-email",
+    type: "email",
+    maxlength: 254,
+    autocomplete: "off",
+    "aria-describedby": "invite-mail",
+  });
+  const days = h(
+    "select",
+    { class: "input", id: "invite-days" },
+    DAYS.map((number) => {
+      const words = number === 1 ? t("1 day") : t("{days} days", { days: number });
+      return h("option", { value: number, selected: number === 7 }, words);
+    }),
+  );
+  const mail = readPage().mailLeavesHere
+    ? t("The link is sent there, and shown to you.")
+    : t("No mail leaves this server: you hand the link over yourself.");
+  const elements = [
+    h(
+      "fieldset",
+      { class: "role-choices" },
+      h("legend", { class: "field-label" }, t("Role")),
+      roles.map(({ label }) => label),
+    ),
+    h(
+      "div",
+      { class: "field" },
+      h("label", { for: "invite-email" }, t("E-mail address, if you like")),
+      email,
+      h("p", { class: "caption", id: "invite-mail" }, mail),
+    ),
+    h("div", { class: "field" }, h("label", { for: "invite-days" }, t("Works for")), days),
+  ];
+  const read = () => ({
+    role: roles.find(({ input }) => input.checked)?.input.value,
+    email: email.value.trim(),
+    days: Number(days.value),
+  });
+  return { elements, read };
+}
+
+/** Shows the link, which is not shown again. @param {NewInvitation} invitation */
+function present({ role, email, link, was_mailed }) {
+  const title = t("A link for one account with the role {role}. Copy it now: it is not shown again.", {
+    role: ROLES[role],
+  });
+  const sent = t("It was sent to {email}.", { email });
+  const words = was_mailed ? sent : email ? t("It was not sent: hand it over yourself.") : "";
+  const place = byId("new-link");
+  const more = words && h("p", { class: "caption" }, words);
+  place.replaceChildren(shownOnce({ title, secret: link, label: t("Link of the invitation"), more }));
+  place.querySelector("button")?.focus();
 }

@@ -1,44 +1,36 @@
 /** Administration: people, invitations and the log of sign-ins, each a list with filters; and the organisation's rules. */
 
-import { ApiError, signInAddress } from "../api.js";
-import { byId, h, icon } from "../dom.js";
+import { byId, find } from "../dom.js";
 import { startChrome } from "../page/chrome.js";
+import { settle, tell } from "../page/problem.js";
 import { t } from "../text.js";
 import { mountInvitations } from "./invitations.js";
 import { mountPeople } from "./people.js";
 import { mountRules } from "./rules.js";
 import { mountSignIns } from "./sign_ins.js";
 
+/** @typedef {"people" | "invitations" | "sign-ins" | "rules"} Tab */
+
+/** @type {Tab[]} */
 const TABS = ["people", "invitations", "sign-ins", "rules"];
-
-function tell(title, error) {
-  if (!(error instanceof ApiError)) throw error;
-  const way = error.isSignedOut ? h("a", { class: "text-button", href: signInAddress() }, t("Sign in")) : null;
-  byId("problem").replaceChildren(
-    h(
-      "div",
-      { class: "notice critical", role: "alert" },
-      icon("circle-alert"),
-      h("p", {}, h("strong", {}, title), ` ${error.message} `, way),
-    ),
-  );
-}
-
-function settle() {
-  byId("problem").replaceChildren();
-}
 
 const lists = {
   people: mountPeople({ tell, settle }),
   invitations: mountInvitations({ tell, settle, show: () => showTab("invitations") }),
-  "sign-ins": mountSignIns({ tell, settle }),
+  "sign-ins": mountSignIns({ tell }),
   rules: mountRules({ tell, settle }),
 };
 
-/** The tab is in the address: it can be sent, and Back works. */
+/**
+ * Shows a tab. It is in the address: it can be sent, and Back works.
+ *
+ * @param {Tab} name
+ * @param {{ isNew?: boolean }} [how]
+ * @returns {Promise<void>}
+ */
 function showTab(name, { isNew = true } = {}) {
   for (const tab of TABS) byId(`tab-${tab}`).hidden = tab !== name;
-  document.querySelector(`input[name=tab][value=${name}]`).checked = true;
+  find(document, `input[name=tab][value=${name}]`, HTMLInputElement).checked = true;
   if (isNew && tabInAddress() !== name)
     history.pushState(null, "", name === "people" ? location.pathname : `?tab=${name}`);
   settle();
@@ -47,14 +39,14 @@ function showTab(name, { isNew = true } = {}) {
 
 function tabInAddress() {
   const name = new URLSearchParams(location.search).get("tab");
-  return TABS.includes(name) ? name : "people";
+  return TABS.find((tab) => tab === name) ?? "people";
 }
 
 startChrome({
   bindings: [{ keys: ["/"], words: t("Find"), act: () => document.getElementById(`${tabInAddress()}-text`)?.focus() }],
 });
-for (const radio of document.querySelectorAll("input[name=tab]"))
-  radio.addEventListener("change", () => showTab(radio.value));
+for (const tab of TABS) find(document, `input[name=tab][value=${tab}]`).addEventListener("change", () => showTab(tab));
 addEventListener("popstate", () => showTab(tabInAddress(), { isNew: false }));
-byId("invite").addEventListener("click", lists.invitations.invite);
-showTab(tabInAddress(), { isNew: false }).then(() => (document.documentElement.dataset.loaded = "true"));
+byId("invite").addEventListener("click", () => lists.invitations.invite());
+await showTab(tabInAddress(), { isNew: false });
+document.documentElement.dataset.loaded = "true";

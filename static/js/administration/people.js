@@ -3,38 +3,62 @@
 import { ApiError, patch, post, remove } from "../api.js";
 import { h, icon } from "../dom.js";
 import { menuOf, readPage, toggleMenu } from "../page/chrome.js";
-import { open } from "../page/keyboard.js";
 import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { exactText, whenText } from "../units.js";
 import { filteredList } from "./filtered_list.js";
+import { confirmRemoval, editPerson } from "./people_dialogs.js";
 import { ROLES, roleOptions } from "./roles.js";
+
+/** @import { Answer } from "../api.js" */
+/** @import { Person, Role } from "../api_types.d.ts" */
+/** @import { MenuItem } from "../page/chrome.js" */
+/** @import { Reporter } from "../page/problem.js" */
+
+/** @typedef {Partial<Pick<Person, "role" | "is_active" | "first_name" | "last_name" | "email">>} PersonChange */
 
 const HERE_WITHIN_MS = 5 * 60_000;
 const me = readPage().userId;
 
+/** @param {Person} person */
 const fullName = (person) => [person.first_name, person.last_name].filter(Boolean).join(" ");
 
-function accessChip(person) {
-  if (!person.is_active) return h("span", { class: "chip aborted" }, t("Kept out"));
-  if (person.last_seen_at && Date.now() - new Date(person.last_seen_at) < HERE_WITHIN_MS)
+/** @param {Person} person */
+function accessChip({ is_active, last_seen_at }) {
+  if (!is_active) return h("span", { class: "chip aborted" }, t("Kept out"));
+  if (last_seen_at && Date.now() - Date.parse(last_seen_at) < HERE_WITHIN_MS)
     return h("span", { class: "chip active" }, icon("check"), t("Here now"));
   return h("span", { class: "chip" }, t("May sign in"));
 }
 
-export function mountPeople({ tell, settle }) {
-  const list = filteredList({
+/** @param {Reporter} reporter */
+export function mountPeople(reporter) {
+  const people = new People(reporter);
+  return filteredList({
     list: "people",
     path: "/people",
     filters: ["text", "role", "access"],
-    row,
+    row: (/** @type {Person} */ person) => people.row(person),
     countWords: (count) => tn(count, "{count} person", "{count} people"),
     none: { icon: "users", title: t("Nobody is here"), words: t("Invite somebody.") },
-    tell,
+    tell: reporter.tell,
     titleOfFault: t("People could not be loaded."),
   });
+}
 
-  function row(person) {
+/** Rows of people, and what can be done with each. */
+class People {
+  #tell;
+  #settle;
+
+  /** @param {Reporter} reporter */
+  constructor({ tell, settle }) {
+    this.#tell = tell;
+    this.#settle = settle;
+  }
+
+  /** @param {Person} person */
+  row(person) {
     const name = person.username;
     const isMe = person.id === me;
     const reason = isMe && t("Another administrator changes your role.");
@@ -43,22 +67,7 @@ export function mountPeople({ tell, settle }) {
       { class: "input", "aria-label": t("Role of {name}", { name }), disabled: isMe, title: reason },
       roleOptions(person.role),
     );
-    role.addEventListener("change", () => changeRole(person, role));
-    const more = h(
-      "button",
-      {
-        type: "button",
-        class: "icon-button",
-        "aria-label": t("More for {name}", { name }),
-        "aria-haspopup": "true",
-        "aria-expanded": "false",
-      },
-      icon("ellipsis"),
-    );
-    more.addEventListener("click", (event) => {
-      event.stopPropagation();
-      toggleMenu(more, () => menuOf(name, acts(person)));
-    });
+    role.addEventListener("change", () => this.#changeRole(person, /** @type {Role} */ (role.value)));
     const second = [fullName(person), person.email].filter(Boolean).join(" · ");
     return h(
       "tr",
@@ -78,192 +87,157 @@ export function mountPeople({ tell, settle }) {
         person.last_seen_at ? whenText(person.last_seen_at) : t("never"),
       ),
       h("td", { class: "number tokens" }, person.valid_tokens ? `${person.valid_tokens}` : "—"),
-      h("td", {}, more),
+      h("td", {}, this.#menuButton(person)),
     );
   }
 
-  function acts(person) {
-    return [
-      { icon: "pencil", label: t("Name and address"), act: () => editPerson(person) },
-      { icon: "log-out", label: t("Sign out everywhere"), act: () => signOut(person) },
-      person.valid_tokens && { icon: "key-round", label: t("Revoke all tokens"), act: () => askToRevoke(person) },
-      person.has_second_factor &&
-        person.id !== me && { icon: "lock-open", label: t("Reset the second factor"), act: () => askToReset(person) },
-      person.id === me
-        ? null
-        : person.is_active
-          ? {
-              icon: "circle-x",
-              label: t("Keep out"),
-              act: () =>
-                change(person, { is_active: false }, t("{name} can no longer sign in.", { name: person.username }), {
-                  is_active: true,
-                }),
-            }
-          : {
-              icon: "check",
-              label: t("Let in again"),
-              act: () =>
-                change(person, { is_active: true }, t("{name} may sign in.", { name: person.username }), {
-                  is_active: false,
-                }),
-            },
-    ].filter(Boolean);
+  /** @param {Person} person */
+  #menuButton(person) {
+    const label = t("More for {name}", { name: person.username });
+    const look = { type: "button", class: "icon-button", "aria-label": label };
+    const more = h("button", { ...look, "aria-haspopup": "true", "aria-expanded": "false" }, icon("ellipsis"));
+    more.addEventListener("click", (event) => {
+      event.stopPropagation();
+      toggleMenu(more, () => menuOf(person.username, this.#acts(person)));
+    });
+    return more;
   }
 
-  function redraw(person, focus) {
+  /** @param {Person} person @returns {MenuItem[]} */
+  #acts(person) {
+    const isMe = person.id === me;
+    return [
+      { icon: "pencil", label: t("Name and address"), act: () => this.#edit(person) },
+      { icon: "log-out", label: t("Sign out everywhere"), act: () => this.#signOut(person) },
+      ...(person.valid_tokens
+        ? [{ icon: "key-round", label: t("Revoke all tokens"), act: () => this.#revokeTokens(person) }]
+        : []),
+      ...(person.has_second_factor && !isMe
+        ? [{ icon: "lock-open", label: t("Reset the second factor"), act: () => this.#resetSecondFactor(person) }]
+        : []),
+      ...(isMe ? [] : [this.#accessAct(person)]),
+    ];
+  }
+
+  /** Keeps somebody out, or lets them in again. @param {Person} person @returns {MenuItem} */
+  #accessAct(person) {
+    const { username: name, is_active } = person;
+    const words = is_active ? t("{name} can no longer sign in.", { name }) : t("{name} may sign in.", { name });
+    const act = () => this.#change(person, { is_active: !is_active }, words, { is_active });
+    return is_active
+      ? { icon: "circle-x", label: t("Keep out"), act }
+      : { icon: "check", label: t("Let in again"), act };
+  }
+
+  /** Draws the row again, with the focus inside it. @param {Person} person @param {string} focus selector */
+  #redraw(person, focus) {
     const old = document.querySelector(`#people-rows [data-person="${person.id}"]`);
     if (!old) return;
-    const fresh = row(person);
+    const fresh = this.row(person);
     old.replaceWith(fresh);
-    fresh.querySelector(focus)?.focus({ preventScroll: true });
+    /** @type {HTMLElement | null} */
+    const control = focus ? fresh.querySelector(focus) : null;
+    control?.focus({ preventScroll: true });
   }
 
-  const send = (person, values) =>
-    patch(`/people/${person.id}`, values, { headers: { "If-Match": `"${person.revision}"` } });
+  /** @param {Person} person @param {PersonChange} values @returns {Promise<Person>} */
+  async #send(person, values) {
+    const headers = { "If-Match": `"${person.revision}"` };
+    return /** @type {Answer<Person>} */ (await patch(`/people/${person.id}`, values, { headers })).data;
+  }
 
-  async function change(person, values, words, back, focus = ".icon-button") {
+  /**
+   * @param {Person} person
+   * @param {PersonChange} values
+   * @param {string} words what was done
+   * @param {PersonChange | null} back values that take it back
+   * @param {string} [focus]
+   */
+  async #change(person, values, words, back, focus = ".icon-button") {
     try {
-      const { data } = await send(person, values);
-      settle();
-      redraw(data, focus);
-      toast(words, back && { label: t("Undo"), act: () => change(data, back, t("As before."), null, focus) });
+      const changed = await this.#send(person, values);
+      this.#settle();
+      this.#redraw(changed, focus);
+      const undo = back && (() => this.#change(changed, back, t("As before."), null, focus));
+      toast(words, undo && { label: t("Undo"), act: undo });
     } catch (error) {
       const now = error instanceof ApiError ? error.details?.current : null;
-      redraw(now ?? person, focus);
-      tell(t("Nothing was changed."), error);
+      this.#redraw(now ?? person, focus);
+      this.#tell(t("Nothing was changed."), error);
     }
   }
 
-  function changeRole(person, select) {
-    const words = t("{name} has the role {role} now.", { name: person.username, role: ROLES[select.value] });
-    return change(person, { role: select.value }, words, { role: person.role }, "select");
+  /** @param {Person} person @param {Role} role */
+  #changeRole(person, role) {
+    const words = t("{name} has the role {role} now.", { name: person.username, role: ROLES[role] });
+    return this.#change(person, { role }, words, { role: person.role }, "select");
   }
 
-  async function signOut(person) {
+  /** @param {Person} person */
+  async #signOut(person) {
     try {
       await post(`/people/${person.id}/sign-out`);
-      settle();
+      this.#settle();
       toast(t("{name} is signed out everywhere.", { name: person.username }));
     } catch (error) {
-      tell(t("Nobody was signed out."), error);
+      this.#tell(t("Nobody was signed out."), error);
     }
   }
 
-  function ask({ title, words, keep, go, act }) {
-    const doIt = () => (dialog.close(), act());
-    const dialog = h(
-      "dialog",
-      { "aria-labelledby": "ask-title" },
-      h("h2", { id: "ask-title" }, title),
-      h("p", {}, words),
-      h(
-        "form",
-        { method: "dialog", class: "acts" },
-        h("button", { class: "button", autofocus: true }, keep),
-        h("button", { type: "button", class: "button danger filled", onclick: doIt }, go),
-      ),
-    );
-    open(dialog);
+  /** @param {Person} person */
+  #edit(person) {
+    editPerson(person, {
+      send: (current, values) => this.#send(current, values),
+      redraw: (current) => this.#redraw(current, ""),
+      done: (changed) => {
+        this.#settle();
+        this.#redraw(changed, ".icon-button");
+        toast(t("{name} is changed.", { name: person.username }));
+      },
+    });
   }
 
-  async function take(path, person, without, { done, title }) {
+  /**
+   * @param {string} path
+   * @param {Person} without as they are afterwards
+   * @param {{ done: string, title: string }} words title: of what is said where it fails
+   */
+  async #take(path, without, { done, title }) {
     try {
       await remove(path);
-      settle();
-      redraw({ ...person, ...without }, ".icon-button");
+      this.#settle();
+      this.#redraw(without, ".icon-button");
       toast(done);
     } catch (error) {
-      tell(title, error);
+      this.#tell(title, error);
     }
   }
 
-  function askToRevoke(person) {
+  /** @param {Person} person */
+  #revokeTokens(person) {
     const name = person.username;
-    ask({
+    const words = { done: t("All tokens of {name} work no more.", { name }), title: t("Nothing was revoked.") };
+    confirmRemoval({
       title: t("Revoke all tokens of {name}?", { name }),
       words: t("Programs that use them stop working at once. This cannot be taken back; new tokens can be made."),
       keep: t("Keep them"),
       go: t("Revoke"),
-      act: () =>
-        take(
-          `/people/${person.id}/tokens`,
-          person,
-          { valid_tokens: 0 },
-          { done: t("All tokens of {name} work no more.", { name }), title: t("Nothing was revoked.") },
-        ),
+      act: () => this.#take(`/people/${person.id}/tokens`, { ...person, valid_tokens: 0 }, words),
     });
   }
 
-  function askToReset(person) {
+  /** @param {Person} person */
+  #resetSecondFactor(person) {
     const name = person.username;
-    ask({
+    const words = { done: t("{name} has no second factor any more.", { name }), title: t("Nothing was changed.") };
+    confirmRemoval({
       title: t("Reset the second factor of {name}?", { name }),
       words: t(
         "For somebody who has lost the telephone and the recovery codes. Be sure that it is really they who ask. They are signed out everywhere, and the password alone lets them in until they set up another one.",
       ),
       keep: t("Keep it"),
       go: t("Reset"),
-      act: () =>
-        take(
-          `/people/${person.id}/second-factor`,
-          person,
-          { has_second_factor: false },
-          { done: t("{name} has no second factor any more.", { name }), title: t("Nothing was changed.") },
-        ),
+      act: () => this.#take(`/people/${person.id}/second-factor`, { ...person, has_second_factor: false }, words),
     });
   }
-
-  function editPerson(person) {
-    const field = (name, label, properties) =>
-      h(
-        "div",
-        { class: "field" },
-        h("label", { for: `person-${name}` }, label),
-        h("input", { class: "input", id: `person-${name}`, value: person[name], autocomplete: "off", ...properties }),
-      );
-    const fault = h("div", {});
-    const form = h(
-      "form",
-      { class: "stack", novalidate: true },
-      h("h2", { id: "person-title" }, person.username),
-      h(
-        "div",
-        { class: "pair" },
-        field("first_name", t("First name"), { maxlength: 150 }),
-        field("last_name", t("Last name"), { maxlength: 150 }),
-      ),
-      field("email", t("E-mail address"), { type: "email", maxlength: 254 }),
-      fault,
-      h(
-        "div",
-        { class: "acts" },
-        h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
-        h("button", { class: "button primary" }, t("Save")),
-      ),
-    );
-    const dialog = h("dialog", { "aria-labelledby": "person-title" }, form);
-    form.addEventListener("submit", async (event) => {
-      event.preventDefault();
-      const values = Object.fromEntries(
-        ["first_name", "last_name", "email"].map((name) => [name, form.querySelector(`#person-${name}`).value.trim()]),
-      );
-      try {
-        const { data } = await send(person, values);
-        dialog.close();
-        settle();
-        redraw(data, ".icon-button");
-        toast(t("{name} is changed.", { name: person.username }));
-      } catch (error) {
-        if (!(error instanceof ApiError)) throw error;
-        if (error.details?.current) redraw((person = error.details.current), "");
-        fault.replaceChildren(
-          h("p", { class: "field-error", role: "alert" }, icon("circle-alert", "small"), h("span", {}, error.message)),
-        );
-      }
-    });
-    open(dialog);
-  }
-
-  return list;
 }

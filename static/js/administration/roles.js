@@ -3,6 +3,9 @@
 import { h } from "../dom.js";
 import { t } from "../text.js";
 
+/** @import { Role } from "../api_types.d.ts" */
+
+/** @type {Record<Role, string>} */
 export const ROLES = {
   viewer: t("Viewer"),
   operator: t("Operator|role"),
@@ -10,7 +13,7 @@ export const ROLES = {
   administrator: t("Administrator"),
 };
 
-/** What each may do, in a few words. */
+/** What each may do, in a few words. @type {Record<Role, string>} */
 export const MAY = {
   viewer: t("sees everything, changes nothing"),
   operator: t("plans and flies missions"),
@@ -18,6 +21,7 @@ export const MAY = {
   administrator: t("does everything, and lets people in"),
 };
 
+/** @param {Role} chosen */
 export function roleOptions(chosen) {
   return Object.entries(ROLES).map(([value, words]) => h("option", { value, selected: value === chosen }, words));
 }

@@ -4,17 +4,25 @@ import { get, request } from "../api.js";
 import { byId } from "../dom.js";
 import { t } from "../text.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { Reporter } from "../page/problem.js" */
+
 const RULES = [
   { id: "requires-rehearsal", path: "/rehearsal-rule", name: "requires_green" },
   { id: "requires-second-factor", path: "/second-factor-rule", name: "required" },
 ];
 
+/** @typedef {typeof RULES[number]} Rule */
+
+/** @param {Reporter} reporter */
 export function mountRules({ tell, settle }) {
+  /** @param {Rule} rule */
   async function show({ id, path, name }) {
-    const { data } = await get(path);
-    byId(id).checked = data[name];
-    byId(id).disabled = Boolean(data.is_of_the_installation);
-    byId(id).title = data.is_of_the_installation ? t("Whoever runs this installation asks for it.") : "";
+    const { data } = /** @type {Answer<Record<string, boolean>>} */ (await get(path));
+    const control = byId(id, HTMLInputElement);
+    control.checked = data[name];
+    control.disabled = Boolean(data.is_of_the_installation);
+    control.title = data.is_of_the_installation ? t("Whoever runs this installation asks for it.") : "";
   }
 
   async function load() {
@@ -26,7 +34,7 @@ export function mountRules({ tell, settle }) {
   }
 
   for (const { id, path, name } of RULES) {
-    const rule = byId(id);
+    const rule = byId(id, HTMLInputElement);
     rule.addEventListener("change", async () => {
       const wanted = rule.checked;
       rule.disabled = true;

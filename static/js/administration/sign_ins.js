@@ -6,6 +6,10 @@ import { t, tn } from "../text.js";
 import { exactText, whenText } from "../units.js";
 import { filteredList } from "./filtered_list.js";
 
+/** @import { SignIn } from "../api_types.d.ts" */
+/** @import { Reporter } from "../page/problem.js" */
+
+/** @param {SignIn} entry */
 function row(entry) {
   const outcome = OUTCOMES[entry.outcome];
   return h(
@@ -19,6 +23,7 @@ function row(entry) {
   );
 }
 
+/** @param {Pick<Reporter, "tell">} reporter */
 export function mountSignIns({ tell }) {
   return filteredList({
     list: "sign-ins",
