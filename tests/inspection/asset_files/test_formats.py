@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+import shapefile
 import shapely
 
 from inspection.asset_files.asset_file import Row, RowFaults, opened_asset_file
@@ -117,7 +118,6 @@ def test_a_shapefile_without_prj_is_refused_with_what_to_do_or_read_in_the_syste
 
 
 def test_a_shapefiles_polygon_keeps_its_hole(tmp_path: Path) -> None:
-    shapefile = pytest.importorskip("shapefile")
     with shapefile.Writer(str(tmp_path / "b"), shapeType=shapefile.POLYGON) as writer:
         writer.field("name", "C", 20)
         writer.poly([[[8, 47], [8, 48], [9, 48], [9, 47], [8, 47]], [[8.4, 47.4], [8.6, 47.4], [8.6, 47.6], [8.4, 47.4]]])

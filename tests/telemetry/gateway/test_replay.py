@@ -1,4 +1,4 @@
-"""A real flight of 2015, as its ground station logged it, sent to the gateway frame by frame."""
+"""Flights as their ground station logged them, a simulated one and a real one of 2015, sent to the gateway frame by frame."""
 
 import time
 
@@ -6,16 +6,22 @@ import pytest
 
 from telemetry.models import TelemetryRecord
 from tests.telemetry.gateway.station import Link, gateway_at_work, port_of, unsigned_uav, wait_for
-from tests.telemetry.tlogs import frames_of_tlog, positions_of
+from tests.telemetry.tlogs import frames_of_tlog, positions_of, write_tlog_of_flight
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
 FIRST_S = 120.0
 
 
+@pytest.fixture
+def log(request, shared_data, tmp_path):
+    return write_tlog_of_flight(tmp_path / "simulated.tlog") if request.param == "simulated" else shared_data(f"telemetry/{request.param}")
+
+
+@pytest.mark.parametrize("log", ["simulated", "dronekit-flight-2015.tlog"], indirect=True)
 @pytest.mark.parametrize("speed", [40.0, pytest.param(1.0, marks=pytest.mark.long)])
-def test_every_position_of_a_real_flight_is_stored_once_and_in_order(speed, shared_data, tmp_path):
-    frames = frames_of_tlog(shared_data("telemetry/dronekit-flight-2015.tlog"))
+def test_every_position_of_a_logged_flight_is_stored_once_and_in_order(speed, log, tmp_path):
+    frames = frames_of_tlog(log)
     frames = [(at_s, raw) for at_s, raw in frames if at_s < frames[0][0] + FIRST_S]
     positions = positions_of(raw for _, raw in frames)
     assert len(positions) > 100
@@ -31,3 +37,4 @@ def test_every_position_of_a_real_flight_is_stored_once_and_in_order(speed, shar
     headings = [message.hdg / 100 for message in positions]
     assert list(rows.values_list("heading_deg", flat=True)) == headings
     assert all(row.position is None for row in rows if row.gps_fix in (None, 0, 1))
+    assert sum(row.position is not None for row in rows) > 100
