@@ -5,6 +5,9 @@ import { toggleMenu } from "../../../page/chrome.js";
 import { t, tn } from "../../../text.js";
 import { targetMenu } from "../../target_menu.js";
 
+/** @import { MissionActions, MissionStore } from "../../types.d.ts" */
+
+/** @param {MissionStore} store @param {MissionActions} actions @param {{ chooseAll: () => void, done: () => void }} acts */
 export function mountChosenBar(store, actions, { chooseAll, done }) {
   const bar = byId("chosen-bar");
   const chosen = () => {
@@ -19,10 +22,12 @@ export function mountChosenBar(store, actions, { chooseAll, done }) {
       class: "button",
       "aria-haspopup": "true",
       "aria-expanded": "false",
-      onclick: () => toggleMenu(task, () => targetMenu(chosen(), actions, { ...store.state, orders: [] })),
     },
     icon("list-checks", "small"),
     t("Task"),
+  );
+  task.addEventListener("click", () =>
+    toggleMenu(task, () => targetMenu(chosen(), actions, { ...store.state, orders: [] })),
   );
   const between = h(
     "button",
@@ -45,16 +50,19 @@ export function mountChosenBar(store, actions, { chooseAll, done }) {
 
   async function addBetween() {
     const [first, last] = chosen();
+    if (first.asset === null || last.asset === null) return;
     const found = await actions.stretchBetween(first.asset, last.asset);
     if (found) actions.addSupports(found.supports);
   }
 
   return {
+    /** @param {boolean} isShown */
     refresh(isShown) {
       const targets = chosen();
       bar.hidden = !isShown;
       count.textContent = tn(targets.length, "{count} chosen", "{count} chosen");
-      task.disabled = drop.disabled = targets.length === 0;
+      task.disabled = targets.length === 0;
+      drop.disabled = targets.length === 0;
       between.hidden = !(
         targets.length === 2 && targets.every((target) => target.kind === "tower" && target.asset !== null)
       );

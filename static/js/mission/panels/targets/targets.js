@@ -1,265 +1,209 @@
-/** The list of targets: pill, kind, name, second fact, task, remove; and what is done with several of them at once. */
+/** The list of targets, and what is done with several of them at once. */
 
-import { byId, h, icon, keyedList } from "../../../dom.js";
-import { routeNumber } from "../../../domain/palette.js";
+import { byId, keyedList } from "../../../dom.js";
 import { toggleMenu } from "../../../page/chrome.js";
 import { t, tn } from "../../../text.js";
-import { lockOf, ordersOf } from "../../locks.js";
+import { ordersOf } from "../../locks.js";
 import { inPlanOrder, isPlanCurrent, shownPlaces } from "../../plan_view.js";
 import { arrivalsOf } from "../../route_times.js";
-import { isUsualTask, isWhole, nameOf, taskOf } from "../../selection.js";
-import { priorityOf, targetMenu, taskIcon, taskText, whoMayFly } from "../../target_menu.js";
+import { isWhole } from "../../selection.js";
+import { targetMenu } from "../../target_menu.js";
+import { createChoosing } from "./choosing.js";
 import { mountChosenBar } from "./chosen_bar.js";
+import { refreshRow, targetRow } from "./row.js";
+
+/** @import { MissionActions, MissionPageState, MissionStore, PickedTarget } from "../../types.d.ts" */
+/** @import { Choosing } from "./choosing.js" */
+
+/**
+ * What the rows are drawn from.
+ *
+ * @typedef {object} Shown
+ * @property {ReturnType<typeof shownPlaces>["places"]} places
+ * @property {ReturnType<typeof shownPlaces>["missed"]} missed
+ * @property {string[]} order keys
+ * @property {ReturnType<typeof arrivalsOf>} arrivals
+ */
 
 const SHOWN_FIRST = 40;
-const ICONS = { tower: "tower", line: "line", railway: "railway", bridge: "bridge", place: "map-pin" };
 
+/**
+ * @param {MissionStore} store
+ * @param {MissionActions} actions
+ * @param {boolean} canPlan
+ * @param {(target: PickedTarget) => void} showOnMap
+ */
 export function mountTargets(store, actions, canPlan, showOnMap) {
   let showAll = false;
-  let isChoosing = false;
-  let anchor = null; // where a range with Shift begins
+  /** @type {Shown} */
   let shown = { places: new Map(), missed: new Set(), order: [], arrivals: new Map() };
   const list = byId("target-list");
-  const isChosen = (target) => store.state.chosenTargets.includes(target.key);
+  const choosing = createChoosing(store, { canPlan, order: () => shown.order });
+  const bar = canPlan ? mountChoosing(list, store, actions, { choosing, refresh: () => refresh(store.state) }) : null;
 
-  function setChosen(keys) {
-    if (canPlan && keys.length > 1) isChoosing = true;
-    store.update({ chosenTargets: keys, chosenTarget: keys.at(-1) ?? null });
-  }
-
-  function toggle(target) {
-    anchor = target.key;
-    const { chosenTargets } = store.state;
-    setChosen(isChosen(target) ? chosenTargets.filter((key) => key !== target.key) : [...chosenTargets, target.key]);
-  }
-
-  function chooseUpTo(target) {
-    const from = Math.max(0, shown.order.indexOf(anchor ?? target.key));
-    const to = shown.order.indexOf(target.key);
-    const range = shown.order.slice(Math.min(from, to), Math.max(from, to) + 1);
-    setChosen(from <= to ? range : range.reverse());
-  }
-
+  /** @param {MouseEvent} event @param {PickedTarget} target */
   function press(event, target) {
-    if (canPlan && event.shiftKey) chooseUpTo(target);
-    else if (canPlan && (event.ctrlKey || event.metaKey || isChoosing)) toggle(target);
+    if (canPlan && event.shiftKey) choosing.upTo(target);
+    else if (canPlan && (event.ctrlKey || event.metaKey || choosing.isOn())) choosing.toggle(target);
     else {
-      anchor = target.key;
-      setChosen([target.key]);
+      choosing.only(target);
       showOnMap(target);
     }
   }
 
-  /** What Delete means in a row: all that are chosen with it. */
-  function removeFrom(target) {
-    actions.removeTargets(isChosen(target) ? store.state.chosenTargets : [target.key]);
-  }
+  /** @param {PickedTarget} target */
+  const make = (target) =>
+    targetRow(target, {
+      canPlan,
+      light: (isLit) => store.update({ litTarget: isLit ? target.key : null }),
+      press: (event) => press(event, target),
+      pressKey: (event, row) =>
+        pressKey(event, row, target, { store, actions, canPlan, choosing, keyAt: (index) => shown.order[index] }),
+      toggle: () => choosing.toggle(target),
+      chooseUpTo: () => choosing.upTo(target),
+      openTask: (opener) => openTask(opener, target.key, store, actions),
+      remove: () => actions.removeTargets([target.key]),
+    });
 
-  function more(target) {
-    if (!isWhole(target) || target.asset === null) return [];
-    if (target.kind === "line")
-      return [{ icon: "tower", words: t("Add every tower of it"), act: () => actions.addTowersOf(target.asset) }];
-    return [{ icon: "bridge", words: t("Add every bridge of it"), act: () => actions.addBridgesOf(target.asset) }];
-  }
+  const draw = keyedList(
+    list,
+    /** @param {PickedTarget} target */ (target) => target.key,
+    make,
+    (row, target, index) =>
+      refreshRow(row, target, {
+        place: shown.places.get(target.key),
+        isMissed: shown.missed.has(target.key),
+        index,
+        arrival: shown.arrivals.get(target.key) ?? "",
+        isChosen: choosing.isChosen(target),
+        canPlan,
+        selection: store.state.selection,
+      }),
+  );
 
-  function openTask(opener, key) {
-    const target = store.state.selection.targets.find((candidate) => candidate.key === key);
-    toggleMenu(opener, () =>
-      targetMenu([target], actions, { ...store.state, orders: ordersOf(store.state.plan) }, more(target)),
-    );
-  }
-
-  function make(target) {
-    const check =
-      canPlan &&
-      h("input", { type: "checkbox", class: "check", "aria-label": t("Choose {name}", { name: target.label }) });
-    const row = h(
-      "li",
-      {
-        class: "target",
-        onpointerenter: () => store.update({ litTarget: target.key }),
-        onpointerleave: () => store.update({ litTarget: null }),
-        onfocusin: () => store.update({ litTarget: target.key }),
-        onfocusout: () => store.update({ litTarget: null }),
-      },
-      check,
-      h("span", { class: "pill" }),
-      icon(ICONS[target.kind] ?? "map-pin"),
-      h(
-        "button",
-        { type: "button", class: "what", onclick: (event) => press(event, target) },
-        h("span", {}, target.label),
-        h("small", {}),
-      ),
-      h("span", { class: "target-marks" }),
-      h("span", { class: "target-when" }),
-      canPlan &&
-        h("button", {
-          type: "button",
-          class: "icon-button tight task",
-          "aria-haspopup": "true",
-          "aria-expanded": "false",
-          onclick: (event) => openTask(event.currentTarget, target.key),
-        }),
-      canPlan &&
-        h(
-          "button",
-          {
-            type: "button",
-            class: "icon-button tight",
-            "aria-label": t("Remove {name}", { name: target.label }),
-            title: t("Remove (Del)"),
-            onclick: () => actions.removeTargets([target.key]),
-          },
-          icon("x", "small"),
-        ),
-    );
-    if (check) {
-      check.addEventListener("click", (event) => {
-        if (!event.shiftKey) return;
-        event.preventDefault();
-        chooseUpTo(target);
-      });
-      check.addEventListener("change", () => toggle(target));
-    }
-    row.addEventListener("keydown", (event) => pressKey(event, row, target));
-    return row;
-  }
-
-  function pressKey(event, row, target) {
-    if (event.key === "Delete" && canPlan) {
-      event.preventDefault();
-      event.stopPropagation();
-      removeFrom(target);
-      return;
-    }
-    const isArrow = event.key === "ArrowDown" || event.key === "ArrowUp";
-    if (isArrow && event.altKey && canPlan && event.target.closest(".what")) {
-      event.preventDefault();
-      actions.shiftTarget(target.key, event.key === "ArrowDown" ? 1 : -1);
-      return;
-    }
-    const part = [".what", ".check"].find((name) => event.target.matches(name));
-    if (!isArrow || event.altKey || !part) return;
-    const next = event.key === "ArrowDown" ? row.nextElementSibling : row.previousElementSibling;
-    if (!next) return;
-    event.preventDefault();
-    next.querySelector(part).focus();
-    const key = shown.order[[...list.children].indexOf(next)];
-    const reached = store.state.selection.targets.find((candidate) => candidate.key === key);
-    if (event.shiftKey && canPlan && reached) {
-      anchor ??= target.key;
-      chooseUpTo(reached);
-    }
-  }
-
-  function refreshRow(row, target, index) {
-    const place = shown.places.get(target.key);
-    const isMissed = shown.missed.has(target.key);
-    const pill = row.querySelector(".pill");
-    pill.className = `pill ${place ? `route-${routeNumber(place.sequence)}` : isMissed ? "missed" : "waiting"}`;
-    pill.textContent = place ? `${place.letter}${place.number}` : isMissed ? "×" : `${index + 1}`;
-    pill.setAttribute(
-      "aria-label",
-      place
-        ? t("Target {number} of UAV {letter}", { number: place.number, letter: place.letter })
-        : isMissed
-          ? t("Not reached")
-          : t("Not planned yet"),
-    );
-    const second = [whoMayFly(target), target.detail].filter(Boolean).join(" · ");
-    row.querySelector("small").textContent = second;
-    row.querySelector(".what").title = nameOf({ ...target, detail: second });
-    refreshMarks(row.querySelector(".target-marks"), target);
-    const when = row.querySelector(".target-when");
-    when.textContent = shown.arrivals.get(target.key) ?? "";
-    when.title = when.textContent && t("Reached at {time}", { time: when.textContent });
-    row.classList.toggle("chosen", isChosen(target));
-    if (!canPlan) return;
-    row.querySelector(".check").checked = isChosen(target);
-    refreshTask(row.querySelector(".task"), target);
-  }
-
-  /** What is not as usual, without a word where everything is. */
-  function refreshMarks(place, target) {
-    const { mark, said } = priorityOf(target);
-    const lock = lockOf(store.state.selection, target.key);
-    const marks = [mark && [mark, said], lock && ["lock", t("Locked to {uav}", { uav: lock.uav })]].filter(Boolean);
-    const key = marks.join("|");
-    if (place.dataset.key === key) return;
-    place.dataset.key = key;
-    place.replaceChildren(
-      ...marks.map(([image, words]) =>
-        h("span", { role: "img", "aria-label": words, title: words }, icon(image, "small")),
-      ),
-    );
-  }
-
-  function refreshTask(button, target) {
-    const task = taskOf(target);
-    const words = taskText(task);
-    if (button.title === words) return;
-    button.replaceChildren(icon(taskIcon(task), "small"));
-    button.title = words;
-    button.setAttribute("aria-label", t("Task of {name}: {task}", { name: target.label, task: words }));
-    button.classList.toggle("own", !isUsualTask(target));
-  }
-
-  const draw = keyedList(list, (target) => target.key, make, refreshRow);
-
+  /** @param {MissionPageState} state */
   function refresh(state) {
     const { targets } = state.selection;
     const { places, missed } = shownPlaces(state);
     const all = inPlanOrder(targets, places);
-    shown = {
-      places,
-      missed,
-      order: all.map((target) => target.key),
-      arrivals: isPlanCurrent(state) ? arrivalsOf(state.plan) : new Map(),
-    };
-    isChoosing &&= targets.length > 1;
-    list.classList.toggle("choosing", isChoosing);
+    const arrivals = isPlanCurrent(state) ? arrivalsOf(state.plan) : new Map();
+    shown = { places, missed, order: all.map((target) => target.key), arrivals };
+    if (targets.length <= 1) choosing.turn(false);
+    list.classList.toggle("choosing", choosing.isOn());
     const visible = showAll ? all : all.slice(0, SHOWN_FIRST);
     draw(visible);
     const rest = all.length - visible.length;
     byId("show-more").hidden = rest === 0;
     byId("show-more").textContent = tn(rest, "Show {count} more", "Show {count} more");
-    byId("target-count").textContent = all.length || "";
+    byId("target-count").textContent = all.length ? `${all.length}` : "";
     byId("targets-empty").hidden = all.length > 0;
-    if (!canPlan) return;
-    byId("choose-targets").hidden = byId("clear-targets").hidden = all.length < 2;
-    byId("choose-targets").setAttribute("aria-pressed", String(isChoosing));
-    byId("undo").disabled = !state.canUndo;
-    byId("redo").disabled = !state.canRedo;
-    bar?.refresh(isChoosing);
+    bar?.refresh(state);
   }
 
-  let bar = null;
   byId("show-more").addEventListener("click", () => {
     showAll = true;
     refresh(store.state);
   });
-  if (canPlan) {
-    const stopChoosing = () => {
-      isChoosing = false;
-      setChosen([]);
-      refresh(store.state);
-    };
-    bar = mountChosenBar(store, actions, { chooseAll: () => setChosen(shown.order), done: stopChoosing });
-    byId("choose-targets").addEventListener("click", () => {
-      if (isChoosing) return stopChoosing();
-      isChoosing = true;
-      refresh(store.state);
-      return list.querySelector(".check")?.focus();
-    });
-    byId("clear-targets").addEventListener("click", () =>
-      actions.removeTargets(store.state.selection.targets.map((target) => target.key)),
-    );
-    byId("undo").addEventListener("click", actions.undo);
-    byId("redo").addEventListener("click", actions.redo);
-  }
+  keepChosenKnown(store);
+  store.listen(["selection", "plan", "chosenTargets", "canUndo", "canRedo"], refresh);
+}
 
-  // What is chosen elsewhere, such as by a pill on the map, is chosen alone; what is no longer picked is not chosen.
+/**
+ * The buttons over the list, and the bar below it for several.
+ *
+ * @param {HTMLElement} list
+ * @param {MissionStore} store
+ * @param {MissionActions} actions
+ * @param {{ choosing: Choosing, refresh: () => void }} how
+ */
+function mountChoosing(list, store, actions, { choosing, refresh }) {
+  const keys = () => store.state.selection.targets.map((target) => target.key);
+  const choose = byId("choose-targets");
+  const clear = byId("clear-targets");
+  const stop = () => {
+    choosing.turn(false);
+    choosing.choose([]);
+    refresh();
+  };
+  const bar = mountChosenBar(store, actions, { chooseAll: choosing.all, done: stop });
+  choose.addEventListener("click", () => {
+    if (choosing.isOn()) {
+      stop();
+      return;
+    }
+    choosing.turn(true);
+    refresh();
+    /** @type {HTMLElement | null} */ (list.querySelector(".check"))?.focus();
+  });
+  clear.addEventListener("click", () => actions.removeTargets(keys()));
+  byId("undo").addEventListener("click", actions.undo);
+  byId("redo").addEventListener("click", actions.redo);
+  return {
+    /** @param {MissionPageState} state */
+    refresh({ selection, canUndo, canRedo }) {
+      choose.hidden = selection.targets.length < 2;
+      clear.hidden = selection.targets.length < 2;
+      choose.setAttribute("aria-pressed", String(choosing.isOn()));
+      byId("undo", HTMLButtonElement).disabled = !canUndo;
+      byId("redo", HTMLButtonElement).disabled = !canRedo;
+      bar.refresh(choosing.isOn());
+    },
+  };
+}
+
+/** What can be picked besides a whole line or railway. @param {PickedTarget} target @param {MissionActions} actions */
+function more(target, actions) {
+  const { asset } = target;
+  if (!isWhole(target) || asset === null) return [];
+  if (target.kind === "line")
+    return [{ icon: "tower", words: t("Add every tower of it"), act: () => actions.addTowersOf(asset) }];
+  return [{ icon: "bridge", words: t("Add every bridge of it"), act: () => actions.addBridgesOf(asset) }];
+}
+
+/** @param {HTMLElement} opener @param {string} key @param {MissionStore} store @param {MissionActions} actions */
+function openTask(opener, key, store, actions) {
+  const target = store.state.selection.targets.find((candidate) => candidate.key === key);
+  if (!target) return;
+  toggleMenu(opener, () =>
+    targetMenu([target], actions, { ...store.state, orders: ordersOf(store.state.plan) }, more(target, actions)),
+  );
+}
+
+/**
+ * Delete removes, arrows go from row to row, with Alt they move the target in its route.
+ *
+ * @param {KeyboardEvent} event
+ * @param {HTMLElement} row
+ * @param {PickedTarget} target
+ * @param {{ store: MissionStore, actions: MissionActions, canPlan: boolean, choosing: Choosing, keyAt: (index: number) => string }} context
+ */
+function pressKey(event, row, target, { store, actions, canPlan, choosing, keyAt }) {
+  const at = /** @type {Element} */ (event.target);
+  if (event.key === "Delete" && canPlan) {
+    event.preventDefault();
+    event.stopPropagation();
+    actions.removeTargets(choosing.isChosen(target) ? store.state.chosenTargets : [target.key]); // all that are chosen with it
+    return;
+  }
+  const isArrow = event.key === "ArrowDown" || event.key === "ArrowUp";
+  if (isArrow && event.altKey && canPlan && at.closest(".what")) {
+    event.preventDefault();
+    actions.shiftTarget(target.key, event.key === "ArrowDown" ? 1 : -1);
+    return;
+  }
+  const part = [".what", ".check"].find((name) => at.matches(name));
+  if (!isArrow || event.altKey || !part) return;
+  const next = event.key === "ArrowDown" ? row.nextElementSibling : row.previousElementSibling;
+  if (!next) return;
+  event.preventDefault();
+  /** @type {HTMLElement | null} */ (next.querySelector(part))?.focus();
+  const key = keyAt([...(row.parentElement?.children ?? [])].indexOf(next));
+  const reached = store.state.selection.targets.find((candidate) => candidate.key === key);
+  if (event.shiftKey && canPlan && reached) choosing.upTo(reached, target);
+}
+
+/** What is chosen elsewhere, such as by a pill on the map, is chosen alone; what is no longer picked is not chosen. @param {MissionStore} store */
+function keepChosenKnown(store) {
   store.listen(["chosenTarget", "selection"], ({ chosenTarget, chosenTargets, selection }) => {
     const known = new Set(selection.targets.map((target) => target.key));
     const kept = chosenTargets.filter((key) => known.has(key));
@@ -269,5 +213,4 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     else if (kept.length !== chosenTargets.length)
       store.update({ chosenTargets: kept, chosenTarget: kept.at(-1) ?? null });
   });
-  store.listen(["selection", "plan", "chosenTargets", "canUndo", "canRedo"], refresh);
 }
