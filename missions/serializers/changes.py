@@ -30,9 +30,9 @@ class StaleCauseSerializer(serializers.Serializer):
         }
 
 
-@extend_schema_field({"oneOf": [{"type": "number"}, {"type": "string"}, {"type": "boolean"}]})
+@extend_schema_field({"oneOf": [{"type": "number"}, {"type": "array", "items": {"type": "string"}}]})
 class FigureField(serializers.JSONField):
-    """A UAV's figure or choice, as the field of this name has it."""
+    """A UAV's figure, or the names of its sensors."""
 
 
 class FigureChangeSerializer(serializers.Serializer):

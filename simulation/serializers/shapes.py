@@ -6,6 +6,7 @@ from missions.serializers.shapes import WindLayerOutputSerializer
 from simulation.models import VerdictLevel
 from simulation.rehearsing.sky import Named
 from workspace.models import JobState
+from workspace.serializers import JobErrorField
 
 MOST_CONDITIONS = 8
 LEVELS = VerdictLevel.choices
@@ -162,7 +163,7 @@ class RehearsalSerializer(serializers.Serializer):
     state = serializers.ChoiceField(choices=JobState.choices)
     progress = serializers.FloatField()
     message = serializers.CharField()
-    error = serializers.JSONField(allow_null=True)
+    error = JobErrorField(allow_null=True)
     is_simulated = serializers.BooleanField(help_text="always true: nothing of this was flown by an aircraft")
     level = serializers.ChoiceField(choices=LEVELS, allow_blank=True, help_text="the worst of its runs; empty until they are done")
     is_outdated = serializers.BooleanField(help_text="the plan, its UAVs or their airframes have changed since")
