@@ -1079,9 +1079,9 @@ export interface components {
         FigureChange: {
             name: components["schemas"]["UavFigure"];
             /** @description as the mission plans with it */
-            kept: (number | string | boolean) | null;
+            kept: (number | string[]) | null;
             /** @description as it is in the fleet */
-            now: (number | string | boolean) | null;
+            now: (number | string[]) | null;
         };
         Finding: {
             level: components["schemas"]["VerdictLevel"];
@@ -3838,7 +3838,7 @@ export interface components {
             /** Format: double */
             progress: number;
             message: string;
-            error: unknown;
+            error: components["schemas"]["JobError"] | null;
             /** @description always true: nothing of this was flown by an aircraft */
             is_simulated: boolean;
             /**
@@ -3910,7 +3910,7 @@ export interface components {
             /** Format: double */
             progress: number;
             message: string;
-            error: unknown;
+            error: components["schemas"]["JobError"] | null;
             /** @description always true: nothing of this was flown by an aircraft */
             is_simulated: boolean;
             /**
@@ -4540,11 +4540,11 @@ export interface components {
         SaidFigure: {
             name: components["schemas"]["UavFigure"];
             /** @description for this mission alone */
-            said: (number | string | boolean) | null;
+            said: (number | string[]) | null;
             /** @description in the fleet when that was said */
-            then: (number | string | boolean) | null;
+            then: (number | string[]) | null;
             /** @description in the fleet now */
-            now: (number | string | boolean) | null;
+            now: (number | string[]) | null;
         };
         Scene: {
             /** @description west, south, east, north */
