@@ -5,10 +5,14 @@ import { t, tn } from "../../../text.js";
 import { isPlanCurrent } from "../../plan_view.js";
 import { changeWords, openChanges } from "../../uav_changes.js";
 
+/** @import { MissionActions, MissionPageState } from "../../types.d.ts" */
+
+/** @typedef {Pick<MissionPageState, "mission" | "selection" | "plan" | "planIsStored">} State */
+
 const CHANGEABLE = ["draft", "planned"];
 const MOST_TOLD = 4;
 
-/** What of the changes concerns the page as it stands: figures that are still those of before, and states that the plan on it does not know of. */
+/** What of the changes concerns the page as it stands: figures that are still those of before, and states that the plan on it does not know of. @param {State} state */
 export function toldChanges({ mission, selection, plan, planIsStored }) {
   if (!mission) return [];
   const isOfPlan = planIsStored && isPlanCurrent({ plan, selection });
@@ -17,22 +21,18 @@ export function toldChanges({ mission, selection, plan, planIsStored }) {
     .filter(({ figures, state, said }) => figures.length > 0 || state !== null || said.length > 0);
 }
 
-/** Null where nothing has changed. */
+/** Null where nothing has changed. @param {State} state @param {MissionActions} actions @param {boolean} canPlan */
 export function uavNotice(state, actions, canPlan) {
   const changes = toldChanges(state);
-  if (!changes.length) return null;
+  if (!state.mission || !changes.length) return null;
   const mayChange = canPlan && CHANGEABLE.includes(state.mission.state);
   const hasFigures = changes.some(({ figures }) => figures.length > 0);
   const isOfFleetAlone = !hasFigures && changes.every((change) => change.state === null);
-  const acts = [
-    hasFigures
-      ? { label: t("Use the present figures"), act: actions.takePresentFigures }
-      : !isOfFleetAlone && { label: t("Plan again"), act: actions.plan },
-    changes.some(({ said }) => said.length > 0) && {
-      label: t("Use the fleet's instead of this mission's own"),
-      act: actions.takeFleetFigures,
-    },
-  ].filter(Boolean);
+  const acts = [];
+  if (hasFigures) acts.push({ label: t("Use the present figures"), act: actions.takePresentFigures });
+  else if (!isOfFleetAlone) acts.push({ label: t("Plan again"), act: actions.plan });
+  if (changes.some(({ said }) => said.length > 0))
+    acts.push({ label: t("Use the fleet's instead of this mission's own"), act: actions.takeFleetFigures });
   const headline = isOfFleetAlone
     ? t("The fleet's figures changed since this mission was given its own.")
     : isPlanCurrent(state)

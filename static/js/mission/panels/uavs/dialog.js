@@ -1,197 +1,114 @@
-/** Where a UAV starts, how far and how fast it flies, with which battery, and how its flight ends: for a new one, or for this mission alone. */
+/** The dialogs of a UAV: a new one, or one with figures for this mission alone. */
 
 import { ApiError, get, signInAddress } from "../../../api.js";
-import { h, icon } from "../../../dom.js";
+import { h, setChildren } from "../../../dom.js";
 import { open } from "../../../page/keyboard.js";
 import { t } from "../../../text.js";
-import { boundsIn, usualOf } from "../../../uav_figures.js";
+import { usualOf } from "../../../uav_figures.js";
 import { LONG_UNIT, SPEED_UNIT } from "../../../units.js";
-import { MOST_TARGETS } from "../../picking.js";
+import { createFields, createLimits, field, showFault } from "./fields.js";
 
-const MOST_SORTIES = 20; // missions/serializers/limits.py
+/** @import { Answer } from "../../../api.js" */
+/** @import { UavType, UavTypePage } from "../../../api_types.d.ts" */
+/** @import { Child } from "../../../dom.js" */
+/** @import { DialogUav, Fields, Input, TypedUav } from "./fields.js" */
 
-let fields = 0; // each has an id of its own
+/** @typedef {{ title: string, note: string, uav: DialogUav, act: string }} DialogHow */
+/** @typedef {TypedUav & { type: number | null }} NewUav */
+/** @typedef {TypedUav & { most_targets: number | null, sorties: number }} ChangedUav */
 
-function field(label, input, unit = "") {
-  fields += 1;
-  input.id = `field-${fields}`;
-  const fault = h("p", { class: "field-error", id: `${input.id}-fault`, hidden: true });
-  input.setAttribute("aria-describedby", fault.id);
-  return h(
-    "div",
-    { class: "field" },
-    h("label", { for: input.id }, label),
-    unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input,
-    fault,
-  );
-}
-
-/** Says beside a field what is wrong with it; empty words take that away. */
-function tell(input, words) {
-  const fault = input.closest(".field").querySelector(".field-error");
-  fault.hidden = !words;
-  fault.replaceChildren(...(words ? [icon("circle-alert", "small"), words] : []));
-  if (words) input.setAttribute("aria-invalid", "true");
-  else input.removeAttribute("aria-invalid");
-}
-
-function number(value, min, max, required = true) {
-  return h("input", { class: "input", type: "number", step: "any", min, max, required, value: value ?? "" });
-}
-
-export const END_CHOICES = [
-  ["hover", t("Hover over its last target")],
-  ["return", t("Return to start")],
-  ["land", t("Land at its last target")],
-  ["base", t("Land at the nearest base")],
-];
-
-const inUnits = (value, unit) => Number((value / unit).toPrecision(6));
-
-/** A value of its own, in units of so many of the stored ones; empty it is what stands in grey. */
-function own(name, value, unit = 1) {
-  const { min, max } = boundsIn(name, unit);
-  return number(value === null || value === undefined ? "" : inUnits(value, unit), min, max, false);
-}
-
-/** What a field says in SI units. One that nobody touched is what it was: typed units are rounded. */
-function kept(input, before, unit) {
-  if (!Number.isFinite(input.valueAsNumber)) return null;
-  if (before !== null && before !== undefined && input.valueAsNumber === inUnits(before, unit)) return before;
-  return input.valueAsNumber * unit;
-}
-
-/** A new one has a name, a base and a type as well; where a field of its battery and airspeed is empty, what counts stands in it in grey. */
-export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
-  const longitude = number(Number(uav.position[0].toFixed(6)), -180, 180);
-  const latitude = number(Number(uav.position[1].toFixed(6)), -90, 90);
-  const name = h("input", { class: "input", required: true, maxlength: 100, value: uav.name });
-  const base = h("input", { class: "input", maxlength: 100, value: uav.base_name });
-  const range = number(uav.max_range_m === null ? "" : inUnits(uav.max_range_m, LONG_UNIT.metres), 0.1, 1000, false);
-  const speed = number(
-    uav.cruise_speed_mps === null || uav.cruise_speed_mps === undefined
-      ? ""
-      : inUnits(uav.cruise_speed_mps, SPEED_UNIT.mps),
-    0.5,
-    300,
-    false,
-  );
-  const end = h(
-    "select",
-    { class: "input" },
-    END_CHOICES.map(([value, words]) => h("option", { value, selected: value === uav.end_action }, words)),
-  );
-  const most = h("input", {
-    class: "input",
-    type: "number",
-    min: 1,
-    max: MOST_TARGETS,
-    step: 1,
-    placeholder: t("as many as fit"),
-    value: uav.most_targets ?? "",
+/** A UAV for this mission alone. @param {DialogHow & { submit: (typed: ChangedUav) => unknown }} how */
+export function changeDialog({ uav, submit, ...how }) {
+  const fields = createFields(uav);
+  const limits = createLimits(uav);
+  fields.showUsual(uav.usual ?? usualOf(null));
+  showDialog(fields, how, {
+    ownHint: t("Empty: as in the fleet, in grey. Without a battery its energy is not planned."),
+    rest: h(
+      "div",
+      {},
+      limits.element,
+      h(
+        "p",
+        { class: "caption" },
+        t("More than one flight only where it returns to its start; each on a full battery."),
+        " ",
+        uav.sensors?.length
+          ? t("Sensors: {names}", { names: uav.sensors.join(", ") })
+          : t("No sensor is stated for it."),
+      ),
+    ),
+    submit: () => submit({ ...fields.read(), ...limits.read() }),
   });
-  const battery = own("battery_wh", uav.battery_wh);
-  const mass = own("mass_kg", uav.mass_kg);
-  const reserve = own("reserve_percent", uav.reserve_percent);
-  const airspeed = own("max_airspeed_mps", uav.max_airspeed_mps, SPEED_UNIT.mps);
-  const type = h("select", { class: "input", onchange: takesType }, h("option", { value: "" }, t("none")));
-  const byName = {
-    name,
-    base_name: base,
-    max_range_m: range,
-    cruise_speed_mps: speed,
-    battery_wh: battery,
-    mass_kg: mass,
-    reserve_percent: reserve,
-    max_airspeed_mps: airspeed,
-    end_action: end,
-    type,
-  };
+}
+
+/** A UAV that is new in the fleet. @param {DialogHow & { submit: (typed: NewUav) => unknown }} how */
+export function newDialog({ uav, submit, ...how }) {
+  const fields = createFields(uav);
+  const type = h("select", { class: "input" }, h("option", { value: "" }, t("none")));
+  const ofType = field(t("Type"), type);
+  /** @type {UavType[]} */
   let types = [];
-  function showUsual(usual) {
-    const units = { max_airspeed_mps: SPEED_UNIT.mps };
-    for (const [figure, value] of Object.entries(usual))
-      byName[figure].placeholder = value === null ? "" : inUnits(value, units[figure] ?? 1);
-  }
-  showUsual(uav.usual ?? usualOf(null));
-
-  function takesType() {
-    const chosen = types.find(({ id }) => `${id}` === type.value);
-    showUsual(usualOf(chosen));
-    range.placeholder = chosen?.max_range_m ? inUnits(chosen.max_range_m, LONG_UNIT.metres) : "";
-    speed.placeholder = chosen ? inUnits(chosen.cruise_speed_mps, SPEED_UNIT.mps) : "";
-    sayWhatIsMissing();
-  }
-  const sorties = h("input", {
-    class: "input",
-    type: "number",
-    min: 1,
-    max: MOST_SORTIES,
-    step: 1,
-    required: true,
-    value: uav.sorties ?? 1,
+  ofType.hidden = true; // until there are types to choose from
+  fields.showUsual(uav.usual ?? usualOf(null));
+  const { showRange } = showDialog(fields, how, {
+    others: { type },
+    ownHint: t("Empty: as its type, in grey. Without a battery its energy is not planned."),
+    head: [h("div", { class: "pair" }, field(t("Name"), fields.name), field(t("Base"), fields.base_name)), ofType],
+    submit: () => submit({ ...fields.read(), type: type.value ? Number(type.value) : null }),
   });
+  type.addEventListener("change", () => {
+    const chosen = types.find(({ id }) => `${id}` === type.value);
+    fields.showUsual(usualOf(chosen));
+    fields.showUsualFlight(chosen);
+    showRange();
+  });
+  fields.name.select();
+  get("/uav-types?limit=100").then(
+    (answer) => {
+      types = /** @type {Answer<UavTypePage>} */ (answer).data.results;
+      type.append(...types.map((row) => h("option", { value: row.id }, row.name)));
+      ofType.hidden = !types.length;
+    },
+    () => {}, // it is added without one
+  );
+}
+
+/**
+ * @param {Fields} fields
+ * @param {Omit<DialogHow, "uav">} how
+ * @param {{ others?: Record<string, Input>, ownHint: string, head?: Child, rest?: Child, submit: () => unknown }} parts `others`: fields besides
+ */
+function showDialog(fields, { title, note, act }, { others = {}, ownHint, head, rest, submit }) {
+  const { max_range_m: range, cruise_speed_mps: speed } = fields;
   const unlimited = h("p", { class: "caption", role: "status" });
   const wrong = h("p", { class: "field-error", role: "alert" });
-  const sayWhatIsMissing = () =>
-    (unlimited.textContent =
-      range.value || range.placeholder ? "" : t("Range not stated: it is planned as unlimited."));
-  range.addEventListener("input", sayWhatIsMissing);
-  sayWhatIsMissing();
   const dialog = h("dialog", { "aria-labelledby": "place-title" });
-  const ofType = isNew && field(t("Type"), type);
+  const showRange = () => {
+    unlimited.textContent = range.value || range.placeholder ? "" : t("Range not stated: it is planned as unlimited.");
+  };
+  range.addEventListener("input", showRange);
+  showRange();
   const form = h(
     "form",
     { method: "dialog" },
     h("div", {}, h("h2", { id: "place-title" }, title), h("p", { class: "quiet-text" }, note)),
-    isNew && h("div", { class: "pair" }, field(t("Name"), name), field(t("Base"), base)),
-    ofType,
+    head,
     h(
       "div",
       {},
       h("div", { class: "pair" }, field(t("Range"), range, LONG_UNIT.unit), field(t("Speed"), speed, SPEED_UNIT.unit)),
       unlimited,
     ),
+    ownFigures(fields, ownHint),
+    field(t("End, where “Return to start” is off"), fields.end_action),
+    rest,
     h(
       "div",
-      { class: "stack", role: "group", "aria-label": t("Battery and airspeed") },
-      h("div", { class: "pair" }, field(t("Battery"), battery, "Wh"), field(t("Kept in reserve"), reserve, "%")),
-      h(
-        "div",
-        { class: "pair" },
-        field(t("Mass at take-off"), mass, "kg"),
-        field(t("Highest airspeed"), airspeed, SPEED_UNIT.unit),
-      ),
-      h(
-        "p",
-        { class: "caption own-values" },
-        isNew
-          ? t("Empty: as its type, in grey. Without a battery its energy is not planned.")
-          : t("Empty: as in the fleet, in grey. Without a battery its energy is not planned."),
-      ),
+      { class: "pair" },
+      field(t("Latitude"), fields.latitude, "°"),
+      field(t("Longitude"), fields.longitude, "°"),
     ),
-    field(t("End, where “Return to start” is off"), end),
-    !isNew &&
-      h(
-        "div",
-        {},
-        h(
-          "div",
-          { class: "pair" },
-          field(t("At most this many targets"), most),
-          field(t("At most this many flights"), sorties),
-        ),
-        h(
-          "p",
-          { class: "caption" },
-          t("More than one flight only where it returns to its start; each on a full battery."),
-          " ",
-          uav.sensors?.length
-            ? t("Sensors: {names}", { names: uav.sensors.join(", ") })
-            : t("No sensor is stated for it."),
-        ),
-      ),
-    h("div", { class: "pair" }, field(t("Latitude"), latitude, "°"), field(t("Longitude"), longitude, "°")),
     wrong,
     h(
       "div",
@@ -202,52 +119,55 @@ export function uavDialog({ title, note, uav, isNew = false, act, submit }) {
   );
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
-    Object.values(byName)
-      .filter((input) => form.contains(input))
-      .forEach((input) => tell(input, ""));
+    const shown = Object.entries({ ...fields.byName, ...others }).filter(([, input]) => form.contains(input));
+    for (const [, input] of shown) showFault(input, "");
     wrong.replaceChildren();
     try {
-      await submit({
-        name: name.value.trim(),
-        base_name: base.value.trim(),
-        position: [longitude.valueAsNumber, latitude.valueAsNumber],
-        max_range_m: kept(range, uav.max_range_m, LONG_UNIT.metres),
-        cruise_speed_mps: kept(speed, uav.cruise_speed_mps, SPEED_UNIT.mps),
-        end_action: end.value,
-        battery_wh: kept(battery, uav.battery_wh, 1),
-        mass_kg: kept(mass, uav.mass_kg, 1),
-        reserve_percent: kept(reserve, uav.reserve_percent, 1),
-        max_airspeed_mps: kept(airspeed, uav.max_airspeed_mps, SPEED_UNIT.mps),
-        ...(isNew
-          ? { type: type.value ? Number(type.value) : null }
-          : {
-              most_targets: Number.isFinite(most.valueAsNumber) ? most.valueAsNumber : null,
-              sorties: sorties.valueAsNumber,
-            }),
-      });
+      await submit();
       dialog.close();
     } catch (error) {
-      const told = Object.entries(error.details ?? {}).filter(([part]) => byName[part] && form.contains(byName[part]));
-      for (const [part, words] of told) tell(byName[part], [words].flat().join(" "));
-      if (told.length) byName[told[0][0]].focus();
-      else
-        wrong.replaceChildren(
-          error instanceof ApiError ? error.message : t("It could not be added."),
-          error.isSignedOut ? h("a", { href: signInAddress() }, t("Sign in")) : "",
-        );
+      showRefusal(error, new Map(shown), wrong);
     }
   });
   dialog.append(form);
   open(dialog);
-  if (!isNew) return;
-  name.select();
-  ofType.hidden = true; // until there are types to choose from
-  get("/uav-types?limit=100").then(
-    ({ data }) => {
-      types = data.results;
-      type.append(...types.map((row) => h("option", { value: row.id }, row.name)));
-      ofType.hidden = !types.length;
-    },
-    () => {}, // it is added without one
+  return { showRange };
+}
+
+/** @param {Fields} fields @param {string} hint */
+const ownFigures = ({ battery_wh, reserve_percent, mass_kg, max_airspeed_mps }, hint) =>
+  h(
+    "div",
+    { class: "stack", role: "group", "aria-label": t("Battery and airspeed") },
+    h(
+      "div",
+      { class: "pair" },
+      field(t("Battery"), battery_wh, "Wh"),
+      field(t("Kept in reserve"), reserve_percent, "%"),
+    ),
+    h(
+      "div",
+      { class: "pair" },
+      field(t("Mass at take-off"), mass_kg, "kg"),
+      field(t("Highest airspeed"), max_airspeed_mps, SPEED_UNIT.unit),
+    ),
+    h("p", { class: "caption own-values" }, hint),
   );
+
+/** Beside the fields that it is about, else below them all. @param {unknown} error @param {Map<string, Input>} inputs @param {HTMLElement} wrong */
+function showRefusal(error, inputs, wrong) {
+  /** @type {Record<string, string | string[]>} */
+  const details = (error instanceof ApiError && error.details) || {};
+  const known = Object.entries(details).flatMap(([part, words]) => {
+    const input = inputs.get(part);
+    return input ? [{ input, words: [words].flat().join(" ") }] : [];
+  });
+  for (const { input, words } of known) showFault(input, words);
+  if (known.length) known[0].input.focus();
+  else
+    setChildren(
+      wrong,
+      error instanceof ApiError ? error.message : t("It could not be added."),
+      error instanceof ApiError && error.isSignedOut && h("a", { href: signInAddress() }, t("Sign in")),
+    );
 }

@@ -1,20 +1,29 @@
 /** Where UAVs do not all fly back: how the flight of each one ends, beside the switch. */
 
-import { byId, h, keyedList } from "../../../dom.js";
+import { byId, find, h, keyedList } from "../../../dom.js";
 import { routeLetter, routeNumber } from "../../../domain/palette.js";
 import { t } from "../../../text.js";
-import { END_CHOICES } from "./dialog.js";
+import { END_CHOICES } from "./fields.js";
 
+/** @import { EndActionEnum } from "../../../api_types.d.ts" */
+/** @import { MissionActions, MissionStore, PickedUav } from "../../types.d.ts" */
+
+/** @typedef {Pick<PickedUav, "name" | "end_action"> & { sequence: number }} Ending */
+
+/** @param {MissionStore} store @param {MissionActions} actions */
 export function mountEndings(store, actions) {
   const list = byId("endings");
   const draw = keyedList(
     list,
-    ({ sequence }) => `${sequence}`,
+    /** @param {Ending} ending */ ({ sequence }) => `${sequence}`,
     ({ sequence }) => {
       const choice = h(
         "select",
-        { class: "input", onchange: () => actions.changeUav(sequence, { end_action: choice.value }) },
+        { class: "input" },
         END_CHOICES.map(([value, words]) => h("option", { value }, words)),
+      );
+      choice.addEventListener("change", () =>
+        actions.changeUav(sequence, { end_action: /** @type {EndActionEnum} */ (choice.value) }),
       );
       return h(
         "li",
@@ -25,10 +34,12 @@ export function mountEndings(store, actions) {
       );
     },
     (row, { name, end_action }) => {
-      row.querySelector(".name").textContent = row.querySelector(".name").title = name;
-      const choice = row.querySelector("select");
+      const called = find(row, ".name", HTMLElement);
+      called.textContent = name;
+      called.title = name;
+      const choice = find(row, "select", HTMLSelectElement);
       choice.setAttribute("aria-label", t("How the flight of {name} ends", { name }));
-      choice.value = end_action;
+      choice.value = end_action ?? "";
     },
   );
   store.listen(["selection"], ({ selection: { uavs, return_to_start } }) => {

@@ -1,199 +1,98 @@
-/** The fleet to choose from: who flies in this mission, with letter, base, battery, range, sensors and how its flight ends. */
+/** The fleet to choose from: who flies in this mission, narrowed by base, sensor and type. */
 
-import { byId, h, icon, keyedList } from "../../../dom.js";
-import { routeNumber } from "../../../domain/palette.js";
-import { markSimulated } from "../../../simulated.js";
+import { byId, h, keyedList } from "../../../dom.js";
 import { t, tn } from "../../../text.js";
-import { percentText } from "../../../units.js";
-import { canFly, choicesOf, factsOfUav, inFleetOrder, isAskedFor, standingUavs } from "../../fleet.js";
+import { canFly, choicesOf, inFleetOrder, isAskedFor, standingUavs } from "../../fleet.js";
 import { isPlanCurrent } from "../../plan_view.js";
 import { GROUNDING, inWords } from "../../plan_words.js";
 import { saidInMission } from "../../uav_changes.js";
-import { uavDialog } from "./dialog.js";
+import { changeDialog, newDialog } from "./dialog.js";
+import { refreshRow, uavRow } from "./row.js";
+
+/** @import { FleetUav, MissionActions, MissionPageState, MissionStore, StandingUav } from "../../types.d.ts" */
+/** @import { ShownUav } from "./row.js" */
+
+/** @typedef {{ base: string, sensor: string, type: string }} Asked what the list is narrowed to */
 
 const LEAST_TO_NARROW = 4; // a fleet of fewer is seen at a glance
 const SHOWN_FIRST = 30;
-const LOW_BATTERY_PERCENT = 30;
 
-/** One that is not of the fleet, as a program may put it into a mission, is known by its place alone. */
+/** One that is not of the fleet, as a program may put it into a mission, is known by its place alone. @param {StandingUav} uav */
 const keyOf = ({ id, sequence }) => (id === null ? `at ${sequence}` : `${id}`);
 
+/** Its place in the mission now, −1 where it does not fly. @param {MissionPageState} state @param {StandingUav} uav */
+const sequenceOf = ({ selection }, { id, sequence }) =>
+  id === null ? (sequence ?? -1) : selection.uavs.findIndex((chosen) => chosen.id === id);
+
+/** @param {ShownUav} uav */
+const isFree = (uav) => uav.sequence === null && canFly(uav);
+
+/**
+ * @param {MissionStore} store
+ * @param {MissionActions} actions
+ * @param {boolean} canPlan
+ * @param {{ mapCentre: () => number[] }} how
+ */
 export function mountUavs(store, actions, canPlan, { mapCentre }) {
-  let asked = { base: "", sensor: "", type: "" };
   let showAll = false;
+  const filters = createFilters(() => refresh(store.state));
 
   const draw = keyedList(
     byId("uav-list"),
-    keyOf,
-    (uav) => {
-      const box =
-        canPlan &&
-        h("input", {
-          type: "checkbox",
-          class: "check",
-          onchange: () => (box.checked ? actions.addUavOfFleet(uav.id) : actions.removeUav(sequenceOf(uav))),
-        });
-      return h(
-        "li",
-        { class: "uav", onpointerenter: () => look(uav), onpointerleave: () => store.update({ lookedAt: null }) },
-        h(
-          canPlan ? "label" : "div",
-          { class: "who" },
-          box,
-          h("span", { class: "letter" }),
-          h("span", { class: "name" }, h("span", { class: "called" }), h("small", {}), h("span", { class: "facts" })),
-        ),
-        h("span", { class: "battery" }),
-        canPlan &&
-          h(
-            "button",
-            {
-              type: "button",
-              class: "icon-button tight",
-              title: t("Start, range, speed, battery, end, targets"),
-              onclick: () => changeUav(sequenceOf(uav)),
-            },
-            icon("pencil", "small"),
-          ),
-      );
-    },
-    (row, uav) => {
-      const isChosen = uav.sequence !== null;
-      if (canPlan) {
-        row.querySelector("input").checked = isChosen;
-        row.querySelector("input").disabled = !isChosen && !canFly(uav);
-      }
-      const letter = row.querySelector(".letter");
-      letter.className = `letter ${isChosen ? `route-${routeNumber(uav.sequence)}` : "none"}`;
-      letter.textContent = uav.letter;
-      row.querySelector(".called").textContent = uav.name;
-      markSimulated(row.querySelector(".called"), uav.is_simulated);
-      row.querySelector("small").textContent = uav.base_name ?? "";
-      const facts = row.querySelector(".facts");
-      const trouble = uav.grounded || troubleOf(uav);
-      facts.classList.toggle("grounded", Boolean(trouble));
-      facts.textContent = trouble || factsOfUav(uav, store.state.selection.return_to_start);
-      row.querySelector(".name").title = [uav.name, uav.base_name, facts.textContent].filter(Boolean).join(", ");
-      const battery = row.querySelector(".battery");
-      const known = uav.battery_percent !== null && uav.battery_percent !== undefined;
-      battery.textContent = known ? percentText(uav.battery_percent) : "";
-      battery.title = known ? t("Battery {percent}", { percent: percentText(uav.battery_percent) }) : "";
-      battery.classList.toggle("low", known && uav.battery_percent < LOW_BATTERY_PERCENT);
-      const change = row.querySelector("button");
-      change?.setAttribute("aria-label", t("Change {name} in this mission", { name: uav.name }));
-      change?.classList.toggle("absent", !isChosen);
-    },
+    /** @param {ShownUav} uav */ (uav) => keyOf(uav),
+    (uav) =>
+      uavRow(canPlan, {
+        look() {
+          const sequence = sequenceOf(store.state, uav);
+          store.update({ lookedAt: sequence >= 0 && store.state.plan ? sequence : null });
+        },
+        leave: () => store.update({ lookedAt: null }),
+        choose(isChosen) {
+          if (!isChosen) actions.removeUav(sequenceOf(store.state, uav));
+          else if (uav.id !== null) actions.addUavOfFleet(uav.id);
+        },
+        change: () => askForChange(store, actions, sequenceOf(store.state, uav)),
+      }),
+    (row, uav) => refreshRow(row, uav, { canPlan, returnsToStart: store.state.selection.return_to_start }),
   );
 
-  /** Its place in the mission now, −1 where it does not fly. */
-  const sequenceOf = (uav) =>
-    uav.id === null ? uav.sequence : store.state.selection.uavs.findIndex((chosen) => chosen.id === uav.id);
-
-  function look(uav) {
-    const sequence = sequenceOf(uav);
-    store.update({ lookedAt: sequence >= 0 && store.state.plan ? sequence : null });
-  }
-
-  function changeUav(sequence) {
-    const uav = standingUavs(store.state)[sequence];
-    const known = store.state.fleet.find(({ id }) => id === uav.id);
-    uavDialog({
-      title: uav.name,
-      note: t("In this mission only; the fleet stays as it is. Its start can be dragged on the map as well."),
-      uav,
-      act: t("Change"),
-      submit: ({ name, base_name, cruise_speed_mps, ...values }) =>
-        actions.changeUav(
-          sequence,
-          saidInMission(uav, { ...values, ...(cruise_speed_mps === null ? {} : { cruise_speed_mps }) }, known),
-        ),
-    });
-  }
-
-  /** Those to choose from, as narrowed; who flies already stays in sight. */
+  /** Those to choose from, as narrowed; who flies already stays in sight. @param {MissionPageState} state @returns {ShownUav[]} */
   function shownOf(state) {
-    const warnings = isPlanCurrent(state) ? (state.plan.result.warnings ?? []) : [];
-    const grounded = (uav) =>
-      inWords(
-        warnings.find((warning) => GROUNDING.includes(warning.code) && warning.uav === uav.sequence)?.message ?? "",
-      );
-    const fleet = inFleetOrder(state).map((uav) => ({ ...uav, grounded: grounded(uav) }));
+    const fleet = inFleetOrder(state).map((uav) => ({ ...uav, grounded: groundedWords(state, uav) }));
     if (state.mission && !canPlan) return fleet.filter((uav) => uav.sequence !== null); // who does not fly is of use only to who plans
-    return fleet.filter((uav) => uav.sequence !== null || isAskedFor(uav, asked));
+    return fleet.filter((uav) => uav.sequence !== null || isAskedFor(uav, filters.asked()));
   }
 
+  /** @param {MissionPageState} state */
   function refresh(state) {
     const uavs = shownOf(state);
     const visible = showAll ? uavs : uavs.filter((uav, index) => index < SHOWN_FIRST || uav.sequence !== null);
     draw(visible);
     byId("uavs-empty").hidden = state.fleet.length > 0 || uavs.length > 0;
-    const total = Math.max(state.fleet.length, uavs.length);
-    byId("uav-count").textContent = total
-      ? canPlan
-        ? t("{chosen} of {total}", { chosen: state.selection.uavs.length, total })
-        : uavs.length
-      : "";
+    byId("uav-count").textContent = countText(state, uavs, canPlan);
     if (!canPlan) return;
-    drawFilters(state.fleet);
+    filters.draw(state.fleet);
     const more = byId("more-uavs");
     more.hidden = visible.length === uavs.length;
     more.textContent = tn(uavs.length - visible.length, "Show {count} more", "Show {count} more");
-    const free = uavs.filter((uav) => uav.sequence === null && canFly(uav));
+    const free = uavs.filter(isFree);
     const all = byId("choose-uavs");
     all.hidden = state.fleet.length < LEAST_TO_NARROW || free.length === 0;
     all.textContent = tn(free.length, "Choose {count} more", "Choose all {count}");
     byId("no-uav-found").hidden = visible.length > 0 || state.fleet.length === 0;
   }
 
-  let narrowedBy = "";
-  /** One list for each thing by which this fleet can be told apart. */
-  function drawFilters(fleet) {
-    const choices = choicesOf(fleet);
-    const place = byId("uav-filters");
-    const key = JSON.stringify([choices, fleet.length < LEAST_TO_NARROW]);
-    if (key === narrowedBy) return;
-    narrowedBy = key;
-    const words = {
-      base: [t("Base"), t("Every base")],
-      sensor: [t("Sensor"), t("Every sensor")],
-      type: [t("Type"), t("Every type")],
-    };
-    const lists = Object.entries(choices).filter(
-      ([, names]) => names.length > 1 || (names.length === 1 && fleet.length >= LEAST_TO_NARROW),
-    );
-    place.replaceChildren(
-      ...lists.map(([name, names]) => {
-        const list = h(
-          "select",
-          {
-            class: "input",
-            "aria-label": words[name][0],
-            onchange: () => ((asked = { ...asked, [name]: list.value }), refresh(store.state)),
-          },
-          h("option", { value: "" }, words[name][1]),
-          names.map((value) => h("option", { value, selected: asked[name] === value }, value)),
-        );
-        return list;
-      }),
-    );
-    place.hidden = fleet.length < LEAST_TO_NARROW || lists.length === 0;
-  }
-
   if (canPlan) {
     byId("add-uav").addEventListener("click", () => store.update({ tool: "place" }));
-    byId("more-uavs").addEventListener("click", () => ((showAll = true), refresh(store.state)));
-    byId("choose-uavs").addEventListener("click", () =>
-      actions.addUavsOfFleet(
-        shownOf(store.state)
-          .filter((uav) => uav.sequence === null && canFly(uav))
-          .map(({ id }) => id),
-      ),
-    );
-    byId("all-uavs").addEventListener("click", () => {
-      asked = { base: "", sensor: "", type: "" };
-      narrowedBy = "";
+    byId("more-uavs").addEventListener("click", () => {
+      showAll = true;
       refresh(store.state);
     });
+    byId("choose-uavs").addEventListener("click", () => {
+      const free = shownOf(store.state).filter(isFree);
+      actions.addUavsOfFleet(free.flatMap(({ id }) => id ?? []));
+    });
+    byId("all-uavs").addEventListener("click", filters.clear);
   }
   store.listen(["fleet", "selection", "plan", "mission"], refresh);
 
@@ -201,28 +100,109 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
     /** Asks for the name of a UAV that takes off at a place; Enter takes the middle of the map. */
     askForUav(position = mapCentre()) {
       store.update({ tool: "point" });
-      uavDialog({
-        title: t("Add a UAV"),
-        note: t("It stays in the fleet for other missions."),
-        uav: {
-          position,
-          name: t("UAV {number}", { number: store.state.fleet.length + 1 }),
-          base_name: "",
-          max_range_m: null,
-          cruise_speed_mps: null,
-          end_action: "hover",
-        },
-        isNew: true,
-        act: t("Add"),
-        submit: ({ cruise_speed_mps, ...body }) =>
-          actions.addUav(cruise_speed_mps === null ? body : { ...body, cruise_speed_mps }),
-      });
+      askForNew(store, actions, position);
     },
   };
 }
 
-/** What keeps a UAV on the ground whatever is planned. */
-function troubleOf({ state, isGone }) {
-  if (isGone) return t("No longer in the fleet, or retired");
-  return state === "maintenance" ? t("In maintenance") : "";
+/** Why the plan leaves a UAV on the ground. @param {MissionPageState} state @param {StandingUav} uav */
+function groundedWords(state, { sequence }) {
+  const warnings = (isPlanCurrent(state) && state.plan?.result.warnings) || [];
+  const warning = warnings.find(({ code, uav }) => GROUNDING.includes(code) && uav === sequence);
+  return inWords(warning?.message ?? "");
+}
+
+/** @param {MissionPageState} state @param {ShownUav[]} uavs @param {boolean} canPlan */
+function countText({ fleet, selection }, uavs, canPlan) {
+  const total = Math.max(fleet.length, uavs.length);
+  if (!total) return "";
+  if (canPlan) return t("{chosen} of {total}", { chosen: selection.uavs.length, total });
+  return uavs.length ? `${uavs.length}` : "";
+}
+
+/** One list for each thing by which this fleet can be told apart. @param {() => void} onChange */
+function createFilters(onChange) {
+  /** @type {Asked} */
+  const nothing = { base: "", sensor: "", type: "" };
+  let asked = nothing;
+  let narrowedBy = "";
+  const words = {
+    base: [t("Base"), t("Every base")],
+    sensor: [t("Sensor"), t("Every sensor")],
+    type: [t("Type"), t("Every type")],
+  };
+
+  /** @param {keyof Asked} name @param {string[]} values */
+  function select(name, values) {
+    const [label, all] = words[name];
+    const list = h(
+      "select",
+      { class: "input", "aria-label": label },
+      h("option", { value: "" }, all),
+      values.map((value) => h("option", { value, selected: asked[name] === value }, value)),
+    );
+    list.addEventListener("change", () => {
+      asked = { ...asked, [name]: list.value };
+      onChange();
+    });
+    return list;
+  }
+
+  return {
+    asked: () => asked,
+    clear() {
+      asked = nothing;
+      narrowedBy = "";
+      onChange();
+    },
+    /** @param {FleetUav[]} fleet */
+    draw(fleet) {
+      const isSmall = fleet.length < LEAST_TO_NARROW;
+      const choices = choicesOf(fleet);
+      const key = JSON.stringify([choices, isSmall]);
+      if (key === narrowedBy) return;
+      narrowedBy = key;
+      const lists = /** @type {[keyof Asked, string[]][]} */ (Object.entries(choices)).filter(
+        ([, names]) => names.length > 1 || (names.length === 1 && !isSmall),
+      );
+      const place = byId("uav-filters");
+      place.replaceChildren(...lists.map(([name, names]) => select(name, names)));
+      place.hidden = isSmall || lists.length === 0;
+    },
+  };
+}
+
+/** @param {MissionStore} store @param {MissionActions} actions @param {number} sequence */
+function askForChange(store, actions, sequence) {
+  const uav = standingUavs(store.state)[sequence];
+  const known = store.state.fleet.find(({ id }) => id === uav.id);
+  changeDialog({
+    title: uav.name,
+    note: t("In this mission only; the fleet stays as it is. Its start can be dragged on the map as well."),
+    uav,
+    act: t("Change"),
+    submit({ name, base_name, cruise_speed_mps, ...values }) {
+      const speed = cruise_speed_mps === null ? {} : { cruise_speed_mps };
+      return actions.changeUav(sequence, saidInMission(uav, { ...values, ...speed }, known));
+    },
+  });
+}
+
+/** @param {MissionStore} store @param {MissionActions} actions @param {number[]} position */
+function askForNew(store, actions, position) {
+  newDialog({
+    title: t("Add a UAV"),
+    note: t("It stays in the fleet for other missions."),
+    uav: {
+      position,
+      name: t("UAV {number}", { number: store.state.fleet.length + 1 }),
+      base_name: "",
+      max_range_m: null,
+      cruise_speed_mps: null,
+      end_action: "hover",
+    },
+    act: t("Add"),
+    submit: ({ cruise_speed_mps, ...body }) =>
+      actions.addUav(cruise_speed_mps === null ? body : { ...body, cruise_speed_mps }),
+  });
 }
