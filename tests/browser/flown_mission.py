@@ -2,10 +2,14 @@
 
 from datetime import UTC, datetime, timedelta
 
+import numpy as np
+import shapely
 from django.contrib.gis.geos import Point
 from django.db import transaction
 from django.utils import timezone
 
+from inspection.geodesy.local_frame import LocalFrame
+from missions.mavlink.frozen import FrozenRoute
 from missions.models import Approval, InspectionTarget, LinkKind, Mission
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_started, mark_waypoint_reached
 from telemetry.decoding.measurement import Measurement
@@ -26,8 +30,7 @@ def fly_mission(mission_id: str, *, ends: bool = True) -> None:
     mission = Mission.objects.get(pk=mission_id)
     approval = Approval.objects.get(mission=mission)
     first, second = (entry.uav for entry in mission.mission_uavs.select_related("uav").order_by("sequence"))
-    visited = [waypoint for waypoint in route_of(approval, second).waypoints if waypoint.target is not None]
-    for place, (uav, left_out) in enumerate(((first, None), (second, visited[1].sequence))):
+    for place, (uav, left_out) in enumerate(((first, None), (second, _most_remote_target(route_of(approval, second))))):
         mark_started(mission_id=mission.pk, uav_id=uav.pk)
         over = fly(approval, uav, BEGAN_AT + timedelta(minutes=2 * place), leaves_out=left_out) + timedelta(seconds=1)
         if ends:
@@ -48,6 +51,18 @@ def fly_mission(mission_id: str, *, ends: bool = True) -> None:
         InspectionTarget.objects.filter(mission=mission).update(state_at=BEGAN_AT + timedelta(minutes=20))
         last = TelemetryRecord.objects.filter(mission=mission).latest("measured_at")
         Mission.objects.filter(pk=mission.pk).update(departs_at=BEGAN_AT, started_at=BEGAN_AT, ended_at=last.measured_at)
+
+
+def _most_remote_target(route: FrozenRoute) -> int:
+    """The target's waypoint that the rest of the route stays farthest away from: left out, it is passed at a distance."""
+    frame = LocalFrame.around(*route.take_off.position)
+    points = frame.to_metres(np.array([waypoint.position for waypoint in route.waypoints]))
+
+    def away_m(number: int) -> float:
+        return float(shapely.distance(shapely.Point(points[number]), shapely.LineString(np.delete(points, number, axis=0))))
+
+    targets = [number for number, waypoint in enumerate(route.waypoints) if waypoint.target is not None]
+    return route.waypoints[max(targets, key=away_m)].sequence
 
 
 def _forget_a_stretch(mission: Mission, uav_id: int) -> None:

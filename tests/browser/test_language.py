@@ -76,10 +76,7 @@ class Reader:
 
 
 def _german(visitor: Visitor, name: str | None = None, *, size: tuple[int, int] = (1440, 900)) -> Page:
-    context = visitor.browser.new_context(
-        base_url=visitor.site.address, locale="de-DE", reduced_motion="reduce", viewport={"width": size[0], "height": size[1]}
-    )
-    page = context.new_page()
+    page = visitor.new_context(locale="de-DE", viewport={"width": size[0], "height": size[1]}).new_page()
     page.set_default_timeout(45_000)
     page.on("pageerror", lambda error: visitor.complaints.append(str(error)))
     page.goto("/sign-in")

@@ -72,8 +72,9 @@ def flight(visitor: Visitor, site: Site) -> Iterator[Flight]:
             writes(page, "PATCH", f"/uavs/{uav}", {"state": "retired", "name": f"Flown {uav}"})
 
 
-def _in_a_row(towers: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """The nearest to the first, from west to east."""
+def _in_a_row(supports: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The towers nearest to the first, from west to east; poles stand too close for a flight that lasts."""
+    towers = [support for support in supports if support["properties"]["subtype"] == "tower"]
     (lon, lat) = towers[0]["geometry"]["coordinates"][:2]
 
     def far_deg(tower: dict[str, Any]) -> float:
