@@ -4,7 +4,13 @@ import { routeLetter } from "../domain/palette.js";
 import { t, tn } from "../text.js";
 import { exactEnergyText, lengthText, speedText } from "../units.js";
 
-/** What the fleet knows of a UAV as it is now; a mission keeps its own name, start, figures, sensors and end. */
+/** @import { FleetUav, MissionPageState, PickedUav, StandingUav } from "./types.d.ts" */
+
+/**
+ * What the fleet knows of a UAV as it is now; a mission keeps its own name, start, figures, sensors and end.
+ *
+ * @param {FleetUav} uav
+ */
 const factsIn = ({ base, base_name, type_name, battery_percent, state, is_simulated, usual }) => ({
   base,
   base_name,
@@ -15,7 +21,12 @@ const factsIn = ({ base, base_name, type_name, battery_percent, state, is_simula
   usual,
 });
 
-/** Those of the mission with place and letter, then the rest. A stored mission may carry UAVs that left the fleet. */
+/**
+ * Those of the mission with place and letter, then the rest. A stored mission may carry UAVs that left the fleet.
+ *
+ * @param {Pick<MissionPageState, "selection" | "fleet">} state
+ * @returns {StandingUav[]}
+ */
 export function standingUavs({ selection, fleet }) {
   const chosen = selection.uavs.map((uav, sequence) => {
     const known = fleet.find((other) => other.id === uav.id);
@@ -31,8 +42,13 @@ export function standingUavs({ selection, fleet }) {
   return [...chosen, ...fleet.filter((uav) => !ids.has(uav.id)).map((uav) => ({ ...uav, sequence: null, letter: "" }))];
 }
 
-/** The same in the order of the fleet, so that a row stays where it is when it is ticked. */
+/**
+ * The same in the order of the fleet, so that a row stays where it is when it is ticked.
+ *
+ * @param {Pick<MissionPageState, "selection" | "fleet">} state
+ */
 export function inFleetOrder(state) {
+  /** @param {StandingUav} uav */
   const place = (uav) => {
     const index = state.fleet.findIndex((known) => known.id === uav.id);
     return index < 0 ? state.fleet.length : index;
@@ -40,12 +56,17 @@ export function inFleetOrder(state) {
   return standingUavs(state).sort((a, b) => place(a) - place(b));
 }
 
-/** Whether it may be taken along: in maintenance or retired it may not. */
+/** Whether it may be taken along: in maintenance or retired it may not. @param {Pick<PickedUav, "state">} uav */
 export const canFly = ({ state }) => state === undefined || state === "active";
 
-/** What a fleet can be narrowed by: { base, sensor, type }, each a list of the names that occur. */
+/**
+ * What a fleet can be narrowed by: { base, sensor, type }, each a list of the names that occur.
+ *
+ * @param {FleetUav[]} fleet
+ */
 export function choicesOf(fleet) {
-  const names = (list) => [...new Set(list.filter(Boolean))].sort((a, b) => a.localeCompare(b));
+  /** @param {(string | undefined)[]} list */
+  const names = (list) => [...new Set(list.flatMap((name) => name || []))].sort((a, b) => a.localeCompare(b));
   return {
     base: names(fleet.map(({ base_name }) => base_name)),
     sensor: names(fleet.flatMap(({ sensors }) => sensors ?? [])),
@@ -53,13 +74,19 @@ export function choicesOf(fleet) {
   };
 }
 
-/** Whether a UAV is one of those that were asked for; an empty name asks for all. */
+/**
+ * Whether a UAV is one of those that were asked for; an empty name asks for all.
+ *
+ * @param {Pick<PickedUav, "base_name" | "sensors" | "type_name">} uav
+ * @param {{ base?: string, sensor?: string, type?: string }} asked
+ */
 export function isAskedFor({ base_name, sensors, type_name }, { base = "", sensor = "", type = "" }) {
   return (
     (!base || base_name === base) && (!sensor || (sensors ?? []).includes(sensor)) && (!type || type_name === type)
   );
 }
 
+/** @type {Record<NonNullable<PickedUav["end_action"]>, string>} */
 const END_WORDS = {
   hover: t("hovers at the end"),
   land: t("lands at the end"),
@@ -67,10 +94,19 @@ const END_WORDS = {
   base: t("lands at the nearest base"),
 };
 
-/** Of a full battery [Wh]: the mission's, else the fleet's; null where its energy is not counted. */
+/**
+ * Of a full battery [Wh]: the mission's, else the fleet's; null where its energy is not counted.
+ *
+ * @param {Pick<PickedUav, "battery_wh" | "usual">} uav
+ */
 const batteryOf = ({ battery_wh, usual }) => (battery_wh === undefined ? (usual?.battery_wh ?? null) : battery_wh);
 
-/** "range 80 km · 56.6 Wh · 12 m/s · hovers at the end · LiDAR": what a UAV can do and how its flight ends. */
+/**
+ * "range 80 km · 56.6 Wh · 12 m/s · hovers at the end · LiDAR": what a UAV can do and how its flight ends.
+ *
+ * @param {PickedUav} uav
+ * @param {boolean} [returnsToStart]
+ */
 export function factsOfUav(
   { max_range_m, cruise_speed_mps, end_action, most_targets = null, sorties = 1, type_name, sensors = [], ...figures },
   returnsToStart,
@@ -84,6 +120,7 @@ export function factsOfUav(
   if (battery_wh !== null) facts.push(exactEnergyText(battery_wh));
   if (sorties > 1) facts.push(tn(sorties, "{count} flight", "up to {count} flights"));
   if (cruise_speed_mps) facts.push(speedText(cruise_speed_mps));
-  const end = END_WORDS[returnsToStart ? "return" : end_action];
+  const ending = returnsToStart ? "return" : end_action;
+  const end = ending && END_WORDS[ending];
   return [...facts, end, sensors.join(", "), type_name].filter(Boolean).join(" · ");
 }

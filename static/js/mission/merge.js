@@ -5,36 +5,63 @@ import { flightOptionsOf } from "./flight_options.js";
 import { areContrary, settled } from "./locks.js";
 import { PERFORMANCE, wishesOf } from "./selection.js";
 
-/** Options that each have one value. */
+/** @import { Lock, MissionSelection, PickedTarget, PickedUav, Version } from "./types.d.ts" */
+
+/** Options that each have one value. @param {MissionSelection} selection */
 const optionsOf = ({ objective, return_to_start, ...selection }) => ({
   objective,
   return_to_start,
   ...flightOptionsOf(selection),
 });
+/** @param {unknown} a @param {unknown} b */
 const areSameValues = (a, b) => JSON.stringify(a) === JSON.stringify(b);
+/** @param {PickedTarget} target */
 const keyOfTarget = ({ key }) => key;
+/** @param {PickedUav} uav */
 const keyOfUav = (uav) => (uav.id === null || uav.id === undefined ? `name ${uav.name}` : `id ${uav.id}`);
-/** Without a task a target has its kind's own, which the server writes down: that is the same. */
+/**
+ * Without a task a target has its kind's own, which the server writes down: that is the same.
+ *
+ * @param {PickedTarget} a
+ * @param {PickedTarget} b
+ */
 const isSameTask = (a, b) =>
   !a.task ||
   !b.task ||
   (a.task.kind === b.task.kind && (a.task.hold_s ?? b.task.hold_s) === (b.task.hold_s ?? a.task.hold_s));
+/** @param {PickedTarget} a @param {PickedTarget} b */
 const isSameTarget = (a, b) => isSameTask(a, b) && JSON.stringify(wishesOf(a)) === JSON.stringify(wishesOf(b));
+/** @param {PickedUav} uav */
 const uavFacts = ({
   name,
   position,
   max_range_m = null,
   cruise_speed_mps = null,
-  end_action = null,
+  end_action,
   most_targets = null,
   sorties = 1,
 }) => JSON.stringify([name, position, max_range_m, cruise_speed_mps, end_action, most_targets, sorties ?? 1]);
-/** What nobody has said of a UAV is its type's, which the server writes down: that is the same. */
+/**
+ * What nobody has said of a UAV is its type's, which the server writes down: that is the same.
+ *
+ * @param {PickedUav} a
+ * @param {PickedUav} b
+ */
 const isSamePerformance = (a, b) =>
   PERFORMANCE.every((fact) => a[fact] === undefined || b[fact] === undefined || a[fact] === b[fact]);
+/** @param {PickedUav} a @param {PickedUav} b */
 const isSameUav = (a, b) => uavFacts(a) === uavFacts(b) && isSamePerformance(a, b);
 
-/** Items of three lists by their keys: theirs, with what I added, changed and took away. */
+/**
+ * Items of three lists by their keys: theirs, with what I added, changed and took away.
+ *
+ * @template Item
+ * @param {Item[]} base
+ * @param {Item[]} mine
+ * @param {Item[]} theirs
+ * @param {(item: Item) => string} keyOf
+ * @param {(a: Item, b: Item) => boolean} isSame
+ */
 function mergedList(base, mine, theirs, keyOf, isSame) {
   const [b, m, th] = [base, mine, theirs].map((list) => new Map(list.map((item) => [keyOf(item), item])));
   let isClash = false;
@@ -61,15 +88,30 @@ function mergedList(base, mine, theirs, keyOf, isSame) {
   return { list, isClash };
 }
 
+/** @param {Pick<MissionSelection, "locks">} selection */
 const locksOf = ({ locks }) => locks ?? [];
+/** @param {Lock} lock */
 const keyOfLock = ({ uav, targets, at_start, at_end }) =>
   JSON.stringify([uav, targets, Boolean(at_start), Boolean(at_end)]);
+/** @param {MissionSelection} a @param {MissionSelection} b */
 const areSameLocks = (a, b) => locksOf(a).map(keyOfLock).join() === locksOf(b).map(keyOfLock).join();
 
-/** Whether somebody else than `uav` alone may fly a target. */
+/**
+ * Whether somebody else than `uav` alone may fly a target.
+ *
+ * @param {PickedTarget} target
+ * @param {string | null | undefined} uav
+ */
 const isTiedElsewhere = (target, uav) => ![null, uav].includes(wishesOf(target).uav);
 
-/** Locks and the merged targets: theirs, with what I locked and unlocked; where no plan can keep both a lock or tie of theirs and one of mine, mine stands. */
+/**
+ * Locks and the merged targets: theirs, with what I locked and unlocked; where no plan can keep both a lock or tie of theirs and one of mine, mine stands.
+ *
+ * @param {MissionSelection} base
+ * @param {MissionSelection} mine
+ * @param {MissionSelection} theirs
+ * @param {PickedTarget[]} targets
+ */
 function mergedLocks(base, mine, theirs, targets) {
   const { list } = mergedList(locksOf(base), locksOf(mine), locksOf(theirs), keyOfLock, () => true);
   const own = new Set(locksOf(mine).map(keyOfLock));
@@ -78,6 +120,7 @@ function mergedLocks(base, mine, theirs, targets) {
   const free = targets.map((target) =>
     uavs.has(target.key) && isTiedElsewhere(target, uavs.get(target.key)) ? { ...target, uav: null } : target,
   );
+  /** @param {Lock} lock */
   const isAgainstTie = (lock) =>
     free.some((target) => lock.targets.includes(target.key) && isTiedElsewhere(target, lock.uav));
   const locks = list.filter(
@@ -90,51 +133,78 @@ function mergedLocks(base, mine, theirs, targets) {
   };
 }
 
-/** base, mine and theirs are { name, selection }. What both changed differently is a clash, and there mine stands. */
+/**
+ * base, mine and theirs are { name, selection }. What both changed differently is a clash, and there mine stands.
+ *
+ * @param {Version} base
+ * @param {Version} mine
+ * @param {Version} theirs
+ */
 export function merged(base, mine, theirs) {
+  /** @type {string[]} */
   const clashes = [];
+  /**
+   * @template Value
+   * @param {string} part
+   * @param {Value} old
+   * @param {Value} own
+   * @param {Value} their
+   */
   const single = (part, old, own, their) => {
     if (areSameValues(own, their) || areSameValues(own, old)) return their;
     if (!areSameValues(their, old)) clashes.push(part);
     return own;
   };
   const name = single("name", base.name, mine.name.trim() || base.name, theirs.name);
-  const selection = {};
-  for (const [part, keyOf, isSame] of [
-    ["targets", keyOfTarget, isSameTarget],
-    ["uavs", keyOfUav, isSameUav],
-  ]) {
-    const { list, isClash } = mergedList(
-      base.selection[part],
-      mine.selection[part],
-      theirs.selection[part],
-      keyOf,
-      isSame,
-    );
-    selection[part] = list;
-    if (isClash) clashes.push(part);
-  }
-  const [old, own, their] = [base, mine, theirs].map((version) => optionsOf(version.selection));
-  for (const part of Object.keys(their)) selection[part] = single(part, old[part], own[part], their[part]);
-  const { isClash, ...agreed } = mergedLocks(base.selection, mine.selection, theirs.selection, selection.targets);
-  if (isClash) clashes.push("locks");
-  return { name, selection: settled({ ...selection, ...agreed }), clashes };
+  const [old, own, their] = [base.selection, mine.selection, theirs.selection];
+  const targets = mergedList(old.targets, own.targets, their.targets, keyOfTarget, isSameTarget);
+  if (targets.isClash) clashes.push("targets");
+  const uavs = mergedList(old.uavs, own.uavs, their.uavs, keyOfUav, isSameUav);
+  if (uavs.isClash) clashes.push("uavs");
+  const [oldOptions, ownOptions, theirOptions] = [old, own, their].map(optionsOf);
+  const parts = /** @type {(keyof typeof theirOptions)[]} */ (Object.keys(theirOptions));
+  const options = /** @type {typeof theirOptions} */ (
+    Object.fromEntries(
+      parts.map((part) => [part, single(part, oldOptions[part], ownOptions[part], theirOptions[part])]),
+    )
+  );
+  const agreed = mergedLocks(old, own, their, targets.list);
+  if (agreed.isClash) clashes.push("locks");
+  const selection = { targets: agreed.targets, uavs: uavs.list, ...options, locks: agreed.locks };
+  return { name, selection: settled(selection), clashes };
 }
 
+/**
+ * @template Item
+ * @param {Item[]} before
+ * @param {Item[]} after
+ * @param {(item: Item) => string} keyOf
+ * @param {(a: Item, b: Item) => boolean} isSame
+ */
 function differences(before, after, keyOf, isSame) {
   const [old, now] = [before, after].map((list) => new Map(list.map((item) => [keyOf(item), item])));
   return {
     added: after.filter((item) => !old.has(keyOf(item))),
     removed: before.filter((item) => !now.has(keyOf(item))),
-    changed: after.filter((item) => old.has(keyOf(item)) && !isSame(item, old.get(keyOf(item)))),
+    changed: after.filter((item) => {
+      const was = old.get(keyOf(item));
+      return was !== undefined && !isSame(item, was);
+    }),
   };
 }
 
+/** @param {MissionSelection} before @param {MissionSelection} after */
 export const targetDifferences = (before, after) =>
   differences(before.targets, after.targets, keyOfTarget, isSameTarget);
+/** @param {MissionSelection} before @param {MissionSelection} after */
 export const uavDifferences = (before, after) => differences(before.uavs, after.uavs, keyOfUav, isSameUav);
 
-/** Whether two ask for the same; what one of them leaves to the server counts as the same. */
+/**
+ * Whether two ask for the same; what one of them leaves to the server counts as the same.
+ *
+ * @param {Version} a
+ * @param {Version} b
+ */
 export function isAlike(a, b) {
   if (
     a.name !== b.name ||
@@ -147,7 +217,7 @@ export function isAlike(a, b) {
   );
 }
 
-/** ["2 targets added", "renamed"]: what somebody did. */
+/** ["2 targets added", "renamed"]: what somebody did. @param {Version} before @param {Version} after */
 export function wordsOfChange(before, after) {
   const words = [];
   if (before.name !== after.name) words.push(t("renamed to “{name}”", { name: after.name }));

@@ -4,11 +4,15 @@ import { say } from "../page/toast.js";
 import { t } from "../text.js";
 import * as link from "./lost_link.js";
 
-/** context: see actions.js. */
+/** @import { LostLink, MissionContext } from "./types.d.ts" */
+
+/** context: see actions.js. @param {MissionContext} context */
 export function createRallyPoints({ store, selection, change }) {
+  /** @param {LostLink | null} lost_link */
   const set = (lost_link) => change({ ...selection(), lost_link });
   const points = () => link.wholeLostLink(selection().lost_link).rally_points;
 
+  /** @param {number[]} position */
   function addRallyPoint(position) {
     if (!set(link.withRallyPoint(selection().lost_link, position))) return;
     const count = points().length;
@@ -18,6 +22,7 @@ export function createRallyPoints({ store, selection, change }) {
 
   return {
     addRallyPoint,
+    /** @param {number} index @param {number[]} position */
     moveRallyPoint: (index, position) => set(link.withRallyPointAt(selection().lost_link, index, position)),
   };
 }

@@ -3,7 +3,19 @@
 import { t } from "../text.js";
 import { withoutLocks, withUavAs, withWishes } from "./selection.js";
 
-/** The first fault of an answer's details: { place: ["uavs", "0", "end_action"], words }; null where there is none. */
+/** @import { ApiError } from "../api.js" */
+/** @import { Lock, MissionSelection, PickedTarget, PickedUav } from "./types.d.ts" */
+
+/** @typedef {{ label: string, href?: () => string, changed?: (now: MissionSelection) => MissionSelection }} Way */
+/** @typedef {{ part: string, field: string, uav: PickedUav | null, target: PickedTarget | null }} Fault */
+
+/**
+ * The first fault of an answer's details: { place: ["uavs", "0", "end_action"], words }; null where there is none.
+ *
+ * @param {unknown} details
+ * @param {string[]} [place]
+ * @returns {{ place: string[], words: string } | null}
+ */
 function firstFault(details, place = []) {
   if (typeof details === "string") return { place, words: details };
   if (!details || typeof details !== "object") return null;
@@ -22,6 +34,10 @@ function firstFault(details, place = []) {
  * asked: the selection that was refused. Gives { words, ways }, null where the answer names no fault.
  *
  * A way is { label, href } or { label, changed }: the selection to go on with, from the one of that moment.
+ *
+ * @param {Pick<ApiError, "details">} error
+ * @param {MissionSelection} asked
+ * @returns {{ words: string, ways: Way[] } | null}
  */
 export function refusalOf({ details }, asked) {
   const fault = firstFault(details);
@@ -34,8 +50,10 @@ export function refusalOf({ details }, asked) {
   return { words, ways: waysOf({ part, field, uav, target }, asked) };
 }
 
+/** @param {Fault} fault @param {MissionSelection} asked @returns {Way[]} */
 function waysOf({ part, field, uav, target }, asked) {
   if (uav && field === "most_targets") {
+    /** @param {Lock} lock */
     const isOfUav = (lock) => lock.uav === uav.name;
     const locked = asked.locks.filter(isOfUav).flatMap(({ targets }) => targets).length;
     return [

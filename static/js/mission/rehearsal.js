@@ -3,7 +3,11 @@
 import { t, tn } from "../text.js";
 import { durationText, energyText, heightText, percentText } from "../units.js";
 
+/** @import { Rehearsal, RehearsalConditions, RehearsalDetail, RehearsalLimit, RehearsedRoute, RouteTrack, Verdict, VerdictLevel } from "../api_types.d.ts" */
+
+/** @type {RehearsalConditions["code"][]} */
 export const CONDITIONS = ["calm", "as-planned", "strong-wind", "weak-battery"];
+/** @param {string} code */
 export const conditionWords = (code) =>
   ({
     calm: t("Calm"),
@@ -11,25 +15,34 @@ export const conditionWords = (code) =>
     "strong-wind": t("Strong wind"),
     "weak-battery": t("Weak battery"),
   })[code];
+/** @type {Record<VerdictLevel, string>} */
 export const LEVELS = { pass: "circle-check", warnings: "triangle-alert", fail: "circle-x" };
+/** @param {VerdictLevel | "" | null | undefined} level */
 export const levelWords = (level) =>
-  ({ pass: t("Pass"), warnings: t("Pass with warnings"), fail: t("Fail") })[level] ?? t("Not flown");
+  level ? { pass: t("Pass"), warnings: t("Pass with warnings"), fail: t("Fail") }[level] : t("Not flown");
 
-export const isRunning = (rehearsal) => ["queued", "running"].includes(rehearsal?.state);
+/** @param {Pick<Rehearsal, "state"> | null | undefined} rehearsal */
+export const isRunning = (rehearsal) => rehearsal?.state === "queued" || rehearsal?.state === "running";
 
+/** @param {{ words: string }[]} runs */
 const namesOf = (runs) => runs.map(({ words }) => words).join(", ");
 
-/** "2 of 13 targets fail: Strong wind." The worst first; detail: as GET /missions/{id}/rehearsals/{id}. */
+/**
+ * "2 of 13 targets fail: Strong wind." The worst first; detail: as GET /missions/{id}/rehearsals/{id}.
+ *
+ * @param {RehearsalDetail} detail
+ */
 export function sentenceOf(detail) {
   if (detail.state === "cancelled") return t("Stopped before it was done.");
   if (detail.state === "failed") return detail.error?.message ?? t("It could not be flown.");
   if (!detail.level) return t("It has not been flown yet.");
+  /** @param {VerdictLevel} level */
   const of = (level) => detail.runs.filter((run) => run.level === level);
   if (detail.level === "pass") return t("It passes: {conditions}.", { conditions: namesOf(of("pass")) });
   if (detail.level === "warnings")
     return t("It passes with warnings: {conditions}.", { conditions: namesOf(of("warnings")) });
   const failing = of("fail");
-  const targets = failing.flatMap(({ verdict }) => verdict.routes.flatMap((route) => route.targets));
+  const targets = failing.flatMap(({ verdict }) => (verdict?.routes ?? []).flatMap((route) => route.targets));
   const failed = new Set(targets.filter(({ level }) => level === "fail").map(({ target }) => target));
   const all = new Set(targets.map(({ target }) => target)).size;
   const conditions = namesOf(failing);
@@ -41,10 +54,17 @@ export function sentenceOf(detail) {
     : t("It fails: {conditions}.", { conditions });
 }
 
+/** @param {number | null | undefined} metres */
 const apart = (metres) => (metres === null || metres === undefined ? "–" : heightText(metres));
 
-/** Figures of a route beside what is planned or allowed: [{ words, flown, beside }]. */
+/**
+ * Figures of a route beside what is planned or allowed: [{ words, flown, beside }].
+ *
+ * @param {RehearsedRoute} route
+ * @param {RehearsalLimit[]} limits
+ */
 export function figuresOf(route, limits) {
+  /** @param {string} name */
   const limit = (name) => limits.find((one) => one.name === name)?.value ?? null;
   const left = Math.min(...route.energy.map(({ left_percent }) => left_percent));
   const zone = route.zones[0];
@@ -92,7 +112,12 @@ export function figuresOf(route, limits) {
   ];
 }
 
-/** The nearest that the route's UAV came to another one in the air: { away_m, other } or null. */
+/**
+ * The nearest that the route's UAV came to another one in the air: { away_m, other } or null.
+ *
+ * @param {Verdict} verdict
+ * @param {number} uav
+ */
 export function nearestOther(verdict, uav) {
   const met = verdict.meetings
     .filter(({ uavs }) => uavs.includes(uav))
@@ -106,18 +131,22 @@ export function nearestOther(verdict, uav) {
 /**
  * Of one route of a track, by seconds after departure: { flown: { height, battery }, planned: { height, battery } }, lists of lines of
  * { at_s, value }. Heights are above the first take-off, as the plan's are.
+ *
+ * @param {RouteTrack} route
  */
 export function curvesOf(route) {
   const [first] = route.flights;
   const ground_m = first ? first.altitude_amsl_m[0] - first.altitude_relative_m[0] : 0;
+  /** @param {(flight: RouteTrack["flights"][number], row: number) => number} value */
   const lines = (value) =>
     route.flights.map((flight) => flight.t_s.map((at_s, row) => ({ at_s, value: value(flight, row) })));
-  const planned = (name) =>
-    [
-      route.planned
-        .filter((point) => point.at_s !== null && point[name] !== null)
-        .map((point) => ({ at_s: point.at_s, value: point[name] })),
-    ].filter((line) => line.length > 1);
+  /** @param {"altitude_relative_m" | "battery_percent"} name */
+  const planned = (name) => {
+    const line = route.planned.flatMap(({ at_s, [name]: value }) =>
+      at_s === null || value === null ? [] : [{ at_s, value }],
+    );
+    return line.length > 1 ? [line] : [];
+  };
   return {
     flown: {
       height: lines((flight, row) => flight.altitude_amsl_m[row] - ground_m),
@@ -127,7 +156,7 @@ export function curvesOf(route) {
   };
 }
 
-/** Round figures for the rules of a scale up to `top`: two to four of them. */
+/** Round figures for the rules of a scale up to `top`: two to four of them. @param {number} top */
 export function rulesUpTo(top) {
   if (!(top > 0)) return [];
   const power = 10 ** Math.floor(Math.log10(top));
@@ -135,8 +164,13 @@ export function rulesUpTo(top) {
   return Array.from({ length: Math.floor(top / step) }, (_, index) => (index + 1) * step);
 }
 
-/** Own figures of the form, as the request has them; what is empty is as planned. */
+/**
+ * Own figures of the form, as the request has them; what is empty is as planned.
+ *
+ * @param {{ wind_mps: number, from_deg: number, gusts_mps: number, battery_percent: number }} typed
+ */
 export function ownConditions({ wind_mps, from_deg, gusts_mps, battery_percent }) {
+  /** @type {Partial<Pick<RehearsalConditions, "wind" | "gusts_mps" | "battery_percent">>} */
   const own = {};
   if (Number.isFinite(wind_mps))
     own.wind = [

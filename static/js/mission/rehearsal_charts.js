@@ -6,15 +6,36 @@ import { t } from "../text.js";
 import { durationText, heightText, percentText, SHORT_UNIT } from "../units.js";
 import { curvesOf, rulesUpTo } from "./rehearsal.js";
 
+/** @import { RouteTrack } from "../api_types.d.ts" */
+
+/** @typedef {{ at_s: number, value: number }[]} Line */
+/**
+ * @typedef {object} ChartOptions
+ * @property {string} words
+ * @property {Line[]} flown
+ * @property {Line[]} planned
+ * @property {number | null} [limit]
+ * @property {number | null} [highest]
+ * @property {number} unit of the rules
+ * @property {(value: number) => string} text
+ * @property {number} height_px
+ * @property {number} longest_s
+ * @property {number} place of the UAV in the mission
+ */
+
 const [TOP_PX, BOTTOM_PX, LEFT_PX] = [8, 14, 44];
 const WIDTH_PX = 344; // of the panel; the drawing is stretched to its place
 
+/** @param {ChartOptions} options */
 function chart({ words, flown, planned, limit = null, highest = null, unit, text, height_px, longest_s, place }) {
   const values = [...flown, ...planned].flat().map(({ value }) => value);
   const top = highest ?? Math.max(unit, ...values) * 1.05;
   const bottom = Math.min(0, ...values);
+  /** @param {number} at_s */
   const x = (at_s) => LEFT_PX + (at_s / longest_s) * (WIDTH_PX - LEFT_PX - 2);
+  /** @param {number} value */
   const y = (value) => TOP_PX + ((top - value) / (top - bottom)) * (height_px - TOP_PX - BOTTOM_PX);
+  /** @param {Line} points @param {string} name */
   const line = (points, name) =>
     svg("polyline", {
       class: name,
@@ -43,7 +64,7 @@ function chart({ words, flown, planned, limit = null, highest = null, unit, text
   );
 }
 
-/** route: of the track; reserve_percent: of its plan. */
+/** route: of the track; reserve_percent: of its plan. @param {RouteTrack} route @param {number} reserve_percent */
 export function drawCharts(route, reserve_percent) {
   const { flown, planned } = curvesOf(route);
   const longest_s = Math.max(1, ...[...flown.height, ...planned.height].flat().map(({ at_s }) => at_s));

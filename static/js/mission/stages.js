@@ -3,6 +3,8 @@
 import { byId, h } from "../dom.js";
 import { t } from "../text.js";
 
+/** @import { MissionStore } from "./types.d.ts" */
+
 const STAGES = [
   ["", t("Plan")],
   ["/rehearse", t("Rehearse")],
@@ -11,6 +13,7 @@ const STAGES = [
   ["/3d", "3D"],
 ];
 
+/** @param {MissionStore} store */
 export function mountStages(store) {
   if (document.querySelector(".stages")) return; // the page was made with them
   store.listen(["mission"], ({ mission }) => {

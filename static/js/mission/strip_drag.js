@@ -2,29 +2,52 @@
 
 import { h } from "../dom.js";
 
+/** @import { Grab, Strip } from "./span_strip.js" */
+
+/** @typedef {{ row: HTMLElement, sequence: number, index: number }} Place among the targets of a route */
+/**
+ * @typedef {object} Drag
+ * @property {number} pointerId
+ * @property {string[]} keys
+ * @property {string} label
+ * @property {string} colour
+ * @property {number} x where it began [px]
+ * @property {number} y
+ * @property {HTMLElement | null} ghost
+ * @property {Place | null} place
+ */
+
 const LEAST_PX = 5; // less is a click
 
-/** rows: the list of routes. strips: Map of sequence → what spanStrip gives. drop(keys, { sequence, index }).
+/**
+ * rows: the list of routes. strips: Map of sequence → what spanStrip gives. drop(keys, { sequence, index }).
  *
  * Returns grab(event, keys, label) for a pill that is pressed. Escape, or letting go beside the routes, changes nothing.
+ *
+ * @param {HTMLElement} rows
+ * @param {{ strips: Map<number, Strip>, drop: (keys: string[], place: { sequence: number, index: number }) => void }} options
  */
 export function createPillDrag(rows, { strips, drop }) {
-  let drag = null; // { keys, label, x, y, ghost, place }
+  /** @type {Drag | null} */
+  let drag = null;
 
-  function placeUnder(x, y) {
-    const row = document.elementFromPoint(x, y)?.closest(".route");
+  /** @param {number} x @param {number} y @param {string[]} keys */
+  function placeUnder(x, y, keys) {
+    const row = /** @type {HTMLElement | null | undefined} */ (document.elementFromPoint(x, y)?.closest(".route"));
     if (!row || !rows.contains(row)) return null;
     const sequence = Number(row.dataset.sequence);
-    return { row, sequence, index: strips.get(sequence)?.indexAt(x, drag.keys) ?? 0 };
+    return { row, sequence, index: strips.get(sequence)?.indexAt(x, keys) ?? 0 };
   }
 
-  function show(place) {
+  /** @param {Place | null} place @param {string[]} keys */
+  function show(place, keys) {
     for (const row of rows.children) row.classList.toggle("takes", row === place?.row);
-    for (const [sequence, strip] of strips) strip.showGap(sequence === place?.sequence ? place.index : null, drag.keys);
+    for (const [sequence, strip] of strips) strip.showGap(sequence === place?.sequence ? place.index : null, keys);
   }
 
+  /** @param {PointerEvent} event */
   function move(event) {
-    if (event.pointerId !== drag.pointerId) return;
+    if (event.pointerId !== drag?.pointerId) return;
     if (!drag.ghost) {
       if (Math.hypot(event.clientX - drag.x, event.clientY - drag.y) < LEAST_PX) return;
       drag.ghost = h("div", { class: `pill strip-ghost ${drag.colour}`, "aria-hidden": "true" }, drag.label);
@@ -32,44 +55,43 @@ export function createPillDrag(rows, { strips, drop }) {
       rows.classList.add("dragging");
     }
     drag.ghost.style.translate = `${event.clientX}px ${event.clientY}px`;
-    drag.place = placeUnder(event.clientX, event.clientY);
-    show(drag.place);
+    drag.place = placeUnder(event.clientX, event.clientY, drag.keys);
+    show(drag.place, drag.keys);
   }
 
   function end() {
-    show(null);
-    drag.ghost?.remove();
+    if (drag) show(null, drag.keys);
+    drag?.ghost?.remove();
     rows.classList.remove("dragging");
-    for (const [type, listener] of LISTENERS) removeEventListener(type, listener, true);
+    removeEventListener("pointermove", move, true);
+    removeEventListener("pointerup", release, true);
+    removeEventListener("pointercancel", end, true);
+    removeEventListener("keydown", escapeDrag, true);
     drag = null;
   }
 
+  /** @param {PointerEvent} event */
   function release(event) {
-    if (event.pointerId !== drag.pointerId) return;
+    if (event.pointerId !== drag?.pointerId) return;
     const { keys, place, ghost } = drag;
     end();
     if (ghost && place) drop(keys, { sequence: place.sequence, index: place.index });
   }
 
-  function escape(event) {
+  /** @param {KeyboardEvent} event */
+  function escapeDrag(event) {
     if (event.key !== "Escape") return;
     event.preventDefault();
     event.stopPropagation();
     end();
   }
 
-  const LISTENERS = [
-    ["pointermove", move],
-    ["pointerup", release],
-    ["pointercancel", end],
-    ["keydown", escape],
-  ];
-
+  /** @type {Grab} */
   return function grab(event, keys, label) {
     if (drag || event.button !== 0) return;
-    const colour = [...event.currentTarget.closest(".route").classList].find((name) => /^route-\d/.test(name)) ?? "";
-    if (event.currentTarget.hasPointerCapture?.(event.pointerId))
-      event.currentTarget.releasePointerCapture(event.pointerId); // the row may be drawn anew meanwhile
+    const pill = /** @type {Element} */ (event.currentTarget);
+    const colour = [...(pill.closest(".route")?.classList ?? [])].find((name) => /^route-\d/.test(name)) ?? "";
+    if (pill.hasPointerCapture?.(event.pointerId)) pill.releasePointerCapture(event.pointerId); // the row may be drawn anew meanwhile
     event.preventDefault();
     drag = {
       pointerId: event.pointerId,
@@ -81,6 +103,9 @@ export function createPillDrag(rows, { strips, drop }) {
       ghost: null,
       place: null,
     };
-    for (const [type, listener] of LISTENERS) addEventListener(type, listener, true);
+    addEventListener("pointermove", move, true);
+    addEventListener("pointerup", release, true);
+    addEventListener("pointercancel", end, true);
+    addEventListener("keydown", escapeDrag, true);
   };
 }

@@ -7,34 +7,44 @@ import { durationText } from "../units.js";
 import { lockOf, wishedPlace } from "./locks.js";
 import { LONGEST_HOLD_S, sensorsKnown, taskOf, uavsByName, wishesOf } from "./selection.js";
 
+/** @import { FlownOrder, MissionActions, MissionPageState, PickedTarget, Task, Wishes } from "./types.d.ts" */
+
+/** @typedef {Pick<MissionPageState, "selection" | "fleet"> & { orders: FlownOrder[] }} Known what the menu is made from */
+/** @typedef {{ icon: string, words: string, act: () => unknown }} MenuItem */
+
+/** @type {{ kind: Task["kind"], icon: string, words: () => string }[]} */
 export const TASKS = [
   { kind: "look", icon: "eye", words: () => t("Look in passing") },
   { kind: "photo", icon: "camera", words: () => t("Take photos") },
   { kind: "hold", icon: "timer", words: () => t("Hold over it") },
 ];
 
+/** @param {Pick<Task, "kind">} task */
 export function taskIcon(task) {
-  return TASKS.find(({ kind }) => kind === task.kind).icon;
+  return (TASKS.find(({ kind }) => kind === task.kind) ?? TASKS[0]).icon;
 }
 
-/** "Take photos, 10 s" */
+/** "Take photos, 10 s" @param {Task} task */
 export function taskText(task) {
-  const { words } = TASKS.find(({ kind }) => kind === task.kind);
-  return task.hold_s > 0 ? `${words()}, ${secondsText(task.hold_s)}` : words();
+  const { words } = TASKS.find(({ kind }) => kind === task.kind) ?? TASKS[0];
+  return task.hold_s ? `${words()}, ${secondsText(task.hold_s)}` : words();
 }
 
+/** @param {number} seconds */
 const secondsText = (seconds) => (seconds >= 600 ? durationText(seconds) : `${seconds}\u00a0s`);
 
+/** @type {{ value: Wishes["priority"], words: string, mark: string | null, said: string }[]} */
 export const PRIORITIES = [
   { value: "low", words: t("Low"), mark: "chevrons-down", said: t("Low priority") },
   { value: "normal", words: t("Normal"), mark: null, said: "" },
   { value: "high", words: t("High"), mark: "chevrons-up", said: t("High priority") },
 ];
 
+/** @param {PickedTarget} target */
 export const priorityOf = (target) =>
   PRIORITIES.find(({ value }) => value === wishesOf(target).priority) ?? PRIORITIES[1];
 
-/** "only Heron · needs LiDAR": who may fly a target. */
+/** "only Heron · needs LiDAR": who may fly a target. @param {PickedTarget} target */
 export function whoMayFly(target) {
   const { uav, sensor } = wishesOf(target);
   return [uav !== null && t("only {uav}", { uav }), sensor && t("needs {sensor}", { sensor })]
@@ -42,9 +52,28 @@ export function whoMayFly(target) {
     .join(" · ");
 }
 
+/** @param {string[]} names @returns {[string, string][]} */
+const namesToChoose = (names) => names.map((name) => [name, name]);
+
+/** A line of the menu, which closes by it. @param {MenuItem} item */
+function menuItem(item) {
+  const choose = () => {
+    closeMenu();
+    item.act();
+  };
+  return h("button", { type: "button", onclick: choose }, icon(item.icon), item.words);
+}
+
 const MIXED = "\u0000"; // the choice of several targets that differ
 
-/** A list to choose from; `values` are what the targets have now. */
+/**
+ * A list to choose from; `values` are what the targets have now.
+ *
+ * @param {string} label
+ * @param {string[]} values
+ * @param {[string, string][]} choices
+ * @param {(value: string) => unknown} set
+ */
 function choiceOf(label, values, choices, set) {
   const isMixed = new Set(values).size > 1;
   const list = h(
@@ -53,11 +82,20 @@ function choiceOf(label, values, choices, set) {
     isMixed && h("option", { value: MIXED, selected: true, disabled: true }, t("different")),
     choices.map(([value, words]) => h("option", { value, selected: !isMixed && values[0] === value }, words)),
   );
-  list.addEventListener("change", () => (closeMenu(), set(list.value)));
+  list.addEventListener("change", () => {
+    closeMenu();
+    set(list.value);
+  });
   return h("label", { class: "target-choice" }, h("span", {}, label), list);
 }
 
-/** How urgent, by whom, with what. */
+/**
+ * How urgent, by whom, with what.
+ *
+ * @param {PickedTarget[]} targets
+ * @param {MissionActions} actions
+ * @param {Known} known
+ */
 function wishChoices(targets, actions, { selection, fleet }) {
   const keys = targets.map(({ key }) => key);
   const wishes = targets.map(wishesOf);
@@ -68,54 +106,70 @@ function wishChoices(targets, actions, { selection, fleet }) {
       t("Priority"),
       wishes.map(({ priority }) => priority),
       PRIORITIES.map(({ value, words }) => [value, words]),
-      (priority) => actions.setWish(keys, { priority }),
+      (priority) => actions.setWish(keys, { priority: /** @type {Wishes["priority"]} */ (priority) }),
     ),
     uavs.length > 0 &&
       choiceOf(
         t("Only UAV"),
         wishes.map(({ uav }) => uav ?? ""),
-        [["", t("any")], ...uavs.map(({ name }) => [name, name])],
+        [["", t("any")], ...namesToChoose(uavs.map(({ name }) => name))],
         (name) => actions.tieTargets(keys, name || null),
       ),
     sensors.length > 0 &&
       choiceOf(
         t("Needs sensor"),
         wishes.map(({ sensor }) => sensors.find((name) => name.toLowerCase() === sensor.trim().toLowerCase()) ?? ""),
-        [["", t("none|sensor")], ...sensors.map((name) => [name, name])],
+        [["", t("none|sensor")], ...namesToChoose(sensors)],
         (sensor) => actions.setWish(keys, { sensor }),
       ),
   ];
 }
 
-/** Who flies a target, and when in its order: what dragging its pill does. `orders` are the plan's: see locks.js. */
+/**
+ * Who flies a target, and when in its order: what dragging its pill does. `orders` are the plan's: see locks.js.
+ *
+ * @param {PickedTarget} target
+ * @param {MissionActions} actions
+ * @param {Known} known
+ */
 function lockChoices({ key }, actions, { selection, orders }) {
   const lock = lockOf(selection, key);
   const place = wishedPlace(orders, selection, key);
   const uavs = uavsByName(selection);
-  const act = (image, words, run) =>
-    h("button", { type: "button", onclick: () => (closeMenu(), run(key)) }, icon(image), words);
+  /** @type {[string, string][]} */
+  const asPlanned = lock ? [] : [["", t("as planned")]];
+  /** @param {string} image @param {string} words @param {(key: string) => unknown} run */
+  const act = (image, words, run) => menuItem({ icon: image, words, act: () => run(key) });
   return [
     uavs.length > 0 &&
       choiceOf(
         t("Fly with UAV"),
         [lock?.uav ?? ""],
-        [...(lock ? [] : [["", t("as planned")]]), ...uavs.map(({ name }) => [name, name])],
+        [...asPlanned, ...namesToChoose(uavs.map(({ name }) => name))],
         (name) => actions.giveTarget(key, name),
       ),
-    place?.index > 0 && act("chevron-up", t("Earlier"), () => actions.shiftTarget(key, -1)),
+    place && place.index > 0 && act("chevron-up", t("Earlier"), () => actions.shiftTarget(key, -1)),
     place && place.index < place.last && act("chevron-down", t("Later"), () => actions.shiftTarget(key, 1)),
     place && act("lock", t("Lock here"), actions.lockTarget),
     lock && act("lock-open", t("Unlock"), actions.unlockTarget),
   ].filter(Boolean);
 }
 
-/** The menu for these targets; `known` is { selection, fleet, orders }, `more` are acts besides: [{ icon, words, act }]. */
+/**
+ * The menu for these targets; `known` is { selection, fleet, orders }, `more` are acts besides: [{ icon, words, act }].
+ *
+ * @param {PickedTarget[]} targets
+ * @param {MissionActions} actions
+ * @param {Known} known
+ * @param {MenuItem[]} [more]
+ */
 export function targetMenu(targets, actions, known, more = []) {
   const keys = targets.map((target) => target.key);
   const tasks = targets.map(taskOf);
   const kinds = new Set(tasks.map((task) => task.kind));
   const times = new Set(tasks.map((task) => task.hold_s));
   const only = kinds.size === 1 ? tasks[0].kind : null;
+  /** @param {Task} task */
   const set = (task) => {
     closeMenu();
     actions.setTask(keys, task);
@@ -133,6 +187,7 @@ export function targetMenu(targets, actions, known, more = []) {
   seconds.addEventListener("keydown", (event) => {
     if (event.key === "ArrowUp" || event.key === "ArrowDown") event.stopPropagation(); // counts, and does not leave the field
   });
+  /** @param {SubmitEvent} event */
   const submit = (event) => {
     event.preventDefault();
     set({ kind: only ?? "hold", hold_s: Math.round(seconds.valueAsNumber) });
@@ -164,8 +219,6 @@ export function targetMenu(targets, actions, known, more = []) {
     locking.length > 0 && h("hr", {}),
     locking,
     more.length > 0 && h("hr", {}),
-    more.map((item) =>
-      h("button", { type: "button", onclick: () => (closeMenu(), item.act()) }, icon(item.icon), item.words),
-    ),
+    more.map(menuItem),
   );
 }

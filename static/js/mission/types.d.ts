@@ -25,8 +25,10 @@ import type {
   UavState,
 } from "../api_types.d.ts";
 import type { RasterMap } from "../map/types.d.ts";
-import type { Store } from "../store.js";
+import type { createHistory, Store } from "../store.js";
 import type { OwnFigure } from "../uav_figures.js";
+import type { createDrafts } from "./draft.js";
+import type { createRunningJob } from "./running_job.js";
 
 /** What the server writes into the page (missions/pages.py). */
 export interface MissionPageData {
@@ -122,10 +124,7 @@ export interface PickedUav extends UavValues, Partial<FleetFacts> {
 }
 
 /** A UAV of the fleet: see uavOf. */
-export interface FleetUav extends PickedUav, FleetFacts {
-  id: number;
-  sensors: string[];
-}
+export type FleetUav = PickedUav & FleetFacts & { id: number; sensors: string[] };
 
 /** A UAV with its place in the mission; null: it does not fly. */
 export interface StandingUav extends PickedUav {
@@ -415,6 +414,24 @@ export interface MissionPageState {
 }
 
 export type MissionStore = Store<MissionPageState>;
+
+/** What the actions of the page share: see actions.js. */
+export interface MissionContext {
+  store: MissionStore;
+  history: ReturnType<typeof createHistory<MissionPageState, "selection">>;
+  selection(): MissionSelection;
+  /** one step of the history; false where it is the same */
+  change(next: MissionSelection): boolean;
+  problem(title: string, text: string, actions?: WayOut[], how?: ProblemOptions): void;
+  /** tells what an error says; `actions` try it again */
+  failed(title: string, error: unknown, actions?: WayOut[], how?: ProblemOptions): void;
+  wordsOf(error: unknown): string;
+  page: MissionPageData;
+  drafts: ReturnType<typeof createDrafts>;
+  /** of what is being waited for */
+  running: { stopping: AbortController | null };
+  runningJob: ReturnType<typeof createRunningJob>;
+}
 
 /** What an operator does with the mission: see actions.js. */
 export type MissionActions = ReturnType<typeof import("./actions.js").createActions>;

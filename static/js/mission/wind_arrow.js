@@ -2,7 +2,7 @@
 
 import { svg } from "../dom.js";
 
-/** It points to where the wind blows that comes from there. */
+/** It points to where the wind blows that comes from there. @param {number} from_deg */
 export function windArrow(from_deg) {
   const arrow = svg(
     "svg",
