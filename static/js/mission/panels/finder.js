@@ -7,6 +7,24 @@ import { t, tn } from "../../text.js";
 import { MOST_TARGETS } from "../picking.js";
 import { detailOf } from "../selection.js";
 
+/** @import { Answer } from "../../api.js" */
+/** @import { AssetCollection, AssetFeature } from "../../api_types.d.ts" */
+/** @import { Box, FoundPlace } from "../../map/types.d.ts" */
+
+/**
+ * What the page around the search does for it.
+ *
+ * @typedef {object} FinderHow
+ * @property {boolean} canPlan
+ * @property {() => Box} box what is in view
+ * @property {(feature: AssetFeature) => void} show
+ * @property {(feature: AssetFeature) => void} add
+ * @property {(features: AssetFeature[]) => void} addAll
+ * @property {(place: FoundPlace) => void} goTo
+ * @property {() => NonNullable<NonNullable<Parameters<typeof placesFound>[1]>["things"]>} things
+ */
+/** @typedef {{ words: string, detail: string, icon: string, end: string, act: () => void }} Result */
+
 const WAIT_MS = 180;
 const MOST = 12;
 const KINDS = [
@@ -16,48 +34,55 @@ const KINDS = [
   { kind: "bridge", words: () => t("Bridges") },
 ];
 
-/** How many of all assets found can be targets; asked only where the answer does not show it. */
+/** @param {unknown} error */
+const failureWords = (error) => (error instanceof ApiError ? error.message : t("The search failed. Try again."));
+
+/** Pressing a button beside the field leaves the focus in it. @param {PointerEvent} event */
+const keepFocus = (event) => event.preventDefault();
+
+/**
+ * How many of all assets found can be targets; asked only where the answer does not show it.
+ *
+ * @param {URLSearchParams} asked
+ * @param {AssetCollection} found
+ * @param {AbortSignal} signal
+ */
 async function countFlyable(asked, found, signal) {
-  if (found.total <= found.features.length)
-    return found.features.filter(({ properties }) => properties.is_flyable).length;
-  const { data } = await get(`/assets?${asked}&flyable=true&limit=1&total=true`, { signal });
-  return data.total;
+  const { total = 0, features } = found;
+  if (total <= features.length) return features.filter(({ properties }) => properties.is_flyable).length;
+  const address = `/assets?${asked}&flyable=true&limit=1&total=true`;
+  const { data } = /** @type {Answer<AssetCollection>} */ (await get(address, { signal }));
+  return data.total ?? 0;
 }
 
-/** page: { box(), show(feature), add(feature), addAll(features), goTo(place), things(), canPlan } */
-export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
-  const input = byId("find");
+/** The list of what was found, one of it active. @param {HTMLInputElement} input */
+function createFoundList(input) {
   const list = byId("found");
-  const panel = byId("found-panel");
   const head = byId("found-head");
-  const foot = byId("found-foot");
-  const frame = byId("finder");
-  const filters = { inView: false, kinds: new Set() };
-  let timer = 0;
-  let asking = null;
-  let results = []; // { words, detail, icon, end, act }
+  /** @type {Result[]} */
+  let results = [];
   let active = -1;
-  let isBehind = false; // the list is not yet of what has been typed
-  let takesFirst = false; // Enter came before the list
 
-  const close = () => {
-    asking?.abort();
-    clearTimeout(timer);
-    isBehind = takesFirst = false;
-    panel.hidden = true;
-    input.setAttribute("aria-expanded", "false");
-    input.removeAttribute("aria-activedescendant");
-    frame.classList.remove("open");
-  };
+  /** @param {number} index @param {boolean} [scroll] */
+  function activate(index, scroll = true) {
+    active = index;
+    [...list.querySelectorAll("[role=option]")].forEach((element, place) => {
+      element.setAttribute("aria-selected", String(place === active));
+    });
+    const element = document.getElementById(`found-${active}`);
+    if (element) input.setAttribute("aria-activedescendant", element.id);
+    if (scroll) element?.scrollIntoView({ block: "nearest" });
+  }
 
-  function option(result, index) {
-    return h(
+  /** @param {Result} result @param {number} index @param {(index: number) => void} take */
+  const option = (result, index, take) =>
+    h(
       "div",
       {
         role: "option",
         id: `found-${index}`,
-        "aria-selected": String(index === active),
-        onpointerdown: (event) => event.preventDefault(),
+        "aria-selected": "false",
+        onpointerdown: keepFocus,
         onclick: () => take(index),
         onpointerenter: () => activate(index, false),
       },
@@ -65,195 +90,260 @@ export function mountFinder({ box, show, add, addAll, goTo, things, canPlan }) {
       h("span", { class: "what" }, result.words, " ", h("span", {}, result.detail)),
       h("span", { class: "end" }, result.end),
     );
-  }
 
-  function draw(words, total) {
-    head.textContent = words;
-    head.hidden = !words;
-    list.replaceChildren(...results.map(option));
-    list.hidden = results.length === 0;
-    panel.hidden = false;
-    input.setAttribute("aria-expanded", "true");
-    drawFoot(total);
-  }
-
-  function drawFoot(total) {
-    foot.hidden = !canPlan || total < 2;
-    if (foot.hidden) return;
-    const isTooMany = total > MOST_TARGETS;
-    const words = isTooMany
-      ? t("{count} match; a mission takes {most}. Narrow the search to add all.", { count: total, most: MOST_TARGETS })
-      : "";
-    const button = h(
-      "button",
-      { type: "button", class: "button", onpointerdown: (event) => event.preventDefault(), onclick: takeAll },
-      icon("list-plus", "small"),
-      tn(total, "Add all {count}", "Add all {count}"),
-    );
-    foot.replaceChildren(isTooMany ? h("p", {}, words) : button);
-  }
-
-  function activate(index, scroll = true) {
-    active = index;
-    list
-      .querySelectorAll("[role=option]")
-      .forEach((element, place) => element.setAttribute("aria-selected", String(place === active)));
-    const element = document.getElementById(`found-${active}`);
-    if (element) input.setAttribute("aria-activedescendant", element.id);
-    if (scroll) element?.scrollIntoView({ block: "nearest" });
-  }
-
-  function take(index) {
-    const result = results[index];
-    if (!result) return;
-    result.act();
-    input.value = "";
-    close();
-  }
-
-  const assetResult = (feature) => {
-    const { kind, label } = feature.properties;
-    const act = () => {
-      show(feature);
-      if (canPlan) add(feature);
-    };
-    return {
-      icon: kind,
-      words: label,
-      detail: detailOf(kind, feature.properties),
-      end: canPlan ? t("Add") : t("Show"),
-      act,
-    };
-  };
-  const placeResult = (place) => ({
-    icon: place.icon,
-    words: place.label,
-    detail: place.detail ?? "",
-    end: t("Go there"),
-    act: () => goTo(place),
-  });
-
-  /** What is asked of /assets: the text, and what is in view where that is meant. */
-  function question() {
-    const text = input.value.trim();
-    const parts = new URLSearchParams();
-    if (text) parts.set("text", text);
-    if (filters.inView || !text)
-      parts.set(
-        "bbox",
-        box()
-          .map((degrees) => degrees.toFixed(6))
-          .join(","),
-      );
-    if (filters.kinds.size) parts.set("kind", [...filters.kinds].join(","));
-    return parts;
-  }
-
-  async function search() {
-    const text = input.value.trim();
-    asking?.abort();
-    asking = new AbortController();
-    const { signal } = asking;
-    const asked = question();
-    try {
-      const [{ data }, places] = await Promise.all([
-        get(`/assets?${asked}&limit=${MOST}&total=true`, { signal }),
-        text && !filters.kinds.size ? placesFound(text, { signal, things: things() }) : [],
-      ]);
-      const flyable = canPlan ? await countFlyable(asked, data, signal) : 0;
-      results = [...places.map(placeResult), ...data.features.map(assetResult)];
+  return {
+    activate,
+    resultAt: (/** @type {number} */ index) => results.at(index) ?? null,
+    active: () => active,
+    /** @param {1 | -1} by */
+    step(by) {
+      if (results.length) activate((active + by + results.length) % results.length);
+    },
+    /** @param {Result[]} found @param {string} words @param {(index: number) => void} take */
+    draw(found, words, take) {
+      results = found;
       active = -1;
-      isBehind = false;
-      draw(results.length ? headOf(asked, data.total) : emptyWords(text), flyable);
-      if (results.length && text) activate(0);
-      if (takesFirst) take(0);
-      takesFirst = false;
-    } catch (error) {
-      if (error.name === "AbortError") return;
-      isBehind = takesFirst = false;
-      results = [];
-      draw(error instanceof ApiError ? error.message : t("The search failed. Try again."), 0);
-    }
-  }
+      head.textContent = words;
+      head.hidden = !words;
+      list.replaceChildren(...results.map((result, index) => option(result, index, take)));
+      list.hidden = results.length === 0;
+    },
+  };
+}
 
-  function headOf(asked, total) {
-    const count = tn(total, "{count} asset", "{count} assets");
-    return asked.has("bbox") ? t("{count} in view", { count }) : total > MOST ? count : "";
-  }
+/** To what the search is narrowed: what is in view, kinds of assets. @param {() => void} onChange */
+function mountFilters(onChange) {
+  let inView = false;
+  /** @type {Set<string>} */
+  const kinds = new Set();
 
-  function emptyWords(text) {
-    const isFiltered = filters.kinds.size > 0 || filters.inView;
-    if (text && isFiltered) return t("No asset matches “{text}” with these filters.", { text });
-    if (text) return t("No asset matches “{text}”.", { text });
-    return t("Nothing is in view. Type a reference, a name, an operator or a voltage.");
-  }
-
-  async function takeAll() {
-    const asked = question();
-    asked.set("flyable", "true");
-    asked.set("limit", String(MOST_TARGETS));
-    try {
-      const { data } = await get(`/assets?${asked}`);
-      addAll(data.features);
-      input.value = "";
-      close();
-    } catch (error) {
-      results = [];
-      draw(error instanceof ApiError ? error.message : t("The search failed. Try again."), 0);
-    }
-  }
-
+  /** @param {string} words @param {() => boolean} change */
   function filter(words, change) {
     const button = h(
       "button",
-      {
-        type: "button",
-        class: "filter-chip",
-        "aria-pressed": "false",
-        onpointerdown: (event) => event.preventDefault(),
-      },
+      { type: "button", class: "filter-chip", "aria-pressed": "false", onpointerdown: keepFocus },
       words,
     );
     button.addEventListener("click", () => {
       button.setAttribute("aria-pressed", String(change()));
-      search();
+      onChange();
     });
     return button;
   }
 
   byId("found-filters").append(
-    filter(t("In view"), () => (filters.inView = !filters.inView)),
-    ...KINDS.map(({ kind, words }) =>
-      filter(words(), () => !filters.kinds.delete(kind) && Boolean(filters.kinds.add(kind))),
-    ),
+    filter(t("In view"), () => {
+      inView = !inView;
+      return inView;
+    }),
+    ...KINDS.map(({ kind, words }) => filter(words(), () => !kinds.delete(kind) && Boolean(kinds.add(kind)))),
   );
-  input.addEventListener("input", () => {
-    clearTimeout(timer);
-    isBehind = true;
-    takesFirst = false;
-    timer = setTimeout(search, WAIT_MS);
-  });
-  input.addEventListener("focus", search);
+  return { isInView: () => inView, kinds };
+}
+
+class Finder {
+  #how;
+  #input = byId("find", HTMLInputElement);
+  #panel = byId("found-panel");
+  #frame = byId("finder");
+  #list = createFoundList(this.#input);
+  #filters = mountFilters(() => void this.search());
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #timer;
+  /** @type {AbortController | null} */
+  #asking = null;
+  #isBehind = false; // the list is not yet of what has been typed
+  #takesFirst = false; // Enter came before the list
+
+  /** @param {FinderHow} how */
+  constructor(how) {
+    this.#how = how;
+  }
+
+  close() {
+    this.#asking?.abort();
+    clearTimeout(this.#timer);
+    this.#isBehind = false;
+    this.#takesFirst = false;
+    this.#panel.hidden = true;
+    this.#input.setAttribute("aria-expanded", "false");
+    this.#input.removeAttribute("aria-activedescendant");
+    this.#frame.classList.remove("open");
+  }
+
+  clear() {
+    this.#input.value = "";
+    this.close();
+  }
+
+  /** Something else is typed. */
+  searchSoon() {
+    clearTimeout(this.#timer);
+    this.#isBehind = true;
+    this.#takesFirst = false;
+    this.#timer = setTimeout(() => void this.search(), WAIT_MS);
+  }
+
+  async search() {
+    const { canPlan, things } = this.#how;
+    const text = this.#input.value.trim();
+    this.#asking?.abort();
+    this.#asking = new AbortController();
+    const { signal } = this.#asking;
+    const asked = this.#question();
+    try {
+      const [answer, places] = await Promise.all([
+        get(`/assets?${asked}&limit=${MOST}&total=true`, { signal }),
+        text && !this.#filters.kinds.size ? placesFound(text, { signal, things: things() }) : [],
+      ]);
+      const { data } = /** @type {Answer<AssetCollection>} */ (answer);
+      const flyable = canPlan ? await countFlyable(asked, data, signal) : 0;
+      const results = [
+        ...places.map((place) => this.#placeResult(place)),
+        ...data.features.map((feature) => this.#assetResult(feature)),
+      ];
+      this.#isBehind = false;
+      this.#draw(results, results.length ? headOf(asked, data.total ?? 0) : this.#emptyWords(text), flyable);
+      if (results.length && text) this.#list.activate(0);
+      if (this.#takesFirst) this.#take(0);
+      this.#takesFirst = false;
+    } catch (error) {
+      if (error instanceof DOMException && error.name === "AbortError") return;
+      this.#isBehind = false;
+      this.#takesFirst = false;
+      this.#draw([], failureWords(error), 0);
+    }
+  }
+
+  /** What a key does in the field. @param {KeyboardEvent} event */
+  press(event) {
+    if (event.key === "ArrowDown" || event.key === "ArrowUp") {
+      event.preventDefault();
+      this.#list.step(event.key === "ArrowDown" ? 1 : -1);
+    } else if (event.key === "Enter") {
+      event.preventDefault();
+      if (this.#isBehind) this.#takesFirst = true;
+      else this.#take(Math.max(this.#list.active(), 0));
+    }
+  }
+
+  /** @param {Result[]} results @param {string} words @param {number} flyable how many can be added at once */
+  #draw(results, words, flyable) {
+    this.#list.draw(results, words, (index) => this.#take(index));
+    this.#panel.hidden = false;
+    this.#input.setAttribute("aria-expanded", "true");
+    this.#drawFoot(flyable);
+  }
+
+  /** @param {number} total */
+  #drawFoot(total) {
+    const foot = byId("found-foot");
+    foot.hidden = !this.#how.canPlan || total < 2;
+    if (foot.hidden) return;
+    if (total > MOST_TARGETS) {
+      const values = { count: total, most: MOST_TARGETS };
+      foot.replaceChildren(
+        h("p", {}, t("{count} match; a mission takes {most}. Narrow the search to add all.", values)),
+      );
+    } else
+      foot.replaceChildren(
+        h(
+          "button",
+          { type: "button", class: "button", onpointerdown: keepFocus, onclick: () => this.#takeAll() },
+          icon("list-plus", "small"),
+          tn(total, "Add all {count}", "Add all {count}"),
+        ),
+      );
+  }
+
+  /** @param {number} index */
+  #take(index) {
+    const result = this.#list.resultAt(index);
+    if (!result) return;
+    result.act();
+    this.clear();
+  }
+
+  async #takeAll() {
+    const asked = this.#question();
+    asked.set("flyable", "true");
+    asked.set("limit", String(MOST_TARGETS));
+    try {
+      const { data } = /** @type {Answer<AssetCollection>} */ (await get(`/assets?${asked}`));
+      this.#how.addAll(data.features);
+      this.clear();
+    } catch (error) {
+      this.#draw([], failureWords(error), 0);
+    }
+  }
+
+  /** @param {AssetFeature} feature @returns {Result} */
+  #assetResult(feature) {
+    const { canPlan, show, add } = this.#how;
+    const { kind, label } = feature.properties;
+    return {
+      icon: kind,
+      words: label,
+      detail: detailOf(kind, feature.properties),
+      end: canPlan ? t("Add") : t("Show"),
+      act() {
+        show(feature);
+        if (canPlan) add(feature);
+      },
+    };
+  }
+
+  /** @param {FoundPlace} place @returns {Result} */
+  #placeResult(place) {
+    const { icon: image, label: words, detail = "" } = place;
+    return { icon: image, words, detail, end: t("Go there"), act: () => this.#how.goTo(place) };
+  }
+
+  /** What is asked of /assets: the text, and what is in view where that is meant. */
+  #question() {
+    const { kinds, isInView } = this.#filters;
+    const text = this.#input.value.trim();
+    const parts = new URLSearchParams();
+    if (text) parts.set("text", text);
+    if (isInView() || !text) {
+      const box = this.#how.box().map((degrees) => degrees.toFixed(6));
+      parts.set("bbox", box.join(","));
+    }
+    if (kinds.size) parts.set("kind", [...kinds].join(","));
+    return parts;
+  }
+
+  /** @param {string} text */
+  #emptyWords(text) {
+    const isFiltered = this.#filters.kinds.size > 0 || this.#filters.isInView();
+    if (text && isFiltered) return t("No asset matches “{text}” with these filters.", { text });
+    if (text) return t("No asset matches “{text}”.", { text });
+    return t("Nothing is in view. Type a reference, a name, an operator or a voltage.");
+  }
+}
+
+/** @param {URLSearchParams} asked @param {number} total */
+function headOf(asked, total) {
+  const count = tn(total, "{count} asset", "{count} assets");
+  return asked.has("bbox") ? t("{count} in view", { count }) : total > MOST ? count : "";
+}
+
+/** @param {FinderHow} how */
+export function mountFinder(how) {
+  const finder = new Finder(how);
+  const input = byId("find", HTMLInputElement);
+  const frame = byId("finder");
+  input.addEventListener("input", () => finder.searchSoon());
+  input.addEventListener("focus", () => void finder.search());
+  input.addEventListener("keydown", (event) => finder.press(event));
   frame.addEventListener("focusout", (event) => {
-    if (!frame.contains(event.relatedTarget)) close();
+    if (!frame.contains(/** @type {Node | null} */ (event.relatedTarget))) finder.close();
   });
   frame.addEventListener("keydown", (event) => {
     if (event.key !== "Escape") return;
     event.preventDefault();
-    input.value = "";
-    close();
-    document.activeElement?.blur();
-  });
-  input.addEventListener("keydown", (event) => {
-    if (event.key === "ArrowDown" || event.key === "ArrowUp") {
-      event.preventDefault();
-      const step = event.key === "ArrowDown" ? 1 : -1;
-      if (results.length) activate((active + step + results.length) % results.length);
-    } else if (event.key === "Enter") {
-      event.preventDefault();
-      if (isBehind) takesFirst = true;
-      else take(Math.max(active, 0));
-    }
+    finder.clear();
+    /** @type {HTMLElement | null} */ (document.activeElement)?.blur();
   });
   const focus = () => {
     frame.classList.add("open");
