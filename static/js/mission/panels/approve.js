@@ -4,15 +4,21 @@ import { byId } from "../../dom.js";
 import { t } from "../../text.js";
 import { isPlanCurrent, isUnsaved } from "../plan_view.js";
 
-/** Why a plan cannot be approved as it stands on the page; empty where it can. */
+/** @import { createFlying } from "../flying_actions.js" */
+/** @import { MissionPageState, MissionStore } from "../types.d.ts" */
+
+/** @typedef {ReturnType<typeof createFlying>} Flying */
+
+/** Why a plan cannot be approved as it stands on the page; empty where it can. @param {MissionPageState} state */
 export function whyNotApproved(state) {
   if (!isPlanCurrent(state)) return t("It has changed since it was planned. Plan again first.");
   if (!state.mission || isUnsaved(state) || !state.planIsStored || state.saving) return t("It is not saved yet.");
   return "";
 }
 
+/** @param {MissionStore} store @param {Flying} flying */
 export function mountApprove(store, flying) {
-  const button = byId("approve");
+  const button = byId("approve", HTMLButtonElement);
   button.addEventListener("click", () => void flying.approve());
   store.listen(
     ["mission", "plan", "planIsStored", "selection", "name", "savedBasis", "saving", "planning", "isDispatching"],

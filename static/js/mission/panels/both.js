@@ -9,16 +9,42 @@ import { lostLinkText } from "../lost_link.js";
 import { targetDifferences, uavDifferences } from "../merge.js";
 import { OBJECTIVES } from "../plan_view.js";
 
+/** @import { Conflict, MissionSelection, PickedTarget, PickedUav, Version } from "../types.d.ts" */
+
+/**
+ * @template Item
+ * @typedef {object} ListOf
+ * @property {(count: number) => string} count
+ * @property {(item: Item) => string} nameOf
+ * @property {(selection: MissionSelection) => Item[]} itemsOf
+ * @property {(before: MissionSelection, now: MissionSelection) => { added: Item[], removed: Item[], changed: Item[] }} differences
+ */
+/**
+ * @typedef {object} WaysOut
+ * @property {() => unknown} takeTheirs
+ * @property {() => unknown} putMineOnTop
+ * @property {(() => unknown) | null} [mergeBoth]
+ * @property {() => unknown} keepMineAsCopy
+ */
+
 const MOST_NAMES = 6;
 
+/** @template Item @param {readonly Item[]} items @param {(item: Item) => string} nameOf */
 function listed(items, nameOf) {
   const names = items.slice(0, MOST_NAMES).map(nameOf).join(", ");
   return items.length > MOST_NAMES ? t("{names} and {count} more", { names, count: items.length - MOST_NAMES }) : names;
 }
 
-/** What a list became since `before`: how many, then what came and went. */
-function listWords(selection, before, part, { count, nameOf, differences }) {
-  const lines = [count(selection[part].length)];
+/**
+ * What a list became since `before`: how many, then what came and went.
+ *
+ * @template Item
+ * @param {MissionSelection} selection
+ * @param {MissionSelection | null} before
+ * @param {ListOf<Item>} list
+ */
+function listWords(selection, before, { count, nameOf, itemsOf, differences }) {
+  const lines = [count(itemsOf(selection).length)];
   if (before) {
     const { added, removed, changed } = differences(before, selection);
     if (added.length) lines.push(t("added: {names}", { names: listed(added, nameOf) }));
@@ -28,20 +54,26 @@ function listWords(selection, before, part, { count, nameOf, differences }) {
   return lines;
 }
 
+/** @type {ListOf<PickedTarget>} */
 const TARGETS = {
   count: (count) => tn(count, "{count} target", "{count} targets"),
   nameOf: ({ label }) => label,
+  itemsOf: ({ targets }) => targets,
   differences: targetDifferences,
 };
+/** @type {ListOf<PickedUav>} */
 const UAVS = {
   count: (count) => tn(count, "{count} UAV", "{count} UAVs"),
   nameOf: ({ name }) => name,
+  itemsOf: ({ uavs }) => uavs,
   differences: uavDifferences,
 };
+/** @param {string} value */
 const objectiveWords = (value) => OBJECTIVES.find((objective) => objective.value === value)?.words ?? value;
+/** @param {boolean} returns */
 const returnWords = (returns) => (returns ? t("yes") : t("no"));
 
-/** "Kite: Tower 4, Tower 2", a line for each lock. */
+/** "Kite: Tower 4, Tower 2", a line for each lock. @param {MissionSelection} selection */
 function lockWords({ targets, locks = [] }) {
   const labels = new Map(targets.map(({ key, label }) => [key, label]));
   return locks.length
@@ -49,13 +81,17 @@ function lockWords({ targets, locks = [] }) {
     : [t("nothing")];
 }
 
-/** conflict: see conflicts.js; ways: { takeTheirs, putMineOnTop, mergeBoth?, keepMineAsCopy }. */
-export function showBoth(conflict, mine, ways) {
-  const before = conflict.before?.selection ?? null;
-  const rows = [
+/**
+ * What is compared: its name, and its lines in a version.
+ *
+ * @param {MissionSelection | null} before both versions
+ * @returns {[string, (version: Version) => string[]][]}
+ */
+function rowsOf(before) {
+  return [
     [t("Name"), ({ name }) => [name]],
-    [t("Targets"), ({ selection }) => listWords(selection, before, "targets", TARGETS)],
-    [t("UAVs"), ({ selection }) => listWords(selection, before, "uavs", UAVS)],
+    [t("Targets"), ({ selection }) => listWords(selection, before, TARGETS)],
+    [t("UAVs"), ({ selection }) => listWords(selection, before, UAVS)],
     [t("Best at"), ({ selection }) => [objectiveWords(selection.objective)]],
     [t("Departure"), ({ selection }) => [selection.departs_at ? departureText(selection.departs_at) : t("any time")]],
     [t("Conditions"), ({ selection }) => [conditionsText(selection.conditions)]],
@@ -64,8 +100,20 @@ export function showBoth(conflict, mine, ways) {
     [t("Return to start"), ({ selection }) => [returnWords(selection.return_to_start)]],
     [t("Locked"), ({ selection }) => lockWords(selection)],
   ];
-  const act = (label, does, kind = "") =>
-    h("button", { type: "button", class: `button ${kind}`, onclick: () => (dialog.close(), void does()) }, label);
+}
+
+/** @param {Conflict} conflict see conflicts.js @param {Version} mine @param {WaysOut} ways */
+export function showBoth(conflict, mine, ways) {
+  const rows = rowsOf(conflict.before?.selection ?? null);
+  /** @param {string} label @param {() => unknown} does @param {string} [kind] */
+  const act = (label, does, kind = "") => {
+    const button = h("button", { type: "button", class: `button ${kind}` }, label);
+    button.addEventListener("click", () => {
+      dialog.close();
+      void does();
+    });
+    return button;
+  };
   const dialog = h(
     "dialog",
     { class: "both", "aria-labelledby": "both-title" },

@@ -5,7 +5,12 @@ import { t, tn } from "../../text.js";
 import { clockText, exactText } from "../../units.js";
 import { isUnsaved } from "../plan_view.js";
 
-/** { words, icon, isBad } of the state. */
+/** @import { Present } from "../../api_types.d.ts" */
+/** @import { MissionPageState, MissionStore } from "../types.d.ts" */
+
+/** @typedef {{ words: string, image: string, isBad?: boolean, at?: string }} SavedWords `at`: when it was saved */
+
+/** Whether it is saved, in words. @param {MissionPageState} state @returns {SavedWords | null} */
 export function savedWords(state) {
   const { mission, saving, problem, conflict, isAway } = state;
   if (!mission && !isUnsaved(state)) return null;
@@ -31,11 +36,13 @@ export function savedWords(state) {
   return { words: t("Not saved yet"), image: "circle-dashed" };
 }
 
+/** @param {Present[]} others */
 function othersWords(others) {
   const names = others.map(({ name, is_me }) => (is_me ? t("you, in another window") : name));
   return tn(others.length, "Also open: {names}", "Also open: {names}", { names: names.join(", ") });
 }
 
+/** @param {MissionStore} store @param {boolean} canPlan */
 export function mountSavedState(store, canPlan) {
   const place = byId("save-state");
   store.listen(
