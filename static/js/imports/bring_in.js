@@ -9,190 +9,246 @@ import { guessKind, HEAD_BYTES, setNameOf } from "./kinds.js";
 import { createRememberedUploads, markOf } from "./remembered_uploads.js";
 import { sendFile, untilAnswered } from "./send_file.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { ImportKind, Proposal, SendHints, UploadItem } from "./types.d.ts" */
+
+/** @param {UploadItem} item */
 const isUnderWay = (item) => ["sending", "waiting", "starting"].includes(item.phase);
 
-/** onStarted(proposal): a file is whole and is being read. */
-export function mountBringIn({ userId, onStarted }) {
-  const remembered = createRememberedUploads(userId);
-  const input = byId("choose-file");
-  const drop = byId("file-drop");
-  let items = remembered.all().map((entry) => ({
-    ...blank(entry.name, entry.size),
-    ...entry,
-    file: null,
-    phase: "lost",
-    received: entry.received ?? 0,
-  }));
+/** @param {string} name @param {number} size */
+const blank = (name, size) => ({
+  name,
+  size,
+  received: 0,
+  waits_s: 0,
+  problem: "",
+  parameters: {},
+  provenance: {},
+  uploadId: null,
+  controller: null,
+  wake: null,
+});
 
-  const cards = new Map();
-  const acts = {
-    start,
-    stop,
-    choose: () => input.click(),
-    drop: takeOff,
-    kind: setKind,
-    change: (item) => isRemembered(item) && keep(item),
-  };
-  const drawCards = keyedList(
-    byId("files"),
-    (item) => item.mark,
-    (item) => {
-      const card = fileCard(item, acts);
-      cards.set(item.mark, card);
-      return card.element;
-    },
-    (element, item) => cards.get(item.mark).refresh(),
-  );
-  const draw = () => {
-    drawCards(items);
-    byId("files").hidden = items.length === 0;
-  };
+/** @typedef {(proposal: Proposal, how: { isLast: boolean }) => void} OnStarted called when a file is whole and is being read */
 
-  function blank(name, size) {
-    return {
-      name,
-      size,
-      received: 0,
-      waits_s: 0,
-      problem: "",
-      parameters: {},
-      provenance: {},
-      uploadId: null,
-      controller: null,
-      wake: null,
-    };
+/** @param {{ userId: number, onStarted: OnStarted }} options */
+export const mountBringIn = ({ userId, onStarted }) => new Uploads(userId, onStarted);
+
+class Uploads {
+  #onStarted;
+  #remembered;
+  #input = byId("choose-file", HTMLInputElement);
+  /** @type {UploadItem[]} */
+  #items;
+  /** By mark. @type {Map<string, ReturnType<typeof fileCard>>} */
+  #cards = new Map();
+  #drawCards;
+
+  /** @param {number} userId @param {OnStarted} onStarted */
+  constructor(userId, onStarted) {
+    this.#onStarted = onStarted;
+    this.#remembered = createRememberedUploads(userId);
+    this.#items = this.#remembered.all().map((entry) => ({
+      ...blank(entry.name, entry.size),
+      ...entry,
+      file: null,
+      phase: "lost",
+      received: entry.received ?? 0,
+    }));
+    this.#drawCards = keyedList(
+      byId("files"),
+      (/** @type {UploadItem} */ item) => item.mark,
+      (item) => this.#makeCard(item).element,
+      (_element, item) => this.#cards.get(item.mark)?.refresh(),
+    );
+    this.#input.addEventListener("change", async () => {
+      const files = [...(this.#input.files ?? [])];
+      this.#input.value = "";
+      await this.#take(files);
+    });
+    listenToDrops(byId("file-drop"), (files) => {
+      if (files.length) this.#take(files);
+      else toast(t("Only files can be dropped here."));
+    });
+    addEventListener("beforeunload", (event) => {
+      if (this.#items.some(isUnderWay)) event.preventDefault();
+    });
+    this.#draw();
   }
-  const isRemembered = (item) => remembered.find(item.mark) !== null;
-  const keep = ({ mark, name, size, kind, parameters, provenance, uploadId, received }) =>
-    remembered.keep(mark, { name, size, kind, parameters, provenance, uploadId, received });
 
-  async function take(files) {
+  choose() {
+    this.#input.click();
+  }
+
+  #draw() {
+    this.#drawCards(this.#items);
+    byId("files").hidden = this.#items.length === 0;
+  }
+
+  /** @param {UploadItem} item */
+  #makeCard(item) {
+    const card = fileCard(item, {
+      start: (one) => this.#start(one),
+      stop: (one) => this.#stop(one),
+      choose: () => this.choose(),
+      drop: (one) => this.#takeOff(one),
+      kind: setKind,
+      change: (one) => {
+        if (this.#remembered.find(one.mark)) this.#keep(one);
+      },
+    });
+    this.#cards.set(item.mark, card);
+    return card;
+  }
+
+  /** @param {UploadItem} item */
+  #keep({ mark, name, size, kind, parameters, provenance, uploadId, received }) {
+    this.#remembered.keep(mark, { name, size, kind, parameters, provenance, uploadId, received });
+  }
+
+  /** @param {File[]} files */
+  async #take(files) {
     for (const file of files) {
       const mark = markOf(file);
-      const known = items.find((item) => item.mark === mark);
+      const known = this.#items.find((item) => item.mark === mark);
       if (known) {
         known.file = file;
-        if (known.phase === "lost") start(known);
+        if (known.phase === "lost") this.#start(known);
         continue;
       }
       const kind = guessKind(file.name, await headOf(file));
+      /** @type {UploadItem} */
       const item = { ...blank(file.name, file.size), mark, file, kind, phase: "chosen" };
       if (kind === "zones" || kind === "assets") item.parameters.set_name = setNameOf(file.name);
-      items = [...items, item];
+      this.#items = [...this.#items, item];
     }
-    draw();
-    const last = cards.get(items.at(-1)?.mark)?.element;
+    this.#draw();
+    const last = this.#cards.get(this.#items.at(-1)?.mark ?? "")?.element;
     last?.scrollIntoView({ block: "nearest" });
-    last?.querySelector("select, button.button")?.focus({ preventScroll: true });
+    /** @type {HTMLElement | null | undefined} */
+    const control = last?.querySelector("select, button.button");
+    control?.focus({ preventScroll: true });
   }
 
-  function setKind(item, kind) {
-    item.kind = kind;
-    item.parameters =
-      kind === "zones" || kind === "assets" ? { set_name: item.parameters.set_name ?? setNameOf(item.name) } : {};
+  /** Sends the file and has it read. @param {UploadItem} item */
+  async #start(item) {
+    if (isUnderWay(item) || !item.file) return;
+    const controller = new AbortController();
+    Object.assign(item, { phase: "sending", problem: "", controller });
+    this.#keep(item);
+    this.#draw();
+    try {
+      const hints = this.#hintsOf(item, controller);
+      const onBegun = (/** @type {string} */ id) => {
+        item.uploadId = id;
+        this.#keep(item);
+      };
+      item.uploadId = await sendFile(item.file, { ...hints, uploadId: item.uploadId, onBegun });
+      const proposal = await this.#haveRead(item, hints);
+      this.#takeOff(item);
+      say(t("{name} is being read.", { name: item.name }));
+      this.#onStarted(proposal, { isLast: !this.#items.some(isUnderWay) });
+    } catch (error) {
+      if (error instanceof DOMException && error.name === "AbortError") return;
+      if (!(error instanceof ApiError)) throw error;
+      Object.assign(item, { phase: "failed", problem: error.message });
+      this.#draw();
+    }
   }
 
-  async function start(item) {
-    if (isUnderWay(item)) return;
-    Object.assign(item, { phase: "sending", problem: "", controller: new AbortController() });
-    keep(item);
-    draw();
-    const hints = {
-      signal: item.controller.signal,
-      nudge: (wake) => (item.wake = wake),
-      tell({ received, waits_s }) {
+  /** @param {UploadItem} item @param {AbortController} controller @returns {SendHints} */
+  #hintsOf(item, { signal }) {
+    return {
+      signal,
+      nudge: (wake) => {
+        item.wake = wake;
+      },
+      tell: ({ received, waits_s }) => {
         if (received !== undefined) item.received = received;
         item.waits_s = waits_s;
         const phase = waits_s > 0 ? "waiting" : "sending";
-        if (phase === "waiting" && item.phase !== "waiting") keep(item);
+        if (phase === "waiting" && item.phase !== "waiting") this.#keep(item);
         item.phase = phase;
-        draw();
+        this.#draw();
       },
     };
-    const onBegun = (id) => {
-      item.uploadId = id;
-      keep(item);
-    };
-    try {
-      item.uploadId = await sendFile(item.file, { ...hints, uploadId: item.uploadId, onBegun });
-      const provenance = Object.fromEntries(Object.entries(item.provenance).filter(([, value]) => value.trim()));
-      const headers = { "Idempotency-Key": crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` };
-      const body = { kind: item.kind, upload: item.uploadId, parameters: item.parameters, provenance };
-      const { data } = await untilAnswered(() => {
-        item.phase = "starting";
-        draw();
-        return post("/imports", body, { headers });
-      }, hints);
-      takeOff(item);
-      say(t("{name} is being read.", { name: item.name }));
-      onStarted(data, { isLast: !items.some(isUnderWay) });
-    } catch (error) {
-      if (error.name === "AbortError") return;
-      if (!(error instanceof ApiError)) throw error;
-      Object.assign(item, { phase: "failed", problem: error.message });
-      draw();
-    }
   }
 
-  /** What has arrived stays there for a day, so that somebody who stopped can go on. */
-  function stop(item) {
+  /** @param {UploadItem} item @param {SendHints} hints @returns {Promise<Proposal>} */
+  async #haveRead(item, hints) {
+    const { kind, uploadId, parameters } = item;
+    const provenance = Object.fromEntries(Object.entries(item.provenance).filter(([, value]) => value.trim()));
+    const headers = { "Idempotency-Key": crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}` };
+    const body = { kind, upload: uploadId, parameters, provenance };
+    const answer = await untilAnswered(() => {
+      item.phase = "starting";
+      this.#draw();
+      return post("/imports", body, { headers });
+    }, hints);
+    return /** @type {Answer<Proposal>} */ (answer).data;
+  }
+
+  /** What has arrived stays there for a day, so that the user can go on after a stop. @param {UploadItem} item */
+  #stop(item) {
     item.controller?.abort();
     item.phase = "chosen";
-    keep(item);
-    draw();
+    this.#keep(item);
+    this.#draw();
   }
 
-  function takeOff(item) {
+  /** @param {UploadItem} item */
+  #takeOff(item) {
     item.controller?.abort();
-    remembered.forget(item.mark);
-    items = items.filter((other) => other !== item);
-    cards.delete(item.mark);
-    draw();
+    this.#remembered.forget(item.mark);
+    this.#items = this.#items.filter((other) => other !== item);
+    this.#cards.delete(item.mark);
+    this.#draw();
   }
-
-  input.addEventListener("change", async () => {
-    const files = [...input.files];
-    input.value = "";
-    await take(files);
-  });
-  listenToDrops(drop, (files) => (files.length ? take(files) : toast("Only files can be dropped here.")));
-  addEventListener("beforeunload", (event) => {
-    if (items.some(isUnderWay)) event.preventDefault();
-  });
-  draw();
-  return { choose: () => input.click() };
 }
 
+/** @param {UploadItem} item @param {ImportKind} kind */
+function setKind(item, kind) {
+  item.kind = kind;
+  const set_name = item.parameters.set_name ?? setNameOf(item.name);
+  item.parameters = kind === "zones" || kind === "assets" ? { set_name } : {};
+}
+
+/** @param {File} file */
 async function headOf(file) {
   return new Uint8Array(await file.slice(0, HEAD_BYTES).arrayBuffer());
 }
 
-/** A file may be dropped anywhere on the page; the drop place says so meanwhile. */
+/** A file may be dropped anywhere on the page; the drop place says so meanwhile. @param {HTMLElement} drop @param {(files: File[]) => void} take */
 function listenToDrops(drop, take) {
-  const hasFiles = (event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
+  const hasFiles = (/** @type {DragEvent} */ event) => [...(event.dataTransfer?.types ?? [])].includes("Files");
   let depth = 0;
-  const mark = (isOver) => (isOver ? (drop.dataset.over = "true") : delete drop.dataset.over);
+  const mark = () => {
+    if (depth) drop.dataset.over = "true";
+    else delete drop.dataset.over;
+  };
   addEventListener("dragenter", (event) => {
     if (!hasFiles(event)) return;
     depth += 1;
-    mark(true);
+    mark();
   });
   addEventListener("dragleave", (event) => {
     if (!hasFiles(event)) return;
     depth = Math.max(0, depth - 1);
-    if (!depth) mark(false);
+    mark();
   });
-  addEventListener("dragover", (event) => hasFiles(event) && event.preventDefault());
+  addEventListener("dragover", (event) => {
+    if (hasFiles(event)) event.preventDefault();
+  });
   addEventListener("drop", (event) => {
     if (!hasFiles(event)) return;
     event.preventDefault();
     depth = 0;
-    mark(false);
-    take([...event.dataTransfer.files]);
+    mark();
+    take([...(event.dataTransfer?.files ?? [])]);
   });
 }
 
-/** Said instead of the tools where somebody may not bring data in. */
+/** Said instead of the tools where the user may not bring data in. */
 export function notAllowed() {
   return h(
     "div",

@@ -1,10 +1,14 @@
 /** The lines of a difference: counts as filters, what was and what would be, linked with the map. */
 
-import { byId, h, keyedList } from "../dom.js";
+import { byId, find, h, keyedList, setChildren } from "../dom.js";
 import { t, tn } from "../text.js";
 import { numberText } from "../units.js";
 import { ACTIONS, factLines } from "./words.js";
 
+/** @import { Store } from "../store.js" */
+/** @import { Change, ImportsState, Proposal } from "./types.d.ts" */
+
+/** @type {Record<string, string>} */
 const SUBJECTS = {
   tower: t("Tower"),
   line: t("Line"),
@@ -14,19 +18,28 @@ const SUBJECTS = {
   terrain: t("Terrain"),
 };
 
-/** acts: { filter(action), point(change or null), show(change), more() } */
+/**
+ * @typedef {object} ChangeActs
+ * @property {(action: string) => void} filter
+ * @property {(change: Change | null) => void} point
+ * @property {(change: Change) => void} show
+ * @property {() => void} more
+ */
+
+/** @param {Store<ImportsState>} store @param {ChangeActs} acts */
 export function mountChanges(store, acts) {
   const list = byId("changes");
   const draw = keyedList(
     list,
-    (change) => change.id,
+    (/** @type {Change} */ change) => change.id,
     (change) => row(change, acts),
     mark,
   );
 
+  /** @param {HTMLElement} element @param {Change} change */
   function mark(element, change) {
     const isSelected = change.id === store.state.selected;
-    element.querySelector("button").setAttribute("aria-expanded", String(isSelected));
+    find(element, "button").setAttribute("aria-expanded", String(isSelected));
     element.dataset.lit = String(change.id === store.state.lit);
     const facts = element.querySelector(".change-facts");
     if (isSelected === !facts) {
@@ -43,16 +56,19 @@ export function mountChanges(store, acts) {
   });
   byId("more-changes").addEventListener("click", acts.more);
   list.addEventListener("keydown", (event) => {
-    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    const step = event.key === "ArrowDown" ? 1 : event.key === "ArrowUp" ? -1 : 0;
     if (!step) return;
     event.preventDefault();
-    const rows = [...list.querySelectorAll("button.change")];
-    rows[rows.indexOf(document.activeElement) + step]?.focus();
+    /** @type {NodeListOf<HTMLElement>} */
+    const rows = list.querySelectorAll("button.change");
+    const place = [...rows].findIndex((row) => row.matches(":focus"));
+    rows[place + step]?.focus();
   });
 }
 
+/** @param {Change} change @param {ChangeActs} acts */
 function row(change, acts) {
-  const { action, label, subject } = change.properties;
+  const { action, label, subject = "" } = change.properties;
   const { words, sign } = ACTIONS[action];
   const button = h(
     "button",
@@ -71,7 +87,7 @@ function row(change, acts) {
   return element;
 }
 
-/** The names of what differs, for the second line. */
+/** The names of what differs, for the second line. @param {Change["properties"]} properties */
 function shortOf(properties) {
   if (properties.action !== "changed" && properties.action !== "kept") return "";
   const names = factLines(properties).map(({ words }) => words);
@@ -79,10 +95,12 @@ function shortOf(properties) {
   return `: ${names.slice(0, 3).join(", ")}${names.length > 3 ? ` ${tn(names.length - 3, "and {count} more", "and {count} more")}` : ""}`;
 }
 
+/** @param {Change["properties"]} properties */
 function factsOf(properties) {
   const lines = factLines(properties);
   const isPair = properties.before !== null && properties.after !== null;
   if (!lines.length) return h("p", { class: "change-facts caption" }, t("Nothing else is known of it."));
+  /** @param {string | null} text @param {string} kind */
   const value = (text, kind) => h("span", { class: kind }, text);
   return h(
     "dl",
@@ -110,37 +128,37 @@ function factsOf(properties) {
   );
 }
 
+/** @param {Proposal | null} current @param {string} action that is chosen @param {ChangeActs} acts */
 function drawFilters(current, action, acts) {
   const place = byId("change-filters");
-  const counted = Object.keys(ACTIONS).filter((name) => current?.difference[name] > 0);
+  const difference = current?.difference ?? {};
+  const counted = Object.entries(ACTIONS).filter(([name]) => difference[name] > 0);
   place.hidden = counted.length === 0;
-  const all = counted.reduce((sum, name) => sum + current.difference[name], 0);
+  const all = counted.reduce((sum, [name]) => sum + difference[name], 0);
   const choices = [
-    ["", "", t("All"), all],
-    ...counted.map((name) => [name, ACTIONS[name].sign, ACTIONS[name].short, current.difference[name]]),
+    { value: "", sign: "", words: t("All"), count: all },
+    ...counted.map(([value, { sign, short }]) => ({ value, sign, words: short, count: difference[value] })),
   ];
-  const had = place.contains(document.activeElement) ? document.activeElement.value : null;
-  place.replaceChildren(
+  /** @type {HTMLInputElement | null} */
+  const focused = place.querySelector("input:focus");
+  setChildren(
+    place,
     h("legend", { class: "unseen" }, t("Which changes")),
-    ...choices.map(([value, sign, words, count]) =>
-      h(
+    choices.map(({ value, sign, words, count }) => {
+      const choose = () => acts.filter(value);
+      const mark = sign && h("b", { class: value, "aria-hidden": "true" }, sign);
+      return h(
         "label",
         {},
-        h("input", {
-          type: "radio",
-          name: "change-filter",
-          value,
-          checked: action === value,
-          onchange: () => acts.filter(value),
-        }),
+        h("input", { type: "radio", name: "change-filter", value, checked: action === value, onchange: choose }),
         h(
           "span",
           { class: "segment" },
-          h("span", { class: "change-word" }, sign && h("b", { class: value, "aria-hidden": "true" }, sign), words),
+          h("span", { class: "change-word" }, mark, words),
           h("small", {}, numberText(count)),
         ),
-      ),
-    ),
+      );
+    }),
   );
-  if (had !== null) [...place.querySelectorAll("input")].find((input) => input.value === had)?.focus();
+  if (focused) [...place.querySelectorAll("input")].find((input) => input.value === focused.value)?.focus();
 }

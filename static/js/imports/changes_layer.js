@@ -1,8 +1,14 @@
 /** A difference on the map: new, changed, vanished and kept, each with its own colour, stroke and sign. */
 
+import { addSources, readToken, setFeatures, setPaint } from "../map/look/style.js";
 import { ACTIONS, isGeometry } from "./words.js";
 
-const NOTHING = { type: "FeatureCollection", features: [] };
+/** @import { FilterSpecification, LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { Geometry, MapLibreMap, MapView, ScreenPoint } from "../map/types.d.ts" */
+/** @import { Change } from "./types.d.ts" */
+
+/** @typedef {{ type: "GeometryCollection", geometries: Geometry[] }} Collection */
+
 const reach_px = () => (matchMedia("(pointer: coarse)").matches ? 16 : 6);
 const SOURCE = "import-changes";
 const BEFORE = "import-before";
@@ -10,7 +16,7 @@ const SIGNS = "import-signs";
 const SHAPES = ["import-fill", "import-line", "import-line-vanished", "import-line-kept", "import-dot"];
 const FILTERED = [...SHAPES, "import-casing", "import-sign", "import-before-line", "import-before-dot"];
 
-/** Far off a point is a small dot, and a shape needs none; near by each carries its sign. */
+/** Far off a point is a small dot, and a shape needs none; near by each carries its sign. @param {number} far @param {number} near [px] */
 const byZoom = (far, near) => [
   "interpolate",
   ["linear"],
@@ -22,25 +28,28 @@ const byZoom = (far, near) => [
   13,
   near,
 ];
+/** @param {string} type */
 const isShape = (type) => ["==", ["geometry-type"], type];
+/** @param {...string} actions */
 const actionIs = (...actions) => ["in", ["get", "action"], ["literal", actions]];
+/** @param {Record<string, string>} values */
 const byAction = (values) => ["match", ["get", "action"], ...Object.entries(values).flat(), values.changed];
 
 /** The colour of each action, as the theme has it now. */
 function colours() {
-  const read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim();
   return {
-    casing: read("--map-casing"),
+    casing: readToken("--map-casing"),
     actions: {
-      new: read("--accent"),
-      changed: read("--warning"),
-      vanished: read("--critical"),
-      kept: read("--advisory"),
+      new: readToken("--accent"),
+      changed: readToken("--warning"),
+      vanished: readToken("--critical"),
+      kept: readToken("--advisory"),
     },
-    before: read("--ink"),
+    before: readToken("--ink"),
   };
 }
 
+/** @type {Record<string, unknown[]>} */
 const baseFilters = {
   "import-fill": isShape("Polygon"),
   "import-casing": ["!", isShape("Point")],
@@ -51,11 +60,12 @@ const baseFilters = {
   "import-before-dot": isShape("Point"),
 };
 
+/** @param {ReturnType<typeof colours>} colours @param {string[]} fonts @returns {LayerSpecification[]} */
 function layers({ casing, actions, before }, fonts) {
   const colour = byAction(actions);
   const round = { "line-cap": "round", "line-join": "round" };
   const line = { "line-color": colour, "line-width": 3 };
-  return [
+  const layers = [
     {
       id: "import-before-line",
       type: "line",
@@ -109,13 +119,15 @@ function layers({ casing, actions, before }, fonts) {
       paint: { "text-color": colour, "text-halo-color": casing, "text-halo-width": 2 },
     },
   ];
+  return /** @type {LayerSpecification[]} */ (layers);
 }
 
+/** @param {{ map: MapLibreMap, view: MapView }} ground */
 export function createChangesLayer({ map, view }) {
   let shownAction = "";
 
   function addTo() {
-    for (const id of [BEFORE, SOURCE, SIGNS]) map.addSource(id, { type: "geojson", data: NOTHING });
+    addSources(map, [BEFORE, SOURCE, SIGNS]);
     for (const layer of layers(colours(), view.palette().fonts)) map.addLayer(layer);
     filter();
   }
@@ -125,42 +137,39 @@ export function createChangesLayer({ map, view }) {
     for (const id of FILTERED) {
       if (!map.getLayer(id)) continue;
       const base = baseFilters[id] ?? null;
-      map.setFilter(id, base && wanted ? ["all", base, wanted] : (base ?? wanted));
+      const both = base && wanted ? ["all", base, wanted] : (base ?? wanted);
+      map.setFilter(id, /** @type {FilterSpecification | null} */ (/** @type {unknown} */ (both)));
     }
   }
 
   return {
     addTo,
     recolour() {
-      for (const layer of layers(colours(), view.palette().fonts)) {
-        for (const [name, value] of Object.entries(layer.paint)) map.setPaintProperty(layer.id, name, value);
-      }
+      for (const layer of layers(colours(), view.palette().fonts)) setPaint(map, layer);
     },
+    /** @param {Change[]} changes @param {string} action the only one that is shown; "" for all */
     show(changes, action) {
       shownAction = action;
-      const drawn = changes.filter((change) => change.geometry);
-      const feature = (change, geometry) => ({
-        type: "Feature",
-        geometry,
-        properties: { id: change.id, action: change.properties.action, isPoint: change.geometry.type === "Point" },
-      });
-      map
-        .getSource(SOURCE)
-        .setData({ type: "FeatureCollection", features: drawn.map((change) => feature(change, change.geometry)) });
-      map.getSource(SIGNS).setData({
-        type: "FeatureCollection",
-        features: drawn.map((change) => feature(change, { type: "Point", coordinates: placeOfSign(change.geometry) })),
-      });
-      const moved = changes.filter(
-        (change) => change.properties.action !== "vanished" && isGeometry(change.properties.before?.geometry),
+      const drawn = changes.flatMap(({ geometry, ...change }) => (geometry ? [{ ...change, geometry }] : []));
+      setFeatures(
+        map,
+        SOURCE,
+        drawn.map((change) => featureOf(change, change.geometry)),
       );
-      map.getSource(BEFORE).setData({
-        type: "FeatureCollection",
-        features: moved.map((change) => feature(change, change.properties.before.geometry)),
+      const signs = drawn.map((change) => ({ change, coordinates: placeOfSign(change.geometry) }));
+      setFeatures(
+        map,
+        SIGNS,
+        signs.map(({ change, coordinates }) => featureOf(change, { type: "Point", coordinates })),
+      );
+      const moved = drawn.flatMap((change) => {
+        const { action: what, before } = change.properties;
+        return what !== "vanished" && isGeometry(before?.geometry) ? [featureOf(change, before.geometry)] : [];
       });
+      setFeatures(map, BEFORE, moved);
       filter();
     },
-    /** The id of the change under a point of the screen, or null. */
+    /** The id of the change under a point of the screen, or null. @param {ScreenPoint | null} point @returns {number | null} */
     at(point) {
       const shown = SHAPES.filter((id) => map.getLayer(id));
       if (!shown.length || !point) return null;
@@ -172,13 +181,25 @@ export function createChangesLayer({ map, view }) {
         ],
         { layers: shown },
       );
+      /** @param {{ layer: { id: string } }} feature */
       const rank = ({ layer }) => -SHAPES.indexOf(layer.id);
       return found.sort((a, b) => rank(a) - rank(b))[0]?.properties.id ?? null;
     },
   };
 }
 
-/** Where a geometry's sign stands: on a line its middle vertex, on an area its northernmost one, where no name is drawn. */
+/** @param {Pick<Change, "id" | "properties"> & { geometry: Geometry }} change @param {object} geometry */
+const featureOf = ({ id, properties, geometry: own }, geometry) => ({
+  type: "Feature",
+  geometry,
+  properties: { id, action: properties.action, isPoint: own.type === "Point" },
+});
+
+/**
+ * Where a geometry's sign stands: on a line its middle vertex, on an area its northernmost one, where no name is drawn.
+ *
+ * @param {Geometry} geometry
+ */
 export function placeOfSign(geometry) {
   const positions = positionsOf(geometry);
   if (geometry.type.endsWith("Polygon"))
@@ -186,10 +207,15 @@ export function placeOfSign(geometry) {
   return positions[Math.floor(positions.length / 2)];
 }
 
-/** All positions of a geometry. */
+/** All positions of a geometry. @param {Geometry | Collection | null} geometry @returns {number[][]} */
 export function positionsOf(geometry) {
   if (!geometry) return [];
-  if (geometry.type === "GeometryCollection") return geometry.geometries.flatMap(positionsOf);
-  const walk = (value) => (typeof value[0] === "number" ? [value] : value.flatMap(walk));
-  return walk(geometry.coordinates);
+  if ("geometries" in geometry) return geometry.geometries.flatMap(positionsOf);
+  return positionsIn(geometry.coordinates);
 }
+
+/** @param {readonly unknown[]} coordinates @returns {number[][]} */
+const positionsIn = (coordinates) =>
+  typeof coordinates[0] === "number"
+    ? [/** @type {number[]} */ (coordinates)]
+    : /** @type {unknown[][]} */ (coordinates).flatMap(positionsIn);

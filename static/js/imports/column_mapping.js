@@ -1,12 +1,18 @@
 /** What the columns of an asset file become: each with samples of its values; the file is read again with the answer. */
 
-import { h, icon } from "../dom.js";
+import { h, icon, setChildren } from "../dom.js";
 import { t } from "../text.js";
 import { countText } from "../units.js";
 
+/** @import { Column, Mapping, Parameters, Proposal } from "./types.d.ts" */
+
+/** @type {Record<string, string>} */
 const KINDS = { tower: t("Towers"), line: t("Power lines"), railway: t("Railways"), bridge: t("Bridges") };
+/** What each column means, by its name. @typedef {Record<string, string>} Meanings */
+
 const BY_GEOMETRY = "by_geometry";
 const BY_COLUMN = "column";
+/** @type {Record<string, string>} */
 const MEANINGS = {
   key: t("Key: tells them apart"),
   kind: t("Kind of asset"),
@@ -20,13 +26,15 @@ const MEANINGS = {
   "height:ft": t("Height in feet"),
   subtype: t("Type within its kind"),
 };
+/** @type {Record<string, string>} */
 const PLACES = { lon: t("Longitude, or x"), lat: t("Latitude, or y"), wkt: t("Geometry as WKT") };
 
-/** "voltage:kV" → "voltage": a meaning that only one column can have. */
+/** "voltage:kV" → "voltage": a meaning that only one column can have. @param {string} meaning */
 const roleOf = (meaning) => meaning.split(":")[0];
 
-/** The meaning of each column by name, as a mapping of the API says it. */
+/** The meaning of each column by name, as a mapping of the API says it. @param {Mapping} mapping */
 export function meaningsOf({ kind, columns = {}, units = {}, geometry = {} }) {
+  /** @type {Meanings} */
   const found = {};
   for (const [role, name] of Object.entries(columns)) {
     if (role === "voltage" || role === "height")
@@ -34,12 +42,20 @@ export function meaningsOf({ kind, columns = {}, units = {}, geometry = {} }) {
     else found[name] ??= role;
   }
   for (const [role, name] of Object.entries(geometry)) found[name] = role;
-  if (kind?.column) found[kind.column] = "kind";
+  if (typeof kind === "object" && kind?.column) found[kind.column] = "kind";
   return found;
 }
 
-/** The same backwards. `kind`: one of the kinds, "by_geometry", or "column" with what its values mean. */
+/**
+ * The same backwards. `kind`: one of the kinds, "by_geometry", or "column" with what its values mean.
+ *
+ * @param {Meanings} meanings
+ * @param {string} kind
+ * @param {Record<string, string>} kindValues
+ * @returns {Required<Mapping>}
+ */
 export function mappingOf(meanings, kind, kindValues) {
+  /** @type {Required<Mapping>} */
   const mapping = { kind: kind || null, columns: {}, units: {}, geometry: {} };
   for (const [name, meaning] of Object.entries(meanings)) {
     const role = roleOf(meaning);
@@ -56,7 +72,14 @@ export function mappingOf(meanings, kind, kindValues) {
   return mapping;
 }
 
-/** Each role once: what another column had of it is taken from that one. */
+/**
+ * Each role once: what another column had of it is taken from that one.
+ *
+ * @param {Meanings} meanings
+ * @param {string} name
+ * @param {string} meaning
+ * @returns {Meanings}
+ */
 export function withMeaning(meanings, name, meaning) {
   const rest = Object.entries(meanings).filter(
     ([other, known]) => other !== name && (!meaning || roleOf(known) !== roleOf(meaning)),
@@ -64,157 +87,203 @@ export function withMeaning(meanings, name, meaning) {
   return meaning ? { ...Object.fromEntries(rest), [name]: meaning } : Object.fromEntries(rest);
 }
 
-let count = 0;
+let made = 0;
 
-/** readAgain(parameters) has the file read with this mapping. */
-export function columnMapping({ summary, parameters, state }, readAgain) {
-  if (state !== "ready") return null;
-  const id = `columns-${(count += 1)}`;
-  const stated = Object.keys(summary.mapping ?? {}).length ? summary.mapping : (summary.suggested_mapping ?? {});
-  const isTable = summary.format === "csv";
-  let meanings = meaningsOf(stated);
-  const kindValues = { ...(stated.kind?.values ?? {}) };
-  const option = ([value, words]) => h("option", { value }, words);
-  const field = (words, control, hint) =>
-    h(
-      "div",
-      { class: "field" },
-      h("label", { for: control.id }, words),
-      control,
-      hint && h("span", { class: "caption" }, hint),
+/**
+ * A form for the mapping; readAgain(parameters) has the file read with it. Null while nothing can be decided.
+ *
+ * @param {Proposal} proposal
+ * @param {(parameters: Parameters) => void} readAgain
+ */
+export const columnMapping = (proposal, readAgain) =>
+  proposal.state === "ready" ? new ColumnMapping(proposal, readAgain).element : null;
+
+/** @param {readonly [string, string]} choice */
+const option = ([value, words]) => h("option", { value }, words);
+
+/** @param {string} words @param {HTMLElement} control @param {string} [hint] */
+const field = (words, control, hint) =>
+  h(
+    "div",
+    { class: "field" },
+    h("label", { for: control.id }, words),
+    control,
+    hint && h("span", { class: "caption" }, hint),
+  );
+
+/** A row: a name with a caption, and what is chosen for it. @param {string} name @param {HTMLElement} caption @param {HTMLElement} choice */
+const columnRow = (name, caption, choice) =>
+  h(
+    "div",
+    { class: "column-row" },
+    h("div", { class: "column-name" }, h("label", { for: choice.id }, name), caption),
+    choice,
+  );
+
+class ColumnMapping {
+  #summary;
+  #parameters;
+  #readAgain;
+  #id;
+  #isTable;
+  /** @type {Meanings} */
+  #meanings;
+  /** What the values of the column of kinds mean. @type {Record<string, string>} */
+  #kindValues;
+  #kind;
+  #system;
+  #layer;
+  #values = h("div", { class: "kind-values" });
+  /** By column. @type {Map<string, HTMLSelectElement>} */
+  #choices = new Map();
+
+  /** @param {Proposal} proposal @param {(parameters: Parameters) => void} readAgain */
+  constructor({ summary, parameters }, readAgain) {
+    made += 1;
+    this.#id = `columns-${made}`;
+    this.#summary = summary;
+    this.#parameters = parameters;
+    this.#readAgain = readAgain;
+    this.#isTable = summary.format === "csv";
+    const stated = summary.mapping && Object.keys(summary.mapping).length ? summary.mapping : summary.suggested_mapping;
+    const { kind } = stated ?? {};
+    this.#meanings = meaningsOf(stated ?? {});
+    this.#kindValues = typeof kind === "object" ? { ...kind?.values } : {};
+    this.#kind = this.#kindChoice(typeof kind === "string" ? kind : kind?.column ? BY_COLUMN : "");
+    this.#system = h("input", {
+      class: "input",
+      id: `${this.#id}-crs`,
+      placeholder: summary.crs || "EPSG:4326",
+      value: parameters.crs ?? "",
+      maxlength: "40",
+    });
+    const layers = summary.layers ?? [];
+    this.#layer = h(
+      "select",
+      { class: "input", id: `${this.#id}-layer` },
+      layers.map((name) => option([name, name])),
     );
+    this.#layer.value = summary.layer ?? "";
+    this.element = h(
+      "details",
+      { class: "import-facts", open: Boolean(summary.needs_mapping) },
+      h("summary", {}, t("What the columns are")),
+      this.#form(),
+    );
+    this.#show();
+  }
 
-  const kind = h(
-    "select",
-    { class: "input", id: `${id}-kind` },
-    [
+  #form() {
+    const { columns = [], layers = [], needs_mapping } = this.#summary;
+    const look = needs_mapping ? "button primary" : "button";
+    const rows = columns.map((column, place) => this.#columnRow(column, place));
+    const form = h(
+      "form",
+      { class: "column-form", "aria-label": t("What the columns are") },
+      layers.length > 1 && field(t("Layer"), this.#layer),
+      field(t("These are"), this.#kind),
+      this.#values,
+      h("p", { class: "field-label" }, t("Columns")),
+      rows,
+      field(t("Coordinate system"), this.#system, t("Only where the file does not say it.")),
+      h(
+        "div",
+        { class: "row-acts" },
+        h("button", { type: "submit", class: look }, icon("eye", "small"), t("Show what would change")),
+      ),
+    );
+    form.addEventListener("submit", (event) => {
+      event.preventDefault();
+      this.#readAgain(this.#read());
+    });
+    return form;
+  }
+
+  /** @param {string} chosen */
+  #kindChoice(chosen) {
+    /** @type {[string, string][]} */
+    const choices = [
       ["", t("Choose")],
       [BY_GEOMETRY, t("Points towers, lines power lines, areas bridges")],
       ...Object.entries(KINDS),
       [BY_COLUMN, t("What a column says")],
-    ].map(option),
-  );
-  kind.value = stated.kind?.column ? BY_COLUMN : (stated.kind ?? "");
-  const values = h("div", { class: "kind-values" });
-  const choices = new Map();
-
-  function drawValues() {
-    const name = Object.keys(meanings).find((known) => meanings[known] === "kind");
-    const column = kind.value === BY_COLUMN && summary.columns.find((known) => known.name === name);
-    if (kind.value === BY_COLUMN && !column)
-      return values.replaceChildren(h("p", { class: "caption" }, t("Say below which column has the kind.")));
-    values.replaceChildren(
-      ...Object.entries((column && column.values) || {}).map(([value, rows], place) => {
-        const choice = h(
-          "select",
-          { class: "input", id: `${id}-value-${place}` },
-          [["", t("Left out")], ...Object.entries(KINDS)].map(option),
-        );
-        choice.value = kindValues[value] ?? "";
-        kindValues[value] = choice.value;
-        choice.addEventListener("change", () => (kindValues[value] = choice.value));
-        return h(
-          "div",
-          { class: "column-row" },
-          h(
-            "div",
-            { class: "column-name" },
-            h("label", { for: choice.id }, value),
-            h("span", { class: "caption" }, countText(rows, "row")),
-          ),
-          choice,
-        );
-      }),
-    );
-  }
-
-  function show() {
-    for (const [name, choice] of choices) choice.value = meanings[name] ?? "";
-    drawValues();
-  }
-
-  kind.addEventListener("change", () => {
-    if (kind.value !== BY_COLUMN)
-      meanings = Object.fromEntries(Object.entries(meanings).filter(([, meaning]) => meaning !== "kind"));
-    show();
-  });
-
-  const rows = summary.columns.map((column, place) => {
-    const can = Object.entries(MEANINGS).filter(([meaning]) => meaning !== "kind" || column.values);
-    const choice = h(
-      "select",
-      { class: "input", id: `${id}-${place}`, "aria-describedby": `${id}-${place}-samples` },
-      [["", t("Kept as a tag")], ...can, ...(isTable ? Object.entries(PLACES) : [])].map(option),
-    );
-    choices.set(column.name, choice);
+    ];
+    const choice = h("select", { class: "input", id: `${this.#id}-kind` }, choices.map(option));
+    choice.value = chosen;
     choice.addEventListener("change", () => {
-      meanings = withMeaning(meanings, column.name, choice.value);
-      if (choice.value === "kind") kind.value = BY_COLUMN;
-      show();
+      const others = Object.entries(this.#meanings).filter(([, meaning]) => meaning !== "kind");
+      if (choice.value !== BY_COLUMN) this.#meanings = Object.fromEntries(others);
+      this.#show();
+    });
+    return choice;
+  }
+
+  /** @param {Column} column @param {number} place */
+  #columnRow(column, place) {
+    const id = `${this.#id}-${place}`;
+    const can = Object.entries(MEANINGS).filter(([meaning]) => meaning !== "kind" || column.values);
+    const places = this.#isTable ? Object.entries(PLACES) : [];
+    /** @type {[string, string][]} */
+    const meanings = [["", t("Kept as a tag")], ...can, ...places];
+    const look = { class: "input", id, "aria-describedby": `${id}-samples` };
+    const choice = h("select", look, meanings.map(option));
+    this.#choices.set(column.name, choice);
+    choice.addEventListener("change", () => {
+      this.#meanings = withMeaning(this.#meanings, column.name, choice.value);
+      if (choice.value === "kind") this.#kind.value = BY_COLUMN;
+      this.#show();
     });
     const samples = (column.samples ?? []).map(String).join(" · ") || t("always empty");
-    return h(
-      "div",
-      { class: "column-row" },
-      h(
-        "div",
-        { class: "column-name" },
-        h("label", { for: choice.id }, column.name),
-        h("span", { class: "caption", id: `${id}-${place}-samples`, title: samples }, samples),
-      ),
-      choice,
-    );
-  });
+    const caption = h("span", { class: "caption", id: `${id}-samples`, title: samples }, samples);
+    return columnRow(column.name, caption, choice);
+  }
 
-  const system = h("input", {
-    class: "input",
-    id: `${id}-crs`,
-    placeholder: summary.crs || "EPSG:4326",
-    value: parameters.crs ?? "",
-    maxlength: "40",
-  });
-  const layer = h(
-    "select",
-    { class: "input", id: `${id}-layer` },
-    (summary.layers ?? []).map((name) => option([name, name])),
-  );
-  layer.value = summary.layer ?? "";
-  const form = h(
-    "form",
-    { class: "column-form", "aria-label": t("What the columns are") },
-    (summary.layers ?? []).length > 1 && field(t("Layer"), layer),
-    field(t("These are"), kind),
-    values,
-    h("p", { class: "field-label" }, t("Columns")),
-    rows,
-    field(t("Coordinate system"), system, t("Only where the file does not say it.")),
-    h(
-      "div",
-      { class: "row-acts" },
-      h(
-        "button",
-        { type: "submit", class: summary.needs_mapping ? "button primary" : "button" },
-        icon("eye", "small"),
-        t("Show what would change"),
-      ),
-    ),
-  );
-  form.addEventListener("submit", (event) => {
-    event.preventDefault();
-    const mapping = mappingOf(meanings, kind.value, kindValues);
-    if (!isTable) delete mapping.geometry;
-    const crs = system.value.trim();
-    readAgain({
-      ...mapping,
-      ...(crs || parameters.crs ? { crs: crs || null } : {}),
-      ...(layer.options.length > 1 ? { layer: layer.value } : {}),
+  #show() {
+    for (const [name, choice] of this.#choices) choice.value = this.#meanings[name] ?? "";
+    this.#drawValues();
+  }
+
+  /** Where a column says the kind, what each of its values means. */
+  #drawValues() {
+    if (this.#kind.value !== BY_COLUMN) {
+      this.#values.replaceChildren();
+      return;
+    }
+    const name = Object.keys(this.#meanings).find((known) => this.#meanings[known] === "kind");
+    const column = (this.#summary.columns ?? []).find((known) => known.name === name);
+    const question = h("p", { class: "caption" }, t("Say below which column has the kind."));
+    const values = Object.entries(column?.values ?? {});
+    setChildren(
+      this.#values,
+      column ? values.map(([value, rows], place) => this.#valueRow(value, rows, place)) : question,
+    );
+  }
+
+  /** @param {string} value @param {number} rows that have it @param {number} place */
+  #valueRow(value, rows, place) {
+    const choice = h(
+      "select",
+      { class: "input", id: `${this.#id}-value-${place}` },
+      option(["", t("Left out")]),
+      Object.entries(KINDS).map(option),
+    );
+    const kindValues = this.#kindValues;
+    choice.value = kindValues[value] ?? "";
+    kindValues[value] = choice.value;
+    choice.addEventListener("change", () => {
+      kindValues[value] = choice.value;
     });
-  });
-  show();
-  return h(
-    "details",
-    { class: "import-facts", open: Boolean(summary.needs_mapping) },
-    h("summary", {}, t("What the columns are")),
-    form,
-  );
+    return columnRow(value, h("span", { class: "caption" }, countText(rows, "row")), choice);
+  }
+
+  #read() {
+    const { geometry, ...mapping } = mappingOf(this.#meanings, this.#kind.value, this.#kindValues);
+    const crs = this.#system.value.trim();
+    return {
+      ...mapping,
+      ...(this.#isTable ? { geometry } : {}),
+      ...(crs || this.#parameters.crs ? { crs: crs || null } : {}),
+      ...(this.#layer.options.length > 1 ? { layer: this.#layer.value } : {}),
+    };
+  }
 }

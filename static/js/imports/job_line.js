@@ -4,14 +4,17 @@ import { h } from "../dom.js";
 import { t } from "../text.js";
 import { percentText } from "../units.js";
 
-/** Returns { element, refresh(job) }; `cancel()` asks the job to stop. */
+/** @import { ProposalJob } from "../api_types.d.ts" */
+
+/** `cancel()` asks the job to stop. @param {string} what @param {() => Promise<void>} cancel */
 export function jobLine(what, cancel) {
   const words = h("span", {});
   const share = h("span", {});
+  const fill = h("i");
   const bar = h(
     "div",
     { class: "progress", role: "progressbar", "aria-label": what, "aria-valuemin": "0", "aria-valuemax": "100" },
-    h("i"),
+    fill,
   );
   const stop = h(
     "button",
@@ -34,6 +37,7 @@ export function jobLine(what, cancel) {
     h("div", { class: "row-acts" }, stop),
   );
 
+  /** @param {ProposalJob | null} job */
   function refresh(job) {
     const text = job?.message || what;
     words.textContent = text.charAt(0).toUpperCase() + text.slice(1);
@@ -41,7 +45,7 @@ export function jobLine(what, cancel) {
     share.textContent = isKnown ? percentText(job.progress * 100) : "";
     if (isKnown) bar.setAttribute("aria-valuenow", String(Math.round(job.progress * 100)));
     else bar.removeAttribute("aria-valuenow");
-    bar.firstElementChild.style.width = isKnown ? `${job.progress * 100}%` : "0";
+    fill.style.width = isKnown ? `${job.progress * 100}%` : "0";
   }
   return { element, refresh };
 }

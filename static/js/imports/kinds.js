@@ -1,5 +1,8 @@
 /** Which kind of data a file has, guessed from its name and its first bytes; a curator can say otherwise. */
 
+/** @import { ImportKind } from "./types.d.ts" */
+
+/** @type {[RegExp, ImportKind][]} */
 const BY_NAME = [
   [/\.(osm|pbf|osm\.(gz|bz2)|osm\.json)$/i, "osm"],
   [/\.(tiff?|hgt|hgt\.(gz|zip))$/i, "terrain"],
@@ -14,7 +17,7 @@ const ASSET_WORDS = /"(power|voltage|voltages_v|railway|bridge|cables)"\s*:|"(Li
 
 export const HEAD_BYTES = 4096;
 
-/** head: Uint8Array of the first bytes. Returns "osm", "zones", "assets" or "terrain". */
+/** @param {string} name @param {Uint8Array} [head] the first bytes @returns {ImportKind} */
 export function guessKind(name, head = new Uint8Array()) {
   const text = new TextDecoder("latin1").decode(head.subarray(0, HEAD_BYTES));
   if (text.slice(0, 32).includes("OSMHeader") || /<osm\b/.test(text)) return "osm";
@@ -29,7 +32,7 @@ export function guessKind(name, head = new Uint8Array()) {
   return /\.zip$/i.test(name) ? "assets" : "zones";
 }
 
-/** What a set is called if nobody says otherwise: the file's name without its ending. */
+/** What a set is called if nobody says otherwise: the file's name without its ending. @param {string} fileName */
 export function setNameOf(fileName) {
   return (
     fileName

@@ -5,12 +5,15 @@ import { t } from "../text.js";
 import { percentText, whenText } from "../units.js";
 import { differenceSentence, isOpen, KINDS, ORIGINS, STATES, terrainSentence } from "./words.js";
 
-/** acts: { open(id), more() } */
+/** @import { Store } from "../store.js" */
+/** @import { ImportsState, Proposal } from "./types.d.ts" */
+
+/** @param {Store<ImportsState>} store @param {{ open: (id: string) => void, more: () => void }} acts */
 export function mountList(store, acts) {
   const list = byId("imports");
   const draw = keyedList(
     list,
-    (proposal) => proposal.id,
+    (/** @type {Proposal} */ proposal) => proposal.id,
     (proposal) => {
       const row = h("li", {});
       const link = h("a", { class: "import-row", href: `/imports/${proposal.id}` });
@@ -26,7 +29,7 @@ export function mountList(store, acts) {
       const seen = JSON.stringify(proposal);
       if (row.dataset.seen === seen) return;
       row.dataset.seen = seen;
-      row.firstElementChild.replaceChildren(...content(proposal));
+      row.firstElementChild?.replaceChildren(...content(proposal));
     },
   );
 
@@ -40,11 +43,13 @@ export function mountList(store, acts) {
   byId("more-imports").addEventListener("click", acts.more);
 }
 
+/** @param {Pick<Proposal, "state">} proposal */
 export function stateChip({ state }) {
   const { words, icon: name, chip } = STATES[state];
   return h("span", { class: `chip ${chip}`.trim() }, icon(name), words);
 }
 
+/** @param {Proposal} proposal */
 function content(proposal) {
   return [
     h("span", { class: "import-kind", title: KINDS[proposal.kind].words }, icon(KINDS[proposal.kind].icon)),
@@ -54,25 +59,30 @@ function content(proposal) {
   ];
 }
 
+/** @param {Pick<Proposal, "file_name" | "kind" | "origin">} proposal */
 export const titleOf = (proposal) =>
   proposal.file_name || `${KINDS[proposal.kind].words} ${ORIGINS[proposal.origin]}`.trim();
 
+/** @param {Proposal} proposal */
 function whatOf({ kind, summary, difference }) {
   const sentence =
     kind === "terrain" && summary.vertical_datum ? terrainSentence(summary, {}) : differenceSentence(difference);
   return summary.needs_mapping ? t("Columns to be explained") : sentence.replace(/\.$/, "");
 }
 
+/** How far it is, or what came of it. @param {Proposal} proposal */
+function progressOf(proposal) {
+  const { state, job, faults } = proposal;
+  if (isOpen(proposal)) return job?.state === "running" ? percentText(job.progress * 100) : t("waiting");
+  if (state === "refused") return faults[0]?.message ?? "";
+  return state === "discarded" ? "" : whatOf(proposal);
+}
+
+/** @param {Proposal} proposal */
 function secondLine(proposal) {
   const who = proposal.decided_by ?? proposal.created_by;
   const when = whenText(proposal.decided_at ?? proposal.created_at);
-  const what = {
-    reading: () => (proposal.job?.state === "running" ? percentText(proposal.job.progress * 100) : t("waiting")),
-    applying: () => (proposal.job?.state === "running" ? percentText(proposal.job.progress * 100) : t("waiting")),
-    refused: () => proposal.faults[0]?.message ?? "",
-    ready: () => whatOf(proposal),
-    applied: () => whatOf(proposal),
-    discarded: () => "",
-  }[proposal.state]();
-  return [what, [isOpen(proposal) ? "" : who, when].filter(Boolean).join(", ")].filter(Boolean).join(" · ");
+  return [progressOf(proposal), [isOpen(proposal) ? "" : who, when].filter(Boolean).join(", ")]
+    .filter(Boolean)
+    .join(" · ");
 }

@@ -16,33 +16,47 @@ import { mountOverpassBox } from "./overpass_box.js";
 import { mountProposal } from "./proposal.js";
 import { isOpen, STATES } from "./words.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { Ground, ZoneSet, ZoneSetPage, ZoneSetVersion, ZoneSetVersionPage } from "../api_types.d.ts" */
+/** @import { GroundPage } from "../ground/types.d.ts" */
+/** @import { ScreenPoint } from "../map/types.d.ts" */
+/** @import { Change, ImportsState, Proposal, ProposalActs } from "./types.d.ts" */
+
+/** @typedef {GroundPage & { overpass: { most_km2: number } | null, proposal: string | null }} ImportsPage */
+
 const LOOK_MS = 1_000; // while the open one is worked on
 const LIST_MS = 4_000; // while another one is
 const LIST_PAGE = 50;
 const CHANGES_PAGE = 1_000;
 const LISTED = 200; // rows of a long difference at a time; the map has them all
 
+/** @type {Pick<ImportsState, "changes" | "listed" | "action" | "lit" | "selected">} */
 const NO_CHANGES = { changes: [], listed: LISTED, action: "", lit: null, selected: null };
-const store = createStore({ proposals: null, next: null, current: null, busy: null, ...NO_CHANGES });
+/** @type {ImportsState} */
+const FIRST_STATE = { proposals: null, next: null, current: null, busy: null, ...NO_CHANGES };
+const store = createStore(FIRST_STATE);
+/** @type {ReturnType<typeof createChangesLayer> | null} */
 let changesLayer = null;
 let lookedAt = 0;
 
 const { page, map, open } = mountGroundPage({
-  click(thing, position, point) {
+  click(_thing, _place, point) {
     const change = changeAt(point);
     if (change) select(change, { stay: true });
   },
-  hover(thing, point) {
+  hover(_thing, point) {
     const change = point && changeAt(point);
     light(change?.id ?? null);
   },
 });
 
-const changeAt = (point) => {
+/** @param {ScreenPoint} point */
+function changeAt(point) {
   const id = changesLayer?.at(point);
   return id ? store.state.changes.find((change) => change.id === id) : null;
-};
+}
 
+/** @param {unknown} error @param {string} title */
 function tell(error, title) {
   if (!(error instanceof ApiError)) throw error;
   const words = error.isSignedOut
@@ -57,9 +71,11 @@ function tell(error, title) {
     ),
   );
 }
+/** @param {unknown} error */
+const statusOf = (error) => (error instanceof ApiError ? error.status : 0);
 const clearNotices = () => byId("notices").replaceChildren();
 
-/** Runs what somebody asked for; says so where it did not work. True if it did. */
+/** Runs what the user asked for; says so where it did not work. True if it did. @param {string} title @param {() => Promise<unknown>} act */
 async function attempt(title, act) {
   clearNotices();
   try {
@@ -73,13 +89,17 @@ async function attempt(title, act) {
 
 /* the list */
 
+/** @param {{ more?: boolean }} [how] whether the next page is added */
 async function loadList({ more = false } = {}) {
-  const { data } = await get(more ? store.state.next : `/imports?limit=${LIST_PAGE}`);
-  const proposals = more ? [...store.state.proposals, ...data.results] : data.results;
+  const { next, proposals: known } = store.state;
+  const address = more && next ? next : `/imports?limit=${LIST_PAGE}`;
+  const { data } = /** @type {Answer<{ results: Proposal[], next: string | null }>} */ (await get(address));
+  const proposals = more ? [...(known ?? []), ...data.results] : data.results;
   store.update({ proposals, next: data.next });
   tellFacts(proposals);
 }
 
+/** @param {Proposal[]} proposals */
 function tellFacts(proposals) {
   const waiting = proposals.filter(({ state }) => state === "ready").length;
   const working = proposals.filter(isOpen).length;
@@ -91,7 +111,8 @@ function tellFacts(proposals) {
     .join(" · ");
 }
 
-const put = (proposal) => {
+/** Puts what is known of a proposal now into the list, and shows it if it is open. @param {Proposal} proposal */
+function put(proposal) {
   const proposals = store.state.proposals ?? [];
   const isKnown = proposals.some(({ id }) => id === proposal.id);
   const next = isKnown
@@ -99,21 +120,27 @@ const put = (proposal) => {
     : [proposal, ...proposals];
   store.update({ proposals: next, ...(store.state.current?.id === proposal.id ? { current: proposal } : {}) });
   tellFacts(next);
-};
+}
+
+/** Puts what the server answered. @param {Promise<Answer>} answer */
+async function putAnswer(answer) {
+  put(/** @type {Proposal} */ ((await answer).data));
+}
 
 /* the open one */
 
+/** @param {string} id @param {{ isNew?: boolean, focus?: boolean }} [how] isNew: in the browser's history */
 async function openProposal(id, { isNew = true, focus = true } = {}) {
   clearNotices();
   try {
-    const { data } = await get(`/imports/${id}`);
+    const { data } = /** @type {Answer<Proposal>} */ (await get(`/imports/${id}`));
     if (isNew) history.pushState({}, "", `/imports/${id}`);
     store.update({ current: data, ...NO_CHANGES });
     byId("side-scroll").scrollTop = 0;
     if (focus) byId("proposal-title").focus({ preventScroll: true });
     await loadChanges({ fit: true });
   } catch (error) {
-    tell(error, error.status === 404 ? t("This import is not there.") : t("Not opened."));
+    tell(error, statusOf(error) === 404 ? t("This import is not there.") : t("Not opened."));
   }
 }
 
@@ -123,17 +150,21 @@ function closeProposal({ isNew = true } = {}) {
   store.update({ current: null, ...NO_CHANGES });
   showChanges();
   map.ring([]);
-  if (id) document.querySelector(`a[href="/imports/${id}"]`)?.focus();
+  /** @type {HTMLElement | null} */
+  const row = id ? document.querySelector(`a[href="/imports/${id}"]`) : null;
+  row?.focus();
 }
 
 /** All of them, page by page: the map shows each. */
 async function loadChanges({ fit = false } = {}) {
   const { current } = store.state;
   if (!current || current.state === "reading") return;
+  /** @type {Change[]} */
   let changes = [];
+  /** @type {string | null} */
   let next = `/imports/${current.id}/changes?limit=${CHANGES_PAGE}`;
   while (next) {
-    const { data } = await get(next);
+    const { data } = /** @type {Answer<{ features: Change[], next: string | null }>} */ (await get(next));
     if (store.state.current?.id !== current.id || store.state.current.state === "reading") return; // somebody has gone on
     changes = [...changes, ...data.features];
     next = data.next;
@@ -144,36 +175,32 @@ async function loadChanges({ fit = false } = {}) {
   if (fit) map.fit(boxAround(drawn().flatMap((change) => positionsOf(change.geometry))));
 }
 
-/** A file whose columns nobody has explained yet has no changes, but shapes; terrain has what it covers. */
+/**
+ * A file whose columns are not explained yet has no changes, but shapes; terrain has what it covers.
+ *
+ * @param {Proposal | null} proposal
+ * @returns {Change[]}
+ */
 function previewOf(proposal) {
   if (!proposal) return [];
   const { kind, summary, difference } = proposal;
   if (kind === "terrain" && summary.extent) {
     const [west, south, east, north] = summary.extent;
-    const geometry = {
-      type: "Polygon",
-      coordinates: [
-        [
-          [west, south],
-          [east, south],
-          [east, north],
-          [west, north],
-          [west, south],
-        ],
-      ],
-    };
+    const ring = [
+      [west, south],
+      [east, south],
+      [east, north],
+      [west, north],
+      [west, south],
+    ];
+    const action = difference.changed ? "changed" : "new";
     return [
-      {
-        type: "Feature",
-        id: -1,
-        geometry,
-        properties: { action: difference.changed ? "changed" : "new", before: null, after: null },
-      },
+      { id: -1, geometry: { type: "Polygon", coordinates: [ring] }, properties: { action, before: null, after: null } },
     ];
   }
   const features = summary.needs_mapping ? (summary.preview?.features ?? []) : [];
-  return features.map((feature, place) => ({
-    ...feature,
+  return features.map(({ geometry }, place) => ({
+    geometry,
     id: -1 - place,
     properties: { action: "new", before: null, after: null },
   }));
@@ -185,8 +212,10 @@ function showChanges() {
   changesLayer?.show(drawn(), store.state.action);
 }
 
+/** @param {Change | undefined} change */
 const geometriesOf = (change) => (change?.geometry ? [change.geometry] : []);
 
+/** @param {number | null} id */
 function light(id) {
   if (id === store.state.lit) return;
   store.update({ lit: id });
@@ -196,6 +225,7 @@ function light(id) {
   map.ring(geometriesOf(change));
 }
 
+/** @param {Change} change @param {{ stay?: boolean }} [how] stay: the map does */
 function select(change, { stay = false } = {}) {
   const isAgain = store.state.selected === change.id && !stay;
   store.update({ selected: isAgain ? null : change.id });
@@ -205,45 +235,54 @@ function select(change, { stay = false } = {}) {
   else map.fit(boxAround(positionsOf(change.geometry)));
 }
 
-/** What somebody decides; where somebody else was faster, what that one decided is shown. */
+/**
+ * Carries out a decision; where another user was faster, what that one decided is shown.
+ *
+ * @param {string} busy
+ * @param {string} title of what is said where it fails
+ * @param {(id: string) => Promise<Answer>} act
+ */
 async function decide(busy, title, act) {
+  const id = store.state.current?.id;
+  if (!id) return;
   store.update({ busy });
   clearNotices();
   try {
-    put((await act()).data);
+    await putAnswer(act(id));
   } catch (error) {
     tell(error, title);
-    if (error.status === 409) put((await get(`/imports/${store.state.current.id}`)).data);
+    if (statusOf(error) === 409) await putAnswer(get(`/imports/${id}`));
   } finally {
     store.update({ busy: null });
   }
 }
 
+/** @type {ProposalActs} */
 const acts = {
   back: () => closeProposal(),
   /** What is read is thrown away; what is applied goes back to be decided, once its worker has heard of it. */
   async cancel(proposal) {
     try {
-      if (proposal.state === "reading") put((await post(`/imports/${proposal.id}/discard`, {})).data);
-      else await post(`/jobs/${proposal.job.id}/cancel`, {});
+      if (proposal.state === "reading") await putAnswer(post(`/imports/${proposal.id}/discard`, {}));
+      else if (proposal.job) await post(`/jobs/${proposal.job.id}/cancel`, {});
     } catch (error) {
       tell(error, t("Not stopped."));
       throw error;
     }
   },
   apply: (overwrites) =>
-    decide("apply", t("Not applied."), () =>
-      post(`/imports/${store.state.current.id}/apply`, { parameters: { replace_edited: overwrites } }),
+    decide("apply", t("Not applied."), (id) =>
+      post(`/imports/${id}/apply`, { parameters: { replace_edited: overwrites } }),
     ),
   async discard() {
     const { current } = store.state;
-    await decide("discard", t("Not discarded."), () => post(`/imports/${current.id}/discard`, {}));
-    if (store.state.current?.state !== "discarded") return;
+    await decide("discard", t("Not discarded."), (id) => post(`/imports/${id}/discard`, {}));
+    if (!current || store.state.current?.state !== "discarded") return;
     closeProposal();
     toast(t("“{name}” is discarded. Nothing of it counts.", { name: titleOf(current) }));
   },
   async readAgain(parameters) {
-    await decide("read", t("Not read again."), () => patch(`/imports/${store.state.current.id}`, { parameters }));
+    await decide("read", t("Not read again."), (id) => patch(`/imports/${id}`, { parameters }));
     store.update(NO_CHANGES);
     showChanges();
   },
@@ -252,25 +291,28 @@ const acts = {
     map.ring([{ type: "Point", coordinates: position }]);
   },
   async versions(name) {
+    /** @type {{ set: ZoneSet | null, rows: ZoneSetVersion[] }} */
     const found = { set: null, rows: [] };
-    await attempt("The versions were not loaded.", async () => {
-      const { data } = await get("/zone-sets?limit=1000");
+    await attempt(t("The versions were not loaded."), async () => {
+      const { data } = /** @type {Answer<ZoneSetPage>} */ (await get("/zone-sets?limit=1000"));
       found.set = data.results.find((set) => set.name === name) ?? null;
-      if (found.set) found.rows = (await get(`/zone-sets/${found.set.id}/versions`)).data.results;
+      if (!found.set) return;
+      const earlier = /** @type {Answer<ZoneSetVersionPage>} */ (await get(`/zone-sets/${found.set.id}/versions`));
+      found.rows = earlier.data.results;
     });
     return found;
   },
   rollBack: (set, version) =>
-    attempt("Not rolled back.", async () => {
-      const { data } = await post(`/zone-sets/${set.id}/roll-back`, { version });
-      await openProposal(data.id);
+    attempt(t("Not rolled back."), async () => {
+      const answer = await post(`/zone-sets/${set.id}/roll-back`, { version });
+      await openProposal(/** @type {Answer<Proposal>} */ (answer).data.id);
     }),
 };
 
 mountProposal(store, acts);
 mountList(store, {
   open: (id) => openProposal(id),
-  more: () => attempt("Not loaded.", () => loadList({ more: true })),
+  more: () => attempt(t("Not loaded."), () => loadList({ more: true })),
 });
 mountChanges(store, {
   filter(action) {
@@ -289,7 +331,7 @@ async function look() {
   if (document.hidden) return;
   try {
     if (current && isOpen(current)) {
-      const { data } = await get(`/imports/${current.id}`);
+      const { data } = /** @type {Answer<Proposal>} */ (await get(`/imports/${current.id}`));
       if (store.state.current?.id !== data.id) return;
       put(data);
       if (data.state !== current.state) await ended(data);
@@ -303,13 +345,15 @@ async function look() {
   }
 }
 
+/** @param {Proposal} proposal */
 async function ended(proposal) {
   say(`${titleOf(proposal)}: ${STATES[proposal.state].words}.`);
   await loadChanges({ fit: true });
   if (proposal.state === "refused" && proposal.faults[0]?.position) acts.place(proposal.faults[0].position);
   if (proposal.state === "applied") {
     map.refreshTiles();
-    map.setGround((await get("/ground")).data);
+    const { data } = /** @type {Answer<Ground>} */ (await get("/ground"));
+    map.setGround(data);
   }
 }
 
@@ -320,42 +364,46 @@ function openWhatTheAddressNames() {
   else closeProposal({ isNew: false });
 }
 
-if (page.canCurate) {
+/** @param {ImportsPage} page */
+async function start({ userId, overpass, proposal }) {
   const bringIn = mountBringIn({
-    userId: page.userId,
-    onStarted(proposal, { isLast }) {
-      put(proposal);
-      if (isLast) openProposal(proposal.id);
+    userId,
+    onStarted(started, { isLast }) {
+      put(started);
+      if (isLast) openProposal(started.id);
     },
   });
+  const choose = () => {
+    if (store.state.current) closeProposal();
+    bringIn.choose();
+  };
   addEventListener("popstate", openWhatTheAddressNames);
-  open({
-    bindings: [
-      {
-        keys: ["u"],
-        words: t("Choose a file"),
-        act: () => (store.state.current ? closeProposal() : undefined, bringIn.choose()),
-      },
-    ],
+  await open({
+    bindings: [{ keys: ["u"], words: t("Choose a file"), act: choose }],
     async load() {
-      changesLayer = createChangesLayer(map);
-      changesLayer.addTo();
-      map.onRecolour(() => changesLayer.recolour());
-      if (page.overpass) {
-        mountOverpassBox(map, page.overpass, (box) =>
-          attempt("Not taken.", async () => {
-            const { data } = await post("/imports", { kind: "osm", parameters: { overpass_bbox: box } });
-            put(data);
-            await openProposal(data.id);
-          }),
-        );
-      }
-      await attempt("The list was not loaded.", () => loadList());
-      if (page.proposal) await openProposal(page.proposal, { isNew: false, focus: false });
+      const layer = createChangesLayer(map);
+      changesLayer = layer;
+      layer.addTo();
+      map.onRecolour(() => layer.recolour());
+      if (overpass) mountOverpassBox(map, overpass, takeArea);
+      await attempt(t("The list was not loaded."), () => loadList());
+      if (proposal) await openProposal(proposal, { isNew: false, focus: false });
       setInterval(look, LOOK_MS);
     },
   });
-} else {
+}
+
+/** Fetches the infrastructure in a box from Overpass. @param {number[]} box */
+const takeArea = (box) =>
+  attempt(t("Not taken."), async () => {
+    const answer = await post("/imports", { kind: "osm", parameters: { overpass_bbox: box } });
+    const { data } = /** @type {Answer<Proposal>} */ (answer);
+    put(data);
+    await openProposal(data.id);
+  });
+
+if (page.canCurate) start(/** @type {ImportsPage} */ (page));
+else {
   byId("imports-home").replaceChildren(h("section", { class: "panel-section" }, notAllowed()));
   open();
 }

@@ -3,9 +3,17 @@
 import { h } from "../dom.js";
 import { t } from "../text.js";
 
+/** @import { Parameters, Proposal } from "./types.d.ts" */
+
+/** @param {Proposal["faults"][number]} fault */
 const isAboutTheSystem = ({ place, message }) => place === "crs" || /\bsystem\b/.test(message);
 
-/** readAgain(parameters) has the file read in the system; null when the faults are others. */
+/**
+ * readAgain(parameters) has the file read in the system; null when the faults are others.
+ *
+ * @param {Proposal} proposal
+ * @param {(parameters: Parameters) => void} readAgain
+ */
 export function otherSystem({ kind, faults, parameters, size_bytes }, readAgain) {
   if (kind !== "assets" || size_bytes === null || !faults.some(isAboutTheSystem)) return null;
   const system = h("input", {

@@ -4,9 +4,11 @@ import { byId } from "../dom.js";
 import { t } from "../text.js";
 import { areaText } from "../units.js";
 
+/** @import { mountGroundMap } from "../ground/ground_map.js" */
+
 const EARTH_RADIUS_KM = 6_371.0088; // IUGG mean radius
 
-/** Area of [west, south, east, north] on the sphere. */
+/** Area of [west, south, east, north] on the sphere. @param {readonly number[]} box west, south, east, north */
 export function areaKm2([west, south, east, north]) {
   const radians = Math.PI / 180;
   return (
@@ -17,9 +19,14 @@ export function areaKm2([west, south, east, north]) {
   );
 }
 
+/** @param {number} area_km2 */
 const text = (area_km2) => areaText(area_km2 * 1e6);
 
-/** limit: { most_km2 }. take(box) asks for it. */
+/**
+ * @param {ReturnType<typeof mountGroundMap>} map
+ * @param {{ most_km2: number }} limit
+ * @param {(box: number[]) => Promise<unknown>} take asks for it
+ */
 export function mountOverpassBox(map, limit, take) {
   byId("overpass").hidden = false;
   const button = byId("take-area");

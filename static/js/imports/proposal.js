@@ -1,6 +1,6 @@
 /** One import: the sentence first, then why it was refused or what it would change, and the decision. */
 
-import { byId, h, icon } from "../dom.js";
+import { byId, h, icon, setChildren } from "../dom.js";
 import { open as openDialog } from "../page/keyboard.js";
 import { t, tn } from "../text.js";
 import { coordinateText, countText, numberText, whenText } from "../units.js";
@@ -20,139 +20,126 @@ import {
   touched,
 } from "./words.js";
 
+/** @import { ZoneSetVersion } from "../api_types.d.ts" */
+/** @import { Child } from "../dom.js" */
+/** @import { Store } from "../store.js" */
+/** @import { ImportsState, Proposal, ProposalActs } from "./types.d.ts" */
+
 const MOST_LISTED = 2_000; // of each action; the numbers are of all
 
-/** acts: { back(), cancel(proposal), apply(overwrites), discard(), readAgain(parameters), place(position), versions(name), rollBack(set, version) } */
-export function mountProposal(store, acts) {
-  const panel = byId("proposal");
-  const foot = byId("proposal-foot");
-  let drawn = "";
-  let line = null;
-  let overwrites = false;
+/** @param {Store<ImportsState>} store @param {ProposalActs} acts */
+export const mountProposal = (store, acts) => new ProposalPanel(store, acts);
 
-  store.listen(["current", "busy"], ({ current, busy }) => {
+class ProposalPanel {
+  #acts;
+  #panel = byId("proposal");
+  #foot = byId("proposal-foot");
+  #drawn = "";
+  /** @type {ReturnType<typeof jobLine> | null} */
+  #line = null;
+  #overwrites = false;
+
+  /** @param {Store<ImportsState>} store @param {ProposalActs} acts */
+  constructor(store, acts) {
+    this.#acts = acts;
+    store.listen(["current", "busy"], ({ current, busy }) => this.#show(current, busy));
+  }
+
+  /** @param {Proposal | null} current @param {string | null} busy */
+  #show(current, busy) {
     byId("imports-home").hidden = current !== null;
     document.title = `${current ? `${titleOf(current)} · ` : ""}${t("Imports")} · Spanwise`;
-    panel.hidden = foot.hidden = byId("changes-panel").hidden = current === null;
+    for (const part of [this.#panel, this.#foot, byId("changes-panel")]) part.hidden = current === null;
     if (!current) {
-      drawn = "";
-      panel.replaceChildren();
+      this.#drawn = "";
+      this.#panel.replaceChildren();
       return;
     }
     const { job, ...rest } = current;
     const shape = JSON.stringify([rest, busy, job?.id, isOpen(current) ? 0 : job?.message]);
-    if (shape !== drawn) {
-      if (JSON.parse(drawn || "[{}]")[0].id !== current.id) overwrites = false;
-      drawn = shape;
-      draw(current, busy);
+    if (shape !== this.#drawn) {
+      if (JSON.parse(this.#drawn || "[{}]")[0].id !== current.id) this.#overwrites = false;
+      this.#drawn = shape;
+      this.#draw(current, busy);
     }
-    line?.refresh(job);
-  });
-
-  function draw(proposal, busy) {
-    const hadFocus = panel.contains(document.activeElement) && document.activeElement.id;
-    line = isOpen(proposal)
-      ? jobLine(proposal.state === "reading" ? t("Reading") : t("Applying"), () => acts.cancel(proposal))
-      : null;
-    panel.replaceChildren(...head(proposal, acts), ...body(proposal).filter(Boolean));
-    byId("changes-panel").hidden =
-      proposal.kind === "terrain" || !["ready", "applying", "applied"].includes(proposal.state);
-    foot.replaceChildren(...decision(proposal, busy));
-    foot.hidden = foot.children.length === 0;
-    if (hadFocus) document.getElementById(hadFocus)?.focus();
+    this.#line?.refresh(job);
   }
 
-  function body(proposal) {
-    const { state, difference, summary, job } = proposal;
-    if (state === "refused")
-      return [refusal(proposal, acts), otherSystem(proposal, acts.readAgain) ?? leaveOut(proposal)];
+  /** @param {Proposal} proposal @param {string | null} busy */
+  #draw(proposal, busy) {
+    const { state, kind } = proposal;
+    const focused = this.#panel.querySelector(":focus")?.id;
+    const what = state === "reading" ? t("Reading") : t("Applying");
+    this.#line = isOpen(proposal) ? jobLine(what, () => this.#acts.cancel(proposal)) : null;
+    setChildren(this.#panel, head(proposal, this.#acts), this.#body(proposal));
+    byId("changes-panel").hidden = kind === "terrain" || !["ready", "applying", "applied"].includes(state);
+    this.#drawDecision(proposal, busy);
+    if (focused) document.getElementById(focused)?.focus();
+  }
+
+  /** @param {Proposal} proposal @param {string | null} busy */
+  #drawDecision(proposal, busy) {
+    setChildren(this.#foot, this.#decision(proposal, busy));
+    this.#foot.hidden = this.#foot.children.length === 0;
+  }
+
+  /** @param {Proposal} proposal @returns {Child} */
+  #body(proposal) {
+    const { kind, state, difference, summary, job } = proposal;
+    const { readAgain } = this.#acts;
+    if (state === "refused") {
+      return [refusal(proposal, this.#acts), otherSystem(proposal, readAgain) ?? leaveOut(proposal, readAgain)];
+    }
     const isNew = job?.message && state === "ready" && job.state === "done" && job.message !== "Read";
+    const isDecided = state === "ready" || state === "applied" || state === "applying";
+    const sentence = { class: "import-sentence", id: "import-sentence", role: "status" };
     return [
-      line?.element,
+      this.#line?.element,
       isNew && h("div", { class: "notice warning" }, icon("triangle-alert"), h("p", {}, job.message)),
-      state === "ready" || state === "applied" || state === "applying"
-        ? h("p", { class: "import-sentence", id: "import-sentence", role: "status" }, sentenceOf(proposal))
-        : null,
+      isDecided && h("p", sentence, sentenceOf(proposal)),
       difference.unchanged > 0 &&
         state !== "discarded" &&
         h("p", { class: "caption" }, tn(difference.unchanged, "{count} is as it was.", "{count} are as they were.")),
-      ...notesOf(summary).map((note) => h("p", { class: "caption" }, note)),
-      mapping(proposal),
-      regionChoice(proposal),
-      overwriteChoice(proposal),
+      notesOf(summary).map((note) => h("p", { class: "caption" }, note)),
+      kind === "assets" && Array.isArray(summary.columns) && columnMapping(proposal, readAgain),
+      regionChoice(proposal, readAgain),
+      this.#overwriteChoice(proposal),
       facts(proposal),
-      proposal.kind === "zones" && state === "applied" && typeof summary.set === "string"
-        ? versions(summary.set, acts)
-        : null,
+      kind === "zones" && state === "applied" && summary.set && versions(summary.set, this.#acts),
       Object.values(difference).some((count) => count > MOST_LISTED) &&
         h("p", { class: "caption" }, t("Below are the first {count} of each.", { count: numberText(MOST_LISTED) })),
     ];
   }
 
-  function mapping(proposal) {
-    if (proposal.kind !== "assets" || !Array.isArray(proposal.summary.columns)) return null;
-    return columnMapping(proposal, (parameters) => acts.readAgain(parameters));
-  }
-
-  function leaveOut({ kind, faults, parameters, size_bytes }) {
-    if (kind !== "assets" || parameters.leave_out_faulty || size_bytes === null || !faults.length) return null;
-    const again = () => acts.readAgain({ leave_out_faulty: true });
-    return h(
-      "button",
-      { type: "button", class: "button", id: "leave-out", onclick: again },
-      t("Read again without the faulty rows"),
-    );
-  }
-
-  /** Another difference: the file is read again for it. */
-  function regionChoice({ kind, state, parameters }) {
-    if (kind !== "osm" || state !== "ready") return null;
-    const box = h("input", {
-      class: "check",
-      type: "checkbox",
-      id: "replace-region",
-      checked: Boolean(parameters.replace_region),
-    });
-    box.addEventListener("change", () => acts.readAgain({ replace_region: box.checked }));
-    return h(
-      "label",
-      {
-        class: "overwrite",
-        title: t("Also what another file brought in vanishes where this one covers the ground and does not have it"),
-      },
-      box,
-      h("span", {}, t("Replace the whole region with this file")),
-    );
-  }
-
-  function overwriteChoice(proposal) {
+  /** @param {Proposal} proposal */
+  #overwriteChoice(proposal) {
     const kept = proposal.difference.kept ?? 0;
     if (proposal.state !== "ready" || !kept) return null;
-    const box = h("input", { class: "check", type: "checkbox", id: "overwrite", checked: overwrites });
+    const box = h("input", { class: "check", type: "checkbox", id: "overwrite", checked: this.#overwrites });
     box.addEventListener("change", () => {
-      overwrites = box.checked;
-      foot.replaceChildren(...decision(proposal, null));
+      this.#overwrites = box.checked;
+      this.#drawDecision(proposal, null);
     });
-    return h(
-      "label",
-      { class: "overwrite" },
-      box,
-      h("span", {}, t("Overwrite what was edited by hand ({count})", { count: numberText(kept) })),
-    );
+    const words = t("Overwrite what was edited by hand ({count})", { count: numberText(kept) });
+    return h("label", { class: "overwrite" }, box, h("span", {}, words));
   }
 
-  function decision(proposal, busy) {
-    if (proposal.state === "refused") return [h("div", { class: "foot-buttons" }, discard(busy))];
-    if (proposal.state !== "ready") return [];
-    const count = touched(proposal.difference, { overwrites });
-    const needsMapping = Boolean(proposal.summary.needs_mapping);
-    const isIdle = needsMapping || (count === 0 && Object.keys(proposal.difference).length > 0);
-    const words =
-      busy === "apply"
-        ? t("Applying")
-        : count && proposal.kind !== "terrain"
-          ? tn(count, "Apply {count} change", "Apply {count} changes")
-          : t("Apply");
+  /** The buttons. @param {Proposal} proposal @param {string | null} busy */
+  #decision(proposal, busy) {
+    const { state, difference, summary, kind } = proposal;
+    const discard = h(
+      "button",
+      { type: "button", class: "button", id: "discard", disabled: Boolean(busy), onclick: () => this.#acts.discard() },
+      t("Discard"),
+    );
+    if (state === "refused") return [h("div", { class: "foot-buttons" }, discard)];
+    if (state !== "ready") return [];
+    const count = touched(difference, { overwrites: this.#overwrites });
+    const needsMapping = Boolean(summary.needs_mapping);
+    const isIdle = needsMapping || (count === 0 && Object.keys(difference).length > 0);
+    const isCounted = count > 0 && kind !== "terrain";
+    const words = isCounted ? tn(count, "Apply {count} change", "Apply {count} changes") : t("Apply");
+    const reason = needsMapping ? t("Say first what the columns are") : isIdle ? t("Nothing would change") : null;
     const apply = h(
       "button",
       {
@@ -161,50 +148,63 @@ export function mountProposal(store, acts) {
         id: "apply",
         disabled: isIdle || Boolean(busy),
         "aria-busy": String(busy === "apply"),
-        title: needsMapping ? t("Say first what the columns are") : isIdle ? t("Nothing would change") : null,
+        title: reason,
       },
-      words,
+      busy === "apply" ? t("Applying") : words,
     );
-    apply.addEventListener("click", () => (overwrites ? askFirst(proposal) : acts.apply(false)));
-    return [h("div", { class: "foot-buttons" }, discard(busy), apply)];
+    apply.addEventListener("click", () => {
+      if (this.#overwrites) askToOverwrite(difference.kept, () => this.#acts.apply(true));
+      else this.#acts.apply(false);
+    });
+    return [h("div", { class: "foot-buttons" }, discard, apply)];
   }
-
-  function discard(busy) {
-    return h(
-      "button",
-      { type: "button", class: "button", id: "discard", disabled: Boolean(busy), onclick: () => acts.discard() },
-      t("Discard"),
-    );
-  }
-
-  function askFirst(proposal) {
-    const kept = proposal.difference.kept;
-    const dialog = h(
-      "dialog",
-      { "aria-labelledby": "overwrite-title" },
-      h(
-        "h2",
-        { id: "overwrite-title" },
-        tn(kept, "Overwrite {count} edit by hand?", "Overwrite {count} edits by hand?"),
-      ),
-      h(
-        "p",
-        {},
-        `${tn(kept, "{count} row that was edited by hand is set to what the file says.", "{count} rows that were edited by hand are set to what the file says.")} ${t("The edits stay in the history, and can be brought back one by one.")}`,
-      ),
-      h(
-        "form",
-        { method: "dialog", class: "acts" },
-        h("button", { class: "button", autofocus: true }, t("Keep the edits")),
-        h("button", { class: "button danger filled", onclick: () => acts.apply(true) }, t("Overwrite and apply")),
-      ),
-    );
-    openDialog(dialog);
-  }
-
-  return { forgetOverwrite: () => (overwrites = false) };
 }
 
+/** @param {number} kept rows that were edited by hand @param {() => void} apply */
+function askToOverwrite(kept, apply) {
+  const question = tn(kept, "Overwrite {count} edit by hand?", "Overwrite {count} edits by hand?");
+  const effect = tn(
+    kept,
+    "{count} row that was edited by hand is set to what the file says.",
+    "{count} rows that were edited by hand are set to what the file says.",
+  );
+  const dialog = h(
+    "dialog",
+    { "aria-labelledby": "overwrite-title" },
+    h("h2", { id: "overwrite-title" }, question),
+    h("p", {}, effect, " ", t("The edits stay in the history, and can be brought back one by one.")),
+    h(
+      "form",
+      { method: "dialog", class: "acts" },
+      h("button", { class: "button", autofocus: true }, t("Keep the edits")),
+      h("button", { class: "button danger filled", onclick: apply }, t("Overwrite and apply")),
+    ),
+  );
+  openDialog(dialog);
+}
+
+/** @param {Proposal} proposal @param {ProposalActs["readAgain"]} readAgain */
+function leaveOut({ kind, faults, parameters, size_bytes }, readAgain) {
+  if (kind !== "assets" || parameters.leave_out_faulty || size_bytes === null || !faults.length) return null;
+  const again = () => readAgain({ leave_out_faulty: true });
+  return h(
+    "button",
+    { type: "button", class: "button", id: "leave-out", onclick: again },
+    t("Read again without the faulty rows"),
+  );
+}
+
+/** Another difference: the file is read again for it. @param {Proposal} proposal @param {ProposalActs["readAgain"]} readAgain */
+function regionChoice({ kind, state, parameters }, readAgain) {
+  if (kind !== "osm" || state !== "ready") return null;
+  const checked = Boolean(parameters.replace_region);
+  const box = h("input", { class: "check", type: "checkbox", id: "replace-region", checked });
+  box.addEventListener("change", () => readAgain({ replace_region: box.checked }));
+  const title = t("Also what another file brought in vanishes where this one covers the ground and does not have it");
+  return h("label", { class: "overwrite", title }, box, h("span", {}, t("Replace the whole region with this file")));
+}
+
+/** @param {Proposal} proposal */
 function sentenceOf({ kind, state, difference, summary }) {
   if (kind === "terrain" && summary.vertical_datum) return terrainSentence(summary, difference);
   const sentence = Object.keys(difference).length ? differenceSentence(difference) : "";
@@ -212,25 +212,26 @@ function sentenceOf({ kind, state, difference, summary }) {
   return state === "ready" && !sentence ? t("Ready to be applied.") : sentence;
 }
 
+/** Who decided, and when. @param {Proposal} proposal */
+function decidedText({ decided_by: name, decided_at, state }) {
+  if (!name || !["applied", "discarded", "applying"].includes(state)) return "";
+  const values = { name, when: decided_at && whenText(decided_at) };
+  return state === "discarded" ? t("Discarded by {name}, {when}", values) : t("Applied by {name}, {when}", values);
+}
+
+/** @param {Proposal} proposal @param {ProposalActs} acts */
 function head(proposal, acts) {
   const parts = [KINDS[proposal.kind].words, ORIGINS[proposal.origin], sizeText(proposal.size_bytes)].filter(Boolean);
   const who = [proposal.created_by, whenText(proposal.created_at)].filter(Boolean).join(", ");
-  const decision = { name: proposal.decided_by, when: proposal.decided_at && whenText(proposal.decided_at) };
-  const decided =
-    proposal.decided_by && ["applied", "discarded", "applying"].includes(proposal.state)
-      ? proposal.state === "discarded"
-        ? t("Discarded by {name}, {when}", decision)
-        : t("Applied by {name}, {when}", decision)
-      : "";
+  const decided = decidedText(proposal);
+  const back = (/** @type {Event} */ event) => {
+    event.preventDefault();
+    acts.back();
+  };
   return [
     h(
       "a",
-      {
-        class: "back",
-        id: "back-to-imports",
-        href: "/imports",
-        onclick: (event) => (event.preventDefault(), acts.back()),
-      },
+      { class: "back", id: "back-to-imports", href: "/imports", onclick: back },
       icon("arrow-left", "small"),
       t("All imports"),
     ),
@@ -242,24 +243,26 @@ function head(proposal, acts) {
     ),
     h("p", { class: "caption" }, `${parts.join(" · ")} · ${who}`),
     decided && h("p", { class: "caption" }, decided),
-  ].filter(Boolean);
+  ];
 }
 
+/** @param {Proposal} proposal @param {ProposalActs} acts */
 function refusal({ faults }, acts) {
   const [first, ...rest] = faults.length
     ? faults
     : [{ place: "", message: t("The file could not be read."), position: null }];
-  const said = (fault, isFirst) => [
-    h(isFirst ? "strong" : "span", {}, fault.place ? `${fault.place}: ${fault.message}` : fault.message),
+  /** @param {Proposal["faults"][number]} fault @param {boolean} isFirst */
+  const said = ({ place, message, position }, isFirst) => [
+    h(isFirst ? "strong" : "span", {}, place ? `${place}: ${message}` : message),
     isFirst && ` ${t("Nothing was imported.")} `,
-    fault.position &&
+    position &&
       h(
         "button",
         {
           type: "button",
           class: "text-button",
-          title: coordinateText(fault.position),
-          onclick: () => acts.place(fault.position),
+          title: coordinateText(position),
+          onclick: () => acts.place(position),
         },
         t("See the place"),
       ),
@@ -277,19 +280,17 @@ function refusal({ faults }, acts) {
   );
 }
 
+/** @param {Proposal} proposal */
 function facts({ summary, provenance, state }) {
   if (state === "reading") return null;
+  const { licence, attribution, source_address, fetched_at } = provenance;
   const lines = [
     ...summaryLines(summary),
-    ...[
-      ["licence", t("licence")],
-      ["attribution", t("attribution")],
-      ["source_address", t("address")],
-    ]
-      .filter(([name]) => provenance[name])
-      .map(([name, words]) => ({ words, value: provenance[name] })),
-    ...(provenance.fetched_at ? [{ words: t("fetched"), value: whenText(provenance.fetched_at) }] : []),
-  ];
+    { words: t("licence"), value: licence },
+    { words: t("attribution"), value: attribution },
+    { words: t("address"), value: source_address },
+    { words: t("fetched"), value: fetched_at && whenText(fetched_at) },
+  ].filter(({ value }) => value);
   if (!lines.length) return null;
   return h(
     "details",
@@ -303,36 +304,35 @@ function facts({ summary, provenance, state }) {
   );
 }
 
-/** Earlier states of a zone set, each one press away from being proposed again. */
+/** Earlier states of a zone set, each one press away from being proposed again. @param {string} setName @param {ProposalActs} acts */
 function versions(setName, acts) {
   const list = h("ol", { class: "versions" });
   const details = h("details", { class: "import-facts" }, h("summary", {}, t("Roll the set back")), list);
   details.addEventListener("toggle", async () => {
     if (!details.open || list.children.length) return;
     const { set, rows } = await acts.versions(setName);
-    if (rows.length < 2) return list.replaceChildren(h("li", { class: "caption" }, t("There is no earlier version.")));
-    list.replaceChildren(
-      ...rows.map((row, place) =>
-        h(
-          "li",
-          {},
-          h(
-            "span",
-            {},
-            `${t("Version {number}", { number: row.version })}: ${countText(row.zone_count, "zone")}`,
-            h("span", { class: "caption" }, [row.created_by, whenText(row.created_at)].filter(Boolean).join(", ")),
-          ),
-          place === 0
-            ? h("span", { class: "caption" }, t("now"))
-            : h(
-                "button",
-                { type: "button", class: "button", onclick: () => acts.rollBack(set, row.version) },
-                icon("rotate-ccw", "small"),
-                t("Roll back"),
-              ),
-        ),
-      ),
-    );
+    if (!set || rows.length < 2) {
+      list.replaceChildren(h("li", { class: "caption" }, t("There is no earlier version.")));
+      return;
+    }
+    const row = (/** @type {ZoneSetVersion} */ version, /** @type {number} */ place) =>
+      versionRow(version, place === 0 ? null : () => acts.rollBack(set, version.version));
+    list.replaceChildren(...rows.map(row));
   });
   return details;
+}
+
+/** @param {ZoneSetVersion} version @param {(() => void) | null} rollBack null for the present one */
+function versionRow({ version: number, zone_count, created_by, created_at }, rollBack) {
+  const who = [created_by, whenText(created_at)].filter(Boolean).join(", ");
+  const name = `${t("Version {number}", { number })}: ${countText(zone_count, "zone")}`;
+  const button = { type: "button", class: "button", onclick: rollBack };
+  return h(
+    "li",
+    {},
+    h("span", {}, name, h("span", { class: "caption" }, who)),
+    rollBack
+      ? h("button", button, icon("rotate-ccw", "small"), t("Roll back"))
+      : h("span", { class: "caption" }, t("now")),
+  );
 }

@@ -2,26 +2,36 @@
 
 import { ApiError, get, post, putBytes } from "../api.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { Upload } from "../api_types.d.ts" */
+/** @import { SendHints } from "./types.d.ts" */
+
 const LONGEST_WAIT_S = 15;
 const WORTH_ANOTHER_TRY = new Set([0, 408, 429, 500, 502, 503, 504]);
 
 /**
- * file: a File. uploadId: one that was begun before, or null. tell({ received, waits_s }) hears how far it is, and that it waits for the
- * connection. nudge(wake) is given a function that ends such a wait. Returns the upload's id; throws ApiError for what another try does
- * not mend, AbortError where `signal` says so.
+ * Sends a file, and returns the upload's id.
+ *
+ * @param {File} file
+ * @param {SendHints & { uploadId?: string | null, onBegun?: (id: string) => void }} options uploadId: of an upload that was begun before
+ * @throws {ApiError} for what another try does not mend; AbortError where `signal` says so
  */
 export async function sendFile(file, { uploadId = null, tell, nudge = () => {}, onBegun = () => {}, signal }) {
+  /** @type {Upload | null} */
   let upload = null;
   let wait_s = 1;
   for (;;) {
     try {
-      upload ??= await begin(file, uploadId, signal);
-      onBegun(upload.id);
-      tell({ received: upload.received_bytes, waits_s: 0 });
-      if (upload.is_complete) return upload.id;
-      const end = Math.min(upload.received_bytes + upload.part_bytes, file.size);
-      const part = file.slice(upload.received_bytes, end);
-      ({ data: upload } = await putBytes(`/uploads/${upload.id}/bytes/${upload.received_bytes}`, part, { signal }));
+      /** @type {Upload} */
+      const begun = upload ?? (await begin(file, uploadId, signal));
+      upload = begun;
+      onBegun(begun.id);
+      const { id, received_bytes, part_bytes } = begun;
+      tell({ received: received_bytes, waits_s: 0 });
+      if (begun.is_complete) return id;
+      const part = file.slice(received_bytes, Math.min(received_bytes + part_bytes, file.size));
+      const address = `/uploads/${id}/bytes/${received_bytes}`;
+      upload = /** @type {Answer<Upload>} */ (await putBytes(address, part, { signal })).data;
       wait_s = 1;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
@@ -35,7 +45,13 @@ export async function sendFile(file, { uploadId = null, tell, nudge = () => {}, 
   }
 }
 
-/** Runs `act` until the server has answered; the same hints as above. */
+/**
+ * Runs `act` until the server has answered.
+ *
+ * @template Result
+ * @param {() => Promise<Result>} act
+ * @param {SendHints} hints
+ */
 export async function untilAnswered(act, hints) {
   for (let wait_s = 1; ; wait_s = Math.min(wait_s * 2, LONGEST_WAIT_S)) {
     try {
@@ -47,21 +63,25 @@ export async function untilAnswered(act, hints) {
   }
 }
 
+/** @param {File} file @param {string | null} uploadId @param {AbortSignal} [signal] @returns {Promise<Upload>} */
 async function begin(file, uploadId, signal) {
   if (uploadId) {
     try {
-      const { data } = await get(`/uploads/${uploadId}`, { signal });
+      const { data } = /** @type {Answer<Upload>} */ (await get(`/uploads/${uploadId}`, { signal }));
       if (data.size_bytes === file.size) return data;
     } catch (error) {
       if (!(error instanceof ApiError) || error.status !== 404) throw error; // 404: it was forgotten after a day
     }
   }
-  return (await post("/uploads", { file_name: file.name, size_bytes: file.size }, { signal })).data;
+  const body = { file_name: file.name, size_bytes: file.size };
+  return /** @type {Answer<Upload>} */ (await post("/uploads", body, { signal })).data;
 }
 
+/** @param {number} wait_s @param {SendHints} hints @returns {Promise<void>} */
 function pause(wait_s, { tell, nudge = () => {}, signal }) {
   return new Promise((resolve, reject) => {
     let left_s = wait_s;
+    /** @param {() => void} act */
     const end = (act) => {
       clearInterval(timer);
       removeEventListener("online", go);

@@ -3,8 +3,12 @@
 import { language, localeOf, t } from "../text.js";
 import { countText, heightText } from "../units.js";
 
+/** @import { Geometry } from "../map/types.d.ts" */
+/** @import { Action, Change, ImportKind, Proposal, Summary } from "./types.d.ts" */
+
 const SPACE = "\u00a0";
 
+/** @type {Record<ImportKind, { words: string, icon: string }>} */
 export const KINDS = {
   osm: { words: "OpenStreetMap", icon: "line" },
   zones: { words: t("No-fly zones"), icon: "zone" },
@@ -12,6 +16,7 @@ export const KINDS = {
   terrain: { words: t("Terrain"), icon: "mountain" },
 };
 
+/** @type {Record<Proposal["state"], { words: string, icon: string, chip: string }>} */
 export const STATES = {
   reading: { words: t("Reading"), icon: "loader-circle", chip: "active" },
   refused: { words: t("Refused"), icon: "octagon-alert", chip: "failed" },
@@ -21,7 +26,7 @@ export const STATES = {
   discarded: { words: t("Discarded"), icon: "circle-x", chip: "draft" },
 };
 
-/** In the order in which they are said; the sign stands in the list and on the map. */
+/** In the order in which they are said; the sign stands in the list and on the map. @type {Record<Action, { words: string, short: string, sign: string }>} */
 export const ACTIONS = {
   new: { words: t("new"), short: t("New"), sign: "+" },
   changed: { words: t("changed"), short: t("Changed"), sign: "≠" },
@@ -29,6 +34,7 @@ export const ACTIONS = {
   kept: { words: t("kept as edited by hand"), short: t("Kept"), sign: "=" },
 };
 
+/** @type {Record<Proposal["origin"], string>} */
 export const ORIGINS = {
   upload: "",
   overpass: t("from Overpass"),
@@ -39,38 +45,52 @@ export const ORIGINS = {
 /** Where heights count from, for files that do not say it. */
 export const VERTICAL_DATUMS = ["EGM96", "EGM2008", "EGM84", "EVRF2007", "DHHN2016", "NAVD88"];
 
+/** @param {Pick<Proposal, "state">} proposal */
 export const isOpen = (proposal) => proposal.state === "reading" || proposal.state === "applying";
 
+/** @param {number} value */
 const number = (value) => value.toLocaleString(localeOf(language));
 
-/** "412 new, 3 changed, 1 vanished, 2 kept as edited by hand." */
+/** "412 new, 3 changed, 1 vanished, 2 kept as edited by hand." @param {Record<string, number>} difference */
 export function differenceSentence(difference) {
-  const parts = Object.keys(ACTIONS)
-    .filter((action) => difference[action] > 0)
-    .map((action) => `${number(difference[action])}${SPACE}${ACTIONS[action].words}`);
+  const parts = Object.entries(ACTIONS)
+    .filter(([action]) => difference[action] > 0)
+    .map(([action, { words }]) => `${number(difference[action])}${SPACE}${words}`);
   return parts.length ? `${parts.join(", ")}.` : t("Nothing would change.");
 }
 
-/** "Heights from 431 m to 2,599 m above EGM96, in place of the earlier model of this name." */
+/**
+ * "Heights from 431 m to 2,599 m above EGM96, in place of the earlier model of this name."
+ *
+ * @param {Summary} summary
+ * @param {Record<string, number>} difference
+ */
 export function terrainSentence({ lowest_m, highest_m, vertical_datum }, difference) {
-  const values = { low: heightText(lowest_m), high: heightText(highest_m), datum: vertical_datum };
+  const values = { low: heightText(lowest_m ?? 0), high: heightText(highest_m ?? 0), datum: vertical_datum };
   if (difference.changed > 0)
     return t("Heights from {low} to {high} above {datum}, in place of the earlier model of this name.", values);
   return t("Heights from {low} to {high} above {datum}.", values);
 }
 
-/** How many rows of the ground an application touches. */
+/**
+ * How many rows of the ground an application touches.
+ *
+ * @param {Record<string, number>} difference
+ * @param {{ overwrites?: boolean }} [how]
+ */
 export function touched(difference, { overwrites = false } = {}) {
   const counted = ["new", "changed", "vanished", ...(overwrites ? ["kept"] : [])];
   return counted.reduce((sum, action) => sum + (difference[action] ?? 0), 0);
 }
 
+/** @param {number | null | undefined} bytes */
 export function sizeText(bytes) {
   if (bytes === null || bytes === undefined) return "";
   if (bytes < 1024 * 1024) return `${number(Math.max(1, Math.round(bytes / 1024)))}${SPACE}kB`;
   return `${(bytes / 1024 / 1024).toLocaleString(localeOf(language), { maximumFractionDigits: 1 })}${SPACE}MiB`;
 }
 
+/** @type {Record<string, string>} */
 const UNITS = {
   m: "m",
   km: "km",
@@ -84,17 +104,17 @@ const UNITS = {
   s: "s",
 };
 
-/** "height_m" → { words: "height", unit: "m" } */
+/** "height_m" → { words: "height", unit: "m" } @param {string} name */
 export function factName(name) {
   if (name === "geometry") return { words: t("shape"), unit: "" };
   const parts = name.split("_");
-  const unit = parts.length > 1 ? (UNITS[parts.at(-1)] ?? "") : "";
+  const unit = parts.length > 1 ? (UNITS[parts[parts.length - 1]] ?? "") : "";
   if (unit) parts.pop();
   if (parts[0] === "is" && parts.length > 1) parts.shift();
   return { words: parts.join(" "), unit };
 }
 
-/** A value as text; what has a shape is on the map. */
+/** A value as text; what has a shape is on the map. @param {string} name @param {unknown} value @returns {string} */
 export function factText(name, value) {
   if (value === null || value === undefined || value === "") return t("nothing");
   if (value === true) return t("yes");
@@ -106,25 +126,36 @@ export function factText(name, value) {
     return value.length && value.every((entry) => typeof entry !== "object")
       ? value.join(", ")
       : countText(value.length, "entry", "entries");
-  if ("value_m" in value) return `${number(value.value_m)}${SPACE}m ${value.reference ?? ""}`.trim();
+  if (typeof value !== "object") return String(value);
+  if ("value_m" in value)
+    return `${number(/** @type {number} */ (value.value_m))}${SPACE}m ${"reference" in value ? (value.reference ?? "") : ""}`.trim();
   const entries = Object.entries(value);
   return entries.length
     ? factText(name, entries.map(([key, inner]) => `${key}: ${factText(key, inner)}`).join(", "))
     : t("nothing");
 }
 
+/** @param {unknown} value @returns {value is Geometry} */
 export const isGeometry = (value) =>
-  Boolean(value) &&
   typeof value === "object" &&
+  value !== null &&
+  "type" in value &&
   typeof value.type === "string" &&
   ("coordinates" in value || "geometries" in value);
 
-/** The facts of a change, one line each: { words, before, after }; null where that side does not exist. */
+/**
+ * The facts of a change, one line each: { words, before, after }; null where that side does not exist.
+ *
+ * @param {Pick<Change["properties"], "before" | "after">} change
+ * @returns {{ words: string, before: string | null, after: string | null }[]}
+ */
 export function factLines({ before, after }) {
   const names = [...new Set([...Object.keys(before ?? {}), ...Object.keys(after ?? {})])];
+  /** @param {string} name */
   const isSaid = (name) => !isEmpty(before?.[name]) || !isEmpty(after?.[name]);
   return names.filter(isSaid).map((name) => {
     const { words, unit } = factName(name);
+    /** @param {Record<string, unknown> | null} facts */
     const side = (facts) => {
       if (!facts) return null;
       const text = factText(name, facts[name]);
@@ -136,6 +167,7 @@ export function factLines({ before, after }) {
   });
 }
 
+/** @param {unknown} value */
 const isEmpty = (value) =>
   value === null ||
   value === undefined ||
@@ -144,7 +176,7 @@ const isEmpty = (value) =>
 
 const NOT_SAID = new Set(["words", "needs_mapping", "datum_is_stated"]); // said elsewhere
 
-/** Figures of a file, for people: numbers and short texts alone. */
+/** Figures of a file, for people: numbers and short texts alone. @param {Summary} summary */
 export function summaryLines(summary) {
   return Object.entries(summary)
     .filter(
@@ -159,6 +191,6 @@ export function summaryLines(summary) {
     });
 }
 
-/** Sentences that a reader of files has left for people. */
+/** Sentences that a reader of files has left for people. @param {Summary} summary @returns {string[]} */
 export const notesOf = (summary) =>
   Array.isArray(summary.notes) ? summary.notes.filter((note) => typeof note === "string") : [];

@@ -1,6 +1,11 @@
 /** What comes in. English → German; [one, other] where there is a plural. */
 
 export default {
+  "The versions were not loaded.": "Die Versionen wurden nicht geladen.",
+  "Not rolled back.": "Nicht zurückgesetzt.",
+  "Not taken.": "Nicht übernommen.",
+  "The list was not loaded.": "Die Liste wurde nicht geladen.",
+  "Only files can be dropped here.": "Hier lassen sich nur Dateien ablegen.",
   ", after": ", nachher",
   "A code such as EPSG:25832. Ask whoever made the file.":
     "Ein Code wie EPSG:25832. Wer die Datei erstellt hat, weiß ihn.",
