@@ -207,7 +207,9 @@ function figuresTable(route, limits, verdict) {
   const other = nearestOther(verdict, route.uav);
   const rows = [
     ...figuresOf(route, limits).map(({ words, flown, beside }) => [words, flown, beside]),
-    ...(other ? [[t("From another UAV"), heightText(other.away_m), routeLetter(other.other)]] : []),
+    ...(other?.other === undefined
+      ? []
+      : [[t("From another UAV"), heightText(other.away_m), routeLetter(other.other)]]),
   ];
   return h(
     "table",

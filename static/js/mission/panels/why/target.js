@@ -180,9 +180,10 @@ function changes(said, { target, full, store, actions }) {
 function changesOfRange(uavs, actions) {
   const list = [];
   const spare = uavs.find((uav) => !uav.is_in_mission && uav.is_enough);
-  if (spare) {
+  const id = spare?.uav_id ?? null;
+  if (spare && id !== null) {
     const takeAlong = () => {
-      actions.addUavOfFleet(spare.uav_id);
+      actions.addUavOfFleet(id);
       actions.plan();
     };
     list.push(
