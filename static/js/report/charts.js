@@ -4,15 +4,28 @@ import { svg } from "../dom.js";
 import { routeNumber } from "../domain/palette.js";
 import { rulesOf } from "../record/timeline.js";
 
+/** @import { TimedValue } from "../record/track.js" */
+
+/** @typedef {(value: number) => number} ToPixels */
+/** @typedef {{ place: number, lines: readonly [TimedValue, ...TimedValue[]][], planned: TimedValue[] }} Series of one UAV */
+
 const TOP_PX = 6;
 const BOTTOM_PX = 3;
 
+/** @param {TimedValue[]} line @param {ToPixels} x @param {ToPixels} y */
 const points = (line, x, y) =>
   line.map(({ at_ms, value }) => `${x(at_ms).toFixed(1)},${y(value).toFixed(1)}`).join(" ");
 
 /**
- * series: [{ place, lines, planned }], lines as linesOf gives them; unit: how much of the value one of the reader's units is;
- * highest: of the scale, or null for the greatest value. Returns { element, point(at: Map of place → { at_ms, value }) }.
+ * @param {object} options
+ * @param {Series[]} options.series
+ * @param {ToPixels} options.x of a moment
+ * @param {number} options.width_px
+ * @param {number} options.height_px
+ * @param {number} options.unit how much of the value one of the reader's units is
+ * @param {number | null} [options.highest] of the scale, or null for the greatest value
+ * @param {(value: number) => string} options.ruleText
+ * @param {string} options.label
  */
 export function drawChart({ series, x, width_px, height_px, unit, highest = null, ruleText, label }) {
   const values = series.flatMap(({ lines, planned }) =>
@@ -20,6 +33,7 @@ export function drawChart({ series, x, width_px, height_px, unit, highest = null
   );
   const top = highest ?? Math.max(unit, ...values);
   const bottom = Math.min(0, ...values);
+  /** @type {ToPixels} */
   const y = (value) => TOP_PX + ((top - value) / (top - bottom)) * (height_px - TOP_PX - BOTTOM_PX);
   const rules = rulesOf(top / unit).map((rule) => rule * unit);
   const dots = new Map(
@@ -56,13 +70,14 @@ export function drawChart({ series, x, width_px, height_px, unit, highest = null
   );
   return {
     element,
+    /** @param {Map<number, TimedValue>} at by the UAV's place */
     point(at) {
       for (const [place, dot] of dots) {
         const known = at.get(place);
         dot.setAttribute("visibility", known ? "visible" : "hidden");
         if (!known) continue;
-        dot.setAttribute("cx", x(known.at_ms));
-        dot.setAttribute("cy", y(known.value));
+        dot.setAttribute("cx", `${x(known.at_ms)}`);
+        dot.setAttribute("cy", `${y(known.value)}`);
       }
     },
   };

@@ -16,7 +16,7 @@ export function mountLayout() {
   phone.addEventListener("change", place);
   place();
   return {
-    /** part: "side" or "dock" */
+    /** @param {"side" | "dock"} part */
     fold(part) {
       if (workbench.dataset[part] === "folded") delete workbench.dataset[part];
       else workbench.dataset[part] = "folded";

@@ -9,16 +9,25 @@ import { t } from "../text.js";
 import { clockText, exactClockText, exactHeightText, exactText, lengthText } from "../units.js";
 import { fold } from "./side.js";
 
+/** @import { Alert, Command, FlownLeg, FlownStage, MissionRecord, RecordRoute } from "../api_types.d.ts" */
+/** @import { Properties } from "../dom.js" */
+/** @import { Labels } from "../record/labels.js" */
+/** @import { LookedLeg } from "./types.d.ts" */
+
+/** @typedef {(leg: LookedLeg | null) => void} OnLook what the pointer or the focus is on */
+
 const LEVELS = {
   critical: { words: t("Critical"), image: "octagon-alert" },
   warning: { words: t("Warning"), image: "triangle-alert" },
   advisory: { words: t("Advisory"), image: "info" },
 };
 const ENDS = { start: t("take-off"), end: t("end"), base: t("base") };
+/** @param {number} sequence */
 const pointName = (sequence) => t("point {number}", { number: sequence });
+/** @param {number} place */
 const letter = (place) => h("span", { class: `letter route-${routeNumber(place)}` }, routeLetter(place));
 
-/** By target, the legs to each unfolded at will. onLook({ place, from, to } or null): what the pointer or the focus is on. */
+/** By target, the legs to each unfolded at will. @param {MissionRecord} record @param {Labels} labels @param {OnLook} onLook */
 export function drawLegs(record, labels, onLook) {
   const routes = record.routes.filter(({ stages }) => stages.length);
   const count = routes.reduce((sum, { stages }) => sum + stages.length, 0);
@@ -33,7 +42,9 @@ export function drawLegs(record, labels, onLook) {
   );
 }
 
+/** @param {number | null} value */
 const metres = (value) => (value === null ? "—" : exactHeightText(value));
+/** @param {number | null} rms @param {number | null} max */
 const errors = (rms, max) =>
   h(
     "td",
@@ -41,38 +52,54 @@ const errors = (rms, max) =>
     rms === null ? "—" : [metres(rms), h("small", {}, metres(max))],
   );
 
+/**
+ * A row of a leg or of a stage.
+ *
+ * @param {FlownLeg | FlownStage} leg
+ * @param {string} name
+ * @param {() => void} look
+ * @param {() => void} leave
+ * @param {{ button?: Properties, words?: string, isWithin?: boolean }} how isWithin: of a stage, folded away with it
+ */
+function legRow(leg, name, look, leave, { button, words = "", isWithin = false }) {
+  const small = [words, leg.reports === 0 && t("no report")].filter(Boolean).join(", ");
+  return h(
+    "tr",
+    {
+      class: [isWithin && "report-within", !leg.reports && "unflown"].filter(Boolean).join(" "),
+      hidden: isWithin,
+      onpointerenter: look,
+      onpointerleave: leave,
+    },
+    h(
+      "th",
+      { scope: "row" },
+      h("button", { type: "button", class: "report-leg", onfocus: look, onblur: leave, ...button }, name),
+      small && h("small", {}, small),
+    ),
+    h("td", { class: "number" }, lengthText(leg.length_m)),
+    errors(leg.across_rms_m, leg.across_max_m),
+    errors(leg.height_rms_m, leg.height_max_m),
+  );
+}
+
+/** @param {RecordRoute} route @param {Labels} labels @param {OnLook} onLook */
 function legTable(route, labels, onLook) {
   const heads = [t("Leg"), t("Length"), t("Off route"), t("Height error")];
   const several = route.stages.some(({ flight }) => flight > 1);
-  const row = (leg, { button, words = "", isWithin = false }) => {
-    const look = () => onLook({ place: route.place, from: leg.from_sequence, to: leg.to_sequence });
-    const name = [leg.from_sequence, leg.to_sequence]
-      .map((sequence) => waypointName(route, sequence, labels, ENDS, pointName))
-      .join(" – ");
-    const small = [words, leg.reports === 0 && t("no report")].filter(Boolean).join(", ");
-    return h(
-      "tr",
-      {
-        class: [isWithin && "report-within", !leg.reports && "unflown"].filter(Boolean).join(" "),
-        hidden: isWithin,
-        onpointerenter: look,
-        onpointerleave: () => onLook(null),
-      },
-      h(
-        "th",
-        { scope: "row" },
-        h(
-          "button",
-          { type: "button", class: "report-leg", onfocus: look, onblur: () => onLook(null), ...button },
-          name,
-        ),
-        small && h("small", {}, small),
-      ),
-      h("td", { class: "number" }, lengthText(leg.length_m)),
-      errors(leg.across_rms_m, leg.across_max_m),
-      errors(leg.height_rms_m, leg.height_max_m),
+  /** @param {FlownLeg | FlownStage} leg @param {Parameters<typeof legRow>[4]} how */
+  const row = (leg, how) => {
+    const { from_sequence: from, to_sequence: to } = leg;
+    const name = [from, to].map((sequence) => waypointName(route, sequence, labels, ENDS, pointName)).join(" – ");
+    return legRow(
+      leg,
+      name,
+      () => onLook({ place: route.place, from, to }),
+      () => onLook(null),
+      how,
     );
   };
+  /** @param {FlownStage} stage */
   const stageRows = (stage) => {
     const legs = route.legs.filter(
       (leg) => leg.length_m >= 1 && leg.from_sequence >= stage.from_sequence && leg.to_sequence <= stage.to_sequence,
@@ -80,9 +107,11 @@ function legTable(route, labels, onLook) {
     const words = several ? t("flight {number}", { number: stage.flight }) : "";
     if (legs.length < 2) return h("tbody", {}, row(stage, { words }));
     const rows = legs.map((leg) => row(leg, { isWithin: true }));
+    /** @param {Event} event */
     const unfold = ({ currentTarget }) => {
-      const isOpen = currentTarget.getAttribute("aria-expanded") !== "true";
-      currentTarget.setAttribute("aria-expanded", isOpen);
+      const button = /** @type {HTMLButtonElement} */ (currentTarget);
+      const isOpen = button.getAttribute("aria-expanded") !== "true";
+      button.setAttribute("aria-expanded", String(isOpen));
       for (const one of rows) one.hidden = !isOpen;
     };
     return h(
@@ -95,21 +124,6 @@ function legTable(route, labels, onLook) {
       rows,
     );
   };
-  const table = h(
-    "table",
-    { class: "report-table report-legs" },
-    h("caption", {}, t("RMS, and below it the greatest")),
-    h(
-      "thead",
-      {},
-      h(
-        "tr",
-        {},
-        heads.map((words, index) => h("th", { scope: "col", class: index ? "number" : "" }, words)),
-      ),
-    ),
-    route.stages.map(stageRows),
-  );
   return h(
     "details",
     { class: "report-route" },
@@ -122,11 +136,29 @@ function legTable(route, labels, onLook) {
       route.is_simulated && simulatedMark(),
       h("span", { class: "count" }, route.stages.length),
     ),
-    table,
+    h(
+      "table",
+      { class: "report-table report-legs" },
+      h("caption", {}, t("RMS, and below it the greatest")),
+      h(
+        "thead",
+        {},
+        h(
+          "tr",
+          {},
+          heads.map((words, index) => h("th", { scope: "col", class: index ? "number" : "" }, words)),
+        ),
+      ),
+      route.stages.map(stageRows),
+    ),
   );
 }
 
-/** onSeek(iso): the time of an alert was clicked. */
+/**
+ * @param {readonly Alert[]} alerts
+ * @param {(uav: number | null) => string} nameOf
+ * @param {(iso: string) => void} onSeek the time of an alert was clicked
+ */
 export function drawAlerts(alerts, nameOf, onSeek) {
   const rows = [...alerts]
     .sort((a, b) => Date.parse(a.opened_at) - Date.parse(b.opened_at))
@@ -171,6 +203,7 @@ export function drawAlerts(alerts, nameOf, onSeek) {
   fold("alerts", rows.length, h("ul", { class: "report-list" }, rows));
 }
 
+/** @param {readonly Command[]} commands */
 export function drawCommands(commands) {
   const rows = [...commands]
     .sort((a, b) => Date.parse(a.created_at) - Date.parse(b.created_at))
@@ -193,6 +226,7 @@ export function drawCommands(commands) {
   fold("commands", rows.length, h("ul", { class: "report-list" }, rows));
 }
 
+/** @param {MissionRecord} record @param {Labels} labels */
 export function drawResults(record, labels) {
   const rows = record.results.map(({ place, uav_name, outcome, note, values, measured_at }) => {
     const target = labels.get(place)?.label ?? `${place + 1}`;

@@ -24,6 +24,14 @@ const AGAIN_MS = 30_000;
 const KEY_STEPS = 100; // of the whole replay, by an arrow key
 const NEAR_EVENT_MS = 2_000;
 
+/** @import { ApiError } from "../api.js" */
+/** @import { MissionRecord, RecordTarget } from "../api_types.d.ts" */
+/** @import { Labels } from "../record/labels.js" */
+/** @import { LoadedMission } from "../record/load.js" */
+/** @import { ReplayEvent } from "../record/timeline.js" */
+/** @import { LookedLeg, ReplayRoute, ReportPage, StripTarget } from "./types.d.ts" */
+
+/** @type {ReportPage} */
 const page = readPage();
 const layout = mountLayout();
 const map = createReportMap(page, { onPick: choose });
@@ -33,13 +41,18 @@ const scene = mountSceneOpener(
   () =>
     loaded && { mission: page.mission, ...(player.span() ? { record: loaded, player } : { wanted: { kind: "plan" } }) },
 );
-let loaded = null; // of the API
-let record = null;
-let routes = []; // of the record, each with its track, targets, alerts
+/** @type {LoadedMission | null} */
+let loaded = null;
+/** @type {ReplayRoute[]} */
+let routes = [];
+/** @type {ReplayEvent[]} */
 let events = [];
+/** @type {Labels} */
 let labels = new Map();
-let looked = null; // place of the UAV that is looked at
+/** @type {number | null} place of the UAV that is looked at */
+let looked = null;
 
+/** @param {number} place of a UAV */
 function choose(place) {
   looked = looked === place ? null : place;
   show();
@@ -54,14 +67,15 @@ async function read() {
   } catch (error) {
     tellFault(error);
   }
-  if (record && isUnderWay(record)) setTimeout(read, AGAIN_MS);
-  else if (!record) setTimeout(read, AGAIN_MS);
+  if (!loaded || isUnderWay(loaded.record)) setTimeout(read, AGAIN_MS);
 }
 
+/** @param {unknown} error null: there is none any more */
 function tellFault(error) {
+  const { isSignedOut = false, message = "" } = /** @type {Partial<ApiError>} */ (error ?? {});
   const fault = byId("report-fault");
   fault.hidden = error === null;
-  if (error?.isSignedOut)
+  if (isSignedOut)
     fault.replaceChildren(
       icon("cloud-off"),
       h("span", {}, `${t("You have been signed out.")} `, h("a", { href: signInAddress() }, t("Sign in"))),
@@ -69,74 +83,82 @@ function tellFault(error) {
   else if (error)
     fault.replaceChildren(
       icon("cloud-off"),
-      h(
-        "span",
-        {},
-        `${t("The record could not be read.")} ${error.message} ${t("It is tried again every half minute.")}`,
-      ),
+      h("span", {}, `${t("The record could not be read.")} ${message} ${t("It is tried again every half minute.")}`),
     );
 }
 
-function take(answer) {
-  loaded = answer;
-  record = loaded.record;
-  labels = labelsOf(record.routes);
-  const silence_ms = silenceOf_ms(Math.max(loaded.records.every_s ?? 0, loaded.estimates.every_s ?? 0));
-  const [measured, estimated] = [tracksOf(loaded.records.features), estimatesOf(loaded.estimates.features)];
-  routes = record.routes.map((route) => ({
+/** The record's routes with what the replay draws of them. @param {LoadedMission} loaded @returns {ReplayRoute[]} */
+function replayRoutes({ record, records, estimates, alerts }) {
+  const silence_ms = silenceOf_ms(Math.max(records.every_s ?? 0, estimates.every_s ?? 0));
+  const [measured, estimated] = [tracksOf(records.features), estimatesOf(estimates.features)];
+  return record.routes.map((route) => ({
     ...route,
     isOver: isOver(record),
-    track: trackOf(measured.get(route.uav) ?? [], estimated.get(route.uav) ?? [], silence_ms),
+    track: trackOf(measured.get(route.uav ?? NaN) ?? [], estimated.get(route.uav ?? NaN) ?? [], silence_ms),
     targets: record.targets
       .filter(({ uav }) => uav === route.place)
       .map(targetOnStrip)
       .sort((a, b) => (a.at_ms ?? Infinity) - (b.at_ms ?? Infinity)),
-    alerts: loaded.alerts
+    alerts: alerts
       .filter(({ uav }) => uav === route.uav)
       .map(({ opened_at, level, message }) => ({ at_ms: Date.parse(opened_at), level, title: message })),
   }));
-  events = eventsOf({ routes, targets: record.targets, alerts: loaded.alerts, isOver: isOver(record) });
+}
+
+/** @param {LoadedMission} answer */
+function take(answer) {
+  loaded = answer;
+  const { record } = answer;
+  labels = labelsOf(record.routes);
+  routes = replayRoutes(answer);
+  events = eventsOf({ routes, targets: record.targets, alerts: answer.alerts, isOver: isOver(record) });
   drawHead(record);
-  drawTargets(record, labels, (place) => map.showPlace(labels.get(place).position));
+  drawTargets(record, labels, (place) => {
+    const known = labels.get(place);
+    if (known) map.showPlace(known.position);
+  });
   offerFollowUp(record, { canPlan: page.canFly });
   drawLegs(record, labels, lookAtLeg);
   drawAlerts(
-    loaded.alerts,
+    answer.alerts,
     (uav) => routes.find((route) => route.uav === uav)?.name ?? "",
     (iso) => player.seek(Date.parse(iso)),
   );
-  drawCommands(loaded.commands);
+  drawCommands(answer.commands);
   drawResults(record, labels);
   map.show({ routes, targets: record.targets, labels });
   const span = spanOf(routes.map(({ track }) => track));
   player.setSpan(span);
   byId("dock").classList.toggle("without-replay", span === null);
   byId("replay-empty").hidden = span !== null;
-  if (!span) return tellNothing();
+  if (!span) {
+    tellNothing(record);
+    return;
+  }
   byId("replay-tables").replaceChildren(...replayTables(routes));
-  routes.forEach(
-    (route) => (route.alerts = route.alerts.filter(({ at_ms }) => at_ms >= span.from_ms && at_ms <= span.to_ms)),
-  );
+  for (const route of routes)
+    route.alerts = route.alerts.filter(({ at_ms }) => at_ms >= span.from_ms && at_ms <= span.to_ms);
   dock.draw({ routes, span });
-  renewScene();
+  renewScene(answer);
   show();
-  return undefined;
 }
 
-/** The 3D view goes with the record; where it showed the plan it shows what is flown from now on. */
-function renewScene() {
+/** The 3D view goes with the record; where it showed the plan it shows what is flown from now on. @param {LoadedMission} answer */
+function renewScene(answer) {
   const stage = scene.stage();
   if (!stage) return;
-  if (stage.source.kind === "record") stage.renew(loaded);
+  if (stage.source.kind === "record") stage.renew(answer);
   else void scene.open({ takesFocus: false });
 }
 
+/** @param {RecordTarget} target @returns {StripTarget} */
 const targetOnStrip = ({ place, label: name, state, reached_at }) => {
   const { label, number } = labels.get(place) ?? { label: "", number: place + 1 };
   return { place, label, number, state, at_ms: reached_at ? Date.parse(reached_at) : null, title: `${label} ${name}` };
 };
 
-function tellNothing() {
+/** @param {MissionRecord} record */
+function tellNothing(record) {
   const [title, words] = byId("replay-empty").children;
   title.textContent = isOver(record) ? t("Nothing to replay.") : t("Nothing to replay yet.");
   words.textContent = isOver(record)
@@ -144,28 +166,34 @@ function tellNothing() {
     : t("What its UAVs report is drawn here as soon as they fly.");
 }
 
+/** @param {LookedLeg | null} leg */
 function lookAtLeg(leg) {
   const route = leg && routes.find(({ place }) => place === leg.place);
-  const positions = route?.waypoints
-    .filter(({ sequence }) => sequence >= leg.from && sequence <= leg.to)
-    .map(({ position }) => position);
-  map.lightLeg(positions?.length > 1 ? positions : null);
+  const within = route ? route.waypoints.filter(({ sequence }) => sequence >= leg.from && sequence <= leg.to) : [];
+  map.lightLeg(within.length > 1 ? within.map(({ position }) => position) : null);
 }
 
 // replaying
 
-const EVENT_WORDS = {
-  "take-off": ({ name }) => t("{name} takes off", { name }),
-  landing: ({ name }) => t("{name} lands", { name }),
-  target: (_route, { target }) => t("{target} reached", { target: labels.get(target)?.label ?? target + 1 }),
-  alert: ({ name }, { alert }) => [name, alert.message].filter(Boolean).join(": "),
-};
+/** @param {ReplayEvent} event */
+function wordsOf(event) {
+  const name = routes.find(({ place }) => place === event.place)?.name ?? "";
+  switch (event.kind) {
+    case "take-off":
+      return t("{name} takes off", { name });
+    case "landing":
+      return t("{name} lands", { name });
+    case "target":
+      return t("{target} reached", { target: labels.get(event.target)?.label ?? event.target + 1 });
+    default:
+      return [name, event.alert.message].filter(Boolean).join(": ");
+  }
+}
 
+/** What has just happened at a moment. @param {number} at_ms */
 function eventWords(at_ms) {
   const event = events.findLast((one) => one.at_ms <= at_ms && at_ms - one.at_ms < NEAR_EVENT_MS);
-  if (!event) return "";
-  const route = routes.find(({ place }) => place === event.place) ?? { name: "" };
-  return EVENT_WORDS[event.kind](route, event);
+  return event ? wordsOf(event) : "";
 }
 
 function show() {
@@ -177,22 +205,21 @@ function show() {
     play.setAttribute("aria-label", player.isPlaying ? t("Stop") : t("Play"));
     play.title = `${player.isPlaying ? t("Stop") : t("Play")} (${t("Space")})`;
   }
-  byId(`speed-${player.speed}`).checked = true;
+  byId(`speed-${player.speed}`, HTMLInputElement).checked = true;
   if (!player.span()) return;
   dock.point(player.at_ms, looked, eventWords(player.at_ms));
   map.point(player.at_ms, looked);
   scene.stage()?.point(looked);
 }
 
+/** @param {number} direction 1 or -1 */
 function step(direction) {
-  if (!player.span()) return false;
+  const span = player.span();
+  if (!span) return false;
   player.stop();
-  const event = eventFrom(
-    events.filter(({ at_ms }) => at_ms >= player.span().from_ms && at_ms <= player.span().to_ms),
-    player.at_ms,
-    direction,
-  );
-  player.seek(event?.at_ms ?? (direction > 0 ? player.span().to_ms : player.span().from_ms));
+  const within = events.filter(({ at_ms }) => at_ms >= span.from_ms && at_ms <= span.to_ms);
+  const event = eventFrom(within, player.at_ms, direction);
+  player.seek(event?.at_ms ?? (direction > 0 ? span.to_ms : span.from_ms));
   return true;
 }
 
@@ -211,6 +238,7 @@ byId("replay-previous").addEventListener("click", () => step(-1));
 byId("replay-next").addEventListener("click", () => step(1));
 
 const slider = byId("replay-slider");
+/** @param {PointerEvent} event */
 const drag = (event) => {
   const at_ms = dock.momentAt(event.clientX);
   if (at_ms !== null) player.seek(at_ms);
@@ -221,11 +249,14 @@ slider.addEventListener("pointerdown", (event) => {
   player.stop();
   drag(event);
 });
-slider.addEventListener("pointermove", (event) => slider.hasPointerCapture(event.pointerId) && drag(event));
+slider.addEventListener("pointermove", (event) => {
+  if (slider.hasPointerCapture(event.pointerId)) drag(event);
+});
 slider.addEventListener("keydown", (event) => {
   const span = player.span();
   if (!span || event.ctrlKey || event.metaKey || event.altKey) return;
   const step_ms = Math.max(1_000, (span.to_ms - span.from_ms) / KEY_STEPS);
+  /** @type {Record<string, number>} */
   const moments = {
     ArrowRight: player.at_ms + step_ms,
     ArrowUp: player.at_ms + step_ms,
@@ -242,14 +273,36 @@ slider.addEventListener("keydown", (event) => {
   player.seek(moments[event.key]);
 });
 
+/** @param {Event} event */
 const isOnControl = ({ target }) => target instanceof Element && target.closest("button, a, summary, select") !== null;
+
+/** @param {KeyboardEvent} event */
+function togglePlaying(event) {
+  if (isOnControl(event) || !player.span()) return false;
+  player.toggle();
+  return true;
+}
+
+/** @param {number} index of a UAV */
+function chooseAt(index) {
+  const route = routes[index];
+  if (route) choose(route.place);
+  return route !== undefined;
+}
+
+/** Looks at no UAV in particular, or closes what is open over the map. */
+function leave() {
+  if (looked === null) return map.closeTop();
+  choose(looked);
+  return true;
+}
 
 startChrome({
   bindings: [
     {
       keys: [" "],
       words: t("Play, stop"),
-      act: (event) => (isOnControl(event) || !player.span() ? false : (player.toggle(), true)),
+      act: togglePlaying,
     },
     { keys: [","], words: t("Previous event"), act: () => step(-1) },
     { keys: ["."], words: t("Next event"), act: () => step(1) },
@@ -258,7 +311,7 @@ startChrome({
     ...Array.from({ length: 8 }, (_, index) => ({
       keys: [`${index + 1}`],
       words: index ? undefined : t("Choose UAV A to H (1 to 8)"),
-      act: () => (routes[index] ? (choose(routes[index].place), true) : false),
+      act: () => chooseAt(index),
     })),
     { keys: ["f"], words: t("Fit what was flown"), act: () => map.fit() },
     { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },
@@ -267,7 +320,7 @@ startChrome({
     { keys: ["]"], words: t("Fold the dock"), act: () => layout.fold("dock") },
     ...map.bindings,
     scene.binding,
-    { keys: ["escape"], act: () => (looked === null ? map.closeTop() : (choose(looked), true)) },
+    { keys: ["escape"], act: leave },
   ],
 });
 

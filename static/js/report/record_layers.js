@@ -1,24 +1,42 @@
 /** What was flown over what was planned: measured solid, estimated dotted, and the leg that is looked at under both. */
 
 import { routeNumber } from "../domain/palette.js";
+import { setPaint, sourceOf } from "../map/look/style.js";
+
+/** @import { ExpressionSpecification, LineLayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { Palette } from "../domain/palette.js" */
+/** @import { FeatureCollection, MapLibreMap } from "../map/types.d.ts" */
+/** @import { Estimate, Sample } from "../record/track.js" */
+/** @import { ReplayRoute } from "./types.d.ts" */
+
+/** @typedef {FeatureCollection["features"][number]} Feature */
 
 const BEFORE = "line-labels";
+/** @type {FeatureCollection} */
 const NOTHING = { type: "FeatureCollection", features: [] };
 const THIN_PX = 1.6;
 
+/** @param {number[][]} coordinates @param {number} place @returns {Feature} */
 const feature = (coordinates, place) => ({
   type: "Feature",
   properties: { route: routeNumber(place) },
   geometry: { type: "LineString", coordinates },
 });
+/** @param {Feature[]} features @returns {FeatureCollection} */
 const collection = (features) => ({ type: "FeatureCollection", features });
 
+/** @param {Palette} palette @returns {LineLayerSpecification[]} */
 function layersOf(palette) {
+  /** @type {LineLayerSpecification["layout"]} */
   const round = { "line-cap": "round", "line-join": "round" };
+  const [first, ...others] = palette.routes;
+  /** @type {ExpressionSpecification} */
   const colour = [
     "match",
     ["get", "route"],
-    ...palette.routes.flatMap((value, index) => [index + 1, value]),
+    1,
+    first,
+    ...others.flatMap((value, index) => [index + 2, value]),
     palette.inkSecond,
   ];
   return [
@@ -53,8 +71,10 @@ function layersOf(palette) {
   ];
 }
 
+/** @param {MapLibreMap} map */
 const thinRoutes = (map) => map.setPaintProperty("routes", "line-width", THIN_PX);
 
+/** @param {MapLibreMap} map @param {Palette} palette */
 export function addTo(map, palette) {
   for (const { source } of layersOf(palette))
     if (!map.getSource(source)) map.addSource(source, { type: "geojson", data: NOTHING });
@@ -63,36 +83,39 @@ export function addTo(map, palette) {
   thinRoutes(map);
 }
 
+/** @param {MapLibreMap} map @param {Palette} palette */
 export function recolour(map, palette) {
-  for (const { id, paint } of layersOf(palette))
-    for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
+  for (const layer of layersOf(palette)) setPaint(map, layer);
   thinRoutes(map);
 }
 
-const positionsOf = (run) => run.map(({ position }) => position).filter(Boolean);
+/** @param {readonly (Sample | Estimate)[]} run */
+const positionsOf = (run) => run.flatMap(({ position }) => (position ? [position] : []));
+/** @param {readonly (readonly (Sample | Estimate)[])[]} runs @param {number} place */
 const linesOf = (runs, place) =>
   runs
     .map(positionsOf)
     .filter((line) => line.length > 1)
     .map((line) => feature(line, place));
 
-/** routes: [{ place, track }] */
+/** @param {MapLibreMap} map @param {readonly Pick<ReplayRoute, "place" | "track">[]} routes */
 export function showTracks(map, routes) {
-  map
-    .getSource("record-flown")
-    .setData(collection(routes.flatMap(({ place, track }) => linesOf(track.measured, place))));
-  map
-    .getSource("record-estimated")
-    .setData(collection(routes.flatMap(({ place, track }) => linesOf(track.estimated, place))));
+  sourceOf(map, "record-flown")?.setData(
+    collection(routes.flatMap(({ place, track }) => linesOf(track.measured, place))),
+  );
+  sourceOf(map, "record-estimated")?.setData(
+    collection(routes.flatMap(({ place, track }) => linesOf(track.estimated, place))),
+  );
 }
 
-/** positions of a leg, or null. */
+/** @param {MapLibreMap} map @param {number[][] | null} positions of a leg */
 export function lightLeg(map, positions) {
-  map.getSource("record-leg").setData(positions ? collection([feature(positions, 0)]) : NOTHING);
+  sourceOf(map, "record-leg")?.setData(positions ? collection([feature(positions, 0)]) : NOTHING);
 }
 
-/** Brings one UAV forward; null gives all of them back. */
+/** Brings one UAV forward; null gives all of them back. @param {MapLibreMap} map @param {number | null} place @param {number} rest opacity of the others */
 export function lookAt(map, place, rest) {
+  /** @type {number | ExpressionSpecification} */
   const opacity = place === null ? 1 : ["case", ["==", ["get", "route"], routeNumber(place)], 1, rest];
   for (const id of ["record-flown", "record-estimated"]) map.setPaintProperty(id, "line-opacity", opacity);
 }

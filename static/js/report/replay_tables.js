@@ -5,14 +5,17 @@ import { MEASURED, momentOf } from "../record/track.js";
 import { t } from "../text.js";
 import { exactClockText, heightText, percentText, speedText } from "../units.js";
 
+/** @import { Moment } from "../record/track.js" */
+/** @import { ReplayRoute } from "./types.d.ts" */
+
 const ROWS = 12;
 
-/** A table of each UAV: its figures at moments that lie evenly in its flights. */
+/** A table of each UAV: its figures at moments that lie evenly in its flights. @param {readonly ReplayRoute[]} routes */
 export function replayTables(routes) {
   return routes
     .filter(({ track }) => track.samples.length)
     .map(({ name, track }) => {
-      const [from_ms, to_ms] = [track.samples[0].at_ms, track.samples.at(-1).at_ms];
+      const [from_ms, to_ms] = [track.samples[0].at_ms, track.samples[track.samples.length - 1].at_ms];
       const moments = Array.from({ length: ROWS }, (_, index) => from_ms + ((to_ms - from_ms) * index) / (ROWS - 1));
       const head = [t("Time"), t("Height above take-off"), t("Speed"), t("Battery")];
       return h(
@@ -37,6 +40,7 @@ export function replayTables(routes) {
     });
 }
 
+/** @param {number} at_ms @param {Moment} moment */
 function row(at_ms, moment) {
   if (moment?.kind !== MEASURED)
     return h(
@@ -46,6 +50,7 @@ function row(at_ms, moment) {
       h("td", { colspan: 3 }, t("nothing measured")),
     );
   const { height_m, speed_mps, battery_percent } = moment.sample;
+  /** @param {number | null} value @param {(value: number) => string} text */
   const said = (value, text) => h("td", {}, value === null ? "—" : text(value));
   return h(
     "tr",

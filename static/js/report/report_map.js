@@ -2,55 +2,114 @@
 
 import { get } from "../api.js";
 import { byId } from "../dom.js";
+import { LOST } from "../domain/certainty.js";
 import { routeLetter } from "../domain/palette.js";
 import { mountControls } from "../map/controls.js";
 import { createTip } from "../map/furniture.js";
 import * as routesLayer from "../map/layers/routes.js";
+import { rememberedUnder } from "../map/look/under.js";
 import { boxAround, createMap } from "../map/map_view.js";
 import { showTipsOnly } from "../map/tips_only.js";
-import { rememberedUnder } from "../map/look/under.js";
 import { createTargetPills } from "../monitor/map/target_pills.js";
 import { createUavMarkers } from "../monitor/map/uav_markers.js";
-import { ESTIMATED, MEASURED, momentOf } from "../record/track.js";
+import { ESTIMATED, momentOf, SILENT } from "../record/track.js";
 import { t, tn } from "../text.js";
 import { heightText } from "../units.js";
 import * as layers from "./record_layers.js";
+
+/** @import { Answer } from "../api.js" */
+/** @import { RecordTarget } from "../api_types.d.ts" */
+/** @import { Geometry, Ground } from "../map/types.d.ts" */
+/** @import { Moment } from "../record/track.js" */
+/** @import { Labels } from "../record/labels.js" */
+/** @import { ReplayRoute, ReportPage } from "./types.d.ts" */
+
+/** @typedef {{ routes: ReplayRoute[], targets: RecordTarget[], labels: Labels }} Shown */
 
 const REST = { light: 0.3, dark: 0.42 }; // of routes that are not looked at
 const NEAR_ZOOM = 14;
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
-/** A UAV as it is drawn at a moment; null where nothing is known of it. */
+/** Of its marker. @param {Pick<ReplayRoute, "uav" | "place">} route */
+const idOf = ({ uav, place }) => uav ?? `place ${place}`;
+
+/**
+ * A UAV as it is drawn at a moment; null where nothing is known of it.
+ *
+ * @param {Pick<ReplayRoute, "uav" | "place" | "name" | "track">} route
+ * @param {number} at_ms
+ * @param {number | null} looked place of the UAV that is looked at
+ */
 export function markerOf({ uav, place, name, track }, at_ms, looked) {
   const moment = momentOf(track, at_ms);
   if (!moment?.sample.position) return null;
   const { kind, sample } = moment;
-  const fact =
-    kind === MEASURED
-      ? sample.height_m === null
-        ? ""
-        : heightText(sample.height_m)
-      : kind === ESTIMATED
-        ? t("estimated, ±{bound}", { bound: heightText(sample.bound_m) })
-        : t("no report");
-  const certainty = kind === MEASURED || kind === ESTIMATED ? kind : "lost";
   return {
-    id: uav ?? `place ${place}`,
+    id: idOf({ uav, place }),
     name,
     place,
     letter: routeLetter(place),
     position: sample.position,
     heading_deg: sample.heading_deg,
-    certainty,
-    fact,
+    certainty: kind === SILENT ? LOST : kind,
+    fact: factOf(moment),
     isChosen: looked === place,
   };
 }
 
-/** onPick(place of a UAV). */
-export function createReportMap(page, { onPick }) {
-  const container = byId("map");
-  const view = createMap(container, {
+/** @param {NonNullable<Moment>} moment */
+function factOf(moment) {
+  if (moment.kind === SILENT) return t("no report");
+  if (moment.kind === ESTIMATED) return t("estimated, ±{bound}", { bound: heightText(moment.sample.bound_m) });
+  return moment.sample.height_m === null ? "" : heightText(moment.sample.height_m);
+}
+
+/** @param {Shown} shown @returns {{ sequence: number, geometry: Geometry | null }[]} */
+const plannedLines = ({ routes }) =>
+  routes.map(({ place, waypoints }) => ({
+    sequence: place,
+    geometry:
+      waypoints.length > 1 ? { type: "LineString", coordinates: waypoints.map(({ position }) => position) } : null,
+  }));
+
+/** @param {Shown} shown */
+const pillsOf = ({ targets, labels }) =>
+  targets.flatMap(({ place, uav, label: name, state }) => {
+    const known = labels.get(place);
+    if (!known) return [];
+    const { label, number, position } = known;
+    return [
+      {
+        key: `${place}`,
+        position,
+        sequence: uav,
+        letter: uav === null ? "" : routeLetter(uav),
+        number,
+        name: `${label} ${name}`,
+        state,
+        isMissed: false,
+      },
+    ];
+  });
+
+/** @param {Shown} shown */
+const placesOf = ({ routes }) =>
+  routes.flatMap(({ waypoints, track }) =>
+    [...waypoints, ...track.samples].flatMap(({ position }) => (position ? [position] : [])),
+  );
+
+/** @param {Shown} shown */
+function describe({ routes, targets }) {
+  const words = [
+    tn(routes.length, "{count} route", "{count} routes"),
+    tn(targets.length, "{count} target", "{count} targets"),
+  ];
+  return t("Map of what was flown, {words}", { words: words.join(", ") });
+}
+
+/** @param {HTMLElement} container @param {ReportPage} page */
+const openMap = (container, page) =>
+  createMap(container, {
     baseMap: page.baseMap,
     satellite: page.satellite,
     under: rememberedUnder(page),
@@ -58,105 +117,101 @@ export function createReportMap(page, { onPick }) {
     bounds: page.bounds ?? page.extent,
     extent: page.extent,
   });
+
+/** @param {ReportPage} page @param {{ onPick: (place: number) => void }} options onPick: a UAV was clicked */
+export function createReportMap(page, { onPick }) {
+  const container = byId("map");
+  const view = openMap(container, page);
   const { map } = view;
-  const tip = createTip(container.parentElement);
-  let shown = null; // { routes, targets, labels }
+  const tip = createTip(/** @type {HTMLElement} */ (container.parentElement));
+  /** @type {Shown | null} */
+  let shown = null;
+  /** @type {number | null} */
   let looked = null;
+  /** @type {{ pills: ReturnType<typeof createTargetPills>, markers: ReturnType<typeof createUavMarkers> } | null} */
   let parts = null;
   let hasFitted = view.opensAtPlace;
-  const rest = () => (view.palette().isDark ? REST.dark : REST.light);
   const light = () => {
     routesLayer.lookAt(map, view.palette(), looked);
-    layers.lookAt(map, looked, rest());
+    layers.lookAt(map, looked, view.palette().isDark ? REST.dark : REST.light);
   };
   const controls = mountControls(view, page, {
     fit: () => fit(),
-    recoloured: (palette) => parts && (layers.recolour(map, palette), light()),
+    recoloured(palette) {
+      if (!parts) return;
+      layers.recolour(map, palette);
+      light();
+    },
   });
   showTipsOnly(map, { controls, tip });
+
+  /** @param {number | string} id of a UAV's marker */
+  function pick(id) {
+    const route = shown?.routes.find((one) => idOf(one) === id);
+    if (route) onPick(route.place);
+  }
 
   const ready = view.ready.then(() => {
     layers.addTo(map, view.palette());
     parts = {
       pills: createTargetPills(map),
       markers: createUavMarkers(map, {
-        onPick: (id) => onPick(shown.routes.find(({ uav }) => uav === id)?.place ?? null),
+        onPick: pick,
         glide_ms: 0,
       }),
     };
-    void get("/ground").then(
-      ({ data }) => controls.setGround(data),
-      () => {},
+    void (
+      /** @type {Promise<Answer<Ground>>} */ (get("/ground")).then(
+        ({ data }) => controls.setGround(data),
+        () => {},
+      )
     );
     draw();
   });
 
   function draw() {
     if (!parts || !shown) return;
-    routesLayer.update(
-      map,
-      shown.routes.map(({ place, waypoints }) => ({
-        sequence: place,
-        geometry:
-          waypoints.length > 1 ? { type: "LineString", coordinates: waypoints.map(({ position }) => position) } : null,
-      })),
-    );
+    routesLayer.update(map, plannedLines(shown));
     layers.showTracks(map, shown.routes);
-    parts.pills.update(
-      shown.targets
-        .filter(({ place }) => shown.labels.has(place))
-        .map(({ place, uav, label: name, state }) => {
-          const { label, number, position } = shown.labels.get(place);
-          return {
-            key: `${place}`,
-            position,
-            sequence: uav,
-            letter: routeLetter(uav),
-            number,
-            name: `${label} ${name}`,
-            state,
-            isMissed: false,
-          };
-        }),
-    );
-    const words = [
-      tn(shown.routes.length, "{count} route", "{count} routes"),
-      tn(shown.targets.length, "{count} target", "{count} targets"),
-    ];
-    map.getCanvas().setAttribute("aria-label", t("Map of what was flown, {words}", { words: words.join(", ") }));
+    parts.pills.update(pillsOf(shown));
+    map.getCanvas().setAttribute("aria-label", describe(shown));
     if (!hasFitted) fit({ animate: false });
     hasFitted = true;
   }
 
-  function fit(options) {
-    const places = (shown?.routes ?? []).flatMap(({ waypoints, track }) => [
-      ...waypoints.map(({ position }) => position),
-      ...track.samples.map(({ position }) => position).filter(Boolean),
-    ]);
-    view.fit(boxAround(places) ?? page.bounds ?? page.extent, options);
+  /** @param {{ animate?: boolean }} [how] */
+  function fit(how) {
+    view.fit(boxAround(shown ? placesOf(shown) : []) ?? page.bounds ?? page.extent, how);
   }
 
   return {
     ready,
     fit,
     bindings: controls.bindings,
-    closeTop: () => controls.closeTop(),
+    closeTop: controls.closeTop,
+    /** @param {number} steps */
     zoom: (steps) => map.zoomTo(map.getZoom() + steps),
-    resize: () => map.resize(),
+    /** @param {Shown} next */
     show(next) {
       shown = next;
       draw();
     },
-    /** UAVs as they were then; one of them may be looked at. */
+    /** UAVs as they were then; one of them may be looked at. @param {number} at_ms @param {number | null} place */
     point(at_ms, place) {
       if (!parts || !shown) return;
-      parts.markers.update(shown.routes.map((route) => markerOf(route, at_ms, place)).filter(Boolean));
+      parts.markers.update(shown.routes.flatMap((route) => markerOf(route, at_ms, place) ?? []));
       if (place === looked) return;
       looked = place;
       light();
     },
+    /** @param {number[][] | null} positions of a leg */
     lightLeg: (positions) => parts && layers.lightLeg(map, positions),
-    showPlace: (position) =>
-      map.easeTo({ center: position, zoom: Math.max(map.getZoom(), NEAR_ZOOM), duration: calm.matches ? 0 : 350 }),
+    /** @param {number[]} position */
+    showPlace: ([longitude, latitude]) =>
+      map.easeTo({
+        center: [longitude, latitude],
+        zoom: Math.max(map.getZoom(), NEAR_ZOOM),
+        duration: calm.matches ? 0 : 350,
+      }),
   };
 }

@@ -1,6 +1,6 @@
 /** The side: what came of the mission in a sentence, in figures, and what became of each target. */
 
-import { byId, h, icon } from "../dom.js";
+import { byId, find, h, icon } from "../dom.js";
 import { routeNumber } from "../domain/palette.js";
 import { STATES as MISSION_STATES } from "../missions/rows.js";
 import { reasonWords, STATES } from "../monitor/board.js";
@@ -8,8 +8,14 @@ import { factsOf, figuresOf, isOver, isUnderWay, sentenceOf, wasFlown } from "..
 import { t } from "../text.js";
 import { clockText, dateText, durationText, exactText, lengthText } from "../units.js";
 
+/** @import { MissionRecord, RecordMission, RecordTarget } from "../api_types.d.ts" */
+/** @import { Labels } from "../record/labels.js" */
+
+/** @typedef {(target: number) => void} OnLook the target's pill was clicked */
+
 const HASH_LETTERS = 8;
 
+/** @param {RecordMission} mission */
 function whenWords({ started_at, ended_at, departs_at }) {
   const from = started_at ?? departs_at;
   if (!from) return "";
@@ -17,14 +23,15 @@ function whenWords({ started_at, ended_at, departs_at }) {
   return t("{day}, {from} to {to}", { day: dateText(from), from: clockText(from), to: clockText(ended_at) });
 }
 
-/** Name, state, when, by whom, the plan's hash; the sentence, and the figures once something was flown. */
+/** Name, state, when, by whom, the plan's hash; the sentence, and the figures once something was flown. @param {MissionRecord} record */
 export function drawHead(record) {
   const { mission } = record;
   const chip = byId("report-state");
   chip.hidden = false;
   chip.className = `chip ${mission.state}`;
   chip.replaceChildren(
-    ...[mission.state === "completed" && icon("check", "small"), MISSION_STATES[mission.state]].filter(Boolean),
+    ...(mission.state === "completed" ? [icon("check", "small")] : []),
+    MISSION_STATES[mission.state],
   );
   const { approval } = mission;
   const facts = [
@@ -47,7 +54,7 @@ export function drawHead(record) {
       h("a", { class: "report-link", href: `/missions/${id}/report` }, icon("link", "small"), words),
     ),
   );
-  const table = byId("report-figures");
+  const table = byId("report-figures", HTMLTableElement);
   table.hidden = !record.routes.length;
   table.tBodies[0].replaceChildren(
     ...figuresOf(record).map(({ words, planned, flown, more }) =>
@@ -63,20 +70,22 @@ export function drawHead(record) {
   );
 }
 
+/** @param {MissionRecord} record @param {RecordTarget} target */
 const isMissed = (record, { state }) =>
   state === "skipped" || state === "failed" || (state === "pending" && isOver(record));
 
-/** onLook(place of a target) when its pill is clicked. */
+/** @param {MissionRecord} record @param {Labels} labels @param {OnLook} onLook */
 export function drawTargets(record, labels, onLook) {
   const missed = record.targets.filter((target) => isMissed(record, target));
   const section = byId("report-missed");
   section.hidden = missed.length === 0;
-  section.querySelector(".count").textContent = missed.length;
-  section.querySelector(".report-list").replaceChildren(...missed.map((target) => missedRow(target, labels, onLook)));
+  find(section, ".count").textContent = `${missed.length}`;
+  find(section, ".report-list").replaceChildren(...missed.map((target) => missedRow(target, labels, onLook)));
   const isClose = wasFlown(record) || isUnderWay(record);
   fold("targets", record.targets.length, targetTable(record.targets, labels, onLook, isClose));
 }
 
+/** @param {RecordTarget} target @param {Labels} labels @param {OnLook} onLook */
 function pill(target, labels, onLook) {
   const known = labels.get(target.place);
   const look = target.uav === null ? "" : `route-${routeNumber(target.uav)}`;
@@ -93,6 +102,7 @@ function pill(target, labels, onLook) {
   );
 }
 
+/** @param {RecordTarget} target @param {Labels} labels @param {OnLook} onLook */
 function missedRow(target, labels, onLook) {
   const state = STATES[target.state];
   const why = reasonWords(target.state_reason);
@@ -124,10 +134,13 @@ function missedRow(target, labels, onLook) {
   );
 }
 
+/** @param {string | null} iso */
 const time = (iso) => (iso ? h("time", { datetime: iso, title: exactText(iso) }, clockText(iso)) : "—");
+/** @param {number | null} value */
 const seconds = (value) =>
   value === null ? "—" : value < 100 ? t("{count} s", { count: Math.round(value) }) : durationText(value);
 
+/** @param {readonly RecordTarget[]} targets @param {Labels} labels @param {OnLook} onLook @param {boolean} isClose */
 function targetTable(targets, labels, onLook, isClose) {
   const head = [t("Target"), t("Planned"), t("Reached"), t("Closest"), t("Held")];
   const rows = targets.map((target) => {
@@ -175,10 +188,10 @@ function targetTable(targets, labels, onLook, isClose) {
   );
 }
 
-/** Fills a part of the side that can be unfolded; without content it is not there. */
+/** Fills a part of the side that can be unfolded; without content it is not there. @param {string} name @param {number} count @param {Node} content */
 export function fold(name, count, content) {
   const part = byId(`report-${name}`);
   part.hidden = count === 0;
-  part.querySelector(".count").textContent = count;
-  part.querySelector(".report-part-body").replaceChildren(content);
+  find(part, ".count").textContent = `${count}`;
+  find(part, ".report-part-body").replaceChildren(content);
 }

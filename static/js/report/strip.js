@@ -2,6 +2,10 @@
 
 import { svg } from "../dom.js";
 import { routeNumber } from "../domain/palette.js";
+import { lastOf } from "../record/track.js";
+
+/** @import { Estimate, Sample, Track } from "../record/track.js" */
+/** @import { ReachedTarget, StripAlert } from "./types.d.ts" */
 
 const HEIGHT_PX = 34;
 const MIDDLE_PX = 20;
@@ -12,7 +16,7 @@ const MARKS = {
   advisory: "M0 -4A4 4 0 1 1 0 4A4 4 0 1 1 0 -4Z",
 };
 
-/** Pushes places apart to the right, then back from the right edge: as near to where they belong as there is room. */
+/** Pushes places apart to the right, then back from the right edge: as near to where they belong as there is room. @param {readonly number[]} places @param {number} width_px @param {number} [apart_px] */
 export function spread(places, width_px, apart_px = APART_PX) {
   const least = Math.min(apart_px, width_px / Math.max(1, places.length));
   const put = [...places];
@@ -21,11 +25,22 @@ export function spread(places, width_px, apart_px = APART_PX) {
   return put;
 }
 
-/** targets: [{ at_ms, number, state, title }] by time; alerts: [{ at_ms, level, title }]. x: of scaleOf. */
+/**
+ * @param {object} flown
+ * @param {number} flown.place
+ * @param {Track} flown.track
+ * @param {readonly ReachedTarget[]} flown.targets by time
+ * @param {readonly StripAlert[]} flown.alerts
+ * @param {(at_ms: number) => number} flown.x
+ * @param {number} flown.width_px
+ * @param {string} flown.label
+ */
 export function drawStrip({ place, track, targets, alerts, x, width_px, label }) {
+  /** @param {number} at_ms */
   const isAirborne = (at_ms) => track.flights.some(({ from_ms, to_ms }) => from_ms <= at_ms && at_ms <= to_ms);
+  /** @param {[Sample | Estimate, ...(Sample | Estimate)[]]} run @param {string} name */
   const line = (run, name) => {
-    const [from, to] = [x(run[0].at_ms), x(run.at(-1).at_ms)];
+    const [from, to] = [x(run[0].at_ms), x(lastOf(run).at_ms)];
     return svg("line", { class: name, x1: from, x2: Math.max(to, from + 1), y1: MIDDLE_PX, y2: MIDDLE_PX });
   };
   const flown = track.measured.flatMap((run) => piecesOf(run, isAirborne));
@@ -68,8 +83,9 @@ export function drawStrip({ place, track, targets, alerts, x, width_px, label })
   );
 }
 
-/** A run divided where the UAV takes off or lands. */
+/** A run divided where the UAV takes off or lands. @param {Sample[]} run @param {(at_ms: number) => boolean} isAirborne */
 function piecesOf(run, isAirborne) {
+  /** @type {{ isUp: boolean, run: [Sample, ...Sample[]] }[]} */
   const pieces = [];
   for (const sample of run) {
     const isUp = isAirborne(sample.at_ms);
