@@ -2,21 +2,34 @@
 
 import { t } from "../text.js";
 import { CAMERA_KEYS, CAMERA_LONG } from "./camera_bar.js";
+import { CAMERAS } from "./cameras/rig.js";
+
+/** @import { Binding } from "../page/keyboard.js" */
+/** @import { SceneActs } from "./acts.js" */
 
 const HELD = ["arrowleft", "arrowright", "arrowup", "arrowdown", "w", "a", "s", "d", "q", "e"];
+/** @param {SceneActs} acts @returns {Binding["act"]} */
 const held = (acts) => (event) => acts.press(event);
+/** @param {Event} event */
 const isOnControl = ({ target }) =>
   target instanceof Element && target.closest("button, a, summary, select, input, [role=menu]") !== null;
 
-/** acts: of stage.js. Those that a page has by itself (time, UAVs) are left out where `hasOwnTime` is false. */
+/**
+ * Those that a page has by itself (time, UAVs) are left out where `hasOwnTime` is false.
+ *
+ * @param {SceneActs} acts
+ * @param {{ hasOwnTime?: boolean }} [how]
+ * @returns {Binding[]}
+ */
 export function sceneKeys(acts, { hasOwnTime = true } = {}) {
-  const cameras = Object.entries(CAMERA_KEYS).map(([mode, key]) => ({
-    keys: [key],
+  const cameras = CAMERAS.map((mode) => ({
+    keys: [CAMERA_KEYS[mode]],
     words: CAMERA_LONG[mode],
     act: () => acts.setCamera(mode),
   }));
+  /** @type {Binding[]} */
   const time = [
-    { keys: [" "], words: t("Play, stop"), act: (event) => (isOnControl(event) || !acts.toggle() ? false : true) },
+    { keys: [" "], words: t("Play, stop"), act: (event) => !isOnControl(event) && acts.toggle() },
     { keys: [","], words: t("Previous event"), act: () => acts.step(-1) },
     { keys: ["."], words: t("Next event"), act: () => acts.step(1) },
     { keys: ["<"], words: t("Slower"), act: () => acts.changeSpeed(-1) },

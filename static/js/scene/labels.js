@@ -5,24 +5,40 @@ import { t } from "../text.js";
 import { heightText } from "../units.js";
 import { placeLabels } from "./label_places.js";
 
+/** @import { GroundLabel } from "./geometry/labels.js" */
+/** @import { LabelPlaces, PlacedItem, ScreenBox } from "./label_places.js" */
+/** @import { Projected, Size, Vector } from "./types.d.ts" */
+
+/**
+ * What may be written at a place. parts: its name, then facts.
+ *
+ * @typedef {{ key: string, place: Vector, parts: string[], className: string, weight: number }} SceneLabel
+ */
+/** @typedef {{ element: HTMLElement, text: string | null, className: string, width: number, height: number }} LabelElement */
+/** @typedef {ReturnType<typeof createLabels>} Labels */
+
 const MOST_OF_GROUND = 14;
+/** @type {Record<string, number>} by kind */
 const GROUND_REACH_M = { zone: 6_000, line: 2_500, tower: 420, bridge: 1_500, railway: 1_500 };
 const USUAL_REACH_M = 800;
 const SAME_M = 250;
 const TOUCHES_PX = 40; // beyond the edge nothing is measured
 
-/** onPick(item): a label was clicked. */
+/** @param {HTMLElement} container */
 export function createLabels(container) {
   const layer = h("div", { class: "scene-labels", "aria-hidden": "true" });
   container.append(layer);
-  const elements = new Map(); // key → { element, text, width, height }
+  /** @type {Map<string, LabelElement>} by key */
+  const elements = new Map();
+  /** @type {LabelPlaces} */
   let placed = new Map();
 
+  /** @param {SceneLabel} label */
   function elementOf({ key, className, parts }) {
     const text = parts.join("\n");
     let known = elements.get(key);
     if (!known) {
-      known = { element: h("div", { class: "scene-label" }), text: null, className: "" };
+      known = { element: h("div", { class: "scene-label" }), text: null, className: "", width: 0, height: 0 };
       elements.set(key, known);
       layer.append(known.element);
     }
@@ -42,10 +58,16 @@ export function createLabels(container) {
 
   return {
     element: layer,
-    /** At night the ground is dark in both themes. */
+    /** At night the ground is dark in both themes. @param {boolean} isNight */
     setNight: (isNight) => layer.classList.toggle("night", isNight),
-    /** items: [{ key, place: [x, y, z], parts: [words], className, weight }]; project: of the view; size: of the picture; covered: boxes of what stands over it. */
+    /**
+     * @param {readonly SceneLabel[]} items
+     * @param {(place: Vector) => Projected | null} project
+     * @param {Size} size of the picture
+     * @param {readonly ScreenBox[]} [covered] boxes of what stands over it
+     */
     show(items, project, size, covered = []) {
+      /** @type {PlacedItem[]} */
       const seen = [];
       for (const item of items) {
         const at = project(item.place);
@@ -58,7 +80,7 @@ export function createLabels(container) {
         )
           continue;
         const { width, height } = elementOf(item);
-        seen.push({ ...item, x: at.x, y: at.y, width, height });
+        seen.push({ key: item.key, weight: item.weight, x: at.x, y: at.y, width, height });
       }
       placed = placeLabels(seen, size, placed, covered);
       for (const [key, known] of elements) {
@@ -77,15 +99,21 @@ export function createLabels(container) {
         elements.delete(key);
       }
     },
-    /** What stands where, for a still picture: [{ text: [words], className, left, top, width, height }]. */
-    shown: () => [...placed].map(([key, { left, top }]) => ({ ...elements.get(key), left, top })),
+    /** What stands where, for a still picture. */
+    shown: () =>
+      [...placed].flatMap(([key, { left, top }]) => {
+        const known = elements.get(key);
+        return known ? [{ ...known, left, top }] : [];
+      }),
     dispose: () => layer.remove(),
   };
 }
 
 /** Two bridges of one road side by side have one name between them. */
 function isFirstOfItsName() {
-  const kept = new Map(); // text → places
+  /** @type {Map<string, Vector[]>} places by kind and text */
+  const kept = new Map();
+  /** @param {GroundLabel} label */
   return ({ kind, text, position }) => {
     const others = kept.get(`${kind} ${text}`) ?? [];
     if (others.some((other) => Math.hypot(other[0] - position[0], other[2] - position[2]) < SAME_M)) return false;
@@ -94,7 +122,14 @@ function isFirstOfItsName() {
   };
 }
 
-/** Of the world's labels those that are near enough, the nearest and heaviest first. eye: the camera's place. */
+/**
+ * Of the world's labels those that are near enough, the nearest and heaviest first.
+ *
+ * @param {readonly GroundLabel[]} labels
+ * @param {Vector} eye the camera's place
+ * @param {number} [most]
+ * @returns {SceneLabel[]}
+ */
 export function groundLabels(labels, eye, most = MOST_OF_GROUND) {
   return labels
     .map((label) => ({

@@ -15,33 +15,53 @@ import { openStage } from "./stage.js";
 const KEPT_MS = 400; // after a change the address says it
 const TICK_MS = 500; // of a live source: silence is seen without a word
 const AGAIN_MS = 30_000; // a record that still grows is read
+/** @type {Record<SourceKind, string>} */
 const SOURCE_WORDS = { plan: t("Planned"), rehearsal: t("Rehearsal"), live: t("Live"), record: t("Record") };
 
+/** @import { Answer } from "../api.js" */
+/** @import { Mission } from "../api_types.d.ts" */
+/** @import { SceneActs } from "./acts.js" */
+/** @import { SceneLink } from "./link.js" */
+/** @import { Stage } from "./stage.js" */
+/** @import { FlightSource, SourceKind, WantedSource } from "./types.d.ts" */
+
+/** @type {{ mission: string }} */
 const page = readPage();
 const root = byId("scene");
+/** @type {Stage | null} */
 let stage = null;
-let mission = null;
+/** @type {ReturnType<typeof openFeed> | null} */
 let feed = null;
-let timer = 0;
-let following = 0; // the interval of what grows
+/** @type {ReturnType<typeof setTimeout> | undefined} */
+let timer;
+/** @type {ReturnType<typeof setInterval> | undefined} of what grows */
+let following;
 let opened = 0; // the last one wins
 
 /** What the stage of the moment can do; nothing while there is none. */
-const acts = new Proxy(
-  {},
-  {
-    get:
-      (_target, name) =>
-      (...given) =>
-        stage?.[name]?.(...given) ?? false,
-  },
+const acts = /** @type {SceneActs} */ (
+  new Proxy(
+    {},
+    {
+      get:
+        (_target, name) =>
+        /** @param {unknown[]} given */
+        (...given) => {
+          const act = stage?.[/** @type {keyof SceneActs} */ (name)];
+          return (act && Reflect.apply(act, stage, given)) ?? false;
+        },
+    },
+  )
 );
 
 function keepAddress() {
   clearTimeout(timer);
-  timer = setTimeout(() => stage && history.replaceState(null, "", stage.address()), KEPT_MS);
+  timer = setTimeout(() => {
+    if (stage) history.replaceState(null, "", stage.address());
+  }, KEPT_MS);
 }
 
+/** @param {string} words @param {(() => void) | null} [again] */
 function tell(words, again = null) {
   root.replaceChildren(
     h(
@@ -54,14 +74,15 @@ function tell(words, again = null) {
   );
 }
 
-/** What went wrong in words, with a way on. */
+/** What went wrong in words, with a way on. @param {unknown} error @param {() => void} again */
 function tellFault(error, again) {
   if (!(error instanceof ApiError)) throw error;
   tell(error.message, error.isSignedOut ? null : again);
-  if (error.isSignedOut) root.firstElementChild.append(" ", h("a", { href: signInAddress() }, t("Sign in")));
+  if (error.isSignedOut) root.firstElementChild?.append(" ", h("a", { href: signInAddress() }, t("Sign in")));
 }
 
-async function open(wanted, link = null) {
+/** @param {Mission} mission @param {WantedSource | null} wanted @param {SceneLink | null} [link] */
+async function open(mission, wanted, link = null) {
   const turn = ++opened;
   stage?.dispose();
   stage = null;
@@ -72,10 +93,13 @@ async function open(wanted, link = null) {
   try {
     const { source, choices } = await readSource(mission, wanted);
     if (turn !== opened) return;
-    drawSources(source, choices);
-    if (!source.routes.length) return tell(t("There is nothing to see yet: plan the mission first."));
+    drawSources(mission, source, choices);
+    if (!source.routes.length) {
+      tell(t("There is nothing to see yet: plan the mission first."));
+      return;
+    }
     if (source.kind === "live") follow(source);
-    if (source.isGrowing) following = setInterval(() => void readAgain(wanted), AGAIN_MS);
+    if (source.isGrowing) following = setInterval(() => void readAgain(mission, wanted), AGAIN_MS);
     const made = await openStage(root, {
       isWanted: () => turn === opened,
       mission: { id: page.mission, name: mission.name },
@@ -88,40 +112,45 @@ async function open(wanted, link = null) {
     stage = made;
     root.dataset.kind = stage.kind;
   } catch (error) {
-    if (turn === opened) tellFault(error, () => void open(wanted, link));
+    if (turn === opened) tellFault(error, () => void open(mission, wanted, link));
   }
 }
 
+/** @param {FlightSource} source a live one */
 function follow(source) {
-  let revision = source.revision;
-  const own = (feed = openFeed({ mission: page.mission, onChange: take }));
+  let { revision } = source;
+  const own = openFeed({ mission: page.mission, onChange: take });
+  feed = own;
   following = setInterval(() => {
     take();
     stage?.sayStale(staleWords({ link: own.state, since_ms: own.since_ms, now_ms: own.now_ms() }));
   }, TICK_MS);
 
   function take() {
-    if (!source.take({ uavs: [...own.shown.uavs.values()], now_ms: own.now_ms() })) return;
+    if (!source.take?.({ uavs: [...own.shown.uavs.values()], now_ms: own.now_ms() })) return;
     stage?.refresh(source.revision !== revision);
     revision = source.revision;
   }
 }
 
-/** The record of a mission that still flies; what cannot be read now is read the next time. */
-async function readAgain(wanted) {
+/** The record of a mission that still flies; what cannot be read now is read the next time. @param {Mission} mission @param {WantedSource | null} wanted */
+async function readAgain(mission, wanted) {
   const own = stage;
   try {
     const loaded = await loadMission(page.mission);
     if (own !== stage || !own) return;
     if (own.source.span) own.renew(loaded);
-    else void open(wanted);
+    else void open(mission, wanted);
     if (!own.source.isGrowing) clearInterval(following);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
   }
 }
 
-function drawSources(source, choices) {
+/** @param {Mission} mission @param {FlightSource} source @param {SourceKind[]} choices */
+function drawSources(mission, source, choices) {
+  /** @param {WantedSource} wanted */
+  const choose = (wanted) => void open(mission, wanted).then(keepAddress);
   byId("scene-sources").replaceChildren(
     h("legend", { class: "unseen" }, t("What is shown")),
     ...choices.map((kind) =>
@@ -133,18 +162,17 @@ function drawSources(source, choices) {
           name: "source",
           value: kind,
           checked: kind === source.kind,
-          onchange: () => void open({ kind, rehearsal: null, run: null }).then(keepAddress),
+          onchange: () => choose({ kind, rehearsal: null, run: null }),
         }),
         h("span", { class: "segment" }, SOURCE_WORDS[kind]),
       ),
     ),
   );
-  const runs = byId("scene-runs");
+  const runs = byId("scene-runs", HTMLSelectElement);
   runs.hidden = (source.runs?.length ?? 0) < 2;
   runs.replaceChildren(...(source.runs ?? []).map(({ sequence, words }) => h("option", { value: sequence }, words)));
-  if (source.runs) runs.value = source.run;
-  runs.onchange = () =>
-    void open({ kind: "rehearsal", rehearsal: source.rehearsal, run: Number(runs.value) }).then(keepAddress);
+  if (source.runs) runs.value = `${source.run}`;
+  runs.onchange = () => choose({ kind: "rehearsal", rehearsal: source.rehearsal, run: Number(runs.value) });
 }
 
 startChrome({ bindings: sceneKeys(acts) });
@@ -152,9 +180,9 @@ addEventListener("pagehide", () => feed?.close());
 
 async function begin() {
   try {
-    mission = (await get(`/missions/${page.mission}`)).data;
+    const { data: mission } = /** @type {Answer<Mission>} */ (await get(`/missions/${page.mission}`));
     const link = readLink(location.search);
-    await open(link.source, link);
+    await open(mission, link.source, link);
   } catch (error) {
     tellFault(error, () => void begin());
   }
@@ -162,4 +190,4 @@ async function begin() {
 
 await begin();
 document.documentElement.dataset.loaded = "true";
-globalThis.spanwiseScene = { figures: () => stage?.figures() ?? null }; // for measurements: benchmarks/scene.py
+Object.assign(globalThis, { spanwiseScene: { figures: () => stage?.figures() ?? null } }); // for measurements: benchmarks/scene.py

@@ -1,12 +1,17 @@
 /** The button "3D" on a page's map. The view behind it is loaded with the first click: a page without it pays for this alone. */
 
-import { h } from "../dom.js";
+import { find, h } from "../dom.js";
 import { say } from "../page/toast.js";
 import { t } from "../text.js";
 
-/** options() → what openPanel of panel.js takes, or null where there is nothing to see. → { toggle, open, close, isOpen, stage, show(isThere), binding }. */
+/** @import { Panel, PanelOptions } from "./panel.js" */
+/** @import { Stage } from "./stage.js" */
+
+/** @typedef {ReturnType<typeof mountSceneOpener>} SceneOpener */
+
+/** @param {() => Omit<PanelOptions, "onClose" | "takesFocus"> | null | undefined | false} options what the panel shows, or null where there is nothing to see */
 export function mountSceneOpener(options) {
-  const frame = document.querySelector(".map-frame");
+  const frame = find(document, ".map-frame", HTMLElement);
   const button = h(
     "button",
     {
@@ -20,16 +25,23 @@ export function mountSceneOpener(options) {
     h("b", {}, "3D"),
   );
   const group = h("div", { class: "control-group" }, button);
-  frame.querySelector(".map-controls").append(group);
-  let panel = null; // a promise
-  let stage = null; // of the open panel, once it is there
+  find(frame, ".map-controls").append(group);
+  /** @type {Promise<Panel> | null} */
+  let panel = null;
+  /** @type {Stage | null} of the open panel, once it is there */
+  let stage = null;
+
+  /** @param {boolean} isOpen */
+  function showOpen(isOpen) {
+    button.setAttribute("aria-pressed", String(isOpen));
+    frame.classList.toggle("with-scene", isOpen);
+  }
 
   async function open({ takesFocus = true } = {}) {
     const asked = options();
     if (!asked) return false;
     close();
-    button.setAttribute("aria-pressed", "true");
-    frame.classList.add("with-scene");
+    showOpen(true);
     const own = import("./panel.js").then(({ openPanel }) =>
       openPanel(frame, {
         ...asked,
@@ -37,8 +49,7 @@ export function mountSceneOpener(options) {
         onClose() {
           if (panel !== own && panel !== null) return;
           panel = stage = null;
-          button.setAttribute("aria-pressed", "false");
-          frame.classList.remove("with-scene");
+          showOpen(false);
           button.focus({ preventScroll: true });
         },
       }),
@@ -50,8 +61,7 @@ export function mountSceneOpener(options) {
       return opened;
     } catch (error) {
       if (panel === own) panel = null;
-      button.setAttribute("aria-pressed", "false");
-      frame.classList.remove("with-scene");
+      showOpen(false);
       say(t("The 3D view could not be opened."));
       throw error;
     }
@@ -67,7 +77,11 @@ export function mountSceneOpener(options) {
     return open_ !== null;
   }
 
-  const toggle = () => (panel ? close() : (void open(), true));
+  function toggle() {
+    if (panel) return close();
+    void open();
+    return true;
+  }
 
   return {
     toggle,
@@ -76,7 +90,10 @@ export function mountSceneOpener(options) {
     isOpen: () => panel !== null,
     /** What is seen, or null while nothing is. */
     stage: () => stage,
-    show: (isThere) => (group.hidden = !isThere),
+    /** @param {boolean} isThere */
+    show(isThere) {
+      group.hidden = !isThere;
+    },
     binding: { keys: ["d"], words: t("3D view, and back"), act: () => toggle() },
   };
 }

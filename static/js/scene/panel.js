@@ -10,6 +10,30 @@ import { readSource } from "./sources/read.js";
 import { recordSource } from "./sources/record_source.js";
 import { openStage } from "./stage.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { Mission } from "../api_types.d.ts" */
+/** @import { Binding } from "../page/keyboard.js" */
+/** @import { LoadedMission } from "../record/load.js" */
+/** @import { Player } from "../record/player.js" */
+/** @import { Stage } from "./stage.js" */
+/** @import { WantedSource } from "./types.d.ts" */
+
+/**
+ * What a panel shows.
+ *
+ * @typedef {object} PanelOptions
+ * @property {string} mission
+ * @property {WantedSource | null} [wanted] null: the usual
+ * @property {LoadedMission | null} [record] where the page has it already
+ * @property {Player | null} [player] the page's own
+ * @property {() => number} [now_ms] of a source that lives
+ * @property {(stage: Stage) => () => void} [follow] for a source that lives; returns what ends it
+ * @property {() => void} [onClose]
+ * @property {boolean} [takesFocus] the picture
+ */
+/** @typedef {{ close: () => void, stage: Stage | null }} Panel */
+
+/** @type {Promise<unknown> | null} */
 let styles = null;
 
 /** The view's style sheet, loaded with the first panel. */
@@ -26,31 +50,62 @@ function loadStyles() {
   return styles;
 }
 
-/**
- * frame: the element that holds the map. mission: its id; wanted: a source of link.js or null for the usual; player: the page's own, or null;
- * record: of report/load.js, where the page has it already; follow(stage) → a function that ends it: for a source that lives. onClose(). takesFocus: the picture.
- */
-export async function openPanel(
-  frame,
-  {
-    takesFocus = true,
-    mission,
-    wanted = null,
-    record = null,
-    player = null,
-    now_ms,
-    follow = () => () => {},
-    onClose = () => {},
-  },
-) {
-  const root = h(
-    "div",
-    { class: "scene-root" },
-    h("p", { class: "scene-waiting" }, t("Reading what there is to see.")),
+/** Keys of the view while the focus is in it. @param {HTMLElement} element @param {Binding[]} bindings */
+function listenInside(element, bindings) {
+  element.addEventListener("keydown", (event) => {
+    if (
+      event.defaultPrevented ||
+      /** @type {Element} */ (event.target).closest("input, select") ||
+      document.documentElement.dataset.singleKeys === "off"
+    )
+      return;
+    const name = keyName(event);
+    const binding = bindings.find(({ keys }) => keys.includes(name));
+    if (name === "?") showKeys(bindings);
+    else if (!binding || binding.act(event) === false) return;
+    event.preventDefault();
+    event.stopPropagation(); // the page's own keys rest while the view has the focus
+  });
+}
+
+/** @param {string} words @param {() => void} close */
+const faultWords = (words, close) =>
+  h(
+    "p",
+    { class: "scene-waiting" },
+    icon("cloud-off"),
+    ` ${words} `,
+    h("button", { class: "button small", type: "button", onclick: close }, t("Close")),
   );
+
+/** @param {HTMLElement} root @param {PanelOptions & { onClose: () => void }} options @returns {Promise<Stage | null>} */
+async function openInside(root, { mission, wanted = null, record = null, player = null, now_ms, onClose }) {
+  const { data: detail } = /** @type {Answer<Mission>} */ (await get(`/missions/${mission}`));
+  const source = record ? recordSource(record) : (await readSource(detail, wanted)).source;
+  if (!source.routes.length) throw new ApiError(t("There is nothing to see yet: plan the mission first."));
+  /** @type {Stage | null} */
+  let stage = null; // while it is made its address is asked for already
+  stage = await openStage(root, {
+    mission: { id: mission, name: detail.name },
+    source,
+    isPanel: true,
+    player,
+    now_ms,
+    onClose,
+    openAddress: () => stage?.address() ?? `/missions/${mission}/3d`,
+  });
+  return stage;
+}
+
+/** @param {HTMLElement} frame holds the map @param {PanelOptions} options @returns {Promise<Panel>} */
+export async function openPanel(frame, options) {
+  const { takesFocus = true, player = null, follow = () => () => {}, onClose = () => {} } = options;
+  const waiting = h("p", { class: "scene-waiting" }, t("Reading what there is to see."));
+  const root = h("div", { class: "scene-root" }, waiting);
   const element = h("section", { class: "scene-panel", "aria-label": t("3D view") }, root);
   await loadStyles();
   frame.append(element);
+  /** @type {Stage | null} */
   let stage = null;
   let unfollow = () => {};
 
@@ -62,53 +117,18 @@ export async function openPanel(
   }
 
   try {
-    const { data: detail } = await get(`/missions/${mission}`);
-    const source = record ? recordSource(record) : (await readSource(detail, wanted)).source;
-    if (!source.routes.length) throw new ApiError(t("There is nothing to see yet: plan the mission first."));
-    stage = await openStage(root, {
-      mission: { id: mission, name: detail.name },
-      source,
-      isPanel: true,
-      player,
-      now_ms,
-      onClose: close,
-      openAddress: () => stage?.address() ?? `/missions/${mission}/3d`,
-    });
+    stage = await openInside(root, { ...options, onClose: close });
+    if (!stage) return { close, stage };
     unfollow = follow(stage);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
-    root.replaceChildren(
-      h(
-        "p",
-        { class: "scene-waiting" },
-        icon("cloud-off"),
-        ` ${error.message} `,
-        h("button", { class: "button small", type: "button", onclick: close }, t("Close")),
-      ),
-    );
+    root.replaceChildren(faultWords(error.message, close));
     return { close, stage: null };
   }
-  const bindings = [
+  listenInside(element, [
     ...sceneKeys(stage, { hasOwnTime: player === null }),
-    { keys: ["escape"], words: t("Close the 3D view"), act: () => (close(), true) },
-  ];
-  element.addEventListener("keydown", (event) => {
-    if (
-      event.defaultPrevented ||
-      event.target.closest("input, select") ||
-      document.documentElement.dataset.singleKeys === "off"
-    )
-      return;
-    const name = keyName(event);
-    if (name === "?") showKeys(bindings);
-    else if (
-      bindings.find(({ keys }) => keys.includes(name))?.act(event) === false ||
-      !bindings.some(({ keys }) => keys.includes(name))
-    )
-      return;
-    event.preventDefault();
-    event.stopPropagation(); // the page's own keys rest while the view has the focus
-  });
+    { keys: ["escape"], words: t("Close the 3D view"), act: close },
+  ]);
   if (takesFocus) element.querySelector("canvas")?.focus({ preventScroll: true });
   return { close, stage };
 }

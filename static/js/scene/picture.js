@@ -10,63 +10,63 @@ import { makeWorld } from "./world/world.js";
 const SAME_SUN_MS = 30_000;
 const [HEAD_M, HEAD_PX] = [1.1, 30]; // round a UAV its way is not drawn
 
-/** canvas in its container; draw, onLost, onFound: as of createView. Throws NoWebGL. */
-export function createPicture(container, canvas, { palette, draw, onLost, onFound, quality = "high" }) {
+/** @import { Marks } from "./flight/marks.js" */
+/** @import { Uavs } from "./flight/uavs.js" */
+/** @import { Ways } from "./flight/ways.js" */
+/** @import { Picture, PictureOptions } from "./types.d.ts" */
+
+/**
+ * @param {HTMLElement} container
+ * @param {HTMLCanvasElement} canvas in it
+ * @param {PictureOptions} options
+ * @returns {Picture}
+ * @throws {NoWebGL}
+ */
+export function createPicture(container, canvas, { scene, palette, draw, onLost, onFound }) {
   const view = createView(container, canvas, { draw, onLost, onFound });
+  const frame = makeFrame(scene.origin);
+  const world = makeWorld({ frame, palette });
   let colours = palette;
-  let world = null;
-  let parts = null; // { ways, uavs, marks }
+  /** @type {{ ways: Ways, uavs: Uavs, marks: Marks } | null} */
+  let parts = null;
+  /** @type {number | null} */
   let sun_ms = null;
 
-  function clear() {
-    for (const part of [world, ...Object.values(parts ?? {})].filter(Boolean)) {
-      view.scene.remove(part.group);
-      part.dispose();
-    }
-    world = parts = sun_ms = null;
-  }
+  world.show(scene);
+  view.scene.fog = world.fog;
+  view.scene.add(world.group);
+  view.setBackground(palette.ground);
 
-  const picture = {
+  const isNight = () => world.light.phase === "night";
+
+  return {
     kind: "3d",
     size: view.size,
     request: view.request,
     project: view.project,
     figures: view.figures,
     copy: view.copy,
-    frame: null,
-    groundAt: (x, z) => world?.heightAt(x, z) ?? 0,
+    frame,
+    groundAt: world.heightAt,
     wires: () => world.wires,
-    labels: () => world.labels(),
-    isNight: () => world.light.phase === "night",
-    /** scene: of GET /api/v1/scene. */
-    showGround(scene) {
-      clear();
-      picture.frame = makeFrame(scene.origin);
-      world = makeWorld({ frame: picture.frame, palette: colours, quality });
-      world.show(scene);
-      view.scene.fog = world.fog;
-      view.scene.add(world.group);
-      view.setBackground(colours.ground);
-    },
-    /** flight: of drawFlight; count: of routes. */
+    labels: world.labels,
+    isNight,
     showFlight(flight, count, begins_ms) {
-      parts = {
-        ways: createWays(picture.groundAt),
-        uavs: createUavs(Math.max(1, count)),
-        marks: createMarks(Math.max(1, count)),
-      };
+      const most = Math.max(1, count);
+      const ways = createWays(world.heightAt);
+      parts = { ways, uavs: createUavs(most), marks: createMarks(most) };
       for (const { group } of Object.values(parts)) view.scene.add(group);
-      parts.ways.setPalette(colours);
-      parts.ways.showPlanned(flight.plannedLines());
-      parts.ways.showFlown(flight.flownLines(), begins_ms);
+      ways.setPalette(colours);
+      ways.showPlanned(flight.plannedLines());
+      ways.showFlown(flight.flownLines(), begins_ms);
       view.request();
     },
     showFlown(flight, begins_ms) {
-      parts.ways.showFlown(flight.flownLines(), begins_ms);
+      parts?.ways.showFlown(flight.flownLines(), begins_ms);
     },
     setPalette(next) {
       colours = next;
-      world?.setPalette(next);
+      world.setPalette(next);
       parts?.ways.setPalette(next);
       view.setBackground(next.ground);
       view.request();
@@ -76,38 +76,34 @@ export function createPicture(container, canvas, { palette, draw, onLost, onFoun
       sun_ms = date.getTime();
       world.setSun(date);
     },
-    /** pose: of the rig; distance_m: to what is looked at; room_m: round the camera; drawn: moments with { colour, report }; chosen, looked: places of routes; hidden: the one that looks. */
     show({ pose, distance_m, room_m, drawn, chosen, looked, hidden, at_ms, wind, dt_s }) {
       view.aim(pose, room_m);
-      parts.uavs.show(drawn, {
+      const { metresPerPixel } = view;
+      parts?.uavs.show(drawn, {
         palette: colours,
-        metresPerPixel: view.metresPerPixel,
-        isDark: colours.isDark || picture.isNight(),
+        metresPerPixel,
+        isDark: colours.isDark || isNight(),
         dt_s,
         hidden,
       });
-      parts.marks.show(
+      parts?.marks.show(
         drawn.filter(({ route }) => route !== hidden),
-        {
-          wind: hidden === null ? wind : null,
-          chosen,
-          palette: colours,
-          isNight: picture.isNight(),
-          metresPerPixel: view.metresPerPixel,
-        },
+        { wind: hidden === null ? wind : null, chosen, palette: colours, isNight: isNight(), metresPerPixel },
       );
       const heads = drawn.map(({ route, place }) => ({
         route,
         place,
-        radius_m: Math.max(HEAD_M, HEAD_PX * view.metresPerPixel(place)),
+        radius_m: Math.max(HEAD_M, HEAD_PX * metresPerPixel(place)),
       }));
-      parts.ways.frame({ at_ms, heads, looked, viewport: view.viewport() });
+      parts?.ways.frame({ at_ms, heads, looked, viewport: view.viewport() });
       return world.update(view.camera, distance_m) === true;
     },
     dispose() {
-      clear();
+      for (const part of [world, ...Object.values(parts ?? {})]) {
+        view.scene.remove(part.group);
+        part.dispose();
+      }
       view.dispose();
     },
   };
-  return picture;
 }

@@ -2,7 +2,6 @@
 
 import { get, signInAddress } from "../api.js";
 import { h, icon } from "../dom.js";
-import { routeLetter } from "../domain/palette.js";
 import { onTheme } from "../page/theme.js";
 import { createPlayer } from "../record/player.js";
 import { simulatedMark } from "../simulated.js";
@@ -23,15 +22,43 @@ import { boxRound, placesOf } from "./sources/box.js";
 import { createTimeBar } from "./time_bar.js";
 import { NoWebGL } from "./view.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { Scene } from "../api_types.d.ts" */
+/** @import { staleWords } from "../live/stale.js" */
+/** @import { LoadedMission } from "../record/load.js" */
+/** @import { Player, TimeSpan } from "../record/player.js" */
+/** @import { ReplayEvent } from "../record/timeline.js" */
+/** @import { Flight } from "./flight/drawn_flight.js" */
+/** @import { Frames } from "./frames.js" */
+/** @import { SceneLink } from "./link.js" */
+/** @import { TimeBar } from "./time_bar.js" */
+/** @import { FlightSource, Picture, PictureOptions, PlacedTarget, ScenePalette, StageState } from "./types.d.ts" */
+
+/** @typedef {NonNullable<Awaited<ReturnType<typeof openStage>>>} Stage */
+/**
+ * How a stage is opened.
+ *
+ * @typedef {object} StageOptions
+ * @property {{ id: string, name: string }} mission
+ * @property {FlightSource} source
+ * @property {SceneLink | null} [link]
+ * @property {boolean} [isPanel] with a button that closes it
+ * @property {Player | null} [player] of the page that it stands on; without it, it has its own where the source has a span
+ * @property {() => number} [now_ms] of a live source
+ * @property {() => void} [onChange] what a link would say is another
+ * @property {() => void} [onClose]
+ * @property {() => string} [openAddress]
+ * @property {() => boolean} [isWanted] whether it still is once the ground is read
+ */
+
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 const USUAL_SPEED = 5;
+const JUMP_MS = 5_000; // from one frame to the next, at JUMP_SPEED or below
+const JUMP_SPEED = 20;
 
-const NO_WEBGL = () => ({
-  title: t("This browser draws no 3D."),
-  words: t("WebGL is missing or switched off. You see the flight from above instead."),
-});
+const NO_WEBGL = t("WebGL is missing or switched off. You see the flight from above instead.");
 
-/** How the flight is seen: in space, or from above where there is no WebGL. */
+/** How the flight is seen: in space, or from above where there is no WebGL. @param {HTMLElement} holder @param {PictureOptions} options */
 function pictureIn(holder, options) {
   const canvas = () => h("canvas", { class: "scene-canvas", tabindex: 0, role: "img" });
   const first = canvas();
@@ -46,124 +73,45 @@ function pictureIn(holder, options) {
   }
 }
 
-/**
- * root: an element with a size. mission: { id, name }; source: of sources/read.js; link: of link.js or null. isPanel: with a button that closes it.
- * player: of the page that it stands on, or null: then it has its own where the source has a span. now_ms(): of a live source.
- * onChange(): what a link would say is another. onClose(). isWanted(): whether it still is once the ground is read; else null is given.
- * → acts and point(); throws ApiError.
- */
-export async function openStage(
-  root,
-  {
-    mission,
-    source,
-    link = null,
-    isPanel = false,
-    player: hostPlayer = null,
-    now_ms = () => Date.now(),
-    onChange = () => {},
-    onClose = () => {},
-    openAddress = () => "",
-    isWanted = () => true,
-  },
-) {
-  const scene = await readScene(source);
-  if (!isWanted()) return null;
-  let palette = readScenePalette();
-  const holder = h("div", { class: "scene-picture" });
+/** What the picture has to say over itself: of the graphics, and of a source that is silent. */
+function createNotices() {
   const notice = h("p", { class: "scene-notice float", role: "status", hidden: true });
   const stale = h("p", { class: "scene-notice float warning", role: "status", hidden: true });
-  const stage = { mission, source, chosen: null, target: null, isFlat: false, isPanel, now_ms };
-  let frames = null;
-  root.replaceChildren(holder);
+  return {
+    element: h("div", { class: "scene-notices" }, notice, stale),
+    overlays: [notice, stale],
+    /** @param {string} title @param {string} words */
+    tell(title, words) {
+      notice.hidden = false;
+      notice.replaceChildren(icon("info"), h("span", {}, h("strong", {}, title), ` ${words}`));
+    },
+    quiet() {
+      notice.hidden = true;
+    },
+    /** Of a live source. @param {ReturnType<typeof staleWords>} said */
+    sayStale(said) {
+      const words = [said?.words, said?.rest].filter(Boolean).join(" ");
+      if (stale.dataset.words === words) return;
+      stale.dataset.words = words;
+      stale.hidden = !said;
+      if (!said) return;
+      stale.replaceChildren(
+        icon("cloud-off"),
+        h(
+          "span",
+          {},
+          h("strong", {}, said.words),
+          said.rest && ` ${said.rest}`,
+          said.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))],
+        ),
+      );
+    },
+  };
+}
 
-  const made = pictureIn(holder, {
-    palette,
-    draw: (time) => frames?.draw(time) ?? false,
-    onLost: () => tell(t("The graphics have stopped."), t("They are started again as soon as the browser can.")),
-    onFound: () => (notice.hidden = true),
-  });
-  const { canvas, picture } = made;
-  stage.isFlat = picture.kind === "2d";
-  const rig = createRig({ isCalm: () => calm.matches });
-  const labels = createLabels(holder);
-  const instruments = createInstruments();
-  holder.append(h("div", { class: "scene-notices" }, notice, stale));
-
-  picture.showGround(scene);
-  const flight = drawFlight(source, {
-    frame: picture.frame,
-    groundAt: picture.groundAt,
-    groundKind: scene.ground.kind,
-  });
-  picture.showFlight(flight, source.routes.length, source.span?.from_ms ?? 0);
-  const heights = new Map(scene.supports.map(({ id, likely_m }) => [id, likely_m]));
-  const targets = source.targets.map((target) => ({
-    ...target,
-    place3d: flight.targetPlace({ position: target.position, height_m: heights.get(target.asset) ?? null }),
-  }));
-
-  let lastMove_ms = null;
-  const player = hostPlayer ?? (source.span ? createPlayer({ onMove: () => (moved(), bar?.show()) }) : null);
-  if (!hostPlayer && player) {
-    player.speed = USUAL_SPEED;
-    player.setSpan(source.span);
-  }
-  function moved() {
-    const far = lastMove_ms !== null && Math.abs(player.at_ms - lastMove_ms) > 5_000 * Math.max(1, player.speed / 20);
-    if (far) rig.settle(); // a jump in time is one in space
-    lastMove_ms = player.at_ms;
-    picture.request();
-    if (!player.isPlaying) onChange();
-  }
-
-  const hands = listenToHands(canvas, rig, {
-    onChange: () => (picture.request(), onChange()),
-    onPick: (at) => frames.pick(at),
-  });
-  const atNow = () => (player ? player.at_ms : now_ms());
-  const acts = createActs({
-    stage,
-    rig,
-    hands,
-    picture,
-    player,
-    hasOwnTime: !hostPlayer,
-    targets,
-    labels,
-    atNow,
-    frames: () => frames,
-    palette: () => palette,
-    onChange,
-    onClose,
-    step: (direction) => bar?.step(direction),
-    showBar: () => cameraBar.show({ mode: rig.mode, chosen: stage.chosen, isFlat: stage.isFlat }),
-  });
-  const cameraBar = createCameraBar({ routes: source.routes, acts, isPanel, openAddress });
-  const bar =
-    !hostPlayer && player ? createTimeBar({ player, source, eventWords: (event) => eventWords(event, source) }) : null;
-  frames = createFrames({
-    stage,
-    scene,
-    picture,
-    canvas,
-    rig,
-    hands,
-    player,
-    flight,
-    targets,
-    labels,
-    instruments,
-    palette: () => palette,
-    atNow,
-    isCalm: () => calm.matches,
-    surroundings: surroundingsOf(scene, picture.frame, picture.wires(), picture.groundAt),
-    overlays: () => [...cameraBar.element.children, ...chips.children, instruments.element, notice, stale],
-    choose: acts.choose,
-    seeTarget: acts.seeTarget,
-  });
-
-  const chips = h(
+/** What kind of flight it is. @param {FlightSource} source @param {Scene} scene */
+const chipsOf = (source, scene) =>
+  h(
     "div",
     { class: "scene-chips" },
     source.isSimulated && simulatedMark(),
@@ -171,80 +119,152 @@ export async function openStage(
     source.kind === "live" && h("span", { class: "chip active" }, t("Live")),
     scene.ground.kind === "flat" && h("span", { class: "chip draft" }, t("Flat ground assumed")),
   );
-  holder.append(h("div", { class: "scene-over" }, cameraBar.element, chips), instruments.element);
-  if (bar) root.append(bar.element);
-  if (stage.isFlat) {
-    const { title, words } = NO_WEBGL();
-    tell(title, words);
-  }
-  if (bar)
-    new ResizeObserver(() => root.style.setProperty("--scene-time", `${bar.element.offsetHeight}px`)).observe(
-      bar.element,
-    );
 
-  function tell(title, words) {
-    notice.hidden = false;
-    notice.replaceChildren(icon("info"), h("span", {}, h("strong", {}, title), ` ${words}`));
-  }
+/** Places of the targets, as high as what they are. @param {FlightSource} source @param {Scene} scene @param {Flight} flight @returns {PlacedTarget[]} */
+function placedTargets(source, scene, flight) {
+  const heights = new Map(scene.supports.map(({ id, likely_m }) => [id, likely_m]));
+  return source.targets.map((target) => ({
+    ...target,
+    place3d: flight.targetPlace({ position: target.position, height_m: heights.get(target.asset) ?? null }),
+  }));
+}
 
-  const endTheme = onTheme(() => {
-    palette = readScenePalette();
-    picture.setPalette(palette);
+/** The flight in its picture: what does not change while it is seen. @param {HTMLElement} holder @param {FlightSource} source @param {PictureOptions} options */
+function drawStage(holder, source, options) {
+  const { scene } = options;
+  const { canvas, picture } = pictureIn(holder, options);
+  const { frame, groundAt } = picture;
+  const flight = drawFlight(source, { frame, groundAt, groundKind: scene.ground.kind });
+  picture.showFlight(flight, source.routes.length, source.span?.from_ms ?? 0);
+  return {
+    canvas,
+    picture,
+    flight,
+    targets: placedTargets(source, scene, flight),
+    surroundings: surroundingsOf(scene, frame, picture.wires(), groundAt),
+  };
+}
+
+/** The view's own player, where the source has a span. @param {FlightSource} source @param {() => void} onMove */
+function ownPlayer({ span }, onMove) {
+  if (!span) return null;
+  const player = createPlayer({ onMove });
+  player.speed = USUAL_SPEED;
+  player.setSpan(span);
+  return player;
+}
+
+/** Whether the time has jumped since the last asking. @param {Player} player */
+function jumpsOf(player) {
+  /** @type {number | null} */
+  let last_ms = null;
+  return () => {
+    const hasJumped =
+      last_ms !== null && Math.abs(player.at_ms - last_ms) > JUMP_MS * Math.max(1, player.speed / JUMP_SPEED);
+    last_ms = player.at_ms;
+    return hasJumped;
+  };
+}
+
+/**
+ * Opens the view in an element that has a size; null where it is not wanted any more.
+ *
+ * @param {HTMLElement} root
+ * @param {StageOptions} options
+ * @throws {ApiError}
+ */
+export async function openStage(root, options) {
+  const scene = await readScene(options.source);
+  return (options.isWanted?.() ?? true) ? mountStage(root, scene, options) : null;
+}
+
+/** @param {HTMLElement} root @param {Scene} scene @param {StageOptions} options */
+function mountStage(root, scene, options) {
+  const { mission, source, link = null, isPanel = false, player: hostPlayer = null, now_ms = Date.now } = options;
+  const { onChange = () => {}, onClose = () => {}, openAddress = () => "" } = options;
+  const palette = readScenePalette();
+  const holder = h("div", { class: "scene-picture" });
+  const notices = createNotices();
+  /** @type {Frames | null} */
+  let frames = null;
+  root.replaceChildren(holder);
+  const drawn = drawStage(holder, source, {
+    scene,
+    palette,
+    draw: (time) => frames?.draw(time) ?? false,
+    onLost: () =>
+      notices.tell(t("The graphics have stopped."), t("They are started again as soon as the browser can.")),
+    onFound: notices.quiet,
   });
-  const onCalm = () => picture.request();
-  calm.addEventListener("change", onCalm);
-
-  acts.begin(link, { scene });
+  const { canvas, picture } = drawn;
+  /** @type {StageState} */
+  const stage = { mission, source, chosen: null, target: null, isFlat: picture.kind === "2d", now_ms };
+  const rig = createRig({ isCalm: () => calm.matches });
+  const labels = createLabels(holder);
+  const instruments = createInstruments();
+  holder.append(notices.element);
+  /** @type {TimeBar | null} */
+  let bar = null;
+  const player =
+    hostPlayer ??
+    ownPlayer(source, () => {
+      moved();
+      bar?.show();
+    });
+  const hasJumped = player && jumpsOf(player);
+  function moved() {
+    if (hasJumped?.()) rig.settle(); // a jump in time is one in space
+    picture.request();
+    if (!player?.isPlaying) onChange();
+  }
+  const hands = listenToHands(canvas, rig, {
+    onChange() {
+      picture.request();
+      onChange();
+    },
+    onPick: (at) => frames?.pick(at),
+  });
+  const atNow = () => (player ? player.at_ms : now_ms());
+  const look = watchLook(picture, palette);
+  const context = { ...drawn, stage, scene, rig, hands, player, labels, palette: look.palette, atNow };
+  const acts = createActs({
+    ...context,
+    hasOwnTime: !hostPlayer,
+    drawn: () => frames?.drawn() ?? [],
+    onChange,
+    onClose,
+    step: (direction) => bar?.step(direction),
+    showBar: () => cameraBar.show({ mode: rig.mode, chosen: stage.chosen, isFlat: stage.isFlat }),
+  });
+  const cameraBar = createCameraBar({ routes: source.routes, acts, isPanel, openAddress });
+  const chips = chipsOf(source, scene);
+  if (!hostPlayer && player && source.span) bar = timeBarIn(root, player, source, source.span);
+  frames = createFrames({
+    ...context,
+    instruments,
+    isCalm: () => calm.matches,
+    overlays: () => [...cameraBar.element.children, ...chips.children, instruments.element, ...notices.overlays],
+    choose: acts.choose,
+    seeTarget: acts.seeTarget,
+  });
+  holder.append(h("div", { class: "scene-over" }, cameraBar.element, chips), instruments.element);
+  if (stage.isFlat) notices.tell(t("This browser draws no 3D."), NO_WEBGL);
+  acts.begin(link);
   bar?.show();
   picture.request();
-
   return {
     ...acts,
+    ...pictureActs({ ...context, source, bar }),
     source,
-    kind: picture.kind,
-    /** For measurements: of view.js, and how many towers stand within the picture. */
-    figures: () => (picture.figures ? { ...picture.figures(), towers: towersIn(picture, scene) } : null),
-    request: picture.request,
-    /** For a page with a time of its own: it has moved, or another UAV is looked at. */
+    sayStale: notices.sayStale,
+    /** For a page with a time of its own: it has moved, or another UAV is looked at. @param {number | null} place */
     point(place) {
       if (place !== null && place !== stage.chosen) acts.choose(place);
       moved();
     },
-    /** What staleWords of live/stale.js says of a live source. */
-    sayStale(said) {
-      const words = [said?.words, said?.rest].filter(Boolean).join(" ");
-      if (stale.dataset.words === words) return;
-      stale.dataset.words = words;
-      stale.hidden = !said;
-      if (said)
-        stale.replaceChildren(
-          icon("cloud-off"),
-          h(
-            "span",
-            {},
-            h("strong", {}, said.words),
-            said.rest && ` ${said.rest}`,
-            said.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))],
-          ),
-        );
-    },
-    /** A record has grown: of report/load.js. */
-    renew(loaded) {
-      source.renew(loaded);
-      picture.showFlown(flight, source.span?.from_ms ?? 0);
-      if (bar) player.setSpan(source.span);
-      bar?.renew();
-      picture.request();
-    },
-    /** A live source has grown or moved. */
-    refresh(hasGrown) {
-      if (hasGrown) picture.showFlown(flight, source.routes[0]?.pieces[0]?.samples[0]?.at_ms ?? 0);
-      picture.request();
-    },
     dispose() {
       if (!hostPlayer) player?.stop();
-      endTheme?.();
-      calm.removeEventListener("change", onCalm);
+      look.end();
       hands.dispose();
       picture.dispose();
       root.replaceChildren();
@@ -252,6 +272,60 @@ export async function openStage(
   };
 }
 
+/** @param {HTMLElement} root @param {Player} player @param {FlightSource} source @param {TimeSpan} span */
+function timeBarIn(root, player, source, span) {
+  const bar = createTimeBar({ player, source, span, eventWords: (event) => eventWords(event, source) });
+  root.append(bar.element);
+  new ResizeObserver(() => root.style.setProperty("--scene-time", `${bar.element.offsetHeight}px`)).observe(
+    bar.element,
+  );
+  return bar;
+}
+
+/** The picture goes with the theme, and with what is said of movement. @param {Picture} picture @param {ScenePalette} firstPalette */
+function watchLook(picture, firstPalette) {
+  let palette = firstPalette;
+  const endTheme = onTheme(() => {
+    palette = readScenePalette();
+    picture.setPalette(palette);
+  });
+  const onCalm = () => picture.request();
+  calm.addEventListener("change", onCalm);
+  return {
+    palette: () => palette,
+    end() {
+      endTheme();
+      calm.removeEventListener("change", onCalm);
+    },
+  };
+}
+
+/**
+ * What the picture can be asked, and what a source that grows does to it.
+ *
+ * @param {{ source: FlightSource, scene: Scene, picture: Picture, flight: Flight, player: Player | null, bar: TimeBar | null }} parts
+ */
+const pictureActs = ({ source, scene, picture, flight, player, bar }) => ({
+  kind: picture.kind,
+  request: picture.request,
+  /** For measurements: of view.js, and how many towers stand within the picture. */
+  figures: () => (picture.figures ? { ...picture.figures(), towers: towersIn(picture, scene) } : null),
+  /** A record has grown. @param {LoadedMission} loaded */
+  renew(loaded) {
+    source.renew?.(loaded);
+    picture.showFlown(flight, source.span?.from_ms ?? 0);
+    if (bar) player?.setSpan(source.span);
+    bar?.renew();
+    picture.request();
+  },
+  /** A live source has grown or moved. @param {boolean} hasGrown */
+  refresh(hasGrown) {
+    if (hasGrown) picture.showFlown(flight, source.routes[0]?.pieces[0]?.samples[0]?.at_ms ?? 0);
+    picture.request();
+  },
+});
+
+/** How many stand within the picture. @param {Picture} picture @param {Scene} scene */
 function towersIn({ project, size, frame }, { supports }) {
   return supports.filter(({ kind, position, ground_amsl_m, height_m }) => {
     const at =
@@ -260,22 +334,26 @@ function towersIn({ project, size, frame }, { supports }) {
   }).length;
 }
 
+/** @param {FlightSource} source */
 async function readScene(source) {
-  const box = boxRound(placesOf(source));
-  return (await get(`/scene?bbox=${(box ?? [0, 0, 0.01, 0.01]).join(",")}`)).data;
+  const box = boxRound(placesOf(source)) ?? [0, 0, 0.01, 0.01];
+  const { data } = /** @type {Answer<Scene>} */ (await get(`/scene?bbox=${box.join(",")}`));
+  return data;
 }
 
-function eventWords({ kind, place, target, alert }, source) {
-  const name = source.routes.find((route) => route.place === place)?.name ?? "";
-  const words = {
-    "take-off": () => t("{name} takes off", { name }),
-    landing: () => t("{name} lands", { name }),
-    target: () =>
-      t("{target} reached", { target: source.targets.find((one) => one.place === target)?.label ?? target + 1 }),
-    alert: () => [name, alert.message].filter(Boolean).join(": "),
-  };
-  return words[kind]();
+/** @param {ReplayEvent} event @param {FlightSource} source */
+function eventWords(event, { routes, targets }) {
+  const name = routes.find(({ place }) => place === event.place)?.name ?? "";
+  switch (event.kind) {
+    case "take-off":
+      return t("{name} takes off", { name });
+    case "landing":
+      return t("{name} lands", { name });
+    case "target":
+      return t("{target} reached", {
+        target: targets.find(({ place }) => place === event.target)?.label ?? event.target + 1,
+      });
+    default:
+      return [name, event.alert.message].filter(Boolean).join(": ");
+  }
 }
-
-/** "A Wigeon": how a route is called. */
-export const routeName = ({ place, name }) => `${routeLetter(place)} ${name}`;

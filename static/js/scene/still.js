@@ -1,17 +1,25 @@
 /** A picture of the moment to keep: what is seen, its labels, and a line that says what it is. */
 
+/** @import { CopiedPicture, ScenePalette } from "./types.d.ts" */
+
+/** @typedef {{ element: HTMLElement, left: number, top: number, width: number, height: number }} StillLabel */
+
 const LINE_PX = 40;
 const PADDING_PX = 14;
 
-/** copied: { picture: canvas, scale } of the view; labels: of createLabels().shown(); words: [title, facts]; palette. → canvas. */
+/**
+ * @param {CopiedPicture} copied
+ * @param {readonly StillLabel[]} labels
+ * @param {[title: string, facts: string, mark: string]} words
+ * @param {ScenePalette} palette
+ */
 export function stillOf({ picture, scale }, labels, words, palette) {
   const line = LINE_PX * scale;
   const canvas = document.createElement("canvas");
   [canvas.width, canvas.height] = [picture.width, picture.height + line];
-  const context = canvas.getContext("2d");
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   context.drawImage(picture, 0, 0);
-  for (const { element, left, top, width, height } of labels)
-    drawLabel(context, element, { left, top, width, height }, scale, palette);
+  for (const label of labels) drawLabel(context, label, scale, palette);
   context.fillStyle = palette.panel;
   context.fillRect(0, picture.height, canvas.width, line);
   context.textBaseline = "middle";
@@ -29,7 +37,8 @@ export function stillOf({ picture, scale }, labels, words, palette) {
   return canvas;
 }
 
-function drawLabel(context, element, { left, top, width, height }, scale, palette) {
+/** @param {CanvasRenderingContext2D} context @param {StillLabel} label @param {number} scale @param {ScenePalette} palette */
+function drawLabel(context, { element, left, top, width, height }, scale, palette) {
   const look = getComputedStyle(element);
   context.save();
   context.scale(scale, scale);
@@ -45,23 +54,26 @@ function drawLabel(context, element, { left, top, width, height }, scale, palett
   context.textBaseline = "middle";
   for (const { part, box } of rows) {
     const own = getComputedStyle(part);
+    const text = part.textContent ?? "";
     context.font = `${own.fontWeight} ${own.fontSize} ${palette.font}`;
     const [x, y] = [left + box.left - corner.left, top + box.top - corner.top + box.height / 2];
     if (look.backgroundColor === "rgba(0, 0, 0, 0)") {
       context.lineWidth = 3;
       context.lineJoin = "round";
       context.strokeStyle = palette.halo;
-      context.strokeText(part.textContent, x, y);
+      context.strokeText(text, x, y);
     }
     context.fillStyle = own.color;
-    context.fillText(part.textContent, x, y);
+    context.fillText(text, x, y);
   }
   context.restore();
 }
 
-/** Gives a canvas to the reader as a PNG file. */
+/** Gives a canvas to the reader as a PNG file. @param {HTMLCanvasElement} canvas @param {string} name */
 export async function download(canvas, name) {
+  /** @type {Blob | null} */
   const blob = await new Promise((resolve) => canvas.toBlob(resolve, "image/png"));
+  if (!blob) throw new Error("the picture could not be encoded");
   const link = document.createElement("a");
   link.href = URL.createObjectURL(blob);
   link.download = name;
@@ -71,7 +83,7 @@ export async function download(canvas, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** "north-belt-2026-09-10-091204-chase.png": of letters, digits and hyphens in any language. */
+/** "north-belt-2026-09-10-091204-chase.png": of letters, digits and hyphens in any language. @param {string} mission @param {string} at @param {string} camera */
 export function fileName(mission, at, camera) {
   const plain = mission
     .toLowerCase()

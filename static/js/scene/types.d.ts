@@ -1,12 +1,15 @@
 /** Shapes that the modules of the 3D view share. Places are in the frame: x east, y up, z south [m]. */
 
-import type { LiveUav, WaypointKind } from "../api_types.d.ts";
+import type { LiveUav, Scene, WaypointKind } from "../api_types.d.ts";
 import type { Palette } from "../domain/palette.js";
 import type { LoadedMission } from "../record/load.js";
 import type { TimeSpan } from "../record/player.js";
 import type { ReplayEvent } from "../record/timeline.js";
-import type { drawFlight } from "./flight/drawn_flight.js";
+import type { Pose } from "./cameras/rig.js";
+import type { Flight } from "./flight/drawn_flight.js";
 import type { makeFrame } from "./frame.js";
+import type { GroundLabel } from "./geometry/labels.js";
+import type { Wires } from "./geometry/wires.js";
 import type { Task } from "./instruments/task.js";
 
 export type Vector = [x: number, y: number, z: number];
@@ -45,7 +48,7 @@ export interface FlightSample {
   waypoint?: number | null;
   isInAir?: boolean | null;
   bound?: Bound | null;
-  mode?: string;
+  mode?: string | null;
 }
 /** A piece of a track by time; it has a sample at least. */
 export interface Piece {
@@ -113,13 +116,17 @@ export interface FlightSource {
   isGrowing?: boolean;
   /** of a record: puts in what has come since */
   renew?(loaded: LoadedMission): void;
+  /** of a live one: what was flown has grown */
+  revision?: number;
+  /** of a live one: returns whether anything is another than before */
+  take?(heard: { uavs: readonly LiveUav[]; now_ms: number }): boolean;
   /** of a live one: where a UAV is shown */
   momentAt?(route: FlightRoute, now_ms: number): Moment | null;
   isGliding?(now_ms: number): boolean;
 }
 
 /** A moment of a UAV as it is drawn. */
-export type PlacedMoment = ReturnType<ReturnType<typeof drawFlight>["at"]>;
+export type PlacedMoment = ReturnType<Flight["at"]>;
 export interface DrawnUav extends PlacedMoment {
   task: Task;
   /** of its last report, where it is not measured */
@@ -167,4 +174,96 @@ export type DrawMember = (start: Vector, end: Vector, width_m: number, tone?: nu
 export interface DrawSupport {
   outline: DrawMember;
   fine: DrawMember;
+}
+
+export interface Size {
+  width: number;
+  height: number;
+}
+/** A place on the screen in CSS pixels, and how far away it is [m]. */
+export interface Projected {
+  x: number;
+  y: number;
+  away_m: number;
+}
+/** The picture as it stands, on a canvas of its own, with so many of its pixels a CSS pixel. */
+export interface CopiedPicture {
+  picture: HTMLCanvasElement;
+  scale: number;
+}
+/** For measurements: what was drawn since the last asking, and what the graphics hold. */
+export interface Figures {
+  calls: number;
+  triangles: number;
+  geometries: number;
+  textures: number;
+  programs: number;
+  frames: number;
+  script_ms: number;
+  longest_ms: number;
+}
+export interface FrameTime {
+  dt_s: number;
+  now_ms: number;
+}
+export interface PictureOptions {
+  scene: Scene;
+  palette: ScenePalette;
+  /** before each picture: moves what moves and returns whether the next picture is wanted at once */
+  draw(time: FrameTime): boolean;
+  /** the graphics context */
+  onLost?(): void;
+  onFound?(): void;
+}
+/** What is seen in one frame. */
+export interface Look {
+  pose: Pose;
+  /** to what is looked at */
+  distance_m: number;
+  /** round the camera */
+  room_m: number;
+  drawn: DrawnUav[];
+  chosen: number | null;
+  looked: number | null;
+  /** the one that looks */
+  hidden: number | null;
+  at_ms: number | null;
+  wind: Wind | null;
+  dt_s: number;
+}
+/** A flight as it is seen: in space, or from above where there is no WebGL. */
+export interface Picture {
+  kind: "3d" | "2d";
+  size: Size;
+  frame: Frame;
+  groundAt: HeightAt;
+  request(): void;
+  wires(): Wires;
+  labels(): GroundLabel[];
+  isNight(): boolean;
+  /** begins_ms: from which times are counted, so that they stay exact */
+  showFlight(flight: Flight, count: number, begins_ms: number): void;
+  showFlown(flight: Flight, begins_ms: number): void;
+  setPalette(palette: ScenePalette): void;
+  setDate(date: Date): void;
+  /** Returns whether the next picture is another one. */
+  show(look: Look): boolean;
+  project(place: Vector): Projected | null;
+  copy(): CopiedPicture;
+  figures?(): Figures;
+  dispose(): void;
+}
+
+/** What a view looks at; the targets' places are those of the mission. */
+export interface StageState {
+  mission: { id: string; name: string };
+  source: FlightSource;
+  /** place of the UAV that is followed */
+  chosen: number | null;
+  target: number | null;
+  isFlat: boolean;
+  now_ms(): number;
+}
+export interface PlacedTarget extends SourceTarget {
+  place3d: Vector;
 }

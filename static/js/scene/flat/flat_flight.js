@@ -2,6 +2,11 @@
 
 import { ESTIMATED, LOST, MEASURED } from "../sources/pieces.js";
 
+/** @import { FlownRoute, PlannedLine } from "../flight/drawn_flight.js" */
+/** @import { Bound, DrawnUav, ScenePalette, Vector } from "../types.d.ts" */
+
+/** @typedef {(place: Vector) => [x: number, y: number]} OnScreen */
+
 const ROUTES = 8;
 const DART = [
   [0, -13],
@@ -12,17 +17,32 @@ const DART = [
 const REST = 0.35; // of what is not looked at
 const LEAST_RING_PX = 14;
 
+/** @param {ScenePalette} palette @param {number} place */
 const colourOf = (palette, place) => palette.routes[place % ROUTES];
 
+/** @param {CanvasRenderingContext2D} context @param {readonly number[]} positions @param {OnScreen} onScreen @param {number} [until] */
 function stroke(context, positions, onScreen, until = Infinity) {
   context.beginPath();
   for (let at = 0; at < positions.length && at / 3 < until; at += 3)
-    context[at ? "lineTo" : "moveTo"](...onScreen([positions[at], positions[at + 1], positions[at + 2]]));
+    context.lineTo(...onScreen([positions[at], positions[at + 1], positions[at + 2]])); // the first begins it
   context.stroke();
 }
 
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {object} ways
+ * @param {readonly PlannedLine[]} ways.planned
+ * @param {readonly FlownRoute[]} ways.flown
+ * @param {OnScreen} ways.onScreen
+ * @param {ScenePalette} ways.palette
+ * @param {number | null} ways.at_ms
+ * @param {number | null} ways.looked a route's place
+ */
 export function drawWays(context, { planned, flown, onScreen, palette, at_ms, looked }) {
-  const light = (place) => (context.globalAlpha = looked === null || looked === place ? 1 : REST);
+  /** @param {number} place */
+  const light = (place) => {
+    context.globalAlpha = looked === null || looked === place ? 1 : REST;
+  };
   context.lineJoin = "round";
   for (const { place, positions } of planned) {
     light(place);
@@ -46,6 +66,16 @@ export function drawWays(context, { planned, flown, onScreen, palette, at_ms, lo
   context.globalAlpha = 1;
 }
 
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {object} uavs
+ * @param {readonly DrawnUav[]} uavs.drawn
+ * @param {number | null} uavs.chosen
+ * @param {OnScreen} uavs.onScreen
+ * @param {ScenePalette} uavs.palette
+ * @param {number} uavs.metresPerPixel
+ * @param {number} uavs.turn
+ */
 export function drawUavs(context, { drawn, chosen, onScreen, palette, metresPerPixel, turn }) {
   for (const uav of drawn) {
     const { kind, bound } = uav.moment;
@@ -56,7 +86,7 @@ export function drawUavs(context, { drawn, chosen, onScreen, palette, metresPerP
     if (kind === ESTIMATED && bound) ring(context, bound, metresPerPixel, turn, uav.colour);
     context.rotate((uav.heading_deg * Math.PI) / 180 - turn);
     context.beginPath();
-    DART.forEach(([right, down], index) => context[index ? "lineTo" : "moveTo"](right, down));
+    for (const [right, down] of DART) context.lineTo(right, down);
     context.closePath();
     context.fillStyle = kind === MEASURED ? uav.colour : palette.raised;
     context.lineWidth = kind === MEASURED ? 2 : 2.75;
@@ -74,6 +104,7 @@ export function drawUavs(context, { drawn, chosen, onScreen, palette, metresPerP
   }
 }
 
+/** @param {CanvasRenderingContext2D} context @param {Bound} bound @param {number} metresPerPixel @param {number} turn @param {string} colour */
 function ring(context, { along_m, across_m, bearing_deg }, metresPerPixel, turn, colour) {
   context.save();
   context.rotate((bearing_deg * Math.PI) / 180 - turn);

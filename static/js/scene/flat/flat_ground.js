@@ -1,5 +1,20 @@
 /** Zones, railways, bridges, lines and towers from above, on a plain canvas. */
 
+/** @import { Scene, SceneZone } from "../../api_types.d.ts" */
+/** @import { Frame, ScenePalette } from "../types.d.ts" */
+/** @import { OnScreen } from "./flat_flight.js" */
+
+/** @typedef {"volt400" | "volt220" | "volt132" | "volt66" | "volt20" | "voltUnknown"} VoltageColour */
+/** @typedef {(place: number[]) => [x: number, y: number]} PlaceOnScreen of lon, lat */
+/**
+ * @typedef {object} FlatLook
+ * @property {OnScreen} onScreen
+ * @property {ScenePalette} palette
+ * @property {number} metresPerPixel
+ * @property {{ width: number, height: number }} size
+ */
+
+/** @type {[least_v: number, colour: VoltageColour, width_px: number][]} */
 const VOLTAGES = [
   [380_000, "volt400", 3],
   [200_000, "volt220", 2.2],
@@ -12,18 +27,20 @@ const GRID_PX = 70;
 const TOWERS_PX = 0.18; // pixels a metre, from which on towers are drawn
 const HATCH_PX = 9;
 
+/** @param {number | null} voltage_v @returns {[least_v: number, colour: VoltageColour, width_px: number]} */
 const lookOf = (voltage_v) =>
-  voltage_v === null || voltage_v === undefined
-    ? ["voltUnknown", 1.2]
-    : VOLTAGES.find(([least]) => voltage_v >= least).slice(1);
+  (voltage_v === null ? undefined : VOLTAGES.find(([least]) => voltage_v >= least)) ?? [0, "voltUnknown", 1.2];
 
+/** @param {CanvasRenderingContext2D} context @param {FlatLook & { scene: Scene, frame: Frame }} ground */
 export function drawGround(context, { scene, frame, onScreen, palette, metresPerPixel, size }) {
+  /** @type {PlaceOnScreen} */
   const at = ([lon, lat]) => onScreen(frame.toLocal(lon, lat, 0));
   graticule(context, { onScreen, palette, metresPerPixel, size });
   for (const zone of scene.zones) drawZone(context, zone, at, palette);
+  /** @param {readonly number[][]} places @param {string} colour @param {number} width @param {number[]} [dash] */
   const line = (places, colour, width, dash = []) => {
     context.beginPath();
-    places.forEach((place, index) => context[index ? "lineTo" : "moveTo"](...at(place)));
+    for (const place of places) context.lineTo(...at(place)); // the first begins it
     context.strokeStyle = colour;
     context.lineWidth = width;
     context.setLineDash(dash);
@@ -33,9 +50,10 @@ export function drawGround(context, { scene, frame, onScreen, palette, metresPer
     line(places, palette.railway, 2.2);
     line(places, palette.ground, 1.2, [5, 5]);
   }
-  for (const { polygons } of scene.bridges) for (const outline of polygons) line(outline, palette.bridge, 1.6);
+  for (const { polygons } of scene.bridges)
+    for (const rings of polygons) for (const outline of rings) line(outline, palette.bridge, 1.6);
   for (const span of scene.spans) {
-    const [name, width] = lookOf(span.voltage_v);
+    const [, name, width] = lookOf(span.voltage_v);
     line(
       [scene.supports[span.from].position, scene.supports[span.to].position],
       palette[name],
@@ -59,8 +77,9 @@ export function drawGround(context, { scene, frame, onScreen, palette, metresPer
   }
 }
 
+/** @param {CanvasRenderingContext2D} context @param {FlatLook} look */
 function graticule(context, { onScreen, palette, metresPerPixel, size }) {
-  const step = GRID_M.find((metres) => metres / metresPerPixel >= GRID_PX) ?? GRID_M.at(-1);
+  const step = GRID_M.find((metres) => metres / metresPerPixel >= GRID_PX) ?? GRID_M[GRID_M.length - 1];
   const reach = Math.ceil((Math.hypot(size.width, size.height) * metresPerPixel) / step) + 1;
   const [cx, cy] = onScreen([0, 0, 0]);
   const middle = [
@@ -81,7 +100,7 @@ function graticule(context, { onScreen, palette, metresPerPixel, size }) {
   context.stroke();
 }
 
-/** Filled, hatched and outlined, as on the map. */
+/** Filled, hatched and outlined, as on the map. @param {CanvasRenderingContext2D} context @param {SceneZone} zone @param {PlaceOnScreen} at @param {ScenePalette} palette */
 function drawZone(context, { polygons }, at, palette) {
   context.save();
   context.beginPath();

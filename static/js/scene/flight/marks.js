@@ -1,6 +1,6 @@
 /** Lines and arrows round the UAVs of a moment: the pole to the ground, the way since the last report, the wind. */
 
-import { towards } from "../cameras/vectors.js";
+import { between, towards } from "../cameras/vectors.js";
 import {
   BufferAttribute,
   BufferGeometry,
@@ -13,6 +13,11 @@ import {
   MeshBasicMaterial,
   Vector3,
 } from "../three.js";
+
+/** @import { DrawnUav, ScenePalette, Vector, Wind } from "../types.d.ts" */
+
+/** @typedef {ReturnType<typeof createMarks>} Marks */
+/** @typedef {(place: Vector) => number} MetresPerPixel */
 
 const WIND_ABOVE_M = 0.4; // the arrow's height over the UAV
 const WIND_BESIDE_M = 0.9; // of its tip from the UAV: it points at it from where the wind comes
@@ -39,6 +44,7 @@ function arrowShape() {
   return geometry;
 }
 
+/** @param {number} count of UAVs at most */
 export function createMarks(count) {
   const group = new Group();
   const position = new BufferAttribute(new Float32Array(count * (DASHES + 1) * 6), 3);
@@ -58,6 +64,7 @@ export function createMarks(count) {
   const colour = new Color();
   let used = 0;
 
+  /** @param {Vector} from @param {Vector} to @param {Color} colour */
   function segment(from, to, { r, g, b }) {
     for (const end of [from, to]) {
       position.setXYZ(used, ...end);
@@ -68,7 +75,15 @@ export function createMarks(count) {
 
   return {
     group,
-    /** drawn: moments with { colour, report: place of the last report or null }; wind: { speed_mps, from_deg } or null at the chosen one. */
+    /**
+     * @param {readonly DrawnUav[]} drawn
+     * @param {object} how
+     * @param {Wind | null} how.wind at the chosen one
+     * @param {number | null} how.chosen
+     * @param {ScenePalette} how.palette
+     * @param {MetresPerPixel} how.metresPerPixel
+     * @param {boolean} [how.isNight]
+     */
     show(drawn, { wind, chosen, palette, metresPerPixel, isNight = false }) {
       used = 0;
       for (const { place, ground, colour: hex, report } of drawn) {
@@ -76,8 +91,7 @@ export function createMarks(count) {
         if (place[1] - ground > 0.5) segment(place, [place[0], ground, place[2]], colour);
         if (report) {
           for (let dash = 0; dash < DASHES; dash += 2) {
-            const at = (share) => [0, 1, 2].map((axis) => report[axis] + (place[axis] - report[axis]) * share);
-            segment(at(dash / DASHES), at((dash + 1) / DASHES), colour);
+            segment(between(report, place, dash / DASHES), between(report, place, (dash + 1) / DASHES), colour);
           }
         }
       }
@@ -86,8 +100,9 @@ export function createMarks(count) {
       colours.needsUpdate = true;
       lines.visible = used > 0;
       const uav = drawn.find(({ route }) => route === chosen);
-      arrow.visible = Boolean(uav && wind && wind.speed_mps > 0.2);
-      if (!arrow.visible) return;
+      arrow.visible = false;
+      if (!uav || !wind || wind.speed_mps <= 0.2) return;
+      arrow.visible = true;
       const scale = Math.max(1, 40 * metresPerPixel(uav.place));
       const long_m = scale * (0.5 + 1.5 * Math.min(1, wind.speed_mps / FULL_WIND_MPS));
       const from = new Vector3(...towards(wind.from_deg));

@@ -10,8 +10,13 @@ import {
   SphereGeometry,
 } from "../three.js";
 
+/** @import { Vector } from "../types.d.ts" */
+
+/** @typedef {{ geometry: BufferGeometry, color: string }} ColouredPart color: sRGB hex */
+
 export const SPAN_M = 1.05; // from rotor tip to rotor tip
 export const ROTOR_M = 0.19; // radius
+/** @type {Vector[]} */
 export const ROTORS = [
   [-0.27, -0.25],
   [0.27, -0.25],
@@ -26,10 +31,11 @@ const DARK = "#2b3033";
 const LENS = "#0c1216";
 const NOSE = "#f4f2ec";
 
+/** @param {BufferGeometry} geometry @param {Vector} place @param {Matrix4 | null} [turn] */
 const moved = (geometry, [x, y, z], turn = null) =>
   geometry.applyMatrix4(turn ?? new Matrix4()).applyMatrix4(new Matrix4().makeTranslation(x, y, z));
 
-/** One geometry of several, each in its own colour (sRGB hex): drawn at once. */
+/** One geometry of several, each in its own colour: drawn at once. @param {readonly ColouredPart[]} parts */
 export function merged(parts) {
   const plain = parts.map(({ geometry }) => (geometry.index ? geometry.toNonIndexed() : geometry));
   const count = plain.reduce((sum, { attributes }) => sum + attributes.position.count, 0);
@@ -109,7 +115,7 @@ export function rotorShape() {
   const [solid, sheer] = [blades, disc].map(({ attributes }) => attributes);
   const count = solid.position.count + sheer.position.count;
   const whole = new BufferGeometry();
-  for (const name of ["position", "normal"]) {
+  for (const name of /** @type {const} */ (["position", "normal"])) {
     const values = new Float32Array(count * 3);
     values.set(solid[name].array);
     values.set(sheer[name].array, solid.position.count * 3);

@@ -21,6 +21,12 @@ import {
 } from "../three.js";
 import { bodyShape, ROTORS, rotorShape, SPAN_M, TURNS } from "./uav_shape.js";
 
+/** @import { BufferGeometry, Material } from "../three.js" */
+/** @import { Bound, DrawnUav, SampleKind, ScenePalette } from "../types.d.ts" */
+/** @import { MetresPerPixel } from "./marks.js" */
+
+/** @typedef {ReturnType<typeof createUavs>} Uavs */
+
 const LEAST_PX = 40; // across: from far away it is drawn larger than it is
 const CONE_M = 14;
 const GLOW = 0.4;
@@ -52,7 +58,7 @@ const RIM_FRAGMENT = `
     #include <colorspace_fragment>
   }`;
 
-/** See-through with a clear edge: what is hollow. */
+/** See-through with a clear edge: what is hollow. @param {number} inner @param {number} rim */
 const hollow = (inner, rim) =>
   new ShaderMaterial({
     vertexShader: RIM_VERTEX,
@@ -63,7 +69,7 @@ const hollow = (inner, rim) =>
     side: DoubleSide,
   });
 
-/** It is never as dark as the night: some of its own colour shines. */
+/** It is never as dark as the night: some of its own colour shines. @param {MeshStandardMaterial} material */
 function litFromWithin(material) {
   material.onBeforeCompile = (shader) => {
     shader.fragmentShader = shader.fragmentShader.replace(
@@ -77,73 +83,114 @@ function litFromWithin(material) {
 const WHITE = new Color(1, 1, 1);
 const BRIGHT = new Color(ROTOR_LIGHT, ROTOR_LIGHT, ROTOR_LIGHT);
 
+/** @param {SampleKind} kind */
 export const isSolid = (kind) => kind === MEASURED;
 
-/** count: of UAVs at most. */
-export function createUavs(count) {
-  const group = new Group();
-  const many = (geometry, material, number = count) => {
-    const mesh = new InstancedMesh(geometry, material, number);
-    mesh.frustumCulled = false; // few, and everywhere
-    mesh.count = 0;
-    mesh.setColorAt(0, new Color(1, 1, 1)); // makes room for colours
-    group.add(mesh);
-    return mesh;
-  };
+/**
+ * @template {Material} Look
+ * @param {BufferGeometry} geometry
+ * @param {Look} material
+ * @param {number} count at most
+ */
+function many(geometry, material, count) {
+  const mesh = new InstancedMesh(geometry, material, count);
+  mesh.frustumCulled = false; // few, and everywhere
+  mesh.count = 0;
+  mesh.setColorAt(0, new Color(1, 1, 1)); // makes room for colours
+  return mesh;
+}
+
+/** Everything that UAVs are drawn with. @param {number} count of UAVs at most */
+function meshesOf(count) {
   const body = bodyShape();
-  const solid = many(
-    body,
-    litFromWithin(new MeshStandardMaterial({ vertexColors: true, roughness: 0.55, metalness: 0.05 })),
-  );
-  solid.castShadow = true;
-  const ghosts = many(body, hollow(0.1, 0.95));
-  const rotors = many(
-    rotorShape(),
-    new MeshBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false, side: DoubleSide }),
-    count * 4,
-  );
   const cone = new ConeGeometry(Math.tan(CONE_HALF_DEG * RADIANS) * CONE_M, CONE_M, 4, 1, true)
     .rotateY(Math.PI / 4)
     .translate(0, -CONE_M / 2, 0); // its top at 0, opening downwards
-  const cones = many(
-    cone,
-    new MeshBasicMaterial({
-      transparent: true,
-      opacity: 0.1,
-      depthWrite: false,
-      side: DoubleSide,
-      blending: AdditiveBlending,
-    }),
-  );
-  const bounds = many(new SphereGeometry(1, 32, 16), hollow(0.09, 0.6));
-  ghosts.renderOrder = 4;
-  bounds.renderOrder = 3;
-  cones.renderOrder = 5;
+  const solidLook = new MeshStandardMaterial({ vertexColors: true, roughness: 0.55, metalness: 0.05 });
+  const sheer = { transparent: true, depthWrite: false, side: DoubleSide };
+  const meshes = {
+    solid: many(body, litFromWithin(solidLook), count),
+    ghosts: many(body, hollow(0.1, 0.95), count),
+    rotors: many(rotorShape(), new MeshBasicMaterial({ vertexColors: true, ...sheer }), count * 4),
+    cones: many(cone, new MeshBasicMaterial({ opacity: 0.1, blending: AdditiveBlending, ...sheer }), count),
+    bounds: many(new SphereGeometry(1, 32, 16), hollow(0.09, 0.6), count),
+  };
+  meshes.solid.castShadow = true;
+  meshes.ghosts.renderOrder = 4;
+  meshes.bounds.renderOrder = 3;
+  meshes.cones.renderOrder = 5;
+  return meshes;
+}
 
+/** @param {number} count of UAVs at most */
+export function createUavs(count) {
+  const group = new Group();
+  const meshes = meshesOf(count);
+  const all = Object.values(meshes);
+  group.add(...all);
   const [turn, tilt, at, size, matrix] = [new Quaternion(), new Euler(), new Vector3(), new Vector3(), new Matrix4()];
-  const [rotor, own, down, colour, aim] = [
-    new Matrix4(),
-    new Matrix4(),
-    new Vector3(0, -1, 0),
-    new Color(),
-    new Vector3(),
-  ];
+  const [rotor, own, colour, aim] = [new Matrix4(), new Matrix4(), new Color(), new Vector3()];
+  const down = new Vector3(0, -1, 0);
   let spin = 0; // radians
 
-  function put(mesh, number, tint) {
-    mesh.setMatrixAt(number, matrix);
-    mesh.setColorAt(number, tint.isColor ? tint : colour.set(tint));
+  /** Draws one more at `matrix`. @param {InstancedMesh} mesh @param {Color | string} tint */
+  function put(mesh, tint) {
+    mesh.setMatrixAt(mesh.count, matrix);
+    mesh.setColorAt(mesh.count, colour.set(tint));
+    mesh.count += 1;
+  }
+
+  /** The body, hollow where it is not measured, and its rotors. @param {DrawnUav} uav @param {number} scale @param {ScenePalette} palette @param {boolean} isDark */
+  function putBody(uav, scale, palette, isDark) {
+    const { kind } = uav.moment;
+    matrix.compose(at, turn.setFromEuler(tilt), size.setScalar(scale));
+    const tint = kind === LOST ? palette.inkSecond : uav.colour;
+    if (isSolid(kind)) put(meshes.solid, tint);
+    else put(meshes.ghosts, isDark ? colour.set(tint).lerp(WHITE, GHOST_LIGHT) : tint);
+    if (kind === LOST) return;
+    own.copy(matrix);
+    ROTORS.forEach((place, index) => {
+      rotor.makeTranslation(place[0], place[1], place[2]);
+      matrix
+        .makeRotationY(uav.isInAir ? spin * TURNS[index] + index : index)
+        .premultiply(rotor)
+        .premultiply(own);
+      put(meshes.rotors, isDark ? BRIGHT : WHITE);
+    });
+  }
+
+  /** What its camera sees. @param {DrawnUav} uav @param {number} scale */
+  function putCone(uav, scale) {
+    turn.setFromUnitVectors(down, aim.set(...uav.camera));
+    matrix.compose(at, turn, size.setScalar(Math.min(scale, MOST_CONE)));
+    put(meshes.cones, uav.colour);
+  }
+
+  /** The ellipsoid that an estimated one is in. @param {DrawnUav} uav @param {Bound} bound @param {number} least_m */
+  function putBound(uav, { bearing_deg, across_m, along_m, height_m }, least_m) {
+    turn.setFromEuler(tilt.set(0, -bearing_deg * RADIANS, 0));
+    const [across, along] = [Math.max(across_m, least_m), Math.max(along_m, least_m)];
+    matrix.compose(at, turn, size.set(across, Math.max(height_m ?? 0, least_m * 0.5), along));
+    put(meshes.bounds, uav.colour);
   }
 
   return {
     group,
-    /** drawn: moments of drawn_flight.js with { colour, isChosen }; palette; metresPerPixel(place); dt_s: how far rotors turn. isDark: by theme or night. hidden: the one whose camera looks. */
+    /**
+     * @param {readonly DrawnUav[]} drawn
+     * @param {object} how
+     * @param {ScenePalette} how.palette
+     * @param {MetresPerPixel} how.metresPerPixel
+     * @param {boolean} [how.isDark] by theme or night
+     * @param {number} [how.dt_s] how far rotors turn
+     * @param {number | null} [how.hidden] the one whose camera looks
+     */
     show(drawn, { palette, metresPerPixel, isDark = palette.isDark, dt_s = 0, hidden = null }) {
       spin += dt_s * 23; // seen turning, not as fast as they do
-      const numbers = { solid: 0, ghosts: 0, rotors: 0, cones: 0, bounds: 0 };
-      solid.material.emissive.set(isDark ? LIT_DARK : "#000000");
-      cones.material.opacity = isDark ? 0.06 : 0.1;
-      cones.material.blending = isDark ? AdditiveBlending : NormalBlending;
+      meshes.solid.material.emissive.set(isDark ? LIT_DARK : "#000000");
+      meshes.cones.material.opacity = isDark ? 0.06 : 0.1;
+      meshes.cones.material.blending = isDark ? AdditiveBlending : NormalBlending;
+      for (const mesh of all) mesh.count = 0;
       for (const uav of drawn) {
         if (uav.route === hidden) continue;
         const { kind, bound } = uav.moment;
@@ -151,50 +198,18 @@ export function createUavs(count) {
         const scale = Math.max(1, (LEAST_PX * per_px) / SPAN_M);
         tilt.set(uav.pitch_deg * RADIANS, -uav.heading_deg * RADIANS, -uav.roll_deg * RADIANS, "YXZ");
         at.set(uav.place[0], uav.place[1] + 0.06 * (scale - 1), uav.place[2]);
-        matrix.compose(at, turn.setFromEuler(tilt), size.setScalar(scale));
-        const tint = kind === LOST ? palette.inkSecond : uav.colour;
-        if (isSolid(kind)) put(solid, numbers.solid++, tint);
-        else put(ghosts, numbers.ghosts++, isDark ? colour.set(tint).lerp(WHITE, GHOST_LIGHT) : tint);
-        if (kind !== LOST) {
-          own.copy(matrix);
-          ROTORS.forEach((place, index) => {
-            rotor.makeTranslation(place[0], place[1], place[2]);
-            matrix
-              .makeRotationY(uav.isInAir ? spin * TURNS[index] + index : index)
-              .premultiply(rotor)
-              .premultiply(own);
-            put(rotors, numbers.rotors++, isDark ? BRIGHT : WHITE);
-          });
-        }
-        if (uav.isInAir && (kind === MEASURED || kind === PLANNED)) {
-          turn.setFromUnitVectors(down, aim.set(...uav.camera));
-          matrix.compose(at, turn, size.setScalar(Math.min(scale, MOST_CONE)));
-          put(cones, numbers.cones++, uav.colour);
-        }
-        if (kind === ESTIMATED && bound) {
-          const least = Math.max(LEAST_BOUND_M, LEAST_BOUND_PX * per_px);
-          turn.setFromEuler(tilt.set(0, -bound.bearing_deg * RADIANS, 0));
-          matrix.compose(
-            at,
-            turn,
-            size.set(
-              Math.max(bound.across_m, least),
-              Math.max(bound.height_m ?? 0, least * 0.5),
-              Math.max(bound.along_m, least),
-            ),
-          );
-          put(bounds, numbers.bounds++, uav.colour);
-        }
+        putBody(uav, scale, palette, isDark);
+        if (uav.isInAir && (kind === MEASURED || kind === PLANNED)) putCone(uav, scale);
+        if (kind === ESTIMATED && bound) putBound(uav, bound, Math.max(LEAST_BOUND_M, LEAST_BOUND_PX * per_px));
       }
-      for (const [name, mesh] of Object.entries({ solid, ghosts, rotors, cones, bounds })) {
-        mesh.count = numbers[name];
-        mesh.visible = numbers[name] > 0;
+      for (const mesh of all) {
+        mesh.visible = mesh.count > 0;
         mesh.instanceMatrix.needsUpdate = true;
-        mesh.instanceColor.needsUpdate = true;
+        if (mesh.instanceColor) mesh.instanceColor.needsUpdate = true;
       }
     },
     dispose() {
-      for (const mesh of [solid, ghosts, rotors, cones, bounds]) {
+      for (const mesh of all) {
         mesh.geometry.dispose();
         mesh.material.dispose();
         mesh.dispose();

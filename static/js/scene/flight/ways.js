@@ -14,6 +14,16 @@ import {
   Vector4,
 } from "../three.js";
 
+/** @import { HeightAt, ScenePalette, Vector } from "../types.d.ts" */
+/** @import { FlownRoute, PlannedLine } from "./drawn_flight.js" */
+
+/** @typedef {ReturnType<typeof createWays>} Ways */
+/** @typedef {{ positions: number[], at_s?: number[] | null }} TimedPoints at_s: null where time is not shown */
+/** @typedef {{ isLine?: boolean, width_m?: number, least_px?: number, most_px?: number, opacity: number, later: number }} WayLook later: opacity of what is yet to come */
+/** @typedef {TimedPoints & { place: number, dashed?: boolean }} WayLine */
+/** @typedef {{ position: Float32Array } & { [name: string]: Float32Array }} Attributes */
+/** @typedef {{ arrays: Attributes, index?: Uint32Array | null }} Built */
+
 const ROUTES = 8;
 const PLANNED = { width_m: 0.16, least_px: 1.4, most_px: 3, poles_m: 120 };
 const FLOWN = { width_m: 0.42, least_px: 3.2, most_px: 8, poles_m: 60 };
@@ -64,6 +74,7 @@ const FRAGMENT = `
     #include <colorspace_fragment>
   }`;
 
+/** @param {WayLook} look */
 function material({ isLine, width_m = 0, least_px = 1, most_px = 1, opacity, later }) {
   return new ShaderMaterial({
     vertexShader: isLine ? LINE_VERTEX : VERTEX,
@@ -87,7 +98,7 @@ function material({ isLine, width_m = 0, least_px = 1, most_px = 1, opacity, lat
   });
 }
 
-/** Unit directions along a line of points, n × 3. */
+/** Unit directions along a line of points, n × 3. @param {readonly number[]} positions */
 function tangentsOf(positions) {
   const count = positions.length / 3;
   const found = new Float32Array(positions.length);
@@ -95,7 +106,9 @@ function tangentsOf(positions) {
     const [from, to] = [Math.max(point - 1, 0) * 3, Math.min(point + 1, count - 1) * 3];
     const way = [0, 1, 2].map((axis) => positions[to + axis] - positions[from + axis]);
     const length = Math.hypot(...way) || 1;
-    way.forEach((metres, axis) => (found[point * 3 + axis] = metres / length));
+    way.forEach((metres, axis) => {
+      found[point * 3 + axis] = metres / length;
+    });
   }
   return found;
 }
@@ -103,9 +116,12 @@ function tangentsOf(positions) {
 /** Names of a ribbon's attributes with the numbers in each vertex; it is as wide as its material says, and turns to the camera. */
 const ATTRIBUTES = { position: 3, tangent: 3, along: 1, at: 1, route: 1, dashed: 1, side: 1 };
 
-/** Without the points that lie next to each other: { positions, at_s }; the first and the last one stay. */
+/** Without the points that lie next to each other; the first and the last one stay. @template {TimedPoints} Line @param {Line} line */
 export function thinned({ positions, at_s, ...line }) {
-  const [kept, times] = [[], []];
+  /** @type {number[]} */
+  const kept = [];
+  /** @type {number[]} */
+  const times = [];
   const count = positions.length / 3;
   for (let point = 0; point < count; point += 1) {
     const [x, y, z] = positions.slice(point * 3, point * 3 + 3);
@@ -118,7 +134,7 @@ export function thinned({ positions, at_s, ...line }) {
   return { ...line, positions: kept, at_s: at_s && times };
 }
 
-/** lines: [{ place, positions, at_s, dashed }] → attributes and index of all of them together. */
+/** Returns attributes and index of all lines together. @param {readonly WayLine[]} lines */
 export function ribbonArrays(lines) {
   const drawn = lines
     .map(thinned)
@@ -126,9 +142,15 @@ export function ribbonArrays(lines) {
     .map((line) => stepped(line, LONGEST_M))
     .map((line) => ({ ...line, band: ribbon(line.positions), tangents: tangentsOf(line.positions) }));
   const count = drawn.reduce((sum, { positions }) => sum + (positions.length / 3) * 2, 0);
-  const arrays = Object.fromEntries(
-    Object.entries(ATTRIBUTES).map(([name, size]) => [name, new Float32Array(count * size)]),
-  );
+  const arrays = {
+    position: new Float32Array(count * 3),
+    tangent: new Float32Array(count * 3),
+    along: new Float32Array(count),
+    at: new Float32Array(count),
+    route: new Float32Array(count),
+    dashed: new Float32Array(count),
+    side: new Float32Array(count),
+  };
   const index = new Uint32Array(drawn.reduce((sum, { band }) => sum + band.index.length, 0));
   let [first, put] = [0, 0];
   for (const { place, positions, at_s, dashed, band, tangents } of drawn) {
@@ -150,15 +172,20 @@ export function ribbonArrays(lines) {
   return { arrays, index };
 }
 
-/** Poles of lines: positions of their ends, with route and time of each end. */
+/** Poles of lines: positions of their ends, with route and time of each end. @param {readonly WayLine[]} lines @param {HeightAt} groundAt @param {number} spacing_m */
 export function poleArrays(lines, groundAt, spacing_m) {
-  const [position, route, at] = [[], [], []];
+  /** @type {number[]} */
+  const position = [];
+  /** @type {number[]} */
+  const route = [];
+  /** @type {number[]} */
+  const at = [];
   for (const { place, positions, at_s } of lines) {
     const { segments } = heightPoles(positions, groundAt, { spacing_m });
     const poles = segments.length / 6;
     const whenPassed = at_s && passing(positions, at_s);
     for (let pole = 0; pole < poles; pole += 1) {
-      const when = !at_s ? ALWAYS_S : pole === poles - 1 ? at_s.at(-1) : whenPassed(pole * spacing_m);
+      const when = whenPassed ? whenPassed(pole === poles - 1 ? Infinity : pole * spacing_m) : ALWAYS_S;
       for (let axis = 0; axis < 6; axis += 1) position.push(segments[pole * 6 + axis]);
       route.push(place, place);
       at.push(when, when);
@@ -167,9 +194,10 @@ export function poleArrays(lines, groundAt, spacing_m) {
   return { arrays: { position: new Float32Array(position), route: new Float32Array(route), at: new Float32Array(at) } };
 }
 
-/** When so many metres over the ground were flown; asked for in rising order. */
+/** When so many metres over the ground were flown; asked for in rising order. @param {readonly number[]} positions @param {readonly number[]} at_s */
 function passing(positions, at_s) {
   let [point, way_m] = [0, 0];
+  /** @param {number} wanted_m */
   return (wanted_m) => {
     for (; point < at_s.length - 1; point += 1) {
       const step_m = Math.hypot(
@@ -180,10 +208,11 @@ function passing(positions, at_s) {
         return at_s[point] + (at_s[point + 1] - at_s[point]) * (step_m > 0 ? (wanted_m - way_m) / step_m : 0);
       way_m += step_m;
     }
-    return at_s.at(-1);
+    return at_s[at_s.length - 1];
   };
 }
 
+/** @param {Built} built @param {Record<string, number>} sizes */
 function geometryOf({ arrays, index = null }, sizes) {
   const geometry = new BufferGeometry();
   for (const [name, array] of Object.entries(arrays))
@@ -192,40 +221,49 @@ function geometryOf({ arrays, index = null }, sizes) {
   return geometry;
 }
 
-function drawing(Kind, look, order) {
-  const object = new Kind(new BufferGeometry(), look);
+/**
+ * @template {Mesh | LineSegments} Drawing
+ * @param {Drawing} object
+ * @param {number} order
+ */
+function drawing(object, order) {
   object.frustumCulled = false; // attributes besides the position move its vertices
   object.renderOrder = order;
   object.visible = false;
   return object;
 }
 
+/** @param {Mesh | LineSegments} object @param {Built} built @param {Record<string, number>} sizes */
 function refill(object, built, sizes) {
   object.geometry.dispose();
   object.geometry = geometryOf(built, sizes);
   object.visible = built.arrays.position.length > 0;
 }
 
-/** groundAt(x, z) → y of the drawn ground. */
+/** @param {HeightAt} groundAt of the drawn ground */
 export function createWays(groundAt) {
   const group = new Group();
-  const planned = drawing(Mesh, material({ ...PLANNED, opacity: 0.85, later: 1 }), 1);
-  const plannedPoles = drawing(LineSegments, material({ isLine: true, opacity: 0.22, later: 1 }), 1);
-  const flown = drawing(Mesh, material({ ...FLOWN, opacity: 1, later: 0.16 }), 2);
-  const flownPoles = drawing(LineSegments, material({ isLine: true, opacity: 0.32, later: 0 }), 1);
+  /** @param {WayLook} look @param {number} order */
+  const band = (look, order) => drawing(new Mesh(new BufferGeometry(), material(look)), order);
+  /** @param {WayLook} look */
+  const poles = (look) => drawing(new LineSegments(new BufferGeometry(), material({ ...look, isLine: true })), 1);
+  const planned = band({ ...PLANNED, opacity: 0.85, later: 1 }, 1);
+  const plannedPoles = poles({ opacity: 0.22, later: 1 });
+  const flown = band({ ...FLOWN, opacity: 1, later: 0.16 }, 2);
+  const flownPoles = poles({ opacity: 0.32, later: 0 });
   const all = [planned, plannedPoles, flown, flownPoles];
   group.add(...all);
   let from_ms = 0;
 
   return {
     group,
-    /** lines: of drawFlight().plannedLines(). */
+    /** @param {readonly PlannedLine[]} lines */
     showPlanned(lines) {
       const dashed = lines.map((line) => ({ ...line, at_s: null, dashed: true }));
       refill(planned, ribbonArrays(dashed), ATTRIBUTES);
       refill(plannedPoles, poleArrays(dashed, groundAt, PLANNED.poles_m), { position: 3, route: 1, at: 1 });
     },
-    /** routes: of drawFlight().flownLines(); begins_ms: from which times are counted, so that they stay exact. */
+    /** @param {readonly FlownRoute[]} routes @param {number} begins_ms from which times are counted, so that they stay exact */
     showFlown(routes, begins_ms) {
       from_ms = begins_ms;
       const lines = routes.flatMap(({ place, pieces }) =>
@@ -247,20 +285,28 @@ export function createWays(groundAt) {
         { position: 3, route: 1, at: 1 },
       );
     },
-    /** at_ms: what is later is faint; heads: UAVs as [{ route, place, radius_m }], which their ways do not cover; looked: a route's place, or null. */
+    /**
+     * @param {object} now
+     * @param {number | null} now.at_ms what is later is faint
+     * @param {readonly { route: number, place: Vector, radius_m: number }[]} now.heads UAVs, which their ways do not cover
+     * @param {number | null} now.looked a route's place
+     * @param {number[]} now.viewport
+     */
     frame({ at_ms, heads, looked, viewport }) {
       for (const { material: look } of all) {
         look.uniforms.now.value = at_ms === null ? FOR_EVER_S : (at_ms - from_ms) / 1_000;
         look.uniforms.looked.value = looked ?? -1;
         look.uniforms.viewport.value = viewport;
-        look.uniforms.heads.value.forEach((head) => head.set(0, 0, 0, 0));
+        for (const head of look.uniforms.heads.value) head.set(0, 0, 0, 0);
         for (const { route, place, radius_m } of heads)
           look.uniforms.heads.value[route % ROUTES].set(...place, radius_m);
       }
     },
+    /** @param {Pick<ScenePalette, "routes">} palette */
     setPalette(palette) {
-      for (const { material: look } of all)
-        look.uniforms.colours.value.forEach((colour, index) => colour.set(palette.routes[index]));
+      for (const { material: look } of all) {
+        for (const [index, colour] of look.uniforms.colours.value.entries()) colour.set(palette.routes[index]);
+      }
     },
     dispose() {
       for (const { geometry, material: look } of all) {

@@ -10,7 +10,6 @@ import { rehearsalSource } from "./rehearsal_source.js";
 /** @import { Answer } from "../../api.js" */
 /** @import { Mission, RecordCollection, Rehearsal, RehearsalDetail, RehearsalPage, RehearsalTrack } from "../../api_types.d.ts" */
 /** @import { FlightSource, SourceKind, WantedSource } from "../types.d.ts" */
-/** @import { LiveSource } from "./live_source.js" */
 
 const UNDER_WAY = ["dispatched", "active"];
 const OVER = ["completed", "aborted", "failed"];
@@ -75,14 +74,14 @@ async function readLive(mission) {
 /**
  * @param {Mission} mission
  * @param {WantedSource | null} [wanted] null: what is usual
- * @returns {Promise<{ source: FlightSource | LiveSource, choices: SourceKind[] }>}
+ * @returns {Promise<{ source: FlightSource, choices: SourceKind[] }>}
  * @throws {ApiError}
  */
 export async function readSource(mission, wanted = null) {
   const { data: listed } = /** @type {Answer<RehearsalPage>} */ (await get(`/missions/${mission.id}/rehearsals`));
   const rehearsals = listed.results;
   const choice = wanted ?? usualSource(mission, rehearsals);
-  /** @type {Record<SourceKind, () => Promise<FlightSource | LiveSource | null>>} */
+  /** @type {Record<SourceKind, () => Promise<FlightSource | null>>} */
   const read = {
     rehearsal: () => readRehearsal(mission, choice, rehearsals),
     record: async () => recordSource(await loadMission(mission.id)),
