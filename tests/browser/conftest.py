@@ -39,6 +39,18 @@ from workspace.models import User
 for name, role in {USERS!r}.items():
     User.objects.create_user(name, password={PASSWORD!r}, role=role)
 """
+MADE_DATA = """
+from inspection.models import DataImport, ImportKind
+from inspection.services.osm_import import SYNTHETIC_ATTRIBUTION
+DataImport.objects.filter(kind=ImportKind.OSM).update(is_synthetic=True, attribution=SYNTHETIC_ATTRIBUTION)
+"""
+NO_LEFTOVERS = """
+from django.apps import apps
+from django.db import connection
+models = [model for app in ("missions", "telemetry", "simulation") for model in apps.get_app_config(app).get_models()]
+with connection.cursor() as cursor:
+    cursor.execute(f"TRUNCATE {', '.join(model._meta.db_table for model in models)}")
+"""
 
 
 @dataclass(frozen=True)
@@ -83,7 +95,7 @@ def _start_site(state: Path, shared_data: Callable[[str], Path]) -> Site:
     environment = _environment(state) | {"SPANWISE_GATEWAY_UDP": f"127.0.0.1:{gateway_port}"}
     _run(environment, "./run", "--detach", "--port", str(port), *osm, "--zones", str(zones_file))
     started = _site_on(state, port, gateway_port)
-    started.does(NEW_USERS)
+    started.does(NEW_USERS if region.real_file else NEW_USERS + MADE_DATA)
     return started
 
 
@@ -94,7 +106,9 @@ def _kept_site(state: Path, shared_data: Callable[[str], Path]) -> Site:
     if note.exists() and subprocess.run(status, capture_output=True, check=False).returncode == 0:  # noqa: S603
         known = json.loads(note.read_text())
         assert known["region"] == region.name, f"{state} has the region {known['region']}"
-        return _site_on(state, known["port"], known["gateway_port"])
+        kept = _site_on(state, known["port"], known["gateway_port"])
+        kept.does(NO_LEFTOVERS)
+        return kept
     assert note.exists() or not state.exists(), f"{state} is no site of these tests"
     if state.exists():
         _run(_environment(state), "./run", "--stop")

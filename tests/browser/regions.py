@@ -54,6 +54,7 @@ class Region:
     tower_label: str  # pattern of the labels of the towers in `towers`
     picture_line: str  # pattern of the labels of one line's towers, at least 12, with their numbers
     picture_towers: str  # box with them
+    sortie_battery_wh: float  # too little for four of `all_towers` in one flight from `east`, enough for several flights
     afternoon_utc: str
     night_utc: str  # an hour after sunset
 
@@ -119,6 +120,7 @@ ELME_VALLEY = Region(
     tower_label=r"[EHV]\d{3}-\d+",
     picture_line=r"H133-(\d+)",
     picture_towers="26.58,25.65,26.67,25.72",
+    sortie_battery_wh=240.0,
     afternoon_utc="13:00",
     night_utc="16:10",
 )
@@ -152,6 +154,7 @@ COLUMBUS = Region(
     tower_label=r"Tower \d+ of \d+",
     picture_line=r"Tower (\d+) of 40",
     picture_towers="-83.0,39.90,-82.94,39.925",
+    sortie_battery_wh=280.0,
     afternoon_utc="19:30",
     night_utc="23:10",
 )

@@ -87,7 +87,7 @@ def test_a_route_goes_round_a_timed_zone_at_its_times_alone_and_the_page_says_so
 
 def test_what_does_not_fit_in_one_flight_is_shown_as_several(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
-    uav = {"name": "Kite", "position": region.east, "battery_wh": 280.0, "max_airspeed_mps": 15.0, "sorties": 4}
+    uav = {"name": "Kite", "position": region.east, "battery_wh": region.sortie_battery_wh, "max_airspeed_mps": 15.0, "sorties": 4}
     mission = planned(page, "In several flights", uavs=[uav], departs_at=(DAY + timedelta(hours=9)).isoformat())
     (route,) = mission["plan"]["routes"]
     assert "base" in [waypoint["kind"] for waypoint in route["waypoints"]], [mission["plan"]["unassigned"], route["energy_wh"]]
