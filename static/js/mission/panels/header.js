@@ -2,7 +2,7 @@
 
 import { openAlertLimits } from "../../alert_limits/dialog.js";
 import { ApiError } from "../../api.js";
-import { byId, h, icon } from "../../dom.js";
+import { byId, h, icon, setChildren } from "../../dom.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { toast } from "../../page/toast.js";
 import { markSimulated } from "../../simulated.js";
@@ -15,6 +15,20 @@ import { inWords } from "../plan_words.js";
 import { showHistory } from "./history.js";
 import { uavNotice } from "./uavs/changes.js";
 
+/** @import { Mission } from "../../api_types.d.ts" */
+/** @import { Child } from "../../dom.js" */
+/** @import { MenuItem } from "../../page/chrome.js" */
+/** @import { Conflict, MissionActions, MissionPageState, MissionStore, WayOut, Why } from "../types.d.ts" */
+
+/** @typedef {(position: number[]) => void} ShowPlace on the map */
+/**
+ * @typedef {object} NoticeContext
+ * @property {MissionActions} actions
+ * @property {boolean} canPlan
+ * @property {ShowPlace} showPlace
+ * @property {(why: Why) => void} askWhy
+ */
+
 const STATE_WORDS = {
   draft: t("Draft"),
   planned: t("Planned"),
@@ -26,9 +40,11 @@ const STATE_WORDS = {
   failed: t("Failed"),
 };
 const MOST_CAUSES = 3;
+const MOST_UNREACHED = 3;
+/** @param {number} count */
 const targetsText = (count) => tn(count, "{count} target", "{count} targets");
 
-/** The mission's address with the part of the map that is in sight. */
+/** The mission's address with the part of the map that is in sight. @param {Mission} mission */
 async function copyAddress(mission) {
   const address = `${location.origin}/missions/${mission.id}${location.hash}`;
   try {
@@ -39,6 +55,7 @@ async function copyAddress(mission) {
   }
 }
 
+/** @param {Mission} mission */
 async function changeAlertLimits({ id, name }) {
   const hint = t(
     "For this mission alone, also while it flies. Empty: as the type of each UAV says, else the usual, in grey.",
@@ -55,9 +72,14 @@ async function changeAlertLimits({ id, name }) {
   }
 }
 
-/** canCopy: who plans missions may copy one that nobody can change; showPlace(position): on the map. */
+/**
+ * @param {MissionStore} store
+ * @param {MissionActions} actions
+ * @param {boolean} canPlan
+ * @param {{ canCopy: boolean, showPlace: ShowPlace }} how `canCopy`: who plans missions may copy one that nobody can change
+ */
 export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
-  const name = byId("mission-name");
+  const name = byId("mission-name", HTMLInputElement);
   name.addEventListener("input", () => actions.rename(name.value));
   name.addEventListener("blur", () => {
     if (!name.value.trim() && store.state.mission) actions.rename(store.state.mission.name);
@@ -68,175 +90,206 @@ export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
 
   const more = byId("mission-menu");
   more.addEventListener("click", () =>
-    toggleMenu(more, () => {
-      const { mission } = store.state;
-      const items = [];
-      if (mission) {
-        items.push({ icon: "link", label: t("Copy the address with this view"), act: () => void copyAddress(mission) });
-        items.push({ icon: "history", label: t("History"), act: () => void showHistory(mission) });
-      }
-      if (canCopy && mission)
-        items.push({ icon: "bell", label: t("Where alerts begin"), act: () => void changeAlertLimits(mission) });
-      if (canCopy && mission)
-        items.push({ icon: "copy", label: t("Save a copy"), act: () => actions.save({ asCopy: true }) });
-      if (canPlan && mission) items.push({ icon: "trash-2", label: t("Delete"), act: actions.deleteMission });
-      else if (canPlan) items.push({ icon: "trash-2", label: t("Clear everything"), act: actions.startEmpty });
-      items.push({ icon: "clipboard-list", label: t("All missions"), act: () => void (location.href = "/") });
-      return menuOf(t("This mission"), items);
-    }),
+    toggleMenu(more, () => menuOf(t("This mission"), itemsFor(store.state.mission, actions, { canPlan, canCopy }))),
   );
 
   store.listen(["name", "mission", "selection", "fleet", "plan", "planIsStored", "savedBasis"], (state) => {
-    const shown = state.name || (canPlan ? t("New mission") : t("Map"));
     if (name.value !== state.name) name.value = state.name;
-    byId("page-title").textContent = shown;
-    byId("bar-title").textContent = shown;
-    document.title = `${shown} · Spanwise`;
-    const stateName =
-      state.mission && !["draft", "planned"].includes(state.mission.state)
-        ? state.mission.state
-        : isPlanCurrent(state)
-          ? "planned"
-          : "draft";
-    const chip = byId("mission-state");
-    chip.className = `chip ${stateName}`;
-    chip.textContent = STATE_WORDS[stateName];
-    const flown = standingUavs(state).filter(({ sequence }) => sequence !== null);
-    markSimulated(chip, flown.length > 0 && flown.every(({ is_simulated }) => is_simulated));
-    chip.hidden = !canPlan && !state.mission; // just the map: there is nothing that could be a draft
-    byId("mission-facts").textContent = chip.hidden ? t("no mission is open") : factsOf(state).join(" · ");
+    drawHead(state, canPlan);
   });
 
-  store.listen(["problem", "conflict", "plan", "planIsStored", "selection", "mission", "isAway"], (state) => {
-    byId("notices").replaceChildren(
-      ...noticesOf(state, actions, { canPlan, showPlace, askWhy: (why) => store.update({ why }) }),
-    );
-  });
+  const context = { actions, canPlan, showPlace, askWhy: (/** @type {Why} */ why) => store.update({ why }) };
+  store.listen(["problem", "conflict", "plan", "planIsStored", "selection", "mission", "isAway"], (state) =>
+    setChildren(byId("notices"), noticesOf(state, context)),
+  );
   store.listen(["problem", "conflict"], (state) => {
-    if (state.problem || state.conflict) byId("notices").parentElement.scrollTo({ top: 0 }); // it stands above a long list
+    if (state.problem || state.conflict) byId("notices").parentElement?.scrollTo({ top: 0 }); // it stands above a long list
   });
 }
 
+/**
+ * @param {Mission | null} mission
+ * @param {MissionActions} actions
+ * @param {{ canPlan: boolean, canCopy: boolean }} rights
+ * @returns {MenuItem[]}
+ */
+function itemsFor(mission, actions, { canPlan, canCopy }) {
+  const allMissions = { icon: "clipboard-list", label: t("All missions"), act: () => location.assign("/") };
+  if (!mission)
+    return [
+      ...(canPlan ? [{ icon: "trash-2", label: t("Clear everything"), act: actions.startEmpty }] : []),
+      allMissions,
+    ];
+  return [
+    { icon: "link", label: t("Copy the address with this view"), act: () => void copyAddress(mission) },
+    { icon: "history", label: t("History"), act: () => void showHistory(mission) },
+    ...(canCopy
+      ? [
+          { icon: "bell", label: t("Where alerts begin"), act: () => void changeAlertLimits(mission) },
+          { icon: "copy", label: t("Save a copy"), act: () => actions.save({ asCopy: true }) },
+        ]
+      : []),
+    ...(canPlan ? [{ icon: "trash-2", label: t("Delete"), act: actions.deleteMission }] : []),
+    allMissions,
+  ];
+}
+
+/** Title, state and facts. @param {MissionPageState} state @param {boolean} canPlan */
+function drawHead(state, canPlan) {
+  const { mission } = state;
+  const shown = state.name || (canPlan ? t("New mission") : t("Map"));
+  byId("page-title").textContent = shown;
+  byId("bar-title").textContent = shown;
+  document.title = `${shown} · Spanwise`;
+  const ownState = isPlanCurrent(state) ? "planned" : "draft";
+  const name = mission && !["draft", "planned"].includes(mission.state) ? mission.state : ownState;
+  const chip = byId("mission-state");
+  chip.className = `chip ${name}`;
+  chip.textContent = STATE_WORDS[name];
+  const flown = standingUavs(state).filter(({ sequence }) => sequence !== null);
+  markSimulated(chip, flown.length > 0 && flown.every(({ is_simulated }) => is_simulated));
+  chip.hidden = !canPlan && !mission; // just the map: there is nothing that could be a draft
+  byId("mission-facts").textContent = chip.hidden ? t("no mission is open") : factsOf(state).join(" · ");
+}
+
+/** @param {MissionPageState} state */
 function factsOf(state) {
+  const { plan, mission } = state;
   const targets = state.selection.targets.length;
-  const facts = [];
-  if (isPlanCurrent(state)) {
-    const missed = state.plan.result.unassigned.length;
-    facts.push(
-      missed
-        ? tn(targets, "{reached} of {count} target", "{reached} of {count} targets", { reached: targets - missed })
-        : targetsText(targets),
-    );
-    if (state.planIsStored && state.mission?.planned_at)
-      facts.push(t("planned {time}", { time: clockText(state.mission.planned_at) }));
-    if (state.plan.result.flat_ground_assumed) facts.push(t("flat ground assumed"));
-  } else {
-    facts.push(targets ? targetsText(targets) : t("nothing picked yet"));
-    if (state.plan) facts.push(t("changed since it was planned"));
+  if (!plan || !isPlanCurrent(state)) {
+    const picked = targets ? targetsText(targets) : t("nothing picked yet");
+    return plan ? [picked, t("changed since it was planned")] : [picked];
   }
+  const missed = plan.result.unassigned.length;
+  const facts = [
+    missed
+      ? tn(targets, "{reached} of {count} target", "{reached} of {count} targets", { reached: targets - missed })
+      : targetsText(targets),
+  ];
+  if (state.planIsStored && mission?.planned_at)
+    facts.push(t("planned {time}", { time: clockText(mission.planned_at) }));
+  if (plan.result.flat_ground_assumed) facts.push(t("flat ground assumed"));
   return facts;
 }
 
+/** @param {string} level @param {string} image @param {string} title @param {string} text @param {WayOut[]} [acts] */
 function notice(level, image, title, text, acts = []) {
   return h(
     "div",
     { class: `notice ${level}`, role: level === "critical" ? "alert" : null },
     icon(image),
-    h("p", {}, h("strong", {}, title), ` ${text} `, acts.map(way)),
+    h("p", {}, h("strong", {}, title), ` ${text} `, acts.map(wayOut)),
   );
 }
 
-/** A way out of a notice: something to do here, or an address as it is when it is followed. */
-function way({ label, act, href }) {
-  if (act) return h("button", { type: "button", class: "text-button", onclick: act }, label);
-  return h("a", { class: "text-button", href: href(), onclick: (event) => (event.currentTarget.href = href()) }, label);
+/** Something to do here, or an address as it is when it is followed. @param {WayOut} way */
+function wayOut(way) {
+  if ("act" in way) return h("button", { type: "button", class: "text-button", onclick: way.act }, way.label);
+  const link = h("a", { class: "text-button", href: way.href() }, way.label);
+  link.addEventListener("click", () => {
+    link.href = way.href();
+  });
+  return link;
 }
 
-function noticesOf(state, actions, { canPlan, showPlace, askWhy }) {
-  const notices = [];
-  if (state.problem) {
-    const { level, title, text, actions: ways } = state.problem;
-    const image = level === "warning" ? "triangle-alert" : state.isAway ? "cloud-off" : "circle-alert";
-    notices.push(notice(level, image, title, text, ways));
-  } else if (state.isAway) {
-    const words = canPlan
-      ? t("You can go on: what you change is kept in this browser and saved when the server is back.")
-      : t("What you see may be out of date.");
-    notices.push(notice("warning", "cloud-off", t("The server cannot be reached."), words));
+/** @param {MissionPageState} state @param {NoticeContext} context @returns {Child[]} */
+function noticesOf(state, context) {
+  const { actions, canPlan, showPlace } = context;
+  const { mission } = state;
+  const isStale = mission?.is_stale && !(mission.stale_causes ?? []).every(({ what }) => what === "uav");
+  return [
+    problemNotice(state, canPlan),
+    state.conflict && isUnsaved(state) && conflictNotice(state.conflict, actions),
+    uavNotice(state, actions, canPlan),
+    mission &&
+      isStale &&
+      state.planIsStored &&
+      isPlanCurrent(state) &&
+      staleNotice(mission, actions, { canPlan, showPlace }),
+    isPlanCurrent(state) && planNotices(state, context),
+  ];
+}
+
+/** What went wrong, or that the server is away. @param {MissionPageState} state @param {boolean} canPlan */
+function problemNotice({ problem, isAway }, canPlan) {
+  if (problem) {
+    const image = problem.level === "warning" ? "triangle-alert" : isAway ? "cloud-off" : "circle-alert";
+    return notice(problem.level, image, problem.title, problem.text, problem.actions);
   }
-  if (state.conflict && isUnsaved(state)) {
-    const title = t("Your changes are from before {whose} save at {time}.", {
-      whose: state.conflict.whose,
-      time: clockText(state.conflict.at),
-    });
-    notices.push(
-      notice("warning", "triangle-alert", title, t("Both are kept."), [
-        { label: t("See both"), act: actions.seeBoth },
-        { label: t("Keep mine as a copy"), act: actions.keepMineAsCopy },
-      ]),
-    );
-  }
-  const changed = uavNotice(state, actions, canPlan);
-  if (changed) notices.push(changed);
-  const isOtherwiseStale =
-    state.mission?.is_stale && !(state.mission.stale_causes ?? []).every(({ what }) => what === "uav");
-  if (isOtherwiseStale && state.planIsStored && isPlanCurrent(state))
-    notices.push(staleNotice(state.mission, actions, { canPlan, showPlace }));
-  if (isPlanCurrent(state)) {
-    for (const warning of state.plan.result.warnings ?? [])
-      notices.push(notice("warning", "triangle-alert", "", inWords(warning.message)));
-    const unreached = unreachedOf(state.plan);
-    for (const { target, sentence } of unreached.slice(0, 3)) {
-      const why = { label: t("Why?"), act: () => askWhy({ target: target.key }) };
-      const acts = canPlan ? [why, { label: t("Remove it"), act: () => actions.removeTargets([target.key]) }] : [why];
-      notices.push(
-        notice("warning", "triangle-alert", t("{target} is not reached.", { target: target.label }), sentence, acts),
-      );
-    }
-    if (unreached.length > 3) {
-      const acts = canPlan
-        ? [
-            {
-              label: t("Remove all that are not reached"),
-              act: () => actions.removeTargets(unreached.map(({ target }) => target.key)),
-            },
-          ]
-        : [];
-      notices.push(
-        notice(
-          "warning",
-          "triangle-alert",
-          tn(unreached.length - 3, "{count} more target is not reached.", "{count} more targets are not reached."),
-          t("The list below says which."),
-          acts,
+  if (!isAway) return null;
+  const words = canPlan
+    ? t("You can go on: what you change is kept in this browser and saved when the server is back.")
+    : t("What you see may be out of date.");
+  return notice("warning", "cloud-off", t("The server cannot be reached."), words);
+}
+
+/** @param {Conflict} conflict @param {MissionActions} actions */
+const conflictNotice = ({ whose, at }, actions) =>
+  notice(
+    "warning",
+    "triangle-alert",
+    t("Your changes are from before {whose} save at {time}.", { whose, time: clockText(at) }),
+    t("Both are kept."),
+    [
+      { label: t("See both"), act: actions.seeBoth },
+      { label: t("Keep mine as a copy"), act: actions.keepMineAsCopy },
+    ],
+  );
+
+/** What the plan warns of, and which targets it does not reach. @param {MissionPageState} state @param {NoticeContext} context */
+function planNotices({ plan }, { actions, canPlan, askWhy }) {
+  const unreached = unreachedOf(plan);
+  const more = unreached.length - MOST_UNREACHED;
+  /** @param {string[]} keys @param {string} label @returns {WayOut[]} */
+  const remove = (keys, label) => (canPlan ? [{ label, act: () => actions.removeTargets(keys) }] : []);
+  return [
+    (plan?.result.warnings ?? []).map(({ message }) => notice("warning", "triangle-alert", "", inWords(message))),
+    unreached
+      .slice(0, MOST_UNREACHED)
+      .map(({ target, sentence }) =>
+        notice("warning", "triangle-alert", t("{target} is not reached.", { target: target.label }), sentence, [
+          { label: t("Why?"), act: () => askWhy({ target: target.key }) },
+          ...remove([target.key], t("Remove it")),
+        ]),
+      ),
+    more > 0 &&
+      notice(
+        "warning",
+        "triangle-alert",
+        tn(more, "{count} more target is not reached.", "{count} more targets are not reached."),
+        t("The list below says which."),
+        remove(
+          unreached.map(({ target }) => target.key),
+          t("Remove all that are not reached"),
         ),
-      );
-    }
-  }
-  return notices;
+      ),
+  ];
 }
 
-/** What of the ground changed since the plan was made, what of the mission that touches, and the way out. UAVs have a notice of their own. */
+/**
+ * What of the ground changed since the plan was made, what of the mission that touches, and the way out. UAVs have a notice of their own.
+ *
+ * @param {Mission} mission
+ * @param {MissionActions} actions
+ * @param {{ canPlan: boolean, showPlace: ShowPlace }} how
+ */
 function staleNotice(mission, actions, { canPlan, showPlace }) {
   const causes = mission.stale_causes.filter(({ what }) => what !== "uav");
   const isOfGround = causes[0] === mission.stale_causes[0];
   const headline = isOfGround
     ? mission.stale_reason.split(/(?<=\.) /)[0]
     : t("The ground has changed since this was planned.");
-  const planAgain = canPlan && way({ label: t("Plan again"), act: actions.plan });
-  const lines = causes
-    .slice(0, MOST_CAUSES)
-    .map((cause) =>
-      h(
-        "li",
-        {},
-        cause.message,
-        " ",
-        cause.from &&
-          `${t("There from {start} to {end}.", { start: departureText(cause.from), end: clockText(cause.to) })} `,
-        cause.position && way({ label: t("See the place"), act: () => showPlace(cause.position) }),
-      ),
+  const lines = causes.slice(0, MOST_CAUSES).map(({ message, from, to, position }) => {
+    const times = from && to && t("There from {start} to {end}.", { start: departureText(from), end: clockText(to) });
+    return h(
+      "li",
+      {},
+      message,
+      " ",
+      times && `${times} `,
+      position && wayOut({ label: t("See the place"), act: () => showPlace(position) }),
     );
+  });
   const more = causes.length - lines.length;
   return h(
     "div",
@@ -248,7 +301,7 @@ function staleNotice(mission, actions, { canPlan, showPlace }) {
       h("p", {}, h("strong", {}, headline)),
       h("ul", { class: "causes" }, lines),
       more > 0 && h("p", { class: "caption" }, tn(more, "{count} more place", "{count} more places")),
-      planAgain && h("p", {}, planAgain),
+      canPlan && h("p", {}, wayOut({ label: t("Plan again"), act: actions.plan })),
     ),
   );
 }

@@ -7,7 +7,40 @@ import { t, tn } from "../../text.js";
 import { exactText, lengthText, whenText } from "../../units.js";
 import { lostLinkText } from "../lost_link.js";
 
+/** @import { Answer } from "../../api.js" */
+/** @import { HistoryEntry, HistoryPage, LostLinkOutput, Mission } from "../../api_types.d.ts" */
+
+/**
+ * What an entry says of the mission before or after it: of each action only a part.
+ *
+ * @typedef {object} Facts
+ * @property {string} [name]
+ * @property {string} [of] the name of the mission that was copied
+ * @property {string} [objective]
+ * @property {boolean} [return_to_start]
+ * @property {LostLinkOutput | null} [lost_link]
+ * @property {number} [targets]
+ * @property {number} [uavs]
+ * @property {number} [targets_added]
+ * @property {number} [targets_removed]
+ * @property {{ added: string[], removed: string[] }} [targets_names]
+ * @property {number} [uavs_added]
+ * @property {number} [uavs_removed]
+ * @property {{ added: string[], removed: string[] }} [uavs_names]
+ * @property {number} [total_length_m]
+ * @property {number} [unassigned]
+ * @property {string} [uav]
+ * @property {string} [sha256]
+ * @property {string} [reason]
+ * @property {unknown[]} [sent]
+ * @property {string} [why]
+ */
+/** @typedef {{ before?: Facts | null, after?: Facts | null }} Change */
+/** @typedef {HistoryEntry & Change} Entry */
+/** @typedef {{ title: string, detail: string }} EntryWords */
+
 const TOGETHER_MS = 10 * 60_000;
+/** @type {Record<string, string>} */
 const ICONS = {
   create: "plus",
   change: "pencil",
@@ -26,37 +59,42 @@ const ICONS = {
   abort: "octagon-alert",
 };
 
+/** @param {string[]} list @param {number} count */
 const names = (list, count) =>
   count > list.length
     ? t("{names} and {count} more", { names: list.join(", "), count: count - list.length })
     : list.join(", ");
 
+/** @param {Change} change */
 function changeWords({ before, after }) {
+  /** @type {string[]} */
   const words = [];
+  const targets = after?.targets_names ?? { added: [], removed: [] };
+  const uavs = after?.uavs_names ?? { added: [], removed: [] };
   if (before?.name !== after?.name)
     words.push(t("renamed from “{before}” to “{after}”", { before: before?.name, after: after?.name }));
   if (after?.targets_added)
     words.push(
       tn(after.targets_added, "{count} target added: {names}", "{count} targets added: {names}", {
-        names: names(after.targets_names.added, after.targets_added),
+        names: names(targets.added, after.targets_added),
       }),
     );
   if (after?.targets_removed)
     words.push(
       tn(after.targets_removed, "{count} target removed: {names}", "{count} targets removed: {names}", {
-        names: names(after.targets_names.removed, after.targets_removed),
+        names: names(targets.removed, after.targets_removed),
       }),
     );
   if (after?.uavs_added)
     words.push(
       tn(after.uavs_added, "{count} UAV added: {names}", "{count} UAVs added: {names}", {
-        names: names(after.uavs_names.added, after.uavs_added),
+        names: names(uavs.added, after.uavs_added),
       }),
     );
   if (after?.uavs_removed)
     words.push(
       tn(after.uavs_removed, "{count} UAV removed: {names}", "{count} UAVs removed: {names}", {
-        names: names(after.uavs_names.removed, after.uavs_removed),
+        names: names(uavs.removed, after.uavs_removed),
       }),
     );
   if (before?.objective !== after?.objective)
@@ -68,9 +106,13 @@ function changeWords({ before, after }) {
   return words.join("; ") || t("places or tasks changed");
 }
 
-/** What an entry says: { title, detail }. */
+/** What an entry says. @param {Pick<Entry, "action" | "before" | "after">} entry @returns {EntryWords} */
 export function wordsOfEntry(entry) {
-  const { action, after } = entry;
+  return wordsOfMaking(entry) ?? wordsOfFlying(entry) ?? { title: t("Changed"), detail: changeWords(entry) };
+}
+
+/** What was done to the mission itself; null for the rest. @param {Pick<Entry, "action" | "before" | "after">} entry @returns {EntryWords | null} */
+function wordsOfMaking({ action, before, after }) {
   if (action === "create")
     return {
       title: t("Created"),
@@ -96,6 +138,18 @@ export function wordsOfEntry(entry) {
     return { title: t("Changed by hand"), detail: t("the route of {name}", { name: after?.uav }) };
   if (action === "by-hand-undone")
     return { title: t("Change by hand taken back"), detail: t("the route of {name}", { name: after?.uav }) };
+  if (action === "delete") return { title: t("Deleted"), detail: "" };
+  if (action === "restore") return { title: t("Brought back"), detail: "" };
+  if (action === "rename")
+    return {
+      title: t("Renamed"),
+      detail: t("from “{before}” to “{after}”", { before: before?.name, after: after?.name }),
+    };
+  return null;
+}
+
+/** What was done to fly it; null for the rest. @param {Pick<Entry, "action" | "after">} entry @returns {EntryWords | null} */
+function wordsOfFlying({ action, after }) {
   if (action === "approve")
     return { title: t("Approved"), detail: t("as {hash}", { hash: (after?.sha256 ?? "").slice(0, 12) }) };
   if (action === "revoke") return { title: t("Approval revoked"), detail: after?.reason ?? "" };
@@ -109,33 +163,29 @@ export function wordsOfEntry(entry) {
   if (action === "complete") return { title: t("Completed"), detail: "" };
   if (action === "fail") return { title: t("Failed"), detail: "" };
   if (action === "abort") return { title: t("Aborted"), detail: after?.why ?? "" };
-  if (action === "delete") return { title: t("Deleted"), detail: "" };
-  if (action === "restore") return { title: t("Brought back"), detail: "" };
-  if (action === "rename")
-    return {
-      title: t("Renamed"),
-      detail: t("from “{before}” to “{after}”", { before: entry.before?.name, after: after?.name }),
-    };
-  return { title: t("Changed"), detail: changeWords(entry) };
+  return null;
 }
 
-/** Changes of one person within ten minutes are one line, the newest first: [[entry, …], …]. */
+/** Changes of one person within ten minutes are one line, the newest first: [[entry, …], …]. @param {Entry[]} entries */
 export function grouped(entries) {
+  /** @type {Entry[][]} */
   const groups = [];
   for (const entry of entries) {
-    const last = groups.at(-1)?.at(-1);
+    const group = groups.at(-1);
+    const last = group?.at(-1);
     const isNext =
       last &&
       entry.action === "change" &&
       last.action === "change" &&
       entry.actor === last.actor &&
-      new Date(last.recorded_at) - new Date(entry.recorded_at) < TOGETHER_MS;
-    if (isNext) groups.at(-1).push(entry);
+      Date.parse(last.recorded_at) - Date.parse(entry.recorded_at) < TOGETHER_MS;
+    if (group && isNext) group.push(entry);
     else groups.push([entry]);
   }
   return groups;
 }
 
+/** @param {Entry[]} group */
 function line(group) {
   const [newest] = group;
   const { title, detail } = wordsOfEntry(newest);
@@ -180,6 +230,7 @@ function line(group) {
   );
 }
 
+/** @param {Pick<Mission, "id" | "name">} mission */
 export function showHistory(mission) {
   const list = h("ol", { class: "history-list", "aria-label": t("History"), "aria-busy": "true" });
   const more = h("button", { type: "button", class: "button", hidden: true }, t("Show more"));
@@ -192,19 +243,22 @@ export function showHistory(mission) {
     list,
     h("form", { method: "dialog", class: "acts" }, more, h("button", { class: "button" }, t("Close"))),
   );
+  /** @type {Entry[]} */
   const entries = [];
+  /** @type {string | null} */
   let next = `/missions/${mission.id}/history?limit=50`;
   async function load() {
+    if (!next) return;
     try {
-      const { data } = await get(next);
-      entries.push(...data.results);
+      const { data } = /** @type {Answer<HistoryPage>} */ (await get(next));
+      entries.push(.../** @type {Entry[]} */ (data.results));
       next = data.next;
       list.replaceChildren(...grouped(entries).map(line));
       state.hidden = true;
       more.hidden = next === null;
     } catch (error) {
       state.hidden = false;
-      state.textContent = t("Not loaded: {reason}", { reason: error.message });
+      state.textContent = t("Not loaded: {reason}", { reason: error instanceof Error ? error.message : "" });
       more.hidden = false;
     } finally {
       list.removeAttribute("aria-busy");
