@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { isSignedOut, signInAddress } from "../../static/js/api.js";
-import { createDrafts, draftDecision, isStarted, whoseSave } from "../../static/js/mission/draft.js";
+import { createDrafts, draftDecision, isStarted, whoseSave } from "../../static/js/mission/actions/draft.js";
 import { factsOfUav } from "../../static/js/mission/fleet.js";
 import { basisOf, EMPTY, targetOf, withTargets, withUav, withUavAs } from "../../static/js/mission/selection.js";
 

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-
+import { isAlike, merged } from "../../static/js/mission/actions/merge.js";
+import { changedParts } from "../../static/js/mission/actions/saving.js";
 import {
   compassText,
   conditionsOf,
@@ -9,8 +10,6 @@ import {
   nextMinute,
   timeAt,
 } from "../../static/js/mission/flight_options.js";
-import { isAlike, merged } from "../../static/js/mission/merge.js";
-import { changedParts } from "../../static/js/mission/saving.js";
 import { basisOf, EMPTY, requestOf, selectionOf } from "../../static/js/mission/selection.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");

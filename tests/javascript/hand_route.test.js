@@ -1,8 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { createHandEditing } from "../../static/js/mission/hand_editing.js";
-import { figuresOfLook, speedWords } from "../../static/js/mission/hand_figures.js";
+import { createHandEditing } from "../../static/js/mission/hand/hand_editing.js";
+import { figuresOfLook, speedWords } from "../../static/js/mission/hand/hand_figures.js";
 import {
   bodyOf,
   changedLegs,
@@ -15,7 +15,7 @@ import {
   paced,
   pointsOf,
   raised,
-} from "../../static/js/mission/hand_route.js";
+} from "../../static/js/mission/hand/hand_route.js";
 import { createStore } from "../../static/js/store.js";
 
 const at = (lon, kind, target = null) => ({ position: [lon, 40], altitude_agl_m: 60, kind, target });

@@ -23,8 +23,8 @@ globalThis.document = {
   createElement: element,
   getElementById: (id) => (id === "toasts" ? toasts : element()),
 };
-const { createFleetActions } = await import("../../static/js/mission/fleet_actions.js");
-const { createLocking } = await import("../../static/js/mission/locking.js");
+const { createFleetActions } = await import("../../static/js/mission/actions/fleet_actions.js");
+const { createLocking } = await import("../../static/js/mission/actions/locking.js");
 
 const tower = (id) => targetOf({ id, kind: "tower", properties: { label: `Tower ${id}` }, centre: [10, 50] });
 const uav = (id, name) => ({ id, name, position: [9, 49] });

@@ -1,10 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-
+import { merged } from "../../static/js/mission/actions/merge.js";
+import { changedParts } from "../../static/js/mission/actions/saving.js";
 import * as link from "../../static/js/mission/lost_link.js";
-import { merged } from "../../static/js/mission/merge.js";
-import { questionOf } from "../../static/js/mission/reachable.js";
-import { changedParts } from "../../static/js/mission/saving.js";
+import { questionOf } from "../../static/js/mission/map/reachable.js";
 import { basisOf, EMPTY, requestOf, selectionOf, storedBasisOf } from "../../static/js/mission/selection.js";
 
 const YARD = [-82.95, 39.95];

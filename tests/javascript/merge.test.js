@@ -1,8 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-
+import { isAlike, merged, wordsOfChange } from "../../static/js/mission/actions/merge.js";
 import { tied } from "../../static/js/mission/locks.js";
-import { isAlike, merged, wordsOfChange } from "../../static/js/mission/merge.js";
 import { EMPTY, targetOf } from "../../static/js/mission/selection.js";
 
 const tower = (id, task = null) =>

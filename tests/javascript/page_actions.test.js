@@ -20,11 +20,11 @@ globalThis.document ??= {
 };
 globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
 globalThis.WebSocket = undefined; // jobs are asked for
-const { createActions } = await import("../../static/js/mission/actions.js");
+const { createActions } = await import("../../static/js/mission/actions/actions.js");
 const { howFarWords } = await import("../../static/js/mission/panels/foot.js");
 const { isWorse } = await import("../../static/js/mission/compare.js");
-const { planOf } = await import("../../static/js/mission/planning.js");
-const { refusalOf } = await import("../../static/js/mission/refusals.js");
+const { planOf } = await import("../../static/js/mission/actions/planning.js");
+const { refusalOf } = await import("../../static/js/mission/actions/refusals.js");
 const { savedWords } = await import("../../static/js/mission/panels/saved_state.js");
 
 const tower = (id) => targetOf({ id, kind: "tower", properties: { label: `${id}` }, centre: [10, 50] });

@@ -1,8 +1,10 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-
+import { isAlike, merged, wordsOfChange } from "../../static/js/mission/actions/merge.js";
+import { planOf } from "../../static/js/mission/actions/planning.js";
+import { createRunningJob } from "../../static/js/mission/actions/running_job.js";
+import { changedParts } from "../../static/js/mission/actions/saving.js";
 import { factsOfUav } from "../../static/js/mission/fleet.js";
-import { isAlike, merged, wordsOfChange } from "../../static/js/mission/merge.js";
 import {
   bestWordsOf,
   endingOf,
@@ -12,11 +14,8 @@ import {
   shownPlaces,
   wishWordsOf,
 } from "../../static/js/mission/plan_view.js";
-import { planOf } from "../../static/js/mission/planning.js";
-import { createRunningJob } from "../../static/js/mission/running_job.js";
-import { changedParts } from "../../static/js/mission/saving.js";
 import { EMPTY, requestOf, sensorsKnown, targetOf, wishesOf, withWishes } from "../../static/js/mission/selection.js";
-import { placePills } from "../../static/js/mission/span_strip.js";
+import { placePills } from "../../static/js/mission/strips/span_strip.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const flown = { geometry: {}, uav: "Heron", targets: [0, 1] };

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-
+import { withResult } from "../../static/js/mission/actions/planning.js";
 import {
   counterpart,
   endsBetween,
@@ -13,9 +13,16 @@ import { canFly, choicesOf, isAskedFor, standingUavs } from "../../static/js/mis
 import { moreOrLess } from "../../static/js/mission/panels/routes/row.js";
 import { partsOf } from "../../static/js/mission/panels/why/route.js";
 import { fullUavs, reasonWords } from "../../static/js/mission/panels/why/target.js";
-import { withResult } from "../../static/js/mission/planning.js";
-import { bandOf, flightOf, groundOf, heightAt, readingAt, spanOf, thinned } from "../../static/js/mission/profile.js";
-import { scaleOf } from "../../static/js/mission/span_strip.js";
+import {
+  bandOf,
+  flightOf,
+  groundOf,
+  heightAt,
+  readingAt,
+  spanOf,
+  thinned,
+} from "../../static/js/mission/strips/profile.js";
+import { scaleOf } from "../../static/js/mission/strips/span_strip.js";
 import { lengthText } from "../../static/js/units.js";
 
 const at = (lon, more = {}) => ({

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { questionOf, reachText, verdictOf } from "../../static/js/mission/reachable.js";
+import { questionOf, reachText, verdictOf } from "../../static/js/mission/map/reachable.js";
 import { EMPTY } from "../../static/js/mission/selection.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");

@@ -8,7 +8,7 @@ import {
   ownConditions,
   rulesUpTo,
   sentenceOf,
-} from "../../static/js/mission/rehearsal.js";
+} from "../../static/js/mission/rehearsal/rehearsal.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const run = (words, level, targets = []) => ({

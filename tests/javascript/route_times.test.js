@@ -1,7 +1,5 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-
-import { flightOf, readingAt } from "../../static/js/mission/profile.js";
 import {
   arrivalsOf,
   batteryOf,
@@ -12,6 +10,7 @@ import {
   staysText,
   visitsOf,
 } from "../../static/js/mission/route_times.js";
+import { flightOf, readingAt } from "../../static/js/mission/strips/profile.js";
 
 const plain = (text) => text.replaceAll("\u00a0", " ");
 const heron = {

@@ -5,7 +5,7 @@ import { EMPTY, targetOf, withTargets } from "../../static/js/mission/selection.
 import { createHistory, createStore } from "../../static/js/store.js";
 
 globalThis.document ??= { cookie: "", querySelector: () => null, documentElement: { lang: "en", dataset: {} } };
-const { createSaving } = await import("../../static/js/mission/saving.js");
+const { createSaving } = await import("../../static/js/mission/actions/saving.js");
 
 const tower = targetOf({ id: 7, kind: "tower", properties: { label: "18" }, centre: [10, 50] });
 

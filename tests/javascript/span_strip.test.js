@@ -3,7 +3,7 @@ import test from "node:test";
 
 import { distance_m } from "../../static/js/domain/geodesy.js";
 import { positionAt, profileOf } from "../../static/js/domain/route_profile.js";
-import { axisTicks, layOut } from "../../static/js/mission/span_strip.js";
+import { axisTicks, layOut } from "../../static/js/mission/strips/span_strip.js";
 
 const EDGE = 10;
 const waypoint = (longitude, kind, rest = {}) => ({

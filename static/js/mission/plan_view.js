@@ -4,7 +4,7 @@ import { routeLetter } from "../domain/palette.js";
 import { positionAt, profileOf } from "../domain/route_profile.js";
 import { t, tn } from "../text.js";
 import { durationText, energyText, lengthText, numberText } from "../units.js";
-import { changesOf } from "./hand_route.js";
+import { changesOf } from "./hand/hand_route.js";
 import { ordersOf, wishedOrders } from "./locks.js";
 import { inWords } from "./plan_words.js";
 import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";

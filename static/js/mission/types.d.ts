@@ -27,8 +27,8 @@ import type {
 import type { RasterMap } from "../map/types.d.ts";
 import type { createHistory, Store } from "../store.js";
 import type { OwnFigure } from "../uav_figures.js";
-import type { createDrafts } from "./draft.js";
-import type { createRunningJob } from "./running_job.js";
+import type { createDrafts } from "./actions/draft.js";
+import type { createRunningJob } from "./actions/running_job.js";
 
 /** What the server writes into the page (missions/pages.py). */
 export interface MissionPageData {
@@ -434,4 +434,4 @@ export interface MissionContext {
 }
 
 /** What an operator does with the mission: see actions.js. */
-export type MissionActions = ReturnType<typeof import("./actions.js").createActions>;
+export type MissionActions = ReturnType<typeof import("./actions/actions.js").createActions>;

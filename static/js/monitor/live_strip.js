@@ -3,7 +3,7 @@
 import { svg } from "../dom.js";
 import { MEASURED } from "../domain/certainty.js";
 import { profileOf } from "../domain/route_profile.js";
-import { layOut, scaleOf } from "../mission/span_strip.js";
+import { layOut, scaleOf } from "../mission/strips/span_strip.js";
 
 const HEIGHT_PX = 34;
 const MIDDLE_PX = 18;

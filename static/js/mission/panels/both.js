@@ -4,9 +4,9 @@ import { h } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t, tn } from "../../text.js";
 import { clockText, powerText } from "../../units.js";
+import { targetDifferences, uavDifferences } from "../actions/merge.js";
 import { conditionsText, departureText } from "../flight_options.js";
 import { lostLinkText } from "../lost_link.js";
-import { targetDifferences, uavDifferences } from "../merge.js";
 import { OBJECTIVES } from "../plan_view.js";
 
 /** @import { Conflict, MissionSelection, PickedTarget, PickedUav, Version } from "../types.d.ts" */

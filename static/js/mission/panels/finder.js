@@ -4,7 +4,7 @@ import { ApiError, get } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
 import { placesFound } from "../../map/places_found.js";
 import { t, tn } from "../../text.js";
-import { MOST_TARGETS } from "../picking.js";
+import { MOST_TARGETS } from "../actions/picking.js";
 import { detailOf } from "../selection.js";
 
 /** @import { Answer } from "../../api.js" */

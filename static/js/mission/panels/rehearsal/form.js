@@ -3,7 +3,7 @@
 import { byId, find, h } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { SPEED_UNIT } from "../../../units.js";
-import { CONDITIONS, conditionWords, ownConditions } from "../../rehearsal.js";
+import { CONDITIONS, conditionWords, ownConditions } from "../../rehearsal/rehearsal.js";
 
 const [MOST_WIND_MPS, MOST_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/sky.py
 /** @param {number} mps */

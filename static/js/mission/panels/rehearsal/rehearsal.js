@@ -4,13 +4,13 @@ import { byId, h, refill } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { percentText, whenText } from "../../../units.js";
 import { isPlanCurrent, isUnsaved } from "../../plan_view.js";
-import { isRunning, levelWords } from "../../rehearsal.js";
+import { isRunning, levelWords } from "../../rehearsal/rehearsal.js";
 import { mountForm } from "./form.js";
 import { createVerdict } from "./verdict.js";
 
 /** @import { Rehearsal, RehearsalDetail } from "../../../api_types.d.ts" */
 /** @import { Binding } from "../../../page/keyboard.js" */
-/** @import { createRehearsing } from "../../rehearsal_actions.js" */
+/** @import { createRehearsing } from "../../rehearsal/rehearsal_actions.js" */
 /** @import { MissionPageState, MissionStore, RehearsalState } from "../../types.d.ts" */
 
 /** @typedef {ReturnType<typeof createRehearsing>} Rehearsing */

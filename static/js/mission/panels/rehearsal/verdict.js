@@ -4,8 +4,8 @@ import { byId, h, icon, refill } from "../../../dom.js";
 import { routeLetter, routeNumber } from "../../../domain/palette.js";
 import { t } from "../../../text.js";
 import { exactHeightText, heightText, numberText, percentText, speedText, whenText } from "../../../units.js";
-import { figuresOf, LEVELS, levelWords, nearestOther, sentenceOf } from "../../rehearsal.js";
-import { drawCharts } from "../../rehearsal_charts.js";
+import { figuresOf, LEVELS, levelWords, nearestOther, sentenceOf } from "../../rehearsal/rehearsal.js";
+import { drawCharts } from "../../rehearsal/rehearsal_charts.js";
 
 /**
  * @import { RehearsalConditions, RehearsalDetail, RehearsalRunWithVerdict, RehearsalTrack, RehearsedRoute, RehearsedTarget,

@@ -6,8 +6,9 @@ import { t, tn } from "../../../text.js";
 import { heightText, lengthText, percentText } from "../../../units.js";
 import { timeAt } from "../../flight_options.js";
 import { isPlanCurrent, lastPlanOf, shownRoute } from "../../plan_view.js";
-import { drawProfile, flightOf, profileTable, readingAt } from "../../profile.js";
 import { batteryOf, landing_s, stayText } from "../../route_times.js";
+import { flightOf, readingAt } from "../../strips/profile.js";
+import { drawProfile, profileTable } from "../../strips/profile_chart.js";
 import { marginWords, zoneLegend, zoneWords } from "../../zones_passed.js";
 import { mainOf, stripRoom } from "./room.js";
 

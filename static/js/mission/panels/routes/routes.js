@@ -5,7 +5,7 @@ import { t } from "../../../text.js";
 import { counterpart } from "../../compare.js";
 import { isPlanCurrent, isPlanInSight, lastPlanOf, pointAlong, routesOf, sentenceOf } from "../../plan_view.js";
 import { batteryOf } from "../../route_times.js";
-import { stripAxis } from "../../span_strip.js";
+import { stripAxis } from "../../strips/span_strip.js";
 import { drawQuality } from "./quality.js";
 import { isTight, mainOf, stripRoom } from "./room.js";
 import { routeRow } from "./row.js";

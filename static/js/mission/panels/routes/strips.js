@@ -9,13 +9,13 @@ import { lockOf, ordersOf, stopsWished, wishedOrders } from "../../locks.js";
 import { routesOf, stripLabel } from "../../plan_view.js";
 import { staysOf, stayText } from "../../route_times.js";
 import { uavsByName } from "../../selection.js";
-import { paleStrip, spanStrip, stripTable } from "../../span_strip.js";
-import { createPillDrag } from "../../strip_drag.js";
+import { paleStrip, spanStrip, stripTable } from "../../strips/span_strip.js";
+import { createPillDrag } from "../../strips/strip_drag.js";
 import { passedZones } from "../../zones_passed.js";
 
 /** @import { Waypoint } from "../../../api_types.d.ts" */
 /** @import { Child } from "../../../dom.js" */
-/** @import { createGrounds } from "../../profile.js" */
+/** @import { createGrounds } from "../../strips/profile.js" */
 /** @import { MissionActions, MissionPageState, MissionStore, ShortRoute, ShownPlan, ShownRoute } from "../../types.d.ts" */
 
 /** @typedef {ReturnType<typeof createGrounds>} Grounds */

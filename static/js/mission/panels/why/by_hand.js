@@ -2,8 +2,8 @@
 
 import { h, icon } from "../../../dom.js";
 import { t, tn } from "../../../text.js";
-import { figuresOfLook } from "../../hand_figures.js";
-import { changesOf, isFree } from "../../hand_route.js";
+import { figuresOfLook } from "../../hand/hand_figures.js";
+import { changesOf, isFree } from "../../hand/hand_route.js";
 import { createHandFields } from "./hand_fields.js";
 
 /** @import { HandEdit, HandPoint, MissionActions, MissionPageState, MissionStore, ShownPlan } from "../../types.d.ts" */

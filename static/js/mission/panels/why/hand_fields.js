@@ -3,8 +3,8 @@
 import { h } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { SHORT_UNIT, SPEED_UNIT } from "../../../units.js";
-import { speedWords } from "../../hand_figures.js";
-import { isFlownTo, isFree } from "../../hand_route.js";
+import { speedWords } from "../../hand/hand_figures.js";
+import { isFlownTo, isFree } from "../../hand/hand_route.js";
 
 /** @import { HandEdit, HandPoint, MissionActions } from "../../types.d.ts" */
 

@@ -1,0 +1,57 @@
+/** The large plan that is being made, remembered over a reload of the page: in this tab alone, for each user and mission. */
+
+/** @import { MissionSelection } from "../types.d.ts" */
+
+/** @typedef {{ job: string, selection: MissionSelection }} RunningJob */
+
+/** @param {number} user @param {string | null} mission */
+const keyOf = (user, mission) => `spanwise.planning.${user}.${mission ?? "new"}`;
+
+/** @param {{ user: number, storage?: () => Storage }} options */
+export function createRunningJob({ user, storage = () => globalThis.sessionStorage }) {
+  let isLeaving = false; // what fails because the page goes is no end of the job
+  globalThis.addEventListener?.("pagehide", () => {
+    isLeaving = true;
+  });
+  globalThis.addEventListener?.("pageshow", () => {
+    isLeaving = false;
+  });
+
+  return {
+    /**
+     * { job, selection }: what was asked for; null where nothing runs.
+     *
+     * @param {string | null} mission
+     * @returns {RunningJob | null}
+     */
+    read(mission) {
+      try {
+        const kept = JSON.parse(storage().getItem(keyOf(user, mission)) ?? "null");
+        return typeof kept?.job === "string" &&
+          Array.isArray(kept.selection?.targets) &&
+          Array.isArray(kept.selection.uavs)
+          ? kept
+          : null;
+      } catch {
+        return null;
+      }
+    },
+    /** @param {string | null} mission @param {RunningJob} running */
+    keep(mission, running) {
+      try {
+        storage().setItem(keyOf(user, mission), JSON.stringify(running));
+      } catch {
+        /* after a reload the progress does not come back; the plan is made all the same */
+      }
+    },
+    /** @param {string | null} mission */
+    drop(mission) {
+      if (isLeaving) return;
+      try {
+        storage().removeItem(keyOf(user, mission));
+      } catch {
+        /* nothing was kept */
+      }
+    },
+  };
+}

@@ -1,0 +1,35 @@
+/** Rally points and ways back on the mission's map, as the store has them: quietly, and where they fail not so. */
+
+import * as layer from "../../map/layers/lost_link.js";
+import {
+  checkStateOf,
+  quietReturnsOf,
+  rallyName,
+  returnLinesOf,
+  usesRallyPoints,
+  wholeLostLink,
+} from "../lost_link.js";
+import { isPlanCurrent } from "../plan_view.js";
+
+/** Returns { recolour() }. */
+export function mountLostLinkMap(map, store, actions, { canPlan }) {
+  const rally = layer.createRallyPoints(map, { onMove: actions.moveRallyPoint });
+
+  store.listen(["selection"], ({ selection: { lost_link } }) => {
+    const points = usesRallyPoints(lost_link) ? wholeLostLink(lost_link).rally_points : [];
+    rally.update(
+      points.map((position, index) => ({ position, name: rallyName(index) })),
+      canPlan,
+    );
+  });
+  store.listen(["selection", "plan", "litReturn", "hand"], (state) => {
+    const { plan, selection, litReturn, hand } = state;
+    const isChecked = !hand && ["home", "lost"].includes(checkStateOf(selection.lost_link, plan, isPlanCurrent(state)));
+    const failing = isChecked
+      ? returnLinesOf(plan).map((line) => ({ ...line, fails: true, lit: line.key === litReturn }))
+      : [];
+    layer.showReturns(map, [...(isChecked ? quietReturnsOf(plan) : []), ...failing]);
+  });
+
+  return { recolour: () => layer.recolour(map) };
+}
