@@ -1,12 +1,16 @@
 /** A dialog that takes a list of references, says which assets they mean, and adds those. */
 
 import { ApiError } from "../../api.js";
-import { h, icon } from "../../dom.js";
+import { find, h, icon } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t, tn } from "../../text.js";
 import { lookUp, MOST_REFS, refsIn, rowsToAdd } from "../list_reading.js";
 import { nameOf, targetOfRow } from "../selection.js";
 
+/** @import { AssetKind, LookupResult } from "../../api_types.d.ts" */
+/** @import { MissionActions } from "../types.d.ts" */
+
+/** @returns {["" | AssetKind, string][]} */
 const KINDS = () => [
   ["", t("Anything")],
   ["tower", t("Towers")],
@@ -16,8 +20,40 @@ const KINDS = () => [
 ];
 const LONGEST_FILE = 2_000_000;
 
+/** @param {MissionActions} actions */
 export function askForList(actions) {
   const dialog = h("dialog", { class: "paste-list", "aria-labelledby": "paste-title" });
+  const asking = new AbortController();
+  const { form, words } = createForm({ showAnswer, signal: asking.signal, close: () => dialog.close() });
+
+  /** @param {LookupResult[]} results */
+  function showAnswer(results) {
+    const content = answer(results, {
+      add(rows) {
+        dialog.close();
+        actions.addMany(rows.map(targetOfRow), (added) => t("{added} from the list.", { added }));
+      },
+      back() {
+        dialog.replaceChildren(form);
+        words.focus();
+      },
+    });
+    dialog.replaceChildren(content);
+    find(dialog, "h2", HTMLElement).focus();
+  }
+
+  dialog.addEventListener("close", () => asking.abort());
+  dialog.append(form);
+  open(dialog);
+  words.focus();
+}
+
+/**
+ * The form that takes the list.
+ *
+ * @param {{ showAnswer: (results: LookupResult[]) => void, signal: AbortSignal, close: () => void }} how
+ */
+function createForm({ showAnswer, signal, close }) {
   const words = h("textarea", {
     class: "input",
     id: "paste-words",
@@ -32,19 +68,11 @@ export function askForList(actions) {
     { class: "input", id: "paste-kind" },
     KINDS().map(([value, name]) => h("option", { value }, name)),
   );
-  const file = h("input", {
-    type: "file",
-    accept: ".txt,.csv,text/plain,text/csv",
-    class: "unseen",
-    id: "paste-file",
-    "aria-label": t("Take the list from a file"),
-  });
   const wrong = h("p", { class: "field-error", role: "alert" });
+  const file = fileInput(words, wrong);
   const go = h("button", { class: "button primary" }, t("Look them up"));
-  const asking = new AbortController();
 
-  async function ask(event) {
-    event.preventDefault();
+  async function ask() {
     const refs = refsIn(words.value);
     if (!refs.length || refs.length > MOST_REFS) {
       wrong.textContent = refs.length
@@ -57,9 +85,9 @@ export function askForList(actions) {
     go.setAttribute("aria-busy", "true");
     go.textContent = t("Looking…");
     try {
-      answer(await lookUp(refs, kind.value ? [kind.value] : [], asking.signal));
+      showAnswer(await lookUp(refs, kind.value ? [/** @type {AssetKind} */ (kind.value)] : [], signal));
     } catch (error) {
-      if (error.name === "AbortError") return;
+      if (error instanceof DOMException && error.name === "AbortError") return;
       wrong.textContent = error instanceof ApiError ? error.message : t("The list could not be looked up.");
     } finally {
       go.removeAttribute("aria-busy");
@@ -69,7 +97,7 @@ export function askForList(actions) {
 
   const form = h(
     "form",
-    { onsubmit: ask },
+    {},
     h("h2", { id: "paste-title" }, t("Paste a list")),
     h(
       "div",
@@ -86,88 +114,98 @@ export function askForList(actions) {
       file,
     ),
     wrong,
-    h(
-      "div",
-      { class: "acts" },
-      h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
-      go,
-    ),
+    h("div", { class: "acts" }, h("button", { type: "button", class: "button", onclick: close }, t("Cancel")), go),
   );
-  file.addEventListener("change", async () => {
-    const [chosen] = file.files;
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    void ask();
+  });
+  return { form, words };
+}
+
+/** The list out of a file. @param {HTMLTextAreaElement} words @param {HTMLElement} wrong */
+function fileInput(words, wrong) {
+  const input = h("input", {
+    type: "file",
+    accept: ".txt,.csv,text/plain,text/csv",
+    class: "unseen",
+    id: "paste-file",
+    "aria-label": t("Take the list from a file"),
+  });
+  input.addEventListener("change", async () => {
+    const chosen = input.files?.[0];
     if (!chosen) return;
     if (chosen.size > LONGEST_FILE) wrong.textContent = t("This file is too large for a list.");
     else words.value = await chosen.text();
-    file.value = "";
+    input.value = "";
   });
-
-  function answer(results) {
-    const choices = new Map();
-    const several = results.filter(({ match }) => match === "several");
-    const none = results.filter(({ match }) => match === "none");
-    const foundCount = results.length - several.length - none.length;
-    const add = h("button", { type: "button", class: "button primary", onclick: addThem });
-    const refresh = () => {
-      const count = rowsToAdd(results, choices).length;
-      add.textContent = count ? tn(count, "Add {count} target", "Add {count} targets") : t("Nothing to add");
-      add.disabled = !count;
-    };
-
-    function addThem() {
-      const rows = rowsToAdd(results, choices);
-      dialog.close();
-      actions.addMany(rows.map(targetOfRow), (added) => t("{added} from the list.", { added }));
-    }
-
-    const sentence = [
-      foundCount > 0 && tn(foundCount, "{count} found", "{count} found"),
-      several.length && tn(several.length, "{count} means several things", "{count} mean several things"),
-      none.length && tn(none.length, "{count} is not known", "{count} are not known"),
-    ]
-      .filter(Boolean)
-      .join(", ");
-    dialog.replaceChildren(
-      h(
-        "div",
-        { class: "stack" },
-        h("h2", { id: "paste-title", tabindex: "-1" }, `${sentence}.`),
-        several.length > 0 &&
-          h(
-            "section",
-            { "aria-label": t("Several meanings") },
-            h("h3", {}, t("Which is meant?")),
-            several.map((result) => choiceOf(result, choices, refresh)),
-          ),
-        none.length > 0 &&
-          h(
-            "section",
-            { "aria-label": t("Not known") },
-            h("h3", {}, t("Not in the data")),
-            h("p", { class: "paste-unknown", tabindex: "0" }, none.map(({ ref }) => ref).join(", ")),
-          ),
-        h(
-          "div",
-          { class: "acts" },
-          h(
-            "button",
-            { type: "button", class: "button", onclick: () => (dialog.replaceChildren(form), words.focus()) },
-            t("Back to the list"),
-          ),
-          add,
-        ),
-      ),
-    );
-    refresh();
-    dialog.querySelector("h2").focus();
-  }
-
-  dialog.addEventListener("close", () => asking.abort());
-  dialog.append(form);
-  open(dialog);
-  words.focus();
+  return input;
 }
 
-/** One reference with several meanings: leave it out, take one, or all that are listed. */
+/** How many were found, mean several things, are not known. @param {number} found @param {number} several @param {number} none */
+const sentenceOf = (found, several, none) =>
+  [
+    found > 0 && tn(found, "{count} found", "{count} found"),
+    several > 0 && tn(several, "{count} means several things", "{count} mean several things"),
+    none > 0 && tn(none, "{count} is not known", "{count} are not known"),
+  ]
+    .filter(Boolean)
+    .join(", ");
+
+/**
+ * What the references mean; of those with several meanings one is chosen.
+ *
+ * @param {LookupResult[]} results
+ * @param {{ add: (rows: LookupResult["assets"]) => void, back: () => void }} acts
+ */
+function answer(results, { add, back }) {
+  /** @type {Map<string, string>} */
+  const choices = new Map();
+  const several = results.filter(({ match }) => match === "several");
+  const none = results.filter(({ match }) => match === "none");
+  const addButton = h("button", { type: "button", class: "button primary" });
+  addButton.addEventListener("click", () => add(rowsToAdd(results, choices)));
+  const refresh = () => {
+    const count = rowsToAdd(results, choices).length;
+    addButton.textContent = count ? tn(count, "Add {count} target", "Add {count} targets") : t("Nothing to add");
+    addButton.disabled = !count;
+  };
+  refresh();
+  const sentence = sentenceOf(results.length - several.length - none.length, several.length, none.length);
+  return h(
+    "div",
+    { class: "stack" },
+    h("h2", { id: "paste-title", tabindex: "-1" }, `${sentence}.`),
+    several.length > 0 &&
+      h(
+        "section",
+        { "aria-label": t("Several meanings") },
+        h("h3", {}, t("Which is meant?")),
+        several.map((result) => choiceOf(result, choices, refresh)),
+      ),
+    none.length > 0 &&
+      h(
+        "section",
+        { "aria-label": t("Not known") },
+        h("h3", {}, t("Not in the data")),
+        h("p", { class: "paste-unknown", tabindex: "0" }, none.map(({ ref }) => ref).join(", ")),
+      ),
+    h(
+      "div",
+      { class: "acts" },
+      h("button", { type: "button", class: "button", onclick: back }, t("Back to the list")),
+      addButton,
+    ),
+  );
+}
+
+/**
+ * One reference with several meanings: leave it out, take one, or all that are listed.
+ *
+ * @param {LookupResult} result
+ * @param {Map<string, string>} choices
+ * @param {() => void} refresh
+ */
 function choiceOf({ ref, count, assets }, choices, refresh) {
   const name =
     count > assets.length
