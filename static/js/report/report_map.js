@@ -19,7 +19,7 @@ import * as layers from "./record_layers.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { RecordTarget } from "../api_types.d.ts" */
-/** @import { Geometry, Ground } from "../map/types.d.ts" */
+/** @import { Geometry, Ground, MapControls } from "../map/types.d.ts" */
 /** @import { Moment } from "../record/track.js" */
 /** @import { Labels } from "../record/labels.js" */
 /** @import { ReplayRoute, ReportPage } from "./types.d.ts" */
@@ -118,6 +118,12 @@ const openMap = (container, page) =>
     extent: page.extent,
   });
 
+/** Where the ground's data are from; the map stands without it, too. @param {MapControls} controls */
+async function readGround(controls) {
+  const answer = /** @type {Answer<Ground> | null} */ (await get("/ground").catch(() => null));
+  if (answer) controls.setGround(answer.data);
+}
+
 /** @param {ReportPage} page @param {{ onPick: (place: number) => void }} options onPick: a UAV was clicked */
 export function createReportMap(page, { onPick }) {
   const container = byId("map");
@@ -160,12 +166,7 @@ export function createReportMap(page, { onPick }) {
         glide_ms: 0,
       }),
     };
-    void (
-      /** @type {Promise<Answer<Ground>>} */ (get("/ground")).then(
-        ({ data }) => controls.setGround(data),
-        () => {},
-      )
-    );
+    void readGround(controls);
     draw();
   });
 

@@ -17,10 +17,10 @@ import { surroundingsOf } from "./instruments/distances.js";
 import { createInstruments } from "./instruments/panel.js";
 import { createLabels } from "./labels.js";
 import { readScenePalette } from "./palette.js";
-import { createPicture } from "./picture.js";
+import { createPicture } from "./picture/picture.js";
+import { NoWebGL } from "./picture/view.js";
 import { boxRound, placesOf } from "./sources/box.js";
 import { createTimeBar } from "./time_bar.js";
-import { NoWebGL } from "./view.js";
 
 /** @import { Answer } from "../api.js" */
 /** @import { Scene } from "../api_types.d.ts" */

@@ -1,9 +1,9 @@
 /** The same flight seen from straight above, drawn without WebGL: for machines that have no graphics for the picture in space. */
 
 import { makeFrame } from "../frame.js";
-import { frameLoop } from "../frame_loop.js";
 import { makeGround } from "../geometry/ground.js";
 import { wiresOf } from "../geometry/wires.js";
+import { frameLoop } from "../picture/frame_loop.js";
 import { drawUavs, drawWays } from "./flat_flight.js";
 import { drawGround } from "./flat_ground.js";
 

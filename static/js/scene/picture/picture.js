@@ -1,19 +1,19 @@
 /** The picture in space: the world, the ways, the UAVs, drawn by the graphics of the machine. */
 
-import { createMarks } from "./flight/marks.js";
-import { createUavs } from "./flight/uavs.js";
-import { createWays } from "./flight/ways.js";
-import { makeFrame } from "./frame.js";
+import { createMarks } from "../flight/marks.js";
+import { createUavs } from "../flight/uavs.js";
+import { createWays } from "../flight/ways.js";
+import { makeFrame } from "../frame.js";
+import { makeWorld } from "../world/world.js";
 import { createView } from "./view.js";
-import { makeWorld } from "./world/world.js";
 
 const SAME_SUN_MS = 30_000;
 const [HEAD_M, HEAD_PX] = [1.1, 30]; // round a UAV its way is not drawn
 
-/** @import { Marks } from "./flight/marks.js" */
-/** @import { Uavs } from "./flight/uavs.js" */
-/** @import { Ways } from "./flight/ways.js" */
-/** @import { Picture, PictureOptions } from "./types.d.ts" */
+/** @import { Marks } from "../flight/marks.js" */
+/** @import { Uavs } from "../flight/uavs.js" */
+/** @import { Ways } from "../flight/ways.js" */
+/** @import { Picture, PictureOptions } from "../types.d.ts" */
 
 /**
  * @param {HTMLElement} container

@@ -1,11 +1,11 @@
 /** The picture: renderer, camera and a loop that draws only when something is another than before. */
 
+import { Color, PCFShadowMap, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "../three.js";
 import { frameLoop } from "./frame_loop.js";
-import { Color, PCFShadowMap, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "./three.js";
 
-/** @import { Pose } from "./cameras/rig.js" */
+/** @import { Pose } from "../cameras/rig.js" */
 /** @import { LoopTime } from "./frame_loop.js" */
-/** @import { FrameTime, Projected, Size, Vector } from "./types.d.ts" */
+/** @import { FrameTime, Projected, Size, Vector } from "../types.d.ts" */
 
 const SLOW_MS = 45; // a frame that takes longer, many times over, is drawn with fewer pixels
 const SLOW_FRAMES = 12;

@@ -1,6 +1,6 @@
 /** Frames that are wanted: each is drawn once, and the next one is asked for as long as something moves. */
 
-/** @import { FrameTime } from "./types.d.ts" */
+/** @import { FrameTime } from "../types.d.ts" */
 
 const LONGEST_STEP_S = 0.25; // after a pause nothing jumps
 
