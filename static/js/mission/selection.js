@@ -6,7 +6,7 @@ import { lengthText } from "../units.js";
 import { flightOptionsAsked, flightOptionsOf, UNSAID } from "./flight_options.js";
 
 /** @import { FleetUav, MissionSelection, PickableAsset, PickedTarget, PickedUav, Task, Wishes } from "./types.d.ts" */
-/** @import { Mission, MissionTarget, PickedAsset, PlanInputRequest, TargetInputRequest, TaskOutput, UavFeature, UavInputRequest } from "../api_types.d.ts" */
+/** @import { Mission, MissionTarget, PickedAsset, PlanInputRequest, SelectionTarget, TargetInputRequest, TaskOutput, UavFeature, UavInputRequest } from "../api_types.d.ts" */
 
 /**
  * Targets may be more or less urgent, tied to one UAV by its name, or need a sensor; locks: see locks.js, the last three: flight_options.js.
@@ -432,7 +432,7 @@ export function storedBasisOf(selection) {
   return JSON.stringify(requestOf(selection));
 }
 
-/** A target as the server has stored it. @param {MissionTarget} target @returns {PickedTarget} */
+/** A target as the server has stored it, in a mission or in a selection. @param {MissionTarget | SelectionTarget} target @returns {PickedTarget} */
 export function storedTarget(target) {
   const position = target.is_point || target.asset === null ? target.position : null;
   const stretch = target.stretch ?? null;
