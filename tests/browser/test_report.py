@@ -125,7 +125,7 @@ def test_the_record_fits_every_window(visitor: Visitor, flown: str, picture: Pic
 
 def test_a_mission_that_nobody_has_flown_says_so(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
-    opened(page, f"{stores_mission(page, 'Not flown')}/report")
+    opened(page, f"{stores_mission(page, 'Left on the ground')}/report")
     expect(page.get_by_role("heading", name="Not flown yet.")).to_be_visible()
     expect(page.locator("#dock")).to_contain_text("Nothing to replay yet.")
     expect(page.get_by_role("slider")).to_have_count(0)
