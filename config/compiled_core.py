@@ -1,8 +1,8 @@
 """Where numba keeps the compiled core: beside the libraries, or in the state where the checkout is read-only.
 
-scripts/compile_core.py fills it at set-up, so that no request waits for a compiler. numba asks whether what it has kept is still good
-by looking at a function's own file, not at those of the functions it calls: so the folder is named by a stamp of all of them, and
-nothing is ever read that was compiled from other sources.
+scripts/compile_core.py fills it at set-up, so that no request waits for a compiler. numba decides whether compiled code is current by the
+function's own file, not by those of the functions it calls: so the folder is named by a digest of all of them, and nothing is ever read
+that was compiled from other sources. Checkouts of the same sources share the code (docs/decisions/0045): paths and times do not count.
 """
 
 import hashlib
@@ -17,17 +17,22 @@ from config.private_servers import PROJECT_DIR, state_directory
 
 SOURCE_FOLDERS = ("inspection/geodesy", "inspection/graph", "missions/routing", "missions/flight_plan")
 SHIPPED = PROJECT_DIR / ".venv" / "compiled"
+LOCATOR = "config.compiled_places.ProjectCacheLocator"
+# Environment variables of numba that change the code, but not the names under which numba keeps it.
+CODE_OPTIONS = ("NUMBA_BOUNDSCHECK", "NUMBA_DEBUGINFO", "NUMBA_ENABLE_AVX", "NUMBA_LOOP_VECTORIZE", "NUMBA_OPT", "NUMBA_SLP_VECTORIZE")
 STAMP = "stamp"
 STAMP_LETTERS = 16  # of it are in the folder's name
 
 
 def compiled_stamp() -> str:
-    """Names the sources, as numba tells them apart, and what they are compiled with and for."""
-    digest = hashlib.sha256(f"{platform.python_version()} {_processor()}".encode())
-    digest.update((PROJECT_DIR / "requirements.txt").read_bytes())
+    """Return a digest of the sources, and of what they are compiled with and for; the same in every checkout of the same content."""
+    digest = hashlib.sha256(f"{platform.python_version()} {_processor()} {_options()}".encode())
+    for path in (PROJECT_DIR / "requirements.txt", PROJECT_DIR / "config" / "compiled_places.py"):
+        digest.update(path.read_bytes())
     for folder in SOURCE_FOLDERS:
         for path in sorted((PROJECT_DIR / folder).glob("*.py")):
-            digest.update(f"{path} {path.stat().st_mtime_ns} ".encode() + path.read_bytes())  # constants of any may be compiled in
+            content = path.read_bytes()  # constants of any may be compiled in
+            digest.update(f" {folder}/{path.name} {len(content)} ".encode() + content)
     return digest.hexdigest()
 
 
@@ -51,10 +56,15 @@ def compiled_directory() -> Path:
     return own
 
 
+def numba_settings(folder: Path) -> dict[str, str]:
+    """Return the environment variables by which numba reads and writes this folder."""
+    return {"NUMBA_CACHE_DIR": str(folder), "NUMBA_CACHE_LOCATOR_CLASSES": LOCATOR}
+
+
 def use_compiled_directory() -> None:
     """Tell numba, before anything imports it. A NUMBA_CACHE_DIR from outside is kept."""
     if "NUMBA_CACHE_DIR" not in os.environ:
-        os.environ["NUMBA_CACHE_DIR"] = str(compiled_directory())
+        os.environ.update(numba_settings(compiled_directory()))
 
 
 def _copy(source: Path, target: Path) -> None:
@@ -71,7 +81,11 @@ def _processor() -> str:
     if named := os.environ.get("NUMBA_CPU_NAME"):  # an image is compiled for every processor of a level, not for the one at hand
         return f"{named} {os.environ.get('NUMBA_CPU_FEATURES', 'of its own')}"
     with suppress(OSError):
-        for line in Path("/proc/cpuinfo").read_text().splitlines():
-            if line.startswith("model name"):
-                return line
+        lines = Path("/proc/cpuinfo").read_text().partition("\n\n")[0].splitlines()
+        return "".join(line for line in lines if line.startswith(("model name", "flags", "Features", "CPU part")))
     return platform.machine()
+
+
+def _options() -> str:
+    """What else changes the code that numba makes."""
+    return " ".join(f"{name}={value}" for name, value in sorted(os.environ.items()) if name in CODE_OPTIONS)

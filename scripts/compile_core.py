@@ -1,41 +1,153 @@
 """Compile the planners' core at set-up, so that no request waits for it; does nothing where nothing has changed.
 
 python -m scripts.compile_core [--check]      (--check only says, by its exit code, whether there is nothing to do)
+
+Where another checkout of this user has compiled the same sources, its code is copied. Else parts are compiled by several processes at a
+time. numba's folder is no place for two writers: both would give different code the same file name. So each process has a folder of its
+own, and what it adds is taken over when it is done.
 """
 
+import importlib
+import os
 import shutil
+import subprocess
 import sys
+import tempfile
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
 
-from config.compiled_core import STAMP, compiled_directory, compiled_stamp, is_compiled
-from scripts.telling import step
+from config.compiled_core import STAMP, compiled_directory, compiled_stamp, is_compiled, numba_settings
+from scripts import user_cache
+
+POLL_S = 0.05
+SHARED_KIND = "compiled"
 
 
-def main() -> int:
-    folder = compiled_directory()
+@dataclass(frozen=True)
+class Part:
+    """Functions that are compiled by one process."""
+
+    name: str
+    warm_up: tuple[str, ...]  # module:function; running them compiles what they call
+    after: tuple[str, ...] = ()  # parts whose functions this one calls
+
+
+# Those that take longest come first.
+PARTS = (
+    Part("search", ("missions.routing.rehearsal:rehearse_search",)),
+    Part("graph", ("inspection.graph.rehearsal:rehearse",)),
+    Part("ways and energy", ("missions.routing.rehearsal:rehearse_ways", "missions.flight_plan.rehearsal:rehearse"), after=("graph",)),
+    Part("proofs", ("missions.routing.rehearsal:rehearse_proof", "missions.routing.file_plans:rehearse")),
+)
+ALL = Part("whole", tuple(name for part in PARTS for name in part.warm_up))  # also compiles what two parts disagreed about
+
+
+@dataclass
+class _Run:
+    """A part that is being compiled."""
+
+    part: Part
+    folder: Path
+    began_s: float
+    process: subprocess.Popen[bytes]
+    before: dict[Path, bytes] = field(default_factory=dict)  # numba's index files at the start
+
+
+def warm_up(part: Part) -> None:
+    for name in part.warm_up:
+        module, _, function = name.partition(":")
+        getattr(importlib.import_module(module), function)()
+
+
+def compile_parts(folder: Path, processes: int) -> None:
+    """Compile all parts into a folder, so many at a time. Raises CalledProcessError."""
+    waiting, done = list(PARTS), set[str]()
+    running: list[_Run] = []
+    with tempfile.TemporaryDirectory(prefix=".parts-", dir=folder.parent) as drafts:
+        try:
+            while waiting or running:
+                for part in [part for part in waiting if done.issuperset(part.after)][: processes - len(running)]:
+                    waiting.remove(part)
+                    running.append(_start(part, folder, Path(drafts) / str(len(waiting))))
+                for run in [run for run in running if run.process.poll() is not None]:
+                    running.remove(run)
+                    if run.process.returncode:
+                        raise subprocess.CalledProcessError(run.process.returncode, run.part.name)
+                    take_over(run.folder, run.before, folder)
+                    done.add(run.part.name)
+                    print(f"{run.part.name}, {len(done)} of {len(PARTS)} parts, {time.monotonic() - run.began_s:.0f} s", flush=True)
+                time.sleep(POLL_S)
+        finally:
+            for run in running:
+                run.process.kill()
+                run.process.wait()
+    subprocess.run(_command(ALL), env={**os.environ, **numba_settings(folder)}, check=True)
+
+
+def _start(part: Part, compiled: Path, folder: Path) -> _Run:
+    shutil.copytree(compiled, folder)
+    process = subprocess.Popen(_command(part), env={**os.environ, **numba_settings(folder)})
+    return _Run(part, folder, time.monotonic(), process, index_files(folder))
+
+
+def _command(part: Part) -> list[str]:
+    return [sys.executable, "-m", "scripts.compile_core", "--part", part.name]
+
+
+def index_files(folder: Path) -> dict[Path, bytes]:
+    """Return the content of numba's index files, by their path below the folder. Each is of one function, and names its data files."""
+    return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*.nbi")}
+
+
+def take_over(part: Path, before: dict[Path, bytes], folder: Path) -> None:
+    """Move the functions that a process has compiled, except those that have changed in the folder meanwhile."""
+    present = index_files(folder)
+    for name, content in index_files(part).items():
+        if content == before.get(name) or present.get(name) != before.get(name):
+            continue
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        for path in (part / name).parent.glob(f"{name.stem}.*.nbc"):
+            shutil.copy2(path, folder / name.parent / path.name)
+        shutil.copy2(part / name, folder / name)
+
+
+def remove_older(parent: Path) -> None:
+    """Remove what was compiled from older sources, except the newest, which running programs may still read."""
+    older = sorted(parent.iterdir(), key=lambda path: path.stat().st_mtime)
+    for path in older[:-1]:
+        shutil.rmtree(path, ignore_errors=True)
+
+
+def main(arguments: list[str]) -> int:
+    if arguments[:1] == ["--part"]:
+        warm_up(next(part for part in (*PARTS, ALL) if part.name == arguments[1]))
+        return 0
+    folder, stamp = compiled_directory(), compiled_stamp()
     if is_compiled(folder):
         return 0
-    if "--check" in sys.argv[1:]:
+    if "--check" in arguments:
         return 1
-    shutil.rmtree(folder.parent, ignore_errors=True)  # with what was compiled from older sources
-    folder.mkdir(parents=True)
-    # Only now: numba reads where to keep things as it is imported.
-    from inspection.graph import rehearsal as of_the_graph  # noqa: PLC0415
-    from missions.flight_plan import rehearsal as of_the_drawing  # noqa: PLC0415
-    from missions.routing import file_plans  # noqa: PLC0415
-    from missions.routing import rehearsal as of_the_solvers  # noqa: PLC0415
-
-    parts = {
-        "graph": of_the_graph.rehearse,
-        "assignment": of_the_solvers.rehearse,
-        "heights, time and energy": of_the_drawing.rehearse,
-        "plans of files": file_plans.rehearse,
-    }
-    for number, (name, rehearse) in enumerate(parts.items(), start=1):
-        with step(f"The planners' core, compiled: {name} ({number} of {len(parts)})"):
-            rehearse()
-    (folder / STAMP).write_text(compiled_stamp())
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    remove_older(folder.parent)
+    if user_cache.fetch(SHARED_KIND, folder.name, folder) and is_compiled(folder):
+        print("taken from another checkout", flush=True)
+        return 0
+    shutil.rmtree(folder, ignore_errors=True)
+    with tempfile.TemporaryDirectory(prefix=".draft-", dir=folder.parent) as draft:
+        new = Path(draft) / "new"
+        new.mkdir()
+        compile_parts(new, processes=max(1, os.cpu_count() or 1))
+        (new / STAMP).write_text(stamp)
+        new.rename(folder)
+    user_cache.publish(folder, SHARED_KIND, folder.name)
     return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main(sys.argv[1:]))
+    except subprocess.CalledProcessError as error:
+        sys.exit(f"compiling failed ({error.cmd}); the reason is above")
+    except KeyboardInterrupt:
+        sys.exit(130)

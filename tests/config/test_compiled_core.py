@@ -61,6 +61,50 @@ def test_nothing_is_read_that_was_compiled_from_other_sources(shipped, tmp_path,
     assert not compiled_directory().exists()
 
 
+def test_the_place_and_the_times_of_the_sources_do_not_count(tmp_path, monkeypatch):
+    """Another checkout of the same content, made later, may use the same code."""
+    stamps = set()
+    for name in ("one", "another"):
+        for file in ("requirements.txt", "config/compiled_places.py", "core/ways.py"):
+            path = tmp_path / name / file
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text("the same")
+            os.utime(path, (len(stamps), len(stamps)))
+        monkeypatch.setattr(compiled_core, "PROJECT_DIR", tmp_path / name)
+        monkeypatch.setattr(compiled_core, "SOURCE_FOLDERS", ("core",))
+        stamps.add(compiled_stamp())
+    assert len(stamps) == 1
+
+
+@pytest.mark.parametrize("file", ["requirements.txt", "config/compiled_places.py", "core/ways.py"])
+def test_other_content_has_another_stamp(tmp_path, monkeypatch, file):
+    for name in ("requirements.txt", "config/compiled_places.py", "core/ways.py"):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text("the same")
+    monkeypatch.setattr(compiled_core, "PROJECT_DIR", tmp_path)
+    monkeypatch.setattr(compiled_core, "SOURCE_FOLDERS", ("core",))
+    before = compiled_stamp()
+    (tmp_path / file).write_text("another")
+    assert compiled_stamp() != before
+
+
+def test_a_moved_source_has_another_stamp(tmp_path, monkeypatch):
+    monkeypatch.setattr(compiled_core, "SOURCE_FOLDERS", (str(tmp_path),))
+    (tmp_path / "ways.py").write_text("the same")
+    before = compiled_stamp()
+    (tmp_path / "ways.py").rename(tmp_path / "paths.py")
+    assert compiled_stamp() != before
+
+
+def test_options_and_processors_that_change_the_code_have_a_stamp_each(monkeypatch):
+    stamps = [compiled_stamp()]
+    monkeypatch.setenv("NUMBA_BOUNDSCHECK", "1")
+    stamps.append(compiled_stamp())
+    monkeypatch.setattr(compiled_core, "_processor", lambda: "another")
+    stamps.append(compiled_stamp())
+    assert len(set(stamps)) == 3
+
+
 def test_what_was_compiled_from_other_sources_is_not_taken_for_good(shipped):
     (shipped / STAMP).write_text("other")
     assert not is_compiled(shipped)
