@@ -13,7 +13,7 @@ environment:
   SPANWISE_VAR     the state folder, as --var
   DATABASE_URL     a PostGIS database to use instead of the private one
   REDIS_URL        a Redis to use instead of the private one
-  SPANWISE_PYTHON  the Python (3.11 or newer) that .venv is made with
+  SPANWISE_PYTHON  the Python (3.11 or newer) that .venv is made with, else the fastest
 All settings: docs/operations.md
 
 exit codes: 0 done, 1 could not start (or is running already), 2 wrong options, 3 packages are missing;

@@ -1,7 +1,4 @@
-"""Which Debian packages are missing; root gets them installed, anybody else gets the apt line. Needs Python alone.
-
-python -m scripts.system_packages run|check|check-fast|image
-"""
+"""Which Debian packages are missing; root gets them installed, anybody else gets the apt line. Needs Python alone."""
 
 import ctypes.util
 import os
@@ -10,12 +7,12 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from scripts.postgresql_installations import DEBIAN_PROGRAMS, OLDEST_VERSION, installed_servers
+from scripts.python_libraries import CannotInstall
 
 EXIT_MISSING = 3
 FONT_FOLDERS = [Path("/usr/share/fonts"), Path("/usr/local/share/fonts")]
@@ -139,26 +136,19 @@ def install(purpose: str) -> None:
     _keep_from_boot(services)
 
 
-def main(purpose: str) -> int:
+def refusal(purpose: str) -> str | None:
+    """Return what to tell a user who lacks packages and may not install them; None if nothing is missing, or root may."""
     missing = missing_packages(purpose)
-    if not missing:
-        return 0
-    if os.geteuid() != 0 or not shutil.which("apt-get"):
-        print(f"Packages are missing. As root, run:\n  {apt_line(missing)}", file=sys.stderr)
-        return EXIT_MISSING
-    began = time.monotonic()
-    print(f"Debian packages {' '.join(missing)} … ", end="", flush=True)
+    if not missing or (os.geteuid() == 0 and shutil.which("apt-get")):
+        return None
+    return f"Packages are missing. As root, run:\n  {apt_line(missing)}"
+
+
+def install_and_verify(purpose: str) -> None:
+    """Install what is missing, as root. Raises CannotInstall."""
     try:
         install(purpose)
     except subprocess.CalledProcessError as error:
-        print(f"apt-get failed (exit code {error.returncode}); its last words are above", file=sys.stderr)
-        return 1
-    print(f"{time.monotonic() - began:.1f} s", flush=True)
-    if still_missing := missing_packages(purpose):
-        print(f"Still not found after the installation: {' '.join(still_missing)}", file=sys.stderr)
-        return 1
-    return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1]))
+        raise CannotInstall(f"apt-get failed (exit code {error.returncode}); its last words are above") from None
+    if missing := missing_packages(purpose):
+        raise CannotInstall(f"Still not found after the installation: {' '.join(missing)}")

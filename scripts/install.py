@@ -1,0 +1,230 @@
+"""Install what is missing: Debian packages, .venv, the pages' libraries; compile what is compiled. Needs Python alone.
+
+python -m scripts.install run|check|check-fast|image      (scripts/setup calls it, one at a time in a checkout)
+
+Steps that do not need each other run side by side. Each says how long it took, and while they run, what is going on.
+"""
+
+import hashlib
+import os
+import platform
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from scripts import python_libraries, system_packages
+from scripts.python_libraries import CannotInstall
+
+PROJECT_DIR = Path(__file__).resolve().parent.parent
+VENV = PROJECT_DIR / ".venv"
+NODE_MODULES = PROJECT_DIR / "node_modules"
+WORTH_TELLING_S = 5.0  # shorter than this, nobody is told beforehand
+TERMINAL_INTERVAL_S, LOG_INTERVAL_S = 0.5, 15.0  # between two words on what is going on
+
+
+@dataclass
+class Step:
+    """Something to do. Its durations were measured on two cores, with downloads."""
+
+    text: str
+    about_s: float
+    run: Callable[["Step"], None]
+    after: list[str] = field(default_factory=list)
+    detail: str = ""  # how far it is
+    began_s: float = 0.0
+
+
+class Progress:
+    """Lines on the terminal or in a log."""
+
+    def __init__(self, about_s: float) -> None:
+        self._about_s = about_s
+        self._began_s = time.monotonic()
+        self._told_s = self._began_s
+        self._is_terminal = sys.stdout.isatty()
+
+    def done(self, step: Step) -> None:
+        self._print(f"{step.text} … {time.monotonic() - step.began_s:.1f} s\n")
+
+    def going_on(self, steps: list[Step]) -> None:
+        now = time.monotonic()
+        if now - self._told_s < (TERMINAL_INTERVAL_S if self._is_terminal else LOG_INTERVAL_S):
+            return
+        self._told_s = now
+        names = ", ".join(step.text + (f" ({step.detail})" if step.detail else "") for step in steps)
+        text = f"{now - self._began_s:.0f} s of about {self._about_s:.0f} s: {names}"
+        self._print(text[: shutil.get_terminal_size().columns - 1] if self._is_terminal else f"{text}\n")
+
+    def _print(self, text: str) -> None:
+        print(("\r\x1b[K" if self._is_terminal else "") + text, end="", flush=True)
+
+
+# --- what is missing ------------------------------------------------------------------------------------------------------------------
+
+
+def _digests(*names: str) -> list[str]:
+    """Lines as sha256sum prints them."""
+    return [f"{hashlib.sha256((PROJECT_DIR / name).read_bytes()).hexdigest()}  {name}" for name in names]
+
+
+def steps_to_do(purpose: str, base_python: str) -> list[Step]:
+    """Return what this purpose still needs."""
+    is_check = purpose.startswith("check")
+    steps = []
+    if packages := system_packages.missing_packages(purpose):
+        about_s = 30.0 if purpose == "check" else 15.0
+        steps.append(Step(f"Debian packages {' '.join(packages)}", about_s, lambda step: system_packages.install_and_verify(purpose)))
+
+    locks = ["requirements.txt", "requirements-dev.txt"] if is_check else ["requirements.txt"]
+    wanted = [str(PROJECT_DIR), *_digests(*locks)]
+    libraries = "Python libraries"
+    if not python_libraries.is_installed(VENV, wanted):
+        lock = PROJECT_DIR / locks[-1]
+        steps.append(Step(libraries, 15.0, lambda step: python_libraries.install(VENV, base_python, lock, wanted)))
+    if not _page_libraries_are_there(is_check):
+        steps.append(Step("Page libraries", 8.0, lambda step: _install_page_libraries(is_check), [libraries]))
+    if steps_before := [step.text for step in steps if step.text == libraries]:
+        steps.append(Step("Planners' core", 70.0, _compile_core, steps_before))
+    elif subprocess.run([_python(), "-m", "scripts.compile_core", "--check"], cwd=PROJECT_DIR, check=False).returncode:
+        steps.append(Step("Planners' core", 70.0, _compile_core))
+    texts = (PROJECT_DIR / "locale").glob("*/LC_MESSAGES/django.po")
+    if any(not text.with_suffix(".mo").exists() or text.with_suffix(".mo").stat().st_mtime < text.stat().st_mtime for text in texts):
+        steps.append(Step("Texts in other languages", 1.0, lambda step: _call([_python(), "-m", "scripts.texts", "compile"]), [libraries]))
+    return steps
+
+
+def _python() -> str:
+    return str(VENV / "bin" / "python")
+
+
+def _page_stamp(is_check: bool) -> list[str]:
+    icons = sorted(str(path.relative_to(PROJECT_DIR)) for path in (PROJECT_DIR / "static/img/icons").iterdir())
+    names = ["package.json", "package-lock.json", "scripts/install.py", "scripts/build_icons.py", *icons]
+    return [*_digests(*names), *(["with what checks need"] if is_check else [])]
+
+
+def _page_libraries_are_there(is_check: bool) -> bool:
+    stamp = NODE_MODULES / ".stamp"
+    return stamp.exists() and set(_page_stamp(is_check)) <= set(stamp.read_text().splitlines())
+
+
+# --- steps ----------------------------------------------------------------------------------------------------------------------------
+
+
+def _call(command: list[str], on_line: Callable[[str], None] | None = None) -> None:
+    """Run a command. Raises CannotInstall with what it said."""
+    environment = {**os.environ, "PATH": f"{VENV / 'bin'}:{os.environ.get('PATH', '')}"}
+    with subprocess.Popen(
+        command, cwd=PROJECT_DIR, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace"
+    ) as process:
+        lines = []
+        for line in process.stdout or ():
+            lines.append(line)
+            if on_line:
+                on_line(line.strip())
+    if process.returncode:
+        raise CannotInstall("".join(lines[-60:]))
+
+
+def _install_page_libraries(is_check: bool) -> None:
+    stamp, served = NODE_MODULES / ".stamp", NODE_MODULES / ".spanwise"
+    stamp.unlink(missing_ok=True)
+    scope = [] if is_check else ["--omit=dev"]
+    _call(["npm", "ci", *scope, "--prefer-offline", "--loglevel=error", "--ignore-scripts", "--no-audit", "--no-fund"])
+    # What pages load is served from here as /static/lib/…
+    for folder, names in {
+        "maplibre-gl": [
+            *(f"dist/maplibre-gl{part}.mjs" for part in ("", "-shared", "-worker")), "dist/maplibre-gl.css", "LICENSE.txt",
+        ],
+        "three": ["build/three.module.min.js", "build/three.core.min.js", "LICENSE"],
+    }.items():  # fmt: skip
+        (served / folder).mkdir(parents=True, exist_ok=True)
+        for name in names:
+            shutil.copy2(NODE_MODULES / folder / name, served / folder)
+    _call([_python(), "scripts/build_icons.py"])
+    shutil.copy2(NODE_MODULES / "lucide-static" / "LICENSE", served / "icons-LICENSE.txt")
+    stamp.write_text("\n".join(_page_stamp(is_check)) + "\n")
+
+
+def _compile_core(step: Step) -> None:
+    def note(line: str) -> None:
+        step.detail = line
+
+    _call([_python(), "-m", "scripts.compile_core"], note)
+
+
+# --- all of them ----------------------------------------------------------------------------------------------------------------------
+
+
+def about_s(steps: list[Step]) -> float:
+    """Return how long the longest chain of steps takes."""
+    by_text = {step.text: step for step in steps}
+
+    def ends_s(step: Step) -> float:
+        return step.about_s + max((ends_s(by_text[text]) for text in step.after if text in by_text), default=0.0)
+
+    return max(map(ends_s, steps), default=0.0)
+
+
+def carry_out(steps: list[Step]) -> None:
+    """Run all steps, each as soon as those before it are done. Raises what the first one that fails raises, once the others have ended."""
+    expected_s = about_s(steps)
+    progress = Progress(expected_s)
+    if expected_s >= WORTH_TELLING_S:
+        print(f"To be set up, about {expected_s:.0f} s with downloads: {', '.join(step.text for step in steps)}", flush=True)
+    waiting, done = list(steps), set[str]()
+    known = {step.text for step in steps}
+    running: dict[Future[None], Step] = {}
+    failure: BaseException | None = None
+    with ThreadPoolExecutor(len(steps) or 1) as pool:
+        while running or (waiting and not failure):
+            for step in [step for step in waiting if not failure and done.issuperset(known.intersection(step.after))]:
+                waiting.remove(step)
+                step.began_s = time.monotonic()
+                running[pool.submit(step.run, step)] = step
+            finished, _ = wait(running, timeout=TERMINAL_INTERVAL_S, return_when=FIRST_COMPLETED)
+            for future in finished:
+                step = running.pop(future)
+                if error := future.exception():
+                    print(f"{step.text} … failed after {time.monotonic() - step.began_s:.1f} s\n{error}", file=sys.stderr, flush=True)
+                    failure = failure or error
+                    continue
+                done.add(step.text)
+                progress.done(step)
+            progress.going_on(list(running.values()))
+    if failure:
+        raise failure
+
+
+def main(purpose: str) -> int:
+    if problem := system_packages.refusal(purpose):
+        print(problem, file=sys.stderr)
+        return system_packages.EXIT_MISSING
+    if VENV.is_symlink():
+        print(".venv is a link, and setting up would empty what it leads to. Take the link away first.", file=sys.stderr)
+        return 2
+    base_python = _base_python()
+    if not (VENV / "spanwise-stamp").exists():
+        print(f"Python {platform.python_version()} for .venv: {base_python}", flush=True)
+    try:
+        carry_out(steps_to_do(purpose, base_python))
+    except (CannotInstall, OSError):
+        return 1
+    return 0
+
+
+def _base_python() -> str:
+    """The Python that runs this; a .venv cannot be its own base."""
+    return str(getattr(sys, "_base_executable", sys.executable))
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main(sys.argv[1]))
+    except KeyboardInterrupt:
+        sys.exit(130)
