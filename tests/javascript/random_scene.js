@@ -250,3 +250,20 @@ export function mountains(seed, { posts = 120 } = {}) {
     },
   };
 }
+
+/** Heights at which an upright line through a place meets triangles. */
+export function heightsThrough(vertices, index, x, z) {
+  const heights = [];
+  for (let at = 0; at < index.length; at += 3) {
+    const [a, b, c] = [index[at], index[at + 1], index[at + 2]].map((corner) =>
+      vertices.subarray(corner * 3, corner * 3 + 3),
+    );
+    const whole = (b[0] - a[0]) * (c[2] - a[2]) - (c[0] - a[0]) * (b[2] - a[2]);
+    const [u, v] = [
+      ((x - a[0]) * (c[2] - a[2]) - (c[0] - a[0]) * (z - a[2])) / whole,
+      ((b[0] - a[0]) * (z - a[2]) - (x - a[0]) * (b[2] - a[2])) / whole,
+    ];
+    if (u >= 0 && v >= 0 && u + v <= 1) heights.push(a[1] + u * (b[1] - a[1]) + v * (c[1] - a[1]));
+  }
+  return heights.sort((one, other) => one - other);
+}

@@ -5,7 +5,7 @@ import { makeFrame } from "../../static/js/scene/frame.js";
 import { bridgeSolid } from "../../static/js/scene/geometry/bridges.js";
 import { catenaryConstant, sagAt } from "../../static/js/scene/geometry/catenary.js";
 import { countedAir } from "../../static/js/scene/geometry/counted.js";
-import { cutBy, foldsOf } from "../../static/js/scene/geometry/folds.js";
+import { foldsOf } from "../../static/js/scene/geometry/folds.js";
 import { groundMesh, makeGround } from "../../static/js/scene/geometry/ground.js";
 import { labelsOf } from "../../static/js/scene/geometry/labels.js";
 import { railwayTracks } from "../../static/js/scene/geometry/railways.js";
@@ -13,11 +13,10 @@ import { heightPoles, ribbon } from "../../static/js/scene/geometry/ribbon.js";
 import { memberMatrices } from "../../static/js/scene/geometry/struts.js";
 import { sunAt } from "../../static/js/scene/geometry/sun.js";
 import { supportMembers } from "../../static/js/scene/geometry/towers.js";
-import { area2, triangulate } from "../../static/js/scene/geometry/triangulate.js";
 import { deckUnder } from "../../static/js/scene/geometry/under_decks.js";
 import { slotPoint, standing, wiresOf } from "../../static/js/scene/geometry/wires.js";
-import { withinFor, zoneVolume } from "../../static/js/scene/geometry/zones.js";
-import { drawer, hill_m, mountains, RULES, randomScene } from "./random_scene.js";
+import { zoneVolume } from "../../static/js/scene/geometry/zones.js";
+import { drawer, heightsThrough, hill_m, RULES, randomScene } from "./random_scene.js";
 
 const POINTS = 100; // random ones, of each kind
 const WITHIN_M = 0.5;
@@ -27,23 +26,6 @@ const ground = makeGround(scene.ground, frame);
 const folds = foldsOf(ground);
 const close = (actual, expected, within, message) =>
   assert.ok(Math.abs(actual - expected) <= within, `${message ?? ""} ${actual} is not ${expected}`);
-
-/** Heights at which an upright line through a place meets triangles. */
-function heightsThrough(vertices, index, x, z) {
-  const heights = [];
-  for (let at = 0; at < index.length; at += 3) {
-    const [a, b, c] = [index[at], index[at + 1], index[at + 2]].map((corner) =>
-      vertices.subarray(corner * 3, corner * 3 + 3),
-    );
-    const whole = (b[0] - a[0]) * (c[2] - a[2]) - (c[0] - a[0]) * (b[2] - a[2]);
-    const [u, v] = [
-      ((x - a[0]) * (c[2] - a[2]) - (c[0] - a[0]) * (z - a[2])) / whole,
-      ((b[0] - a[0]) * (z - a[2]) - (x - a[0]) * (b[2] - a[2])) / whole,
-    ];
-    if (u >= 0 && v >= 0 && u + v <= 1) heights.push(a[1] + u * (b[1] - a[1]) + v * (c[1] - a[1]));
-  }
-  return heights.sort((one, other) => one - other);
-}
 
 /** The sag of a catenary by another way than the code's: its constant by halving, its lowest point in the middle. */
 function sagByHalving(share, length_m, sag_m) {
@@ -64,7 +46,9 @@ test("the frame is the local frame of the planners within a centimetre over ten 
   close(y, 150.5, 1e-9);
   close(z, -9973.3167, 0.001);
   const back = nepal.toGeographic([x, y, z]);
-  [85.4, 27.79, 1450.5].forEach((value, axis) => close(back[axis], value, 1e-9));
+  [85.4, 27.79, 1450.5].forEach((value, axis) => {
+    close(back[axis], value, 1e-9);
+  });
 });
 
 test("the ground is that of the data, between posts too, and its mesh is where heightAt says", () => {
@@ -130,13 +114,13 @@ test("what is drawn lower than planners count has a mark up to there, and wires 
         scene.supports[place].ground_amsl_m + scene.supports[place].height_m,
       ),
     );
-    [0, 1, 2].forEach((axis) =>
+    [0, 1, 2].forEach((axis) => {
       close(
         points[number * 6 + axis] * (1 - share) + points[number * 6 + 3 + axis] * share,
         tops[0][axis] * (1 - share) + tops[1][axis] * share,
         1e-6,
-      ),
-    );
+      );
+    });
   }
   for (let place = 1; place < 8; place += 2) {
     const { outline } = supportMembers(low.supports[place], frame);
@@ -154,7 +138,9 @@ test("a member's matrix brings a prism from one end to the other, as wide as it 
   for (let member = 0; member < 3; member += 1) {
     const m = matrices.subarray(member * 16, member * 16 + 16);
     const at = (y) => [0, 1, 2].map((axis) => m[4 + axis] * y + m[12 + axis]);
-    [at(-0.5), at(0.5)].flat().forEach((value, place) => close(value, ends[member * 6 + place], 1e-5));
+    [at(-0.5), at(0.5)].flat().forEach((value, place) => {
+      close(value, ends[member * 6 + place], 1e-5);
+    });
     const [s, u, t] = [0, 4, 8].map((from) => [...m.subarray(from, from + 3)]);
     for (const side of [s, t]) close(Math.hypot(...side), [0.5, 2, 1][member], 1e-6);
     for (const [one, other] of [
@@ -240,210 +226,6 @@ test("wires of a circuit do not cross from tower to tower, whichever way round t
     const [start, end] = [side(wires.first[wire], a), side(wires.first[wire + 1] - 1, b)];
     if (scene.spans[wires.span[wire]].phases === 6 && !wires.isEarth[wire]) assert.ok(start * end > 0);
   }
-});
-
-test("a polygon with a notch and a hole becomes triangles of its area, all turned one way", () => {
-  const outline = [
-    [0, 0],
-    [10, 0],
-    [10, 10],
-    [5, 5],
-    [0, 10],
-    [0, 0],
-  ];
-  const hole = [
-    [2, 1],
-    [4, 1],
-    [3, 3],
-  ];
-  const { points, triangles } = triangulate([outline, hole]);
-  let area = 0;
-  for (let at = 0; at < triangles.length; at += 3) {
-    const own = area2([points[triangles[at]], points[triangles[at + 1]], points[triangles[at + 2]]]) / 2;
-    assert.ok(own > -1e-12);
-    area += own;
-  }
-  close(area, 75 - 2, 1e-9);
-  assert.deepEqual(
-    triangulate([
-      [
-        [0, 0],
-        [1, 1],
-      ],
-    ]).triangles,
-    [],
-  );
-});
-
-test("what is cut along the ground's folds covers the same area, in pieces over which the ground is a plane", () => {
-  const { scene: steep, frame: own } = mountains(5);
-  const rough = makeGround(steep.ground, own);
-  const cuts = foldsOf(rough);
-  const next = drawer(6);
-  for (let round = 0; round < 20; round += 1) {
-    const triangle = Array.from({ length: 3 }, () => [
-      rough.west + next() * rough.stepX * (rough.columns - 1),
-      rough.north + next() * rough.stepZ * (rough.rows - 1),
-    ]);
-    const turned = area2(triangle) > 0 ? triangle : [...triangle].reverse();
-    for (const within of [0.15, 5]) {
-      const pieces = cuts.pieces([turned], within);
-      close(
-        pieces.reduce((sum, piece) => sum + area2(piece), 0),
-        area2(turned),
-        1e-6 * area2(turned),
-      );
-      for (const piece of pieces.filter((_, number) => number % 50 === 0)) {
-        const middle = [0, 1].map((axis) => piece.reduce((sum, point) => sum + point[axis], 0) / piece.length);
-        const mean = piece.reduce((sum, [x, z]) => sum + rough.heightAt(x, z), 0) / piece.length;
-        close(mean, rough.heightAt(...middle), 2 * within);
-      }
-    }
-  }
-  assert.deepEqual(
-    cutBy(
-      [
-        [0, 0],
-        [2, 0],
-        [2, 2],
-        [0, 2],
-      ],
-      (x) => 1 - x,
-    ),
-    [
-      [0, 0],
-      [1, 0],
-      [1, 2],
-      [0, 2],
-    ],
-  );
-  assert.deepEqual(
-    cutBy(
-      [
-        [0, 0],
-        [2, 0],
-        [2, 2],
-      ],
-      (x) => x - 3,
-    ),
-    [],
-  );
-});
-
-test("random star-shaped polygons are covered whole", () => {
-  const next = drawer(11);
-  for (let round = 0; round < 50; round += 1) {
-    const corners = 5 + Math.floor(next() * 60);
-    const ring = Array.from({ length: corners }, (_, at) => {
-      const [angle, reach] = [((at + next() * 0.8) / corners) * 2 * Math.PI, 0.2 + next()];
-      return [reach * Math.cos(angle), reach * Math.sin(angle)];
-    });
-    const { points, triangles } = triangulate([ring]);
-    let area = 0;
-    for (let at = 0; at < triangles.length; at += 3)
-      area += area2([0, 1, 2].map((corner) => points[triangles[at + corner]])) / 2;
-    close(area, area2(ring) / 2, 1e-9);
-  }
-});
-
-test("zones reach from limit to limit: over the ground they follow it, above the sea they are level", () => {
-  const next = drawer(4);
-  const volumes = scene.zones.map((zone) => zoneVolume(zone, { frame, ground, folds, clip: scene.clip, rules: RULES }));
-  const sea = (m) => m - scene.origin.altitude_amsl_m;
-  for (let point = 0; point < POINTS; point += 1) {
-    const [angle, reach] = [next() * 2 * Math.PI, Math.sqrt(next()) * 0.98];
-    const [lon, lat] = [10.02 + 0.004 * reach * Math.cos(angle), 56.03 + 0.002 * reach * Math.sin(angle)];
-    const [x, y, z] = frame.toLocal(lon, lat, hill_m(lon, lat));
-    const [floor, ceiling] = heightsThrough(volumes[0].caps.vertices, volumes[0].caps.index, x, z);
-    close(ceiling, y + 120, WITHIN_M);
-    close(floor, ground.heightAt(x, z), WITHIN_M);
-  }
-  const corner = scene.zones[1].polygons[0][0];
-  for (let point = 0; point < POINTS; point += 1) {
-    const [lon, lat] = [corner[0][0] + 0.009 * next(), corner[0][1] + 0.009 * next()];
-    const [x, , z] = frame.toLocal(lon, lat, 0);
-    const heights = heightsThrough(volumes[1].caps.vertices, volumes[1].caps.index, x, z);
-    assert.ok(heights.length === 0 || heights.length === 2);
-    if (heights.length) close(heights[1], sea(410), 1e-3);
-    if (heights.length) close(heights[0], Math.max(sea(320), ground.heightAt(x, z)), WITHIN_M);
-  }
-  for (let point = 0; point < POINTS; point += 1) {
-    const { vertices } = volumes[0].walls;
-    const panel = Math.floor((next() * vertices.length) / 12) * 12;
-    const share = next();
-    const [x, z] = [0, 2].map(
-      (axis) => vertices[panel + axis] + share * (vertices[panel + 6 + axis] - vertices[panel + axis]),
-    );
-    const [lon, lat] = frame.toGeographic([x, 0, z]);
-    const top = vertices[panel + 4] + share * (vertices[panel + 10] - vertices[panel + 4]);
-    close(top, hill_m(lon, lat) - 200 + 120, WITHIN_M);
-  }
-});
-
-test("in mountains zones follow the ground as closely, up to where a limit above the sea is higher", () => {
-  const { scene: steep, frame: own } = mountains(8);
-  const rough = makeGround(steep.ground, own);
-  const cuts = foldsOf(rough);
-  const within_m = withinFor(steep.zones, own, cuts);
-  const next = drawer(9);
-  const sea = (m) => m - steep.origin.altitude_amsl_m;
-  const limits = [
-    [(y) => y, (y) => y + 120],
-    [(y) => Math.max(y, sea(900)), (y) => Math.max(y, sea(1_400))],
-    [(y) => y + 40, (y) => Math.max(y + 40, sea(1_300))],
-  ];
-  steep.zones.forEach((zone, number) => {
-    const { walls, caps } = zoneVolume(zone, {
-      frame: own,
-      ground: rough,
-      folds: cuts,
-      clip: steep.clip,
-      rules: RULES,
-      within_m,
-    });
-    const [[west, south], , [east, north]] = zone.polygons[0][0];
-    for (let point = 0; point < POINTS; point += 1) {
-      const [x, , z] = own.toLocal(
-        west + (east - west) * (0.01 + 0.98 * next()),
-        south + (north - south) * (0.01 + 0.98 * next()),
-        0,
-      );
-      const heights = heightsThrough(caps.vertices, caps.index, x, z);
-      limits[number].forEach((expected, side) =>
-        close(
-          heights.at(-side),
-          expected(rough.heightAt(x, z)),
-          WITHIN_M,
-          `zone ${number}, ${side ? "ceiling" : "floor"}`,
-        ),
-      );
-    }
-    for (let point = 0; point < POINTS; point += 1) {
-      const panel = Math.floor((next() * walls.vertices.length) / 12) * 12;
-      const share = next();
-      const [x, low, z] = [0, 1, 2].map(
-        (axis) =>
-          walls.vertices[panel + axis] + share * (walls.vertices[panel + 6 + axis] - walls.vertices[panel + axis]),
-      );
-      const high = walls.vertices[panel + 4] + share * (walls.vertices[panel + 10] - walls.vertices[panel + 4]);
-      [low, high].forEach((height, side) =>
-        close(height, limits[number][side](rough.heightAt(x, z)), WITHIN_M, `zone ${number}, wall`),
-      );
-    }
-  });
-});
-
-test("a zone without an upper limit has no ceiling, and none has a wall where the scene was cut", () => {
-  const open = zoneVolume(scene.zones[2], { frame, ground, folds, clip: scene.clip, rules: RULES });
-  const [, , cut] = frame.toLocal(10, scene.clip[1], 0);
-  const [, , side] = frame.toLocal(10, 56.05 - 0.035, 0);
-  for (let at = 2; at < open.walls.vertices.length; at += 3) {
-    close(open.walls.vertices[at], side, 0.01);
-    assert.ok(Math.abs(open.walls.vertices[at] - cut) > 100);
-  }
-  assert.deepEqual([...new Set(open.walls.fade)].sort(), [0, 1]);
-  const [x, z] = [0, (cut + side) / 2];
-  assert.equal(heightsThrough(open.caps.vertices, open.caps.index, x + 0.123, z + 0.077).length, 1);
 });
 
 test("a ribbon passes through every point of the way, level across and as wide as told; poles stand from it to the ground", () => {

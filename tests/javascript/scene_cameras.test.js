@@ -5,7 +5,10 @@ import { createRig } from "../../static/js/scene/cameras/rig.js";
 import { directionOf, lengthOf, minus, towards, turn_deg } from "../../static/js/scene/cameras/vectors.js";
 
 const near = (found, wanted, slack = 1e-6) => assert.ok(Math.abs(found - wanted) <= slack, `${found} is not ${wanted}`);
-const nearAll = (found, wanted, slack) => wanted.forEach((value, axis) => near(found[axis], value, slack));
+const nearAll = (found, wanted, slack) =>
+  wanted.forEach((value, axis) => {
+    near(found[axis], value, slack);
+  });
 
 test("directions go to bearing and elevation and back", () => {
   nearAll(towards(90), [1, 0, 0]);
