@@ -19,6 +19,7 @@ CLOCK_SHARE, CLOCK_S = 0.005, 2.0  # what times may differ by: another Earth, ro
 ENERGY_SHARE, ENERGY_WH = 0.01, 0.05
 TURNAROUND_S = 600.0
 UNTAGGED_TOWER_M = 45.0
+HIGHEST_VOLTAGE_V, HIGHEST_VOLTAGE_TOWER_M = 300_000, 60.0  # towers of such lines, where no height is tagged
 USUAL_SPEED_MPS = 12.0  # at which it is reckoned to come to a tower where it charges, and to leave it
 DOWN_ON_TOWER_S = brakes_s(USUAL_SPEED_MPS) + SETTLES_S + TOUCHES_S  # beside the way down
 OFF_TOWER_S = LIFTS_S + brakes_s(USUAL_SPEED_MPS)
@@ -112,8 +113,20 @@ def _wrong_stops(request: PlanRequest, uav: Any, route: dict[str, Any]) -> Itera
 
 def tower_top_m(point: dict[str, Any]) -> float:
     """How high above ground a UAV stands that charges under this waypoint."""
-    height_m = Asset.objects.filter(pk=point["asset"]).values_list("height_m", flat=True).first()
-    return float(min(UNTAGGED_TOWER_M if height_m is None else height_m, point["altitude_agl_m"]))
+    return min(_height_m(Asset.objects.filter(pk=point["asset"]).first()), float(point["altitude_agl_m"]))
+
+
+def _height_m(tower: Asset | None) -> float:
+    """Return the height as tagged, or else that of the tallest line on the tower."""
+    if tower is not None and tower.height_m is not None:
+        return float(tower.height_m)
+    heights_m = [UNTAGGED_TOWER_M]
+    if tower is not None and tower.osm_id is not None:
+        lines = Asset.objects.filter(kind="line", is_flyable=True, vanished_at=None, node_osm_ids__contains=[tower.osm_id])
+        for height_m, voltage_v in lines.values_list("height_m", "max_voltage_v"):
+            is_highest = voltage_v is not None and voltage_v >= HIGHEST_VOLTAGE_V
+            heights_m.append(height_m or (HIGHEST_VOLTAGE_TOWER_M if is_highest else UNTAGGED_TOWER_M))
+    return max(heights_m)
 
 
 def clock_of(request: PlanRequest, uav: Any, route: dict[str, Any]) -> Clock:

@@ -18,6 +18,7 @@ CLEARANCE_M, ROUNDING_M = 15.0, 1.0
 BESIDE_M = 24.0
 STEEPEST = 0.26  # a tower is come to on a slope: so much less than the clearance for each metre that it still is away
 STEP_M = 3.0
+HIGHEST_VOLTAGE_V, HIGHEST_VOLTAGE_M = 300_000, 60.0  # lines of such a voltage and the towers on them, where no height is tagged
 USUAL_M = {"tower": 45.0, "line": 45.0, "railway": 8.0, "bridge": 30.0}
 
 Ground = Callable[[Any], Any]
@@ -30,6 +31,11 @@ class WireJudge:
         self.ground = ground
         rows = list(Asset.objects.filter(is_flyable=True, vanished_at=None).order_by("pk"))
         tops = {tuple(row.centre.coords): self._height(row) for row in reversed(rows) if row.kind == "tower"}
+        untagged = {tuple(row.centre.coords) for row in rows if row.kind == "tower" and row.height_m is None}
+        for row in rows:
+            if row.kind == "line":
+                for place in untagged.intersection(_vertices(row)):
+                    tops[place] = max(tops[place], self._height(row))
         wires, hung = [], set()
         for row in rows:
             if row.kind == "bridge":
@@ -118,7 +124,10 @@ class WireJudge:
 
     @staticmethod
     def _height(row: Asset) -> float:
-        return USUAL_M[row.kind] if row.height_m is None else row.height_m
+        if row.height_m is not None:
+            return row.height_m
+        is_highest = row.kind == "line" and (row.max_voltage_v or 0) >= HIGHEST_VOLTAGE_V
+        return HIGHEST_VOLTAGE_M if is_highest else USUAL_M[row.kind]
 
     def _top(self, row: Asset, place: Any, tops: dict[Any, float]) -> float:
         return tops.get(place, self._height(row)) if row.kind == "line" else self._height(row)
@@ -129,3 +138,7 @@ class WireJudge:
     def _metres(self, places: Any) -> Any:
         degree_m = math.radians(1.0) * EARTH_M
         return (np.asarray(places)[:, :2] - self.origin) * (degree_m * math.cos(math.radians(self.origin[1])), degree_m)
+
+
+def _vertices(row: Asset) -> list[tuple[float, ...]]:
+    return [tuple(place) for place in shapely.get_coordinates(shapely.from_wkb(bytes(row.geometry.wkb))).tolist()]
