@@ -24,7 +24,8 @@ from tests.missions.ground_judge import Hills
 from tests.missions.random_missions import Region, put_random_zones
 from workspace.models import User
 
-HILLY = ("columbus-ohio.osm.pbf", "liechtenstein-2021-infra.osm.pbf")  # elsewhere limits above sea level cannot be compared
+# With hills; elsewhere limits above sea level cannot be compared.
+HILLY = ("quillmoor.osm.pbf", "columbus-ohio.osm.pbf", "liechtenstein-2021-infra.osm.pbf")
 ASSETS = 300  # of each region
 ZONES = 12
 FEWEST_NODES = 100  # that zones leave of a network
@@ -35,12 +36,12 @@ A_MONDAY = datetime(2026, 11, 23, tzinfo=UTC)
 EVENTS = ("BMCT", "SR", "SS", "EECT")
 
 
-def bring_in(path: Path, folder: Path, draw: random.Random) -> Hills | None:
-    """The middle of a region, with some tall towers, and with hills where it has any."""
+def bring_in(path: Path, folder: Path, draw: random.Random, *, is_hilly: bool) -> Hills | None:
+    """Import the middle of a region, with some tall towers; return its hills, if it is to have any."""
     import_osm(path=path)
     cut_out(ASSETS)
     _make_tall(draw)
-    if path.name not in HILLY:
+    if not is_hilly:
         return None
     hills = Hills()
     hills.bring_in(folder / "hills.tif")

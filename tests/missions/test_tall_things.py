@@ -1,4 +1,4 @@
-"""Random missions among towers and wires of all heights on real regions: no leg passes one too near; and what cannot be flown over."""
+"""Random missions among towers and wires of all heights: no leg passes one too near; and what cannot be flown over."""
 
 import random
 from collections import Counter
@@ -22,7 +22,7 @@ from tests.inspection.terrain.tiffs import write_geotiff
 from tests.missions.ground_judge import Hills
 from tests.missions.random_flights import ASSETS, HILLY, cut_out
 from tests.missions.random_missions import Region, put_random_zones
-from tests.missions.test_random_flights import REGIONS
+from tests.missions.test_random_flights import REAL_REGIONS
 from tests.missions.wire_judge import WireJudge
 from tests.missions.worlds import power_line, rebuild, request, uav, world
 
@@ -32,14 +32,15 @@ AMPLE = Performance(battery_wh=2_000.0)
 A_TUESDAY = datetime(2026, 11, 24, 9, tzinfo=UTC)
 
 
-def test_random_missions_pass_no_tower_and_no_wire_too_near(shared_data: Any, tmp_path: Path) -> None:
-    _fly(shared_data("osm/liechtenstein-2021-infra.osm.pbf"), tmp_path, missions=60, seed=3)
+@pytest.mark.parametrize("file_name", ["elme-valley.osm.pbf", "quillmoor.osm.pbf", "liechtenstein-2021-infra.osm.pbf"])
+def test_random_missions_pass_no_tower_and_no_wire_too_near(region_file: Any, file_name: str, tmp_path: Path) -> None:
+    _fly(region_file(file_name), tmp_path, missions=60, seed=3)
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("file_name", REGIONS)
-def test_many_random_missions_pass_no_tower_and_no_wire_too_near(shared_data: Any, file_name: str, tmp_path: Path) -> None:
-    _fly(shared_data(f"osm/{file_name}"), tmp_path, missions=1_500, seed=4)
+@pytest.mark.parametrize("file_name", REAL_REGIONS)
+def test_many_random_missions_pass_no_tower_and_no_wire_too_near(region_file: Any, file_name: str, tmp_path: Path) -> None:
+    _fly(region_file(file_name), tmp_path, missions=1_500, seed=4)
 
 
 def _fly(path: Path, folder: Path, *, missions: int, seed: int) -> None:

@@ -1,4 +1,4 @@
-"""Random rests of missions on a real region, with zones that come while they fly: what is offered is safe, by judges of their own."""
+"""Random rests of missions, with zones that come while they fly: the offers are safe, by independent judges."""
 
 import random
 from collections import Counter
@@ -32,8 +32,11 @@ UAVS, TARGETS, NEAR_DEG = 3, 9, 0.03
 @pytest.mark.parametrize(
     ("seeds", "most_offers"), [pytest.param(range(5), 2, id="few"), pytest.param(range(60), 60, id="many", marks=pytest.mark.long)]
 )
-def test_continued_routes_cross_no_zone_and_lose_no_target(shared_data: Any, tmp_path: Any, seeds: range, most_offers: int) -> None:
-    hills = bring_in(shared_data("osm/columbus-ohio.osm.pbf"), tmp_path, random.Random(5))
+@pytest.mark.parametrize("file_name", ["elme-valley.osm.pbf", "columbus-ohio.osm.pbf"])
+def test_continued_routes_cross_no_zone_and_lose_no_target(
+    region_file: Any, file_name: str, tmp_path: Any, seeds: range, most_offers: int
+) -> None:
+    hills = bring_in(region_file(file_name), tmp_path, random.Random(5), is_hilly=True)
     assert hills is not None
     build_graph()
     author, seen = somebody(), Counter()
