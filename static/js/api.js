@@ -37,6 +37,9 @@ export class ApiError extends Error {
   }
 }
 
+/** Whether a request was stopped by its signal. @param {unknown} error */
+export const isAbort = (error) => error instanceof Error && error.name === "AbortError";
+
 const SIGNED_OUT = t("You are signed out. Your selection is kept in this browser.");
 
 /**
