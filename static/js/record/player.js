@@ -36,7 +36,11 @@ export function createPlayer({
   }
 
   const player = Object.assign(state, {
-    /** The first time at the beginning; later it stays, or goes with the end where it stood there. @param {TimeSpan | null} next */
+    /**
+     * The first time at the beginning; later it stays, or goes with the end where it stood there.
+     *
+     * @param {TimeSpan | null} next
+     */
     setSpan(next) {
       const before = span;
       span = next;

@@ -12,7 +12,11 @@
 const SILENT_MS = 12_000; // a UAV reports at least every ten seconds
 const SPACINGS = 2.5; // of thinned records: neighbours may lie up to two spacings apart
 
-/** From how long on between two records nothing was heard; every_s: how far apart the server chose them, null: it gave all. @param {number | null} every_s */
+/**
+ * From how long on between two records nothing was heard; every_s: how far apart the server chose them, null: it gave all.
+ *
+ * @param {number | null} every_s
+ */
 export const silenceOf_ms = (every_s) => Math.max(SILENT_MS, (every_s ?? 0) * SPACINGS * 1_000);
 
 /** @param {Partial<RecordProperties>} properties */
@@ -61,7 +65,11 @@ const estimateOf = ({ geometry, properties }) => ({
   isLost: properties.is_lost,
 });
 
-/** Features of the log → samples of each UAV by time; none from the future. @param {readonly RecordFeature[]} features */
+/**
+ * Features of the log → samples of each UAV by time; none from the future.
+ *
+ * @param {readonly RecordFeature[]} features
+ */
 export function tracksOf(features) {
   return byUav(
     features.filter(({ properties }) => !properties.is_from_future),
@@ -111,7 +119,12 @@ export function runsOf(samples, silence_ms) {
 /** The last one. @template Item @param {readonly [Item, ...Item[]]} run */
 export const lastOf = (run) => run[run.length - 1];
 
-/** Number of the sample that is nearest in time; -1 where there is none. @param {readonly { at_ms: number }[]} samples @param {number} at_ms */
+/**
+ * Number of the sample that is nearest in time; -1 where there is none.
+ *
+ * @param {readonly { at_ms: number }[]} samples
+ * @param {number} at_ms
+ */
 export function nearestTo(samples, at_ms) {
   let [low, high] = [0, samples.length];
   while (low < high) {

@@ -252,7 +252,12 @@ export function createDock({ onChoose }) {
   };
 }
 
-/** What was measured then, by the UAV's place; nothing in a silence. @param {Chart} chart @param {Map<number, Moment>} moments */
+/**
+ * What was measured then, by the UAV's place; nothing in a silence.
+ *
+ * @param {Chart} chart
+ * @param {Map<number, Moment>} moments
+ */
 function readingsOf({ name }, moments) {
   /** @type {Map<number, TimedValue>} */
   const values = new Map();

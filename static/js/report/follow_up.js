@@ -11,7 +11,12 @@ import { t } from "../text.js";
 /** @type {string | null} */
 let key = null; // of the asking: the same until it is answered, so that there is one draft
 
-/** Shown where targets were missed and the reader may plan. @param {MissionRecord} record @param {{ canPlan: boolean }} reader */
+/**
+ * Shown where targets were missed and the reader may plan.
+ *
+ * @param {MissionRecord} record
+ * @param {{ canPlan: boolean }} reader
+ */
 export function offerFollowUp(record, { canPlan }) {
   const button = byId("report-follow-up", HTMLButtonElement);
   button.hidden = !canPlan || !isOver(record);

@@ -27,7 +27,13 @@ const pointName = (sequence) => t("point {number}", { number: sequence });
 /** @param {number} place */
 const letter = (place) => h("span", { class: `letter route-${routeNumber(place)}` }, routeLetter(place));
 
-/** By target, the legs to each unfolded at will. @param {MissionRecord} record @param {Labels} labels @param {OnLook} onLook */
+/**
+ * By target, the legs to each unfolded at will.
+ *
+ * @param {MissionRecord} record
+ * @param {Labels} labels
+ * @param {OnLook} onLook
+ */
 export function drawLegs(record, labels, onLook) {
   const routes = record.routes.filter(({ stages }) => stages.length);
   const count = routes.reduce((sum, { stages }) => sum + stages.length, 0);

@@ -143,7 +143,11 @@ function take(answer) {
   show();
 }
 
-/** The 3D view goes with the record; where it showed the plan it shows what is flown from now on. @param {LoadedMission} answer */
+/**
+ * The 3D view goes with the record; where it showed the plan it shows what is flown from now on.
+ *
+ * @param {LoadedMission} answer
+ */
 function renewScene(answer) {
   const stage = scene.stage();
   if (!stage) return;

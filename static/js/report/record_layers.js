@@ -113,7 +113,13 @@ export function lightLeg(map, positions) {
   sourceOf(map, "record-leg")?.setData(positions ? collection([feature(positions, 0)]) : NOTHING);
 }
 
-/** Brings one UAV forward; null gives all of them back. @param {MapLibreMap} map @param {number | null} place @param {number} rest opacity of the others */
+/**
+ * Brings one UAV forward; null gives all of them back.
+ *
+ * @param {MapLibreMap} map
+ * @param {number | null} place
+ * @param {number} rest opacity of the others
+ */
 export function lookAt(map, place, rest) {
   /** @type {number | ExpressionSpecification} */
   const opacity = place === null ? 1 : ["case", ["==", ["get", "route"], routeNumber(place)], 1, rest];

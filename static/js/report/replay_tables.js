@@ -10,7 +10,11 @@ import { exactClockText, heightText, percentText, speedText } from "../units.js"
 
 const ROWS = 12;
 
-/** A table of each UAV: its figures at moments that lie evenly in its flights. @param {readonly ReplayRoute[]} routes */
+/**
+ * A table of each UAV: its figures at moments that lie evenly in its flights.
+ *
+ * @param {readonly ReplayRoute[]} routes
+ */
 export function replayTables(routes) {
   return routes
     .filter(({ track }) => track.samples.length)

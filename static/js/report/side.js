@@ -23,7 +23,11 @@ function whenWords({ started_at, ended_at, departs_at }) {
   return t("{day}, {from} to {to}", { day: dateText(from), from: clockText(from), to: clockText(ended_at) });
 }
 
-/** Name, state, when, by whom, the plan's hash; the sentence, and the figures once something was flown. @param {MissionRecord} record */
+/**
+ * Name, state, when, by whom, the plan's hash; the sentence, and the figures once something was flown.
+ *
+ * @param {MissionRecord} record
+ */
 export function drawHead(record) {
   const { mission } = record;
   const chip = byId("report-state");
@@ -188,7 +192,13 @@ function targetTable(targets, labels, onLook, isClose) {
   );
 }
 
-/** Fills a part of the side that can be unfolded; without content it is not there. @param {string} name @param {number} count @param {Node} content */
+/**
+ * Fills a part of the side that can be unfolded; without content it is not there.
+ *
+ * @param {string} name
+ * @param {number} count
+ * @param {Node} content
+ */
 export function fold(name, count, content) {
   const part = byId(`report-${name}`);
   part.hidden = count === 0;

@@ -16,7 +16,13 @@ const MARKS = {
   advisory: "M0 -4A4 4 0 1 1 0 4A4 4 0 1 1 0 -4Z",
 };
 
-/** Pushes places apart to the right, then back from the right edge: as near to where they belong as there is room. @param {readonly number[]} places @param {number} width_px @param {number} [apart_px] */
+/**
+ * Pushes places apart to the right, then back from the right edge: as near to where they belong as there is room.
+ *
+ * @param {readonly number[]} places
+ * @param {number} width_px
+ * @param {number} [apart_px]
+ */
 export function spread(places, width_px, apart_px = APART_PX) {
   const least = Math.min(apart_px, width_px / Math.max(1, places.length));
   const put = [...places];
@@ -83,7 +89,12 @@ export function drawStrip({ place, track, targets, alerts, x, width_px, label })
   );
 }
 
-/** A run divided where the UAV takes off or lands. @param {Sample[]} run @param {(at_ms: number) => boolean} isAirborne */
+/**
+ * A run divided where the UAV takes off or lands.
+ *
+ * @param {Sample[]} run
+ * @param {(at_ms: number) => boolean} isAirborne
+ */
 function piecesOf(run, isAirborne) {
   /** @type {{ isUp: boolean, run: [Sample, ...Sample[]] }[]} */
   const pieces = [];

@@ -50,7 +50,12 @@ function timeWords(source, at_ms) {
   return `${dateText(at_ms)}, ${exactClockText(at_ms)}`;
 }
 
-/** "2026-09-10-091204", "95s": a moment as a part of a file's name. @param {FlightSource} source @param {number} at_ms */
+/**
+ * "2026-09-10-091204", "95s": a moment as a part of a file's name.
+ *
+ * @param {FlightSource} source
+ * @param {number} at_ms
+ */
 function timeName(source, at_ms) {
   if (!source.hasDate) return `${Math.round(sinceDeparture_s(source, at_ms))}s`;
   return new Date(at_ms).toISOString().slice(0, 19).replaceAll(":", "").replace("T", "-");

@@ -82,7 +82,13 @@ const uavsOf = (routes, choose) =>
     ),
   }));
 
-/** @param {string} image @param {string} words @param {string} key @param {() => unknown} act @param {{ isOfPage?: boolean }} [how] */
+/**
+ * @param {string} image
+ * @param {string} words
+ * @param {string} key
+ * @param {() => unknown} act
+ * @param {{ isOfPage?: boolean }} [how]
+ */
 const button = (image, words, key, act, { isOfPage = true } = {}) =>
   h(
     "button",

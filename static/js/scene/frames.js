@@ -178,7 +178,13 @@ function createWriting(context) {
   };
 }
 
-/** Boxes of elements within the picture. @param {HTMLCanvasElement} canvas @param {Element[]} elements @returns {ScreenBox[]} */
+/**
+ * Boxes of elements within the picture.
+ *
+ * @param {HTMLCanvasElement} canvas
+ * @param {Element[]} elements
+ * @returns {ScreenBox[]}
+ */
 function boxesOf(canvas, elements) {
   const corner = canvas.getBoundingClientRect();
   return elements
@@ -217,7 +223,12 @@ function targetLabel({ place, label, name, route, place3d }, eye) {
   };
 }
 
-/** What is orbited: the target, with the UAV in the picture while it is at it. @param {Vector} place @param {DrawnUav | null} subject */
+/**
+ * What is orbited: the target, with the UAV in the picture while it is at it.
+ *
+ * @param {Vector} place
+ * @param {DrawnUav | null} subject
+ */
 function focusOf(place, subject) {
   return subject && lengthOf(minus(subject.place, place)) < TOGETHER_M
     ? between(place, subject.place, TOGETHER_SHARE)

@@ -16,7 +16,12 @@ import { CAMERAS } from "./cameras/rig.js";
 const SOURCES = ["record", "live", "rehearsal", "plan"];
 const KEY = /^[0-9a-f-]{1,36}$/i;
 
-/** "rehearsal:{id}:{run}" → { kind, rehearsal, run }; what is missing is null: the newest one, the worst of its runs. @param {string | null} text @returns {WantedSource | null} */
+/**
+ * "rehearsal:{id}:{run}" → { kind, rehearsal, run }; what is missing is null: the newest one, the worst of its runs.
+ *
+ * @param {string | null} text
+ * @returns {WantedSource | null}
+ */
 export function readSource(text) {
   const [said, rehearsal = "", run = ""] = (text ?? "").split(":");
   const kind = SOURCES.find((one) => one === said);

@@ -133,7 +133,12 @@ function follow(source) {
   }
 }
 
-/** The record of a mission that still flies; what cannot be read now is read the next time. @param {Mission} mission @param {WantedSource | null} wanted */
+/**
+ * The record of a mission that still flies; what cannot be read now is read the next time.
+ *
+ * @param {Mission} mission
+ * @param {WantedSource | null} wanted
+ */
 async function readAgain(mission, wanted) {
   const own = stage;
   try {

@@ -9,7 +9,9 @@ import { t } from "../text.js";
 
 /** @typedef {ReturnType<typeof mountSceneOpener>} SceneOpener */
 
-/** @param {() => Omit<PanelOptions, "onClose" | "takesFocus"> | null | undefined | false} options what the panel shows, or null where there is nothing to see */
+/**
+ * @param {() => Omit<PanelOptions, "onClose" | "takesFocus"> | null | undefined | false} options what the panel shows, or null where there is nothing to see
+ */
 export function mountSceneOpener(options) {
   const frame = find(document, ".map-frame", HTMLElement);
   const button = h(

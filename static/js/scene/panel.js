@@ -78,7 +78,11 @@ const faultWords = (words, close) =>
     h("button", { class: "button small", type: "button", onclick: close }, t("Close")),
   );
 
-/** @param {HTMLElement} root @param {PanelOptions & { onClose: () => void }} options @returns {Promise<Stage | null>} */
+/**
+ * @param {HTMLElement} root
+ * @param {PanelOptions & { onClose: () => void }} options
+ * @returns {Promise<Stage | null>}
+ */
 async function openInside(root, { mission, wanted = null, record = null, player = null, now_ms, onClose }) {
   const { data: detail } = /** @type {Answer<Mission>} */ (await get(`/missions/${mission}`));
   const source = record ? recordSource(record) : (await readSource(detail, wanted)).source;

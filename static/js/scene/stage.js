@@ -58,7 +58,12 @@ const JUMP_SPEED = 20;
 
 const NO_WEBGL = t("WebGL is missing or switched off. You see the flight from above instead.");
 
-/** How the flight is seen: in space, or from above where there is no WebGL. @param {HTMLElement} holder @param {PictureOptions} options */
+/**
+ * How the flight is seen: in space, or from above where there is no WebGL.
+ *
+ * @param {HTMLElement} holder
+ * @param {PictureOptions} options
+ */
 function pictureIn(holder, options) {
   const canvas = () => h("canvas", { class: "scene-canvas", tabindex: 0, role: "img" });
   const first = canvas();
@@ -120,7 +125,14 @@ const chipsOf = (source, scene) =>
     scene.ground.kind === "flat" && h("span", { class: "chip draft" }, t("Flat ground assumed")),
   );
 
-/** Places of the targets, as high as what they are. @param {FlightSource} source @param {Scene} scene @param {Flight} flight @returns {PlacedTarget[]} */
+/**
+ * Places of the targets, as high as what they are.
+ *
+ * @param {FlightSource} source
+ * @param {Scene} scene
+ * @param {Flight} flight
+ * @returns {PlacedTarget[]}
+ */
 function placedTargets(source, scene, flight) {
   const heights = new Map(scene.supports.map(({ id, likely_m }) => [id, likely_m]));
   return source.targets.map((target) => ({
@@ -129,7 +141,13 @@ function placedTargets(source, scene, flight) {
   }));
 }
 
-/** The flight in its picture: what does not change while it is seen. @param {HTMLElement} holder @param {FlightSource} source @param {PictureOptions} options */
+/**
+ * The flight in its picture: what does not change while it is seen.
+ *
+ * @param {HTMLElement} holder
+ * @param {FlightSource} source
+ * @param {PictureOptions} options
+ */
 function drawStage(holder, source, options) {
   const { scene } = options;
   const { canvas, picture } = pictureIn(holder, options);
@@ -282,7 +300,12 @@ function timeBarIn(root, player, source, span) {
   return bar;
 }
 
-/** The picture goes with the theme, and with what is said of movement. @param {Picture} picture @param {ScenePalette} firstPalette */
+/**
+ * The picture goes with the theme, and with what is said of movement.
+ *
+ * @param {Picture} picture
+ * @param {ScenePalette} firstPalette
+ */
 function watchLook(picture, firstPalette) {
   let palette = firstPalette;
   const endTheme = onTheme(() => {

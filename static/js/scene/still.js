@@ -37,7 +37,12 @@ export function stillOf({ picture, scale }, labels, words, palette) {
   return canvas;
 }
 
-/** @param {CanvasRenderingContext2D} context @param {StillLabel} label @param {number} scale @param {ScenePalette} palette */
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {StillLabel} label
+ * @param {number} scale
+ * @param {ScenePalette} palette
+ */
 function drawLabel(context, { element, left, top, width, height }, scale, palette) {
   const look = getComputedStyle(element);
   context.save();
@@ -83,7 +88,13 @@ export async function download(canvas, name) {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** "north-belt-2026-09-10-091204-chase.png": of letters, digits and hyphens in any language. @param {string} mission @param {string} at @param {string} camera */
+/**
+ * "north-belt-2026-09-10-091204-chase.png": of letters, digits and hyphens in any language.
+ *
+ * @param {string} mission
+ * @param {string} at
+ * @param {string} camera
+ */
 export function fileName(mission, at, camera) {
   const plain = mission
     .toLowerCase()

@@ -41,7 +41,14 @@ function markOf({ kind, place, at_ms }, span) {
   return mark;
 }
 
-/** Round moments over the slider. @param {TimeSpan} span @param {boolean} hasDate @param {number} width_px @param {TimeText} text */
+/**
+ * Round moments over the slider.
+ *
+ * @param {TimeSpan} span
+ * @param {boolean} hasDate
+ * @param {number} width_px
+ * @param {TimeText} text
+ */
 function ticksOver(span, hasDate, width_px, text) {
   const { step_ms, moments } = ticksOf(span, width_px, hasDate ? minutesAheadOfUtc(span.from_ms) : 0);
   const tickText = hasDate && step_ms >= MINUTE_MS ? clockText : text;

@@ -64,7 +64,13 @@ export function listenToHands(canvas, rig, { onChange, onPick }) {
   };
 }
 
-/** Mouse, touch and pen; returns what ends it. @param {HTMLCanvasElement} canvas @param {Rig} rig @param {HandActs} acts */
+/**
+ * Mouse, touch and pen; returns what ends it.
+ *
+ * @param {HTMLCanvasElement} canvas
+ * @param {Rig} rig
+ * @param {HandActs} acts
+ */
 function listenToFingers(canvas, rig, { onChange, onPick }) {
   /** @type {Map<number, number[]>} */
   const fingers = new Map();

@@ -31,13 +31,27 @@ const ABOVE_GROUND_M = 1.6; // a camera is never lower
 const FOLLOWS_S = 0.35; // time constant of a heading that is followed
 const GLIDES_S = 0.22; // of a camera that is sent elsewhere
 
-/** @param {Vector} centre @param {number} bearing_deg @param {number} elevation_deg @param {number} distance_m @returns {Aim} */
+/**
+ * @param {Vector} centre
+ * @param {number} bearing_deg
+ * @param {number} elevation_deg
+ * @param {number} distance_m
+ * @returns {Aim}
+ */
 const around = (centre, bearing_deg, elevation_deg, distance_m) => ({
   eye: plus(centre, towards(bearing_deg, elevation_deg), distance_m),
   look: centre,
 });
 
-/** Along a UAV's own camera, or its nose. @param {Subject | null} subject @param {Vector} eye @param {number} heading_deg @param {CameraView} view @returns {Aim} */
+/**
+ * Along a UAV's own camera, or its nose.
+ *
+ * @param {Subject | null} subject
+ * @param {Vector} eye
+ * @param {number} heading_deg
+ * @param {CameraView} view
+ * @returns {Aim}
+ */
 function onboard(subject, eye, heading_deg, { bearing_deg, elevation_deg }) {
   const seen = directionOf(subject?.camera ?? towards(heading_deg, elevation_deg));
   const up_deg = within(seen.elevation_deg + elevation_deg - BEGINNINGS.onboard.elevation_deg, -88, 60);
@@ -102,7 +116,12 @@ export function createRig({ isCalm = () => false } = {}) {
       rig.offset = offset ?? [0, 0, 0];
       eyes.settle();
     },
-    /** So far away that all of a sphere is in the picture, from where top and orbit look. @param {number} radius_m @param {number} [field_deg] */
+    /**
+     * So far away that all of a sphere is in the picture, from where top and orbit look.
+     *
+     * @param {number} radius_m
+     * @param {number} [field_deg]
+     */
     fit(radius_m, field_deg = FIELDS_DEG[rig.mode]) {
       if (rig.mode === "free" || rig.mode === "onboard" || rig.mode === "chase") rig.setMode("orbit");
       const reach_m = (FIT_MARGIN * radius_m) / Math.sin((field_deg / 2) * (Math.PI / 180));
@@ -225,7 +244,13 @@ function handled(rig, view, followed_deg, goFree) {
         rig.offset = plus(plus(rig.offset, towards(facing_deg + 90), right * size_m), ahead, up * size_m);
       }
     },
-    /** The free camera: metres ahead, to the right and up. @param {number} ahead_m @param {number} right_m @param {number} up_m */
+    /**
+     * The free camera: metres ahead, to the right and up.
+     *
+     * @param {number} ahead_m
+     * @param {number} right_m
+     * @param {number} up_m
+     */
     move(ahead_m, right_m, up_m) {
       if (rig.mode !== "free") goFree();
       rig.isGliding = false;

@@ -20,7 +20,12 @@ const LEAST_RING_PX = 14;
 /** @param {ScenePalette} palette @param {number} place */
 const colourOf = (palette, place) => palette.routes[place % ROUTES];
 
-/** @param {CanvasRenderingContext2D} context @param {readonly number[]} positions @param {OnScreen} onScreen @param {number} [until] */
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {readonly number[]} positions
+ * @param {OnScreen} onScreen
+ * @param {number} [until]
+ */
 function stroke(context, positions, onScreen, until = Infinity) {
   context.beginPath();
   for (let at = 0; at < positions.length && at / 3 < until; at += 3)
@@ -104,7 +109,13 @@ export function drawUavs(context, { drawn, chosen, onScreen, palette, metresPerP
   }
 }
 
-/** @param {CanvasRenderingContext2D} context @param {Bound} bound @param {number} metresPerPixel @param {number} turn @param {string} colour */
+/**
+ * @param {CanvasRenderingContext2D} context
+ * @param {Bound} bound
+ * @param {number} metresPerPixel
+ * @param {number} turn
+ * @param {string} colour
+ */
 function ring(context, { along_m, across_m, bearing_deg }, metresPerPixel, turn, colour) {
   context.save();
   context.rotate((bearing_deg * Math.PI) / 180 - turn);

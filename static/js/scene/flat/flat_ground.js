@@ -100,7 +100,14 @@ function graticule(context, { onScreen, palette, metresPerPixel, size }) {
   context.stroke();
 }
 
-/** Filled, hatched and outlined, as on the map. @param {CanvasRenderingContext2D} context @param {SceneZone} zone @param {PlaceOnScreen} at @param {ScenePalette} palette */
+/**
+ * Filled, hatched and outlined, as on the map.
+ *
+ * @param {CanvasRenderingContext2D} context
+ * @param {SceneZone} zone
+ * @param {PlaceOnScreen} at
+ * @param {ScenePalette} palette
+ */
 function drawZone(context, { polygons }, at, palette) {
   context.save();
   context.beginPath();

@@ -21,7 +21,12 @@ function placeOnScreen([x, , z], { centre, metresPerPixel, turn }, size) {
   return [size.width / 2 + dx * cosine + dz * sine, size.height / 2 - dx * sine + dz * cosine];
 }
 
-/** @param {HTMLElement} container @param {HTMLCanvasElement} canvas @param {PictureOptions} options @returns {Picture} */
+/**
+ * @param {HTMLElement} container
+ * @param {HTMLCanvasElement} canvas
+ * @param {PictureOptions} options
+ * @returns {Picture}
+ */
 export function createFlatPicture(container, canvas, { scene, palette: firstPalette, draw }) {
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   const size = { width: 1, height: 1 };

@@ -16,7 +16,13 @@ const SEES_TARGET_M = 160; // from there on its camera is on its target
 const TARGET_SHARE = 0.7; // of a target's height: where the arms of a tower are
 const PLAIN_TARGET_M = 6; // height of one that is no tower
 
-/** Height above sea level of the ground where a route takes off. @param {FlightRoute} route @param {Frame} frame @param {HeightAt} groundAt */
+/**
+ * Height above sea level of the ground where a route takes off.
+ *
+ * @param {FlightRoute} route
+ * @param {Frame} frame
+ * @param {HeightAt} groundAt
+ */
 function takeOffOf(route, frame, groundAt) {
   const at = route.planned[0]?.position ?? route.pieces[0]?.samples[0]?.position;
   if (!at) return frame.origin.altitude_amsl_m;
@@ -37,13 +43,22 @@ export function drawFlight(source, { frame, groundAt, groundKind }) {
   /** @param {number} route its place */
   const takeOffAt = (route) => takeOffs.get(route) ?? frame.origin.altitude_amsl_m;
 
-  /** @param {Moment | Piece["samples"][number] | PlannedPlace} point @param {number} takeOff @param {Trust} by @returns {Vector} */
+  /**
+   * @param {Moment | Piece["samples"][number] | PlannedPlace} point
+   * @param {number} takeOff
+   * @param {Trust} by
+   * @returns {Vector}
+   */
   const place = (point, takeOff, by) => {
     const [x, y, z] = frame.toLocal(point.position[0], point.position[1], altitudeOf(point, takeOff, by));
     return [x, aboveGround(y, groundAt(x, z)), z];
   };
 
-  /** The planned way, from the ground up and down to it again where it takes off, changes batteries and lands. @param {FlightRoute} route */
+  /**
+   * The planned way, from the ground up and down to it again where it takes off, changes batteries and lands.
+   *
+   * @param {FlightRoute} route
+   */
   function plannedLine({ place: number, planned }) {
     /** @type {number[]} */
     const line = [];

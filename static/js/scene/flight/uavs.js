@@ -140,7 +140,14 @@ export function createUavs(count) {
     mesh.count += 1;
   }
 
-  /** The body, hollow where it is not measured, and its rotors. @param {DrawnUav} uav @param {number} scale @param {ScenePalette} palette @param {boolean} isDark */
+  /**
+   * The body, hollow where it is not measured, and its rotors.
+   *
+   * @param {DrawnUav} uav
+   * @param {number} scale
+   * @param {ScenePalette} palette
+   * @param {boolean} isDark
+   */
   function putBody(uav, scale, palette, isDark) {
     const { kind } = uav.moment;
     matrix.compose(at, turn.setFromEuler(tilt), size.setScalar(scale));

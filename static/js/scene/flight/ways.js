@@ -116,7 +116,12 @@ function tangentsOf(positions) {
 /** Names of a ribbon's attributes with the numbers in each vertex; it is as wide as its material says, and turns to the camera. */
 const ATTRIBUTES = { position: 3, tangent: 3, along: 1, at: 1, route: 1, dashed: 1, side: 1 };
 
-/** Without the points that lie next to each other; the first and the last one stay. @template {TimedPoints} Line @param {Line} line */
+/**
+ * Without the points that lie next to each other; the first and the last one stay.
+ *
+ * @template {TimedPoints} Line
+ * @param {Line} line
+ */
 export function thinned({ positions, at_s, ...line }) {
   /** @type {number[]} */
   const kept = [];
@@ -172,7 +177,13 @@ export function ribbonArrays(lines) {
   return { arrays, index };
 }
 
-/** Poles of lines: positions of their ends, with route and time of each end. @param {readonly WayLine[]} lines @param {HeightAt} groundAt @param {number} spacing_m */
+/**
+ * Poles of lines: positions of their ends, with route and time of each end.
+ *
+ * @param {readonly WayLine[]} lines
+ * @param {HeightAt} groundAt
+ * @param {number} spacing_m
+ */
 export function poleArrays(lines, groundAt, spacing_m) {
   /** @type {number[]} */
   const position = [];
@@ -194,7 +205,12 @@ export function poleArrays(lines, groundAt, spacing_m) {
   return { arrays: { position: new Float32Array(position), route: new Float32Array(route), at: new Float32Array(at) } };
 }
 
-/** When so many metres over the ground were flown; asked for in rising order. @param {readonly number[]} positions @param {readonly number[]} at_s */
+/**
+ * When so many metres over the ground were flown; asked for in rising order.
+ *
+ * @param {readonly number[]} positions
+ * @param {readonly number[]} at_s
+ */
 function passing(positions, at_s) {
   let [point, way_m] = [0, 0];
   /** @param {number} wanted_m */
@@ -263,7 +279,10 @@ export function createWays(groundAt) {
       refill(planned, ribbonArrays(dashed), ATTRIBUTES);
       refill(plannedPoles, poleArrays(dashed, groundAt, PLANNED.poles_m), { position: 3, route: 1, at: 1 });
     },
-    /** @param {readonly FlownRoute[]} routes @param {number} begins_ms from which times are counted, so that they stay exact */
+    /**
+     * @param {readonly FlownRoute[]} routes
+     * @param {number} begins_ms from which times are counted, so that they stay exact
+     */
     showFlown(routes, begins_ms) {
       from_ms = begins_ms;
       const lines = routes.flatMap(({ place, pieces }) =>

@@ -165,7 +165,13 @@ export function nearestTower({ towers }, [x, y, z], reach_m = Infinity) {
   return nearest;
 }
 
-/** How far from a place the nearest of ground, towers with their arms, wires and what is at `others` is. @param {Surroundings} surroundings @param {Vector} place @param {readonly Vector[]} [others] */
+/**
+ * How far from a place the nearest of ground, towers with their arms, wires and what is at `others` is.
+ *
+ * @param {Surroundings} surroundings
+ * @param {Vector} place
+ * @param {readonly Vector[]} [others]
+ */
 export function roomRound(surroundings, [x, y, z], others = []) {
   const above_m = y - surroundings.groundAt(x, z);
   const apart_m = others.reduce(
@@ -218,7 +224,13 @@ export function nearestZone({ zones, groundAt, origin_m }, [x, y, z], keep = () 
   return nearest;
 }
 
-/** Even-odd: inside the outline and in none of the holes. @param {readonly Ring[]} rings @param {number} x @param {number} z */
+/**
+ * Even-odd: inside the outline and in none of the holes.
+ *
+ * @param {readonly Ring[]} rings
+ * @param {number} x
+ * @param {number} z
+ */
 function isWithin(rings, x, z) {
   let isIn = false;
   for (const ring of rings) {

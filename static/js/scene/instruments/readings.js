@@ -58,7 +58,12 @@ export function certaintyText({ kind, bound, since_ms }) {
   return kind === PLANNED ? t("planned") : t("measured");
 }
 
-/** @template {{ away_m: number }} Near @param {Near | null} found @param {string} guess @param {(found: Near) => string} words */
+/**
+ * @template {{ away_m: number }} Near
+ * @param {Near | null} found
+ * @param {string} guess
+ * @param {(found: Near) => string} words
+ */
 const near = (found, guess, words) =>
   found
     ? {

@@ -65,7 +65,11 @@ function createFigures() {
   };
 }
 
-/** A canvas with the same picture; in the same task as the drawing, the buffer is still there. @param {HTMLCanvasElement} canvas */
+/**
+ * A canvas with the same picture; in the same task as the drawing, the buffer is still there.
+ *
+ * @param {HTMLCanvasElement} canvas
+ */
 function copyOf(canvas) {
   const copied = document.createElement("canvas");
   [copied.width, copied.height] = [canvas.width, canvas.height];
@@ -73,7 +77,13 @@ function copyOf(canvas) {
   return copied;
 }
 
-/** Watches the graphics context; returns what ends it. @param {HTMLCanvasElement} canvas @param {() => void} onLost @param {() => void} onFound */
+/**
+ * Watches the graphics context; returns what ends it.
+ *
+ * @param {HTMLCanvasElement} canvas
+ * @param {() => void} onLost
+ * @param {() => void} onFound
+ */
 function watchContext(canvas, onLost, onFound) {
   /** @param {Event} event */
   const lost = (event) => {
@@ -88,11 +98,21 @@ function watchContext(canvas, onLost, onFound) {
   };
 }
 
-/** The camera as the rig wants it, and what it sees where. @param {PerspectiveCamera} camera @param {Size} size of the picture */
+/**
+ * The camera as the rig wants it, and what it sees where.
+ *
+ * @param {PerspectiveCamera} camera
+ * @param {Size} size of the picture
+ */
 function createAim(camera, size) {
   const seen = new Vector3();
   return {
-    /** The near plane goes as far out as the room allows, so that depths stay apart. @param {Pose} pose @param {number} room_m how near the nearest thing is */
+    /**
+     * The near plane goes as far out as the room allows, so that depths stay apart.
+     *
+     * @param {Pose} pose
+     * @param {number} room_m how near the nearest thing is
+     */
     aim({ eye, look, up, field_deg }, room_m) {
       camera.position.set(...eye);
       camera.up.set(...up);

@@ -51,7 +51,12 @@ export function liveSample(uav, now_ms) {
   };
 }
 
-/** Puts a report behind a UAV's pieces; an older one, or the same, changes nothing. Returns whether it was put there. @param {Piece[]} pieces @param {FlightSample} sample */
+/**
+ * Puts a report behind a UAV's pieces; an older one, or the same, changes nothing. Returns whether it was put there.
+ *
+ * @param {Piece[]} pieces
+ * @param {FlightSample} sample
+ */
 export function addSample(pieces, sample) {
   const piece = pieces.at(-1);
   const last = piece?.samples.at(-1);
@@ -124,7 +129,13 @@ export function liveSource({ detail, features = [] }) {
     return known ? glidingAt(known, now_ms) : null;
   }
 
-  /** Puts the last word of a route's UAV in; returns whether it is another than before. @param {FlightRoute} route @param {Moment} sample @param {number} now_ms */
+  /**
+   * Puts the last word of a route's UAV in; returns whether it is another than before.
+   *
+   * @param {FlightRoute} route
+   * @param {Moment} sample
+   * @param {number} now_ms
+   */
   function hear(route, sample, now_ms) {
     const known = latest.get(route.place);
     if (known && !isOther(known.to, sample)) return false;

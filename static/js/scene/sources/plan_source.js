@@ -9,7 +9,12 @@ import { completed, firstOf, lastOf, PLANNED } from "./pieces.js";
 /** The first moment where a mission has no departure: what is shown then is the time since departure. */
 export const NO_DATE_MS = 0;
 
-/** Planned waypoints of a mission's route. @param {Pick<Route, "waypoints" | "arrival_s">} route @returns {PlannedPlace[]} */
+/**
+ * Planned waypoints of a mission's route.
+ *
+ * @param {Pick<Route, "waypoints" | "arrival_s">} route
+ * @returns {PlannedPlace[]}
+ */
 export const plannedOf = ({ waypoints, arrival_s }) =>
   waypoints.map(({ position, altitude_amsl_m, altitude_relative_m, target, kind }, index) => ({
     sequence: index,

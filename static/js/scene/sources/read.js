@@ -31,7 +31,11 @@ export function usualSource({ state }, rehearsals) {
     : { kind: "plan", rehearsal: null, run: null };
 }
 
-/** The worst of a rehearsal's runs that was flown; null where none was. @param {{ runs: Pick<RehearsalDetail["runs"][number], "level" | "sequence">[] }} rehearsal */
+/**
+ * The worst of a rehearsal's runs that was flown; null where none was.
+ *
+ * @param {{ runs: Pick<RehearsalDetail["runs"][number], "level" | "sequence">[] }} rehearsal
+ */
 export function worstRun({ runs }) {
   const flown = runs
     .filter(({ level }) => level)
@@ -92,7 +96,13 @@ export async function readSource(mission, wanted = null) {
   return { source, choices: choicesOf(mission, rehearsals, source) };
 }
 
-/** What can be looked at besides. @param {Mission} mission @param {readonly Rehearsal[]} rehearsals @param {Pick<FlightSource, "kind">} source */
+/**
+ * What can be looked at besides.
+ *
+ * @param {Mission} mission
+ * @param {readonly Rehearsal[]} rehearsals
+ * @param {Pick<FlightSource, "kind">} source
+ */
 function choicesOf({ state, plan }, rehearsals, { kind }) {
   /** @type {SourceKind[]} */
   const found = [];

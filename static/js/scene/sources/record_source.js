@@ -19,7 +19,11 @@ export const placedSamples = (samples) =>
     position === null ? [] : [{ ...sample, position, altitude_relative_m: sample.height_m }],
   );
 
-/** Pieces of a record's track, by time; a stretch of estimates goes from the report before it to the one after it. @param {Track} track */
+/**
+ * Pieces of a record's track, by time; a stretch of estimates goes from the report before it to the one after it.
+ *
+ * @param {Track} track
+ */
 export function piecesOf(track) {
   /** @type {Piece[]} */
   const measured = track.measured.map((run) => ({ kind: MEASURED, samples: completed(placedSamples(run)) }));
@@ -74,7 +78,12 @@ export function recordSource(loaded) {
   return source;
 }
 
-/** The newest wind that a UAV told before a moment; null where none did. @param {readonly Pick<RecordedRoute, "track">[]} routes @param {number} at_ms */
+/**
+ * The newest wind that a UAV told before a moment; null where none did.
+ *
+ * @param {readonly Pick<RecordedRoute, "track">[]} routes
+ * @param {number} at_ms
+ */
 export function windMeasured(routes, at_ms) {
   const told = routes
     .map(({ track }) => track.samples.findLast((sample) => sample.at_ms <= at_ms && sample.wind))

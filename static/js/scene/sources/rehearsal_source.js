@@ -9,7 +9,12 @@ import { NO_DATE_MS, spanOf, targetsOf, windAtHeight } from "./plan_source.js";
 
 const ON_GROUND_M = 0.3; // above take-off: lower, it stands
 
-/** Samples of one simulated flight: columns → rows. Tracks of before have no attitude: it hangs level, its nose along its way. @param {TrackFlight} flight @param {number} departs_ms */
+/**
+ * Samples of one simulated flight: columns → rows. Tracks of before have no attitude: it hangs level, its nose along its way.
+ *
+ * @param {TrackFlight} flight
+ * @param {number} departs_ms
+ */
 export function samplesOf(flight, departs_ms) {
   /** @param {"roll_deg" | "pitch_deg" | "heading_deg"} name @param {number} row */
   const value = (name, row) => flight[name]?.[row] ?? null;

@@ -128,7 +128,12 @@ export function makeLights({ shadows }) {
       fill.intensity = now.fill.strength;
       size_m = 0;
     },
-    /** The shadows' box goes where the camera looks; it moves by whole pixels of the shadow map, so that edges stand still. @param {PerspectiveCamera} camera @param {HeightAt} heightAt */
+    /**
+     * The shadows' box goes where the camera looks; it moves by whole pixels of the shadow map, so that edges stand still.
+     *
+     * @param {PerspectiveCamera} camera
+     * @param {HeightAt} heightAt
+     */
     follow(camera, heightAt) {
       camera.getWorldDirection(look);
       const above_m = Math.max(camera.position.y - heightAt(camera.position.x, camera.position.z), 5);

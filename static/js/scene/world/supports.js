@@ -78,7 +78,11 @@ function nearMembers({ near_m, most }) {
   /** @type {Vector3 | null} */
   let lookedFrom = null;
 
-  /** The nearest supports within reach become wanted; what is already worked out stays, what is far is let go. @param {Vector3} eye */
+  /**
+   * The nearest supports within reach become wanted; what is already worked out stays, what is far is let go.
+   *
+   * @param {Vector3} eye
+   */
   function choose({ x, y, z }) {
     /** @type {[far_m: number, place: number][]} */
     const found = [];
@@ -111,7 +115,12 @@ function nearMembers({ near_m, most }) {
         ),
       );
     },
-    /** A few a frame, so that no frame is late; "new" once all are there. @param {Vector3} eye @returns {"same" | "working" | "new"} */
+    /**
+     * A few a frame, so that no frame is late; "new" once all are there.
+     *
+     * @param {Vector3} eye
+     * @returns {"same" | "working" | "new"}
+     */
     follow(eye) {
       if (!lookedFrom || lookedFrom.distanceTo(eye) >= LOOK_AGAIN_M) {
         lookedFrom = eye.clone();

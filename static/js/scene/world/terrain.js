@@ -80,7 +80,11 @@ export function makeTerrain() {
   };
 }
 
-/** Slopes are lit as if they were steeper, so that gentle hills show; the surface stays as it is. @param {Float32Array} normals */
+/**
+ * Slopes are lit as if they were steeper, so that gentle hills show; the surface stays as it is.
+ *
+ * @param {Float32Array} normals
+ */
 function steeper(normals) {
   const lit = new Float32Array(normals.length);
   for (let at = 0; at < normals.length; at += 3) {

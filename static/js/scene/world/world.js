@@ -88,7 +88,14 @@ function makeParts(quality) {
 }
 /** @typedef {ReturnType<typeof makeParts>} Parts */
 
-/** Ground, sky and light of an hour. @param {Parts} parts @param {ScenePalette} palette @param {Mood} now @param {SunPlace} sun */
+/**
+ * Ground, sky and light of an hour.
+ *
+ * @param {Parts} parts
+ * @param {ScenePalette} palette
+ * @param {Mood} now
+ * @param {SunPlace} sun
+ */
 function paintHour({ fog, sky, terrain, lights }, palette, now, sun) {
   fog.color.copy(now.horizon);
   sky.apply(now);
@@ -138,7 +145,13 @@ function paintThings(parts, shown, palette, night, { isNew = false } = {}) {
   }
 }
 
-/** Notes of each zone whether it is in force; returns whether one is otherwise than before. @param {Shown} shown @param {Date} moment @param {Frame} frame */
+/**
+ * Notes of each zone whether it is in force; returns whether one is otherwise than before.
+ *
+ * @param {Shown} shown
+ * @param {Date} moment
+ * @param {Frame} frame
+ */
 function noteForce({ scene, volumes }, moment, frame) {
   let isOther = false;
   (scene?.zones ?? []).forEach(({ schedule }, number) => {
@@ -208,7 +221,12 @@ export function makeWorld({ frame, palette: firstPalette, quality = "high" }) {
       paint();
       repaint();
     },
-    /** Returns whether the next picture is another one. @param {PerspectiveCamera} camera @param {number} [look_m] to what is looked at */
+    /**
+     * Returns whether the next picture is another one.
+     *
+     * @param {PerspectiveCamera} camera
+     * @param {number} [look_m] to what is looked at
+     */
     update(camera, look_m = 0) {
       [fog.near, fog.far] = FOG_M.map((least_m, end) => Math.max(least_m, FOG_SHARES[end] * look_m));
       for (const own of [parts.wires, parts.edges]) own.reach(look_m / LINES_M);

@@ -96,7 +96,11 @@ export function makeZones() {
   };
 }
 
-/** A zone that is not in force has no hatching and half the colour; walls up to no limit fade out. @param {readonly ShownVolume[]} volumes */
+/**
+ * A zone that is not in force has no hatching and half the colour; walls up to no limit fade out.
+ *
+ * @param {readonly ShownVolume[]} volumes
+ */
 function looks(volumes) {
   /** @type {number[]} */
   const values = [];
