@@ -10,6 +10,7 @@ from django.contrib.gis.geos import GEOSGeometry
 from django.core.exceptions import ValidationError
 from django.forms.widgets import Script
 
+from inspection.services.facts import coordinates_of
 from inspection.zones.geometry_gate import GeometryFault, checked_geometry
 from inspection.zones.strict_json import JsonFault, parse_strict_json
 
@@ -50,7 +51,7 @@ class GeoJSONField(forms.Field):
     def prepare_value(self, value: Any) -> Any:
         if not isinstance(value, GEOSGeometry):
             return value
-        return json.dumps({"type": value.geom_type, "coordinates": value.coords})
+        return json.dumps({"type": value.geom_type, "coordinates": coordinates_of(value)})
 
     def to_python(self, value: Any) -> GEOSGeometry | None:
         if value in self.empty_values or not str(value).strip():

@@ -6,6 +6,7 @@ from celery import shared_task
 from celery.exceptions import SoftTimeLimitExceeded
 
 from inspection import services
+from inspection.models import ImportProposal
 from inspection.services import subscriptions
 from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import Progress
@@ -48,7 +49,8 @@ def apply_proposal(job_id: str) -> None:
 def settle_proposals() -> None:
     """Proposals whose worker was lost for good wait no longer."""
     for proposal in pipeline.unsettled_proposals():
-        pipeline.settle_proposal_of(job=proposal.job)
+        if proposal.job is not None:
+            pipeline.settle_proposal_of(job=proposal.job)
 
 
 @shared_task(time_limit=60, soft_time_limit=50)
@@ -67,6 +69,12 @@ def fetch_subscription(job_id: str) -> None:
 def _fetch(*, job: Job, progress: Progress) -> None:
     proposal = subscriptions.fetch_subscription(job=job, progress=progress)
     if proposal is not None:
+        send_job_of(proposal)
+
+
+def send_job_of(proposal: ImportProposal) -> None:
+    """Send the job that reads or applies a proposal to its queue after the commit."""
+    if proposal.job is not None:
         send_job_on_commit(proposal.job)
 
 

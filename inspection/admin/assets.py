@@ -6,7 +6,7 @@ from django import forms
 from django.contrib import admin
 from django.contrib.gis.db import models
 from django.core.exceptions import ValidationError
-from django.db.models import QuerySet
+from django.db.models import Field, QuerySet
 from django.http import HttpRequest
 from django.utils.html import format_html
 from django.utils.safestring import SafeString
@@ -19,8 +19,12 @@ from inspection.models import Asset, AssetKind, Bridge, DataImport, ImportKind, 
 from inspection.osm.tags import MAX_HEIGHT_M
 from inspection.selectors import asset_label
 from inspection.services.curation import many_edits
+from workspace.signed_in import user_of
 
-FORM_FIELDS = {models.GeometryField: {"form_class": GeoJSONField}, models.JSONField: {"form_class": StrictJSONField}}
+FORM_FIELDS: dict[type[Field], dict[str, Any]] = {
+    models.GeometryField: {"form_class": GeoJSONField},
+    models.JSONField: {"form_class": StrictJSONField},
+}
 
 
 class AssetForm(CuratedForm):
@@ -50,9 +54,9 @@ class ImportFilter(admin.SimpleListFilter):
     parameter_name = "data_import"
     newest = 20
 
-    def lookups(self, request: HttpRequest, model_admin: Any) -> list[tuple[int, str]]:
+    def lookups(self, request: HttpRequest, model_admin: Any) -> list[tuple[str, str]]:
         imports = DataImport.objects.filter(kind__in=[ImportKind.OSM, ImportKind.ASSETS])[: self.newest]
-        return [(row.pk, f"{row.file_name}, {row.imported_at:%d %b %Y}") for row in imports]
+        return [(str(row.pk), f"{row.file_name}, {row.imported_at:%d %b %Y}") for row in imports]
 
     def queryset(self, request: HttpRequest, queryset: QuerySet[Asset]) -> QuerySet[Asset]:
         chosen = self.value()
@@ -115,15 +119,15 @@ class AssetAdmin(CuratedAdmin):
 
     def save_model(self, request: HttpRequest, obj: Asset, form: Any, change: bool) -> None:
         obj.kind = self.kind or obj.kind
-        services.save_asset(asset=obj, actor=request.user, expected_revision=expected_revision(form))
+        services.save_asset(asset=obj, actor=user_of(request), expected_revision=expected_revision(form))
 
     def delete_model(self, request: HttpRequest, obj: Asset) -> None:
-        services.delete_asset(asset=obj, actor=request.user)
+        services.delete_asset(asset=obj, actor=user_of(request))
 
     def delete_queryset(self, request: HttpRequest, queryset: QuerySet[Asset]) -> None:
         with many_edits():
             for asset in queryset:
-                services.delete_asset(asset=asset, actor=request.user)
+                services.delete_asset(asset=asset, actor=user_of(request))
 
     @admin.action(description="Mark the chosen as flyable", permissions=["change"])
     def mark_flyable(self, request: HttpRequest, queryset: QuerySet[Asset]) -> None:
@@ -136,7 +140,7 @@ class AssetAdmin(CuratedAdmin):
     def _mark(self, request: HttpRequest, queryset: QuerySet[Asset], *, is_flyable: bool) -> None:
         def mark(asset: Asset) -> None:
             asset.is_flyable = is_flyable
-            services.save_asset(asset=asset, actor=request.user)
+            services.save_asset(asset=asset, actor=user_of(request))
 
         if number := self.change_each(request, queryset.exclude(is_flyable=is_flyable), mark):
             self.message_user(request, f"{number} marked as {'flyable' if is_flyable else 'not flyable'}.")
@@ -149,7 +153,8 @@ class _KindAdmin(AssetAdmin):
 
     def get_form(self, request: HttpRequest, obj: Any = None, change: bool = False, **options: Any) -> Any:
         form = super().get_form(request, obj, change, **options)
-        form.kind = self.kind
+        if issubclass(form, AssetForm):
+            form.kind = self.kind
         if "geometry" in form.base_fields:
             form.base_fields["geometry"].widget.is_point = self.kind == AssetKind.TOWER
         return form

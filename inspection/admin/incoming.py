@@ -22,6 +22,7 @@ from inspection.models import (
 )
 from inspection.services.gaps import dismiss_gap, reopen_gap
 from workspace.admin import ReadOnlyAdmin
+from workspace.signed_in import user_of
 
 
 @admin.register(ImportProposal)
@@ -114,14 +115,14 @@ class DataGapAdmin(ReadOnlyAdmin):
     def dismiss(self, request: HttpRequest, queryset: QuerySet[DataGap]) -> None:
         chosen = list(queryset.filter(state=GapState.OPEN))
         for gap in chosen:
-            dismiss_gap(gap=gap, note="", actor=request.user)
+            dismiss_gap(gap=gap, note="", actor=user_of(request))
         self.message_user(request, f"{len(chosen)} left as they are.")
 
     @admin.action(description="Open the chosen again", permissions=["view"])
     def reopen(self, request: HttpRequest, queryset: QuerySet[DataGap]) -> None:
         chosen = list(queryset.exclude(state=GapState.OPEN))
         for gap in chosen:
-            reopen_gap(gap=gap, actor=request.user)
+            reopen_gap(gap=gap, actor=user_of(request))
         self.message_user(request, f"{len(chosen)} opened again.")
 
 

@@ -5,7 +5,7 @@ from typing import Any
 from django.contrib import admin, messages
 from django.contrib.gis.db import models
 from django.core.exceptions import ValidationError
-from django.db.models import Count, QuerySet
+from django.db.models import Count, Field, QuerySet
 from django.http import HttpRequest
 
 from inspection import services
@@ -17,8 +17,12 @@ from inspection.services.subscriptions import change_subscription
 from inspection.zones.geometry_gate import GeometryFault
 from inspection.zones.schedule import checked_schedule
 from workspace.admin import ReadOnlyAdmin
+from workspace.signed_in import user_of
 
-FORM_FIELDS = {models.GeometryField: {"form_class": GeoJSONField}, models.JSONField: {"form_class": StrictJSONField}}
+FORM_FIELDS: dict[type[Field], dict[str, Any]] = {
+    models.GeometryField: {"form_class": GeoJSONField},
+    models.JSONField: {"form_class": StrictJSONField},
+}
 
 
 class ZoneForm(CuratedForm):
@@ -64,16 +68,16 @@ class NoFlyZoneAdmin(CuratedAdmin):
         return zone.schedule is None
 
     def save_model(self, request: HttpRequest, obj: NoFlyZone, form: Any, change: bool) -> None:
-        services.save_zone(zone=obj, actor=request.user, expected_revision=expected_revision(form))
+        services.save_zone(zone=obj, actor=user_of(request), expected_revision=expected_revision(form))
         if obj.zone_set is not None:
             messages.info(request, f"This zone comes from {obj.zone_set}: imports of that source leave it alone from now on.")
 
     def delete_model(self, request: HttpRequest, obj: NoFlyZone) -> None:
-        services.delete_zone(zone=obj, actor=request.user)
+        services.delete_zone(zone=obj, actor=user_of(request))
 
     def delete_queryset(self, request: HttpRequest, queryset: QuerySet[NoFlyZone]) -> None:
         for zone in queryset:
-            services.delete_zone(zone=zone, actor=request.user)
+            services.delete_zone(zone=zone, actor=user_of(request))
 
 
 def _height(value_m: float | None, reference: str) -> str:
@@ -128,5 +132,5 @@ class ZoneSubscriptionAdmin(ReadOnlyAdmin):
     def _set(self, request: HttpRequest, queryset: QuerySet[ZoneSubscription], *, is_active: bool) -> None:
         chosen = list(queryset.exclude(is_active=is_active))
         for subscription in chosen:
-            change_subscription(subscription=subscription, actor=request.user, is_active=is_active)
+            change_subscription(subscription=subscription, actor=user_of(request), is_active=is_active)
         self.message_user(request, f"{len(chosen)} {'resumed' if is_active else 'paused'}.")

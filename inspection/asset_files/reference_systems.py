@@ -19,7 +19,7 @@ FAR_OUTSIDE_DEG = 10.0  # positions so far from where a system is used are in an
 _CODE = re.compile(r"(?:urn:ogc:def:crs:)?(EPSG|ESRI|OGC)::?(?:[\d.]*:)?([0-9A-Za-z]{2,8})", re.IGNORECASE)
 _WGS84 = CRS.from_user_input("OGC:CRS84")
 
-network.set_network_enabled(False)  # type: ignore[attr-defined]
+network.set_network_enabled(False)
 
 
 def system_of_code(text: Any, place: str) -> CRS | None:

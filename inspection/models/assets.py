@@ -1,5 +1,7 @@
 """Infrastructure: one table for all kinds, and a proxy for each."""
 
+from typing import ClassVar, TypeVar
+
 from django.contrib.gis.db import models
 from django.contrib.postgres.fields import ArrayField
 from django.contrib.postgres.indexes import GinIndex, OpClass
@@ -137,37 +139,43 @@ class Asset(models.Model):
         return self.ref or self.name or f"{AssetKind(self.kind).label} {self.osm_type}{self.osm_id or self.pk}"
 
 
-def _proxy_manager(kind: AssetKind) -> models.Manager:
-    class KindManager(models.Manager):
-        def get_queryset(self):  # type: ignore[no-untyped-def]
-            return super().get_queryset().filter(kind=kind)
+Kind = TypeVar("Kind", bound=Asset)
 
-    return KindManager()
+
+class KindManager(models.Manager[Kind]):
+    """The assets of one kind."""
+
+    def __init__(self, kind: AssetKind) -> None:
+        super().__init__()
+        self.kind = kind
+
+    def get_queryset(self) -> models.QuerySet[Kind]:
+        return super().get_queryset().filter(kind=self.kind)
 
 
 class PowerTower(Asset):
-    objects = _proxy_manager(AssetKind.TOWER)
+    objects: ClassVar = KindManager(AssetKind.TOWER)
 
     class Meta:
         proxy = True
 
 
 class PowerLine(Asset):
-    objects = _proxy_manager(AssetKind.LINE)
+    objects: ClassVar = KindManager(AssetKind.LINE)
 
     class Meta:
         proxy = True
 
 
 class Railway(Asset):
-    objects = _proxy_manager(AssetKind.RAILWAY)
+    objects: ClassVar = KindManager(AssetKind.RAILWAY)
 
     class Meta:
         proxy = True
 
 
 class Bridge(Asset):
-    objects = _proxy_manager(AssetKind.BRIDGE)
+    objects: ClassVar = KindManager(AssetKind.BRIDGE)
 
     class Meta:
         proxy = True

@@ -2,12 +2,13 @@
 
 from django.db.models import Case, IntegerField, Q, QuerySet, Value, When
 
-from inspection.models import Asset, AssetKind
+from inspection.models import AssetKind
+from inspection.selectors.assets import DrawnAsset
 
 BEST_FIRST = ("match_rank", "pk")
 
 
-def with_match_rank(assets: QuerySet[Asset], *, text: str) -> QuerySet[Asset]:
+def with_match_rank(assets: QuerySet[DrawnAsset], *, text: str) -> QuerySet[DrawnAsset]:
     """The same assets with `match_rank`: 0 and 1 are called exactly `text`, 2 and 3 otherwise found; supports have the odd ranks."""
     is_exact = Q(ref__iexact=text) | Q(name__iexact=text)
     is_support = Q(kind=AssetKind.TOWER)

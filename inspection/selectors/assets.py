@@ -1,6 +1,7 @@
 """Assets and zones as lists, and what they are called."""
 
 import re
+from typing import TYPE_CHECKING, TypedDict
 
 from django.contrib.gis.db.models.functions import AsGeoJSON
 from django.contrib.gis.geos import MultiPolygon, Polygon
@@ -46,9 +47,22 @@ OSM_KEY = re.compile(r"([nwr])(\d{1,18})", re.IGNORECASE)
 Box = tuple[float, float, float, float]  # west, south, east, north; west > east crosses the 180th meridian
 
 
+class AsDrawn(TypedDict):
+    geometry_json: str  # GeoJSON
+
+
+if TYPE_CHECKING:
+    from django_stubs_ext import WithAnnotations
+
+    DrawnAsset = WithAnnotations[Asset, AsDrawn]
+    DrawnZone = WithAnnotations[NoFlyZone, AsDrawn]
+else:
+    DrawnAsset, DrawnZone = Asset, NoFlyZone
+
+
 def assets_on_the_ground(
     *, box: Box | None = None, kinds: list[AssetKind] | None = None, text: str = "", flyable: bool | None = None
-) -> QuerySet[Asset]:
+) -> QuerySet[DrawnAsset]:
     """Assets that the last import still had, with their geometry as GeoJSON text in `geometry_json`."""
     assets = Asset.objects.select_related("line").filter(vanished_at=None)
     if box is not None:
@@ -63,7 +77,7 @@ def assets_on_the_ground(
     return assets.defer(*unread).annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
 
 
-def asset_with_geometry(asset_id: int) -> Asset:
+def asset_with_geometry(asset_id: int) -> DrawnAsset:
     """One asset, also when it has vanished: missions may still point at it. Raises Asset.DoesNotExist."""
     return (
         Asset.objects.select_related("data_import", "asset_set", "line")
@@ -73,7 +87,7 @@ def asset_with_geometry(asset_id: int) -> Asset:
     )
 
 
-def zones(*, box: Box | None = None, text: str = "", zone_set: int | None = None) -> QuerySet[NoFlyZone]:
+def zones(*, box: Box | None = None, text: str = "", zone_set: int | None = None) -> QuerySet[DrawnZone]:
     """All zones, with their geometry as GeoJSON text in `geometry_json`; with the words of the text in name, identifier or reason."""
     found = NoFlyZone.objects.select_related("zone_set__data_import")
     for word in text.split():

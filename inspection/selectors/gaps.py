@@ -2,13 +2,20 @@
 
 from dataclasses import dataclass
 from datetime import datetime
+from typing import TYPE_CHECKING
 
 from django.contrib.gis.db.models.functions import AsGeoJSON
 from django.db.models import Count, QuerySet
 
 from inspection.models import DataGap, GapKind, GapSearch, GapState
-from inspection.selectors.assets import COORDINATE_DIGITS, Box, area_of, assets_on_the_ground
+from inspection.selectors.assets import COORDINATE_DIGITS, AsDrawn, Box, area_of, assets_on_the_ground
 
+if TYPE_CHECKING:
+    from django_stubs_ext import WithAnnotations
+
+    DrawnGap = WithAnnotations[DataGap, AsDrawn]
+else:
+    DrawnGap = DataGap
 WORST_FIRST = ("-cut_off_m", "pk")
 _UNREAD = [
     f"{path}__{name}"
@@ -24,7 +31,9 @@ class GapSummary:
     found: int
 
 
-def gaps(*, kinds: list[GapKind] | None = None, state: GapState | None = None, box: Box | None = None, text: str = "") -> QuerySet[DataGap]:
+def gaps(
+    *, kinds: list[GapKind] | None = None, state: GapState | None = None, box: Box | None = None, text: str = ""
+) -> QuerySet[DrawnGap]:
     """Gaps with what they are about, and their geometry as GeoJSON text in `geometry_json`."""
     found = DataGap.objects.select_related("asset__line", "other_asset__line", "decided_by")
     if kinds:
@@ -43,4 +52,4 @@ def gap_summary() -> GapSummary:
     for kind, state, number in DataGap.objects.order_by().values_list("kind", "state").annotate(Count("pk")):
         counts[kind][state] = number
     last = GapSearch.objects.filter(pk=GapSearch.SINGLE_ID).first()
-    return GapSummary(counts, last and last.searched_at, last.found if last else 0)
+    return GapSummary(counts, last.searched_at if last else None, last.found if last else 0)

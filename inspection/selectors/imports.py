@@ -1,12 +1,20 @@
 """What has come in: uploads, proposals and their changes."""
 
+from typing import TYPE_CHECKING
 from uuid import UUID
 
 from django.contrib.gis.db.models.functions import AsGeoJSON
 from django.db.models import QuerySet
 
 from inspection.models import ImportProposal, ProposedChange, Upload
+from inspection.selectors.assets import AsDrawn
 
+if TYPE_CHECKING:
+    from django_stubs_ext import WithAnnotations
+
+    DrawnChange = WithAnnotations[ProposedChange, AsDrawn]
+else:
+    DrawnChange = ProposedChange
 COORDINATE_DIGITS = 7
 NEWEST_FIRST = ("-created_at", "-pk")
 
@@ -23,7 +31,7 @@ def proposal_of_id(proposal_id: UUID) -> ImportProposal:
     return proposals().get(pk=proposal_id)
 
 
-def changes_of_proposal(proposal: ImportProposal, *, action: str = "") -> QuerySet[ProposedChange]:
+def changes_of_proposal(proposal: ImportProposal, *, action: str = "") -> QuerySet[DrawnChange]:
     changes = proposal.changes.defer("geometry").annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
     return changes.filter(action=action) if action else changes
 

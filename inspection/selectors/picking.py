@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -76,7 +77,7 @@ def assets_called(refs: Iterable[str], *, kinds: Sequence[AssetKind] = ()) -> di
             note(plain_ref(part), pk, 1)
         note(name, pk, 2)
     if osm:
-        by_key: dict[tuple[str, int], list[int]] = {}
+        by_key: dict[tuple[str, int | None], list[int]] = {}
         for pk, kind, osm_id in assets.filter(osm_id__in=[osm_id for _, osm_id in osm.values()]).values_list("pk", "osm_type", "osm_id"):
             by_key.setdefault((kind, osm_id), []).append(pk)
         for ref, key in osm.items():
@@ -103,7 +104,7 @@ def area_drawn(ring: Sequence[Sequence[float]]) -> GEOSGeometry | None:
     _refuse_a_tangle(ring)
     drawn = shapely.make_valid(shapely.Polygon(ring))
     world = shapely.box(-180.0, -90.0, 180.0, 90.0)
-    turns = [shapely.transform(drawn, lambda points, turn=turn: np.add(points, (turn, 0.0))) for turn in (-360.0, 0.0, 360.0)]
+    turns = [shapely.transform(drawn, partial(np.add, (turn, 0.0))) for turn in (-360.0, 0.0, 360.0)]
     area = shapely.union_all([shapely.intersection(turn, world) for turn in turns])
     parts = [part for part in shapely.get_parts(area) if part.geom_type == "Polygon"]
     parts += [inner for part in shapely.get_parts(area) if part.geom_type == "MultiPolygon" for inner in part.geoms]
@@ -113,7 +114,7 @@ def area_drawn(ring: Sequence[Sequence[float]]) -> GEOSGeometry | None:
 def _refuse_a_tangle(ring: Sequence[Sequence[float]]) -> None:
     corners = np.array(ring, dtype=float)
     corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]  # a corner said twice is one
-    sides = shapely.linestrings(np.stack([corners, np.roll(corners, -1, axis=0)], axis=1))
+    sides = np.asarray(shapely.linestrings(np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)), dtype=object)
     tree, crossings = shapely.STRtree(sides), 0
     for first in range(0, len(sides), SIDES_AT_ONCE):
         side, other = tree.query(sides[first : first + SIDES_AT_ONCE], predicate="intersects")

@@ -109,9 +109,9 @@ def planning_read(points: Sequence[int] = ()) -> PlanningRead:
     found = {}
     for row in rows:
         (lon, lat), columns = row[_GROUND_COLUMNS : _GROUND_COLUMNS + 2], row[_GROUND_COLUMNS + 2 :]
-        asset = PointAsset(LonLat(lon, lat), *_plain(columns), columns)
-        if asset.key is not None:
-            found[asset.key] = asset
+        key, kind, subtype, height_m, max_voltage_v = _plain(columns)
+        if key is not None:
+            found[key] = PointAsset(LonLat(lon, lat), key, kind, subtype, height_m, max_voltage_v, columns)
     return PlanningRead(None if version is None else (version, ground_revision, digest), (revision or 0, changed_at), found)
 
 

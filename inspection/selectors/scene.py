@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypedDict, TypeVar
 
 import numpy as np
 import shapely
@@ -219,12 +219,25 @@ def _read(assets: "QuerySet[Asset]") -> "QuerySet[Asset]":
     )
 
 
-def _in_area(kind: AssetKind, clip: Box) -> "QuerySet[Asset]":
+class AsStored(TypedDict):
+    wkb: bytes | memoryview
+
+
+if TYPE_CHECKING:
+    from django_stubs_ext import WithAnnotations
+
+    StoredAsset = WithAnnotations[Asset, AsStored]
+    StoredZone = WithAnnotations[NoFlyZone, AsStored]
+else:
+    StoredAsset, StoredZone = Asset, NoFlyZone
+
+
+def _in_area(kind: AssetKind, clip: Box) -> "QuerySet[StoredAsset]":
     assets = Asset.objects.filter(kind=kind, vanished_at=None, geometry__intersects=area_of(clip))
     return assets.annotate(wkb=AsWKB("geometry")).defer("geometry", "node_osm_ids", "source_facts").order_by("pk")
 
 
-def _shape(row: Asset | NoFlyZone, clip: Box) -> shapely.geometry.base.BaseGeometry:
+def _shape(row: StoredAsset | StoredZone, clip: Box) -> shapely.geometry.base.BaseGeometry:
     """What of it lies in the box; bridges whole."""
     shape = shapely.force_2d(shapely.from_wkb(bytes(row.wkb)))
     if isinstance(row, Asset) and row.kind == AssetKind.BRIDGE:

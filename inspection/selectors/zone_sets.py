@@ -1,5 +1,7 @@
 """Zone sets with what is known of their sources, their versions, and what is fetched for them."""
 
+from typing import TYPE_CHECKING, TypedDict
+
 from django.db.models import Count, F, IntegerField, OuterRef, QuerySet, Subquery
 from django.db.models.functions import Coalesce
 
@@ -11,7 +13,23 @@ NEWEST_VERSION_FIRST = ("-number",)
 BY_NAME = ("name", "pk")
 
 
-def zone_sets() -> QuerySet[ZoneSet]:
+class ZoneSetCounts(TypedDict):
+    """What the query for sets counts."""
+
+    zone_count: int
+    edited_count: int
+    version_count: int
+
+
+if TYPE_CHECKING:
+    from django_stubs_ext import WithAnnotations
+
+    CountedZoneSet = WithAnnotations[ZoneSet, ZoneSetCounts]
+else:
+    CountedZoneSet = ZoneSet
+
+
+def zone_sets() -> QuerySet[CountedZoneSet]:
     """All sets, with their numbers of zones, of edited zones and of versions."""
 
     def number_of(model: type[NoFlyZone | ZoneSetVersion], **condition: bool) -> Coalesce:

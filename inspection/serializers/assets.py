@@ -5,15 +5,17 @@ from typing import Any
 
 from rest_framework import serializers
 
-from inspection.models import Asset, AssetKind
+from inspection.models import AssetKind
 from inspection.selectors import asset_detail, asset_label
+from inspection.selectors.assets import DrawnAsset
 from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
+from workspace.serializers import Declared
 
 
 class AssetPropertiesSerializer(serializers.Serializer):
     kind = serializers.ChoiceField(choices=AssetKind.choices)
     subtype = serializers.CharField()
-    label = serializers.CharField(help_text="what people call it: ref, name, or words made from what is known")
+    label: Declared = serializers.CharField(help_text="what people call it: ref, name, or words made from what is known")
     detail = serializers.CharField(help_text="a second fact: a support's line, voltage and operator, what a bridge carries; may be empty")
     name = serializers.CharField()
     ref = serializers.CharField()
@@ -35,7 +37,7 @@ class AssetDetailPropertiesSerializer(AssetPropertiesSerializer):
     asset_set = serializers.CharField(allow_null=True, help_text="the set of a file other than OpenStreetMap's")
     vanished_at = serializers.DateTimeField(allow_null=True, help_text="when an import no longer had it")
     updated_at = serializers.DateTimeField()
-    source = SourceSerializer(allow_null=True)
+    source: Declared = SourceSerializer(allow_null=True)
 
 
 AssetFeatureSerializer = feature_serializer("AssetFeature", AssetPropertiesSerializer)
@@ -53,7 +55,7 @@ FIELDS_OF_AN_ASSET = (
 )  # fmt: skip
 
 
-def asset_feature(asset: Asset) -> dict[str, Any]:
+def asset_feature(asset: DrawnAsset) -> dict[str, Any]:
     """`asset` comes with `geometry_json` from inspection.selectors."""
     properties = {
         "kind": asset.kind,
@@ -74,7 +76,7 @@ def asset_feature(asset: Asset) -> dict[str, Any]:
     return {"type": "Feature", "id": asset.pk, "geometry": json.loads(asset.geometry_json), "properties": properties}
 
 
-def asset_detail_feature(asset: Asset) -> dict[str, Any]:
+def asset_detail_feature(asset: DrawnAsset) -> dict[str, Any]:
     feature = asset_feature(asset)
     feature["properties"] |= {
         "tags": asset.tags,

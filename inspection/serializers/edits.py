@@ -61,7 +61,7 @@ class AssetInputSerializer(serializers.Serializer):
         return tags
 
     def validate(self, values: dict[str, Any]) -> dict[str, Any]:
-        kind = AssetKind(values.get("kind") or self.instance.kind)
+        kind = AssetKind(values["kind"] if self.instance is None else values.get("kind") or self.instance.kind)
         if "geometry" in values:
             try:
                 shape = asset_shape(kind, values["geometry"])

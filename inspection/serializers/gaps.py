@@ -5,12 +5,13 @@ from typing import Any
 
 from rest_framework import serializers
 
-from inspection.models import Asset, AssetKind, DataGap, GapKind, GapState
+from inspection.models import Asset, AssetKind, GapKind, GapState
 from inspection.selectors import asset_detail, asset_label
-from inspection.selectors.gaps import GapSummary
+from inspection.selectors.gaps import DrawnGap, GapSummary
 from inspection.serializers.features import collection_serializer, feature_serializer
 from inspection.serializers.gap_words import sentence, title
 from inspection.services.repairs import Offer, Repaired
+from workspace.serializers import Declared
 
 LONGEST_NOTE = 500
 
@@ -18,7 +19,7 @@ LONGEST_NOTE = 500
 class GapAssetSerializer(serializers.Serializer):
     id = serializers.IntegerField()
     kind = serializers.ChoiceField(choices=AssetKind.choices)
-    label = serializers.CharField()
+    label: Declared = serializers.CharField()
     detail = serializers.CharField()
 
 
@@ -80,7 +81,7 @@ class RepairedSerializer(serializers.Serializer):
     is_current = serializers.BooleanField(help_text="whether the ground has been searched again already")
 
 
-def gap_feature(gap: DataGap, repairs: list[dict[str, Any]]) -> dict[str, Any]:
+def gap_feature(gap: DrawnGap, repairs: list[dict[str, Any]]) -> dict[str, Any]:
     """`gap` comes with `geometry_json` from inspection.selectors.gaps."""
     properties = {
         "kind": gap.kind,
@@ -94,7 +95,7 @@ def gap_feature(gap: DataGap, repairs: list[dict[str, Any]]) -> dict[str, Any]:
         "cut_off_m": gap.cut_off_m,
         "repairs": repairs,
         "note": gap.note,
-        "decided_by": gap.decided_by and (gap.decided_by.get_full_name() or gap.decided_by.username),
+        "decided_by": (gap.decided_by.get_full_name() or gap.decided_by.username) if gap.decided_by else None,
         "decided_at": gap.decided_at,
         "found_at": gap.found_at,
     }
@@ -118,4 +119,4 @@ def repaired_json(repaired: Repaired, feature: dict[str, Any] | None, *, is_curr
 
 
 def _asset_json(asset: Asset | None) -> dict[str, Any] | None:
-    return asset and {"id": asset.pk, "kind": asset.kind, "label": asset_label(asset), "detail": asset_detail(asset)}
+    return {"id": asset.pk, "kind": asset.kind, "label": asset_label(asset), "detail": asset_detail(asset)} if asset else None

@@ -5,10 +5,12 @@ from typing import Any
 
 from rest_framework import serializers
 
-from inspection.models import ChangeAction, ImportKind, ImportProposal, ProposalOrigin, ProposalState, ProposedChange, Upload
+from inspection.models import ChangeAction, ImportKind, ImportProposal, ProposalOrigin, ProposalState, Upload
+from inspection.selectors.imports import DrawnChange
 from inspection.serializers.features import GeometrySerializer
 from inspection.services.uploads import PART_BYTES
 from workspace.models import JobState, User
+from workspace.serializers import Declared
 from workspace.stored_words import in_words
 
 
@@ -89,7 +91,7 @@ class ChangePropertiesSerializer(serializers.Serializer):
     action = serializers.ChoiceField(choices=ChangeAction.choices)
     subject = serializers.CharField(help_text="asset kind, or zone")
     subject_id = serializers.IntegerField(allow_null=True, help_text="of the row that it changes")
-    label = serializers.CharField()
+    label: Declared = serializers.CharField()
     before = serializers.DictField(allow_null=True)
     after = serializers.DictField(allow_null=True)
 
@@ -143,7 +145,7 @@ def proposal_json(proposal: ImportProposal, *, is_brief: bool = False) -> dict[s
     }
 
 
-def change_feature(change: ProposedChange) -> dict[str, Any]:
+def change_feature(change: DrawnChange) -> dict[str, Any]:
     return {
         "type": "Feature",
         "id": change.pk,
@@ -160,4 +162,4 @@ def change_feature(change: ProposedChange) -> dict[str, Any]:
 
 
 def _name(user: User | None) -> str | None:
-    return user and (user.get_full_name() or user.username)
+    return (user.get_full_name() or user.username) if user else None

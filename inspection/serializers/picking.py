@@ -8,6 +8,7 @@ from rest_framework import serializers
 from inspection.models import Asset, AssetKind
 from inspection.selectors import asset_detail, asset_label
 from inspection.serializers.assets import FIELDS_OF_AN_ASSET
+from workspace.serializers import Declared
 
 MOST_REFS = 2_000
 LONGEST_REF = 255
@@ -19,7 +20,7 @@ class PickedAssetSerializer(serializers.Serializer):
 
     id = serializers.IntegerField()
     kind = serializers.ChoiceField(choices=AssetKind.choices)
-    label = serializers.CharField()
+    label: Declared = serializers.CharField()
     detail = serializers.CharField(help_text="the second fact; may be empty")
     length_m = serializers.FloatField(allow_null=True)
     centre = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="lon, lat")

@@ -16,6 +16,7 @@ from inspection.selectors import asset_label
 from inspection.selectors.scene import Scene, SceneBridge, SceneZone
 from inspection.serializers.terrain import PositionField
 from inspection.serializers.zones import LimitSerializer, ScheduleField, limit_json, schedule_words
+from workspace.serializers import Declared
 
 DEGREE_DIGITS, METRE_DIGITS = 7, 2
 OPEN_TOP_AGL_M = 180.0  # a zone without an upper limit is drawn as high: half as much again as anything flies
@@ -44,7 +45,7 @@ class SupportSerializer(serializers.Serializer):
     """A tower, pole or portal, or a place where a line bends and none is mapped."""
 
     id = serializers.IntegerField(allow_null=True)
-    label = serializers.CharField(allow_null=True)
+    label: Declared = serializers.CharField(allow_null=True)
     kind = serializers.ChoiceField(choices=["tower", "pole", "portal", "vertex"])
     form = serializers.ChoiceField(choices=["lattice", "tubular", "wooden", "h-frame", "portal", "guyed", "stake"])
     position = PositionField()
@@ -78,7 +79,7 @@ class SpanSerializer(serializers.Serializer):
 
 class RailwaySerializer(serializers.Serializer):
     id = serializers.IntegerField()
-    label = serializers.CharField()
+    label: Declared = serializers.CharField()
     kind = serializers.CharField()
     tracks = serializers.IntegerField()
     is_electrified = serializers.BooleanField(help_text="with a wire above the track")
@@ -87,7 +88,7 @@ class RailwaySerializer(serializers.Serializer):
 
 class SceneBridgeSerializer(serializers.Serializer):
     id = serializers.IntegerField()
-    label = serializers.CharField()
+    label: Declared = serializers.CharField()
     is_named = serializers.BooleanField(help_text="its label is a name or number of its own")
     carries = serializers.CharField()
     polygons = serializers.ListField(child=serializers.ListField(child=serializers.ListField(child=PositionField())))
@@ -270,11 +271,11 @@ def _metres(values: tuple[float, ...]) -> list[float]:
 
 
 def _rounded(values: FloatArray, digits: int) -> list[float]:
-    return np.round(values, digits).tolist()  # type: ignore[no-any-return]
+    return np.round(values, digits).tolist()
 
 
 def _positions(line: shapely.LineString | shapely.LinearRing) -> list[list[float]]:
-    return np.round(shapely.get_coordinates(line), DEGREE_DIGITS).tolist()  # type: ignore[no-any-return]
+    return np.round(shapely.get_coordinates(line), DEGREE_DIGITS).tolist()
 
 
 def _lines(shape: shapely.geometry.base.BaseGeometry) -> list[shapely.LineString]:

@@ -12,6 +12,7 @@ from inspection.serializers.features import GeometrySerializer
 from inspection.serializers.zones import LimitSerializer, ScheduleField, limit_json
 from inspection.services.facts import geojson
 from inspection.terrain.heights import REFERENCES
+from workspace.serializers import Declared
 
 MOST_VERTICES = 2_000
 MOST_PLACES = 5_000
@@ -67,7 +68,7 @@ class ModelCollectionSerializer(serializers.Serializer):
 class GroundHeightSerializer(serializers.Serializer):
     ground_amsl_m = serializers.FloatField(allow_null=True, help_text="null where no model knows the ground")
     vertical_datum = serializers.CharField(allow_null=True)
-    source = serializers.CharField(allow_null=True, help_text="file name of the model that the height is from")
+    source: Declared = serializers.CharField(allow_null=True, help_text="file name of the model that the height is from")
 
 
 class ProfileInputSerializer(serializers.Serializer):

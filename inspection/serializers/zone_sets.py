@@ -4,11 +4,13 @@ from typing import Any
 
 from rest_framework import serializers
 
-from inspection.models import DataImport, ImportProposal, ProposalState, ZoneSet, ZoneSetVersion, ZoneSubscription
+from inspection.models import DataImport, ImportProposal, ProposalState, ZoneSetVersion, ZoneSubscription
+from inspection.selectors.zone_sets import CountedZoneSet
 from inspection.serializers.features import SourceSerializer, source_json
 from inspection.services.zone_import import FORMAT_NAMES
 from workspace.models import User
 from workspace.outgoing import OutgoingRefused, check_address
+from workspace.serializers import Declared
 
 LONGEST_INTERVAL_H = 24 * 90
 
@@ -51,7 +53,7 @@ class ZoneSetSerializer(serializers.Serializer):
     zone_count = serializers.IntegerField(help_text="each layer of a zone counts")
     edited_count = serializers.IntegerField(help_text="zones that a curator changed by hand")
     version_count = serializers.IntegerField()
-    source = ZoneSetSourceSerializer(allow_null=True)
+    source: Declared = ZoneSetSourceSerializer(allow_null=True)
     subscription = ZoneSubscriptionSerializer(allow_null=True)
 
 
@@ -65,7 +67,7 @@ class ZoneSetVersionSerializer(serializers.Serializer):
     zone_count = serializers.IntegerField()
     created_at = serializers.DateTimeField()
     created_by = serializers.CharField(allow_null=True)
-    source = ZoneSetSourceSerializer(allow_null=True)
+    source: Declared = ZoneSetSourceSerializer(allow_null=True)
 
 
 class ZoneSetVersionPageSerializer(serializers.Serializer):
@@ -108,7 +110,7 @@ class FetchJobSerializer(serializers.Serializer):
     job = serializers.UUIDField()
 
 
-def zone_set_json(zone_set: ZoneSet) -> dict[str, Any]:
+def zone_set_json(zone_set: CountedZoneSet) -> dict[str, Any]:
     return {
         "id": zone_set.pk,
         "name": zone_set.name,
@@ -144,13 +146,13 @@ def subscription_json(subscription: ZoneSubscription) -> dict[str, Any]:
 
 
 def _proposal_json(proposal: ImportProposal | None) -> dict[str, Any] | None:
-    return proposal and {"id": str(proposal.pk), "state": proposal.state, "difference": proposal.difference}
+    return {"id": str(proposal.pk), "state": proposal.state, "difference": proposal.difference} if proposal else None
 
 
 def _source_json(data_import: DataImport | None) -> dict[str, Any] | None:
     source = source_json(data_import)
-    return source and source | {"imported_by": _name(data_import.imported_by)}
+    return source | {"imported_by": _name(data_import.imported_by)} if source and data_import else None
 
 
 def _name(user: User | None) -> str | None:
-    return user and (user.get_full_name() or user.username)
+    return (user.get_full_name() or user.username) if user else None

@@ -6,11 +6,13 @@ from typing import Any
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
-from inspection.models import HeightReference, NoFlyZone
+from inspection.models import HeightReference
+from inspection.selectors.assets import DrawnZone
 from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
 from inspection.serializers.schedule_words import schedule_sentence
 from inspection.zones.geometry_gate import GeometryFault
 from inspection.zones.schedule import DAYS, EVENTS, checked_schedule
+from workspace.serializers import Declared
 
 
 class ScheduleEntrySerializer(serializers.Serializer):
@@ -61,13 +63,11 @@ class ZonePropertiesSerializer(serializers.Serializer):
     lower_limit = LimitSerializer(allow_null=True)
     upper_limit = LimitSerializer(allow_null=True)
     source_heights = serializers.DictField(help_text="limits, unit and references in the source's own words")
-    circle = CircleField(
-        allow_null=True, help_text="centre and radius_m, where the source gives a circle; the polygon encloses it"
-    )
+    circle = CircleField(allow_null=True, help_text="centre and radius_m, where the source gives a circle; the polygon encloses it")
     schedule = ScheduleField(allow_null=True, help_text="when it applies: periods as ED-318 writes them; null = always")
     schedule_words = serializers.CharField(help_text="the same for people")
     updated_at = serializers.DateTimeField()
-    source = SourceSerializer(allow_null=True)
+    source: Declared = SourceSerializer(allow_null=True)
 
 
 class ZoneDetailPropertiesSerializer(ZonePropertiesSerializer):
@@ -81,7 +81,7 @@ ZoneDetailFeatureSerializer = feature_serializer("ZoneDetailFeature", ZoneDetail
 ZoneCollectionSerializer = collection_serializer("ZoneCollection", ZoneFeatureSerializer)
 
 
-def zone_feature(zone: NoFlyZone) -> dict[str, Any]:
+def zone_feature(zone: DrawnZone) -> dict[str, Any]:
     properties = {
         "name": zone.name,
         "identifier": zone.identifier,
@@ -101,7 +101,7 @@ def zone_feature(zone: NoFlyZone) -> dict[str, Any]:
     return {"type": "Feature", "id": zone.pk, "geometry": json.loads(zone.geometry_json), "properties": properties}
 
 
-def zone_detail_feature(zone: NoFlyZone) -> dict[str, Any]:
+def zone_detail_feature(zone: DrawnZone) -> dict[str, Any]:
     feature = zone_feature(zone)
     feature["properties"] |= {"properties": zone.properties, "revision": zone.revision, "is_edited": zone.is_edited}
     return feature

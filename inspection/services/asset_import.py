@@ -322,7 +322,7 @@ def _staged(cursor: CursorWrapper, keys: Sequence[int]) -> dict[int, Asset]:
 
 def _row(record: AssetRecord) -> tuple[Any, ...]:
     shape = record.geometry
-    if shape.geom_type == "LineString":
+    if isinstance(shape, shapely.LineString):
         centre = shapely.line_interpolate_point(shape, 0.5, normalized=True)
     else:
         centre = shape.centroid if shape.contains(shape.centroid) else shape.representative_point()

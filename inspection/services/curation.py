@@ -82,7 +82,7 @@ def save_asset(*, asset: Asset, actor: User, expected_revision: int | None = Non
             return asset  # saved again as it was: no change
         asset.revision = before.revision + 1 if before else max(asset.revision, 1)
         asset.save(force_insert=before is None)
-        _record(actor, before and asset_facts(before), asset_facts(asset), asset, action)
+        _record(actor, asset_facts(before) if before else None, asset_facts(asset), asset, action)
         _number_supports_after(kind)
         mark_ground_changed()
     return asset
@@ -130,7 +130,7 @@ def save_zone(*, zone: NoFlyZone, actor: User, expected_revision: int | None = N
         zone.is_edited = zone.zone_set_id is not None
         zone.revision = before.revision + 1 if before else max(zone.revision, 1)
         zone.save(force_insert=before is None)
-        _record(actor, before and zone_facts(before), zone_facts(zone), zone, action)
+        _record(actor, zone_facts(before) if before else None, zone_facts(zone), zone, action)
         mark_ground_changed()
     return zone
 

@@ -3,7 +3,7 @@
 import json
 from typing import Any
 
-from django.contrib.gis.geos import GEOSGeometry
+from django.contrib.gis.geos import GeometryCollection, GEOSGeometry, LineString, MultiPolygon, Point, Polygon
 
 from inspection.models import Asset, AssetKind, AssetSet, NoFlyZone, ZoneSet
 
@@ -37,14 +37,15 @@ def take_asset_facts(asset: Asset, facts: dict[str, Any]) -> None:
             setattr(asset, name, facts[name])
     if "geometry" in facts:
         asset.geometry = geometry_of(facts["geometry"])
-    if len(facts.get("node_osm_ids") or []) == len(asset.geometry.coords) and asset.kind in {AssetKind.LINE, AssetKind.RAILWAY}:
+    if len(facts.get("node_osm_ids") or []) == len(coordinates_of(asset.geometry)) and asset.kind in {AssetKind.LINE, AssetKind.RAILWAY}:
         asset.node_osm_ids = facts["node_osm_ids"]
 
 
 def asset_from_facts(facts: dict[str, Any], *, key: int) -> Asset:
     """The row that was deleted, under the key that it had; what it came from may be gone."""
     asset = Asset(pk=key, kind=facts["kind"], osm_type=facts.get("osm_type") or "", osm_id=facts.get("osm_id"))
-    asset.asset_set = AssetSet.objects.filter(pk=facts.get("asset_set_id")).first()
+    key_of_set = facts.get("asset_set_id")
+    asset.asset_set = None if key_of_set is None else AssetSet.objects.filter(pk=key_of_set).first()
     asset.source_key = facts.get("source_key") or ""
     asset.content_hash = facts.get("content_hash") or ""
     take_asset_facts(asset, facts)
@@ -56,12 +57,16 @@ def take_zone_facts(zone: NoFlyZone, facts: dict[str, Any]) -> None:
         if name in facts:
             setattr(zone, name, facts[name])
     if "geometry" in facts:
-        zone.geometry = geometry_of(facts["geometry"])
+        area = geometry_of(facts["geometry"])
+        if not isinstance(area, MultiPolygon):
+            raise TypeError(f"a zone's area is a MultiPolygon, not a {area.geom_type}")
+        zone.geometry = area
 
 
 def zone_from_facts(facts: dict[str, Any], *, key: int) -> NoFlyZone:
     zone = NoFlyZone(pk=key, identifier=facts["identifier"], layer=facts.get("layer") or 0)
-    zone.zone_set = ZoneSet.objects.filter(pk=facts.get("zone_set_id")).first()
+    key_of_set = facts.get("zone_set_id")
+    zone.zone_set = None if key_of_set is None else ZoneSet.objects.filter(pk=key_of_set).first()
     take_zone_facts(zone, facts)
     return zone
 
@@ -75,7 +80,14 @@ def differing(before: dict[str, Any] | None, after: dict[str, Any] | None) -> tu
 
 
 def geojson(geometry: GEOSGeometry) -> dict[str, Any]:
-    return {"type": geometry.geom_type, "coordinates": _as_lists(geometry.coords)}
+    return {"type": geometry.geom_type, "coordinates": _as_lists(coordinates_of(geometry))}
+
+
+def coordinates_of(geometry: GEOSGeometry) -> tuple[Any, ...]:
+    """Return the coordinates as GeoJSON nests them, in tuples."""
+    if not isinstance(geometry, Point | LineString | Polygon | GeometryCollection):
+        raise TypeError(f"a {geometry.geom_type} has no coordinates of its own")
+    return geometry.coords
 
 
 def geometry_of(value: dict[str, Any]) -> GEOSGeometry:

@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Sequence
+from datetime import datetime
 from time import perf_counter
 
 from django.contrib.gis.geos import GEOSGeometry, Point
@@ -129,7 +130,7 @@ def _search_and_store() -> GapSearch:
     return last
 
 
-def _known() -> Sequence[tuple[str, int, str, object]]:
+def _known() -> Sequence[tuple[str, int, str, datetime | None]]:
     return list(DataGap.objects.order_by().values_list("key", "pk", "state", "decided_at"))
 
 

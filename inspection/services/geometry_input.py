@@ -44,7 +44,7 @@ def stored(shape: BaseGeometry) -> GEOSGeometry:
 
 
 def bridge_stored(shape: BaseGeometry) -> GEOSGeometry:
-    return stored(shape.geoms[0] if shape.geom_type == "MultiPolygon" and len(shape.geoms) == 1 else shape)
+    return stored(shape.geoms[0] if isinstance(shape, shapely.MultiPolygon) and len(shape.geoms) == 1 else shape)
 
 
 def length_m(shape: BaseGeometry) -> float | None:

@@ -161,7 +161,9 @@ def _values(
     is nearly this one's may vanish, of these only what the header's box holds, if it states one. A file may be filtered (power lines
     only): a subtype of which it has none at all is taken for filtered out, unless there was a handful only or the file has the old name.
     """
-    earlier = DataImport.objects.filter(kind=ImportKind.OSM, is_synthetic=is_synthetic).exclude(pk=but and but.pk)
+    earlier = DataImport.objects.filter(kind=ImportKind.OSM, is_synthetic=is_synthetic)
+    if but is not None:
+        earlier = earlier.exclude(pk=but.pk)
     sources = [row for row in earlier if _is_same_source(row.counts.get("extent"), content.extent)]
     present = content.kinds
     is_same_name = any(source.file_name == path.name[:255] for source in sources)

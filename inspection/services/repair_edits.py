@@ -1,11 +1,12 @@
 """The assets as each repair would leave them; nothing here is saved."""
 
 from dataclasses import dataclass
+from functools import partial
 from math import isfinite
 from typing import Any
 
 import numpy as np
-from django.contrib.gis.geos import LineString, Point, Polygon
+from django.contrib.gis.geos import LineString, MultiPoint, Point, Polygon
 from django.db.models import QuerySet
 from django.utils.translation import gettext as _
 
@@ -70,8 +71,9 @@ def towers_at_vertices(gap: DataGap, parameters: dict[str, Any]) -> list[Change]
     line = _line(gap.asset_id)
     course = line.geometry.coords
     nodes = line.node_osm_ids if len(line.node_osm_ids) == len(course) else [NO_OSM_NODE] * len(course)
-    wanted = gap.geometry.coords if gap.geometry.geom_type == "MultiPoint" else [gap.geometry.coords]
-    numbers = sorted({_found(lambda place=place: vertex_at(course, place)) for place in wanted})  # type: ignore[misc]
+    drawn = gap.geometry
+    wanted = drawn.coords if isinstance(drawn, MultiPoint) else [drawn.coords] if drawn is not None else []
+    numbers = sorted({_found(partial(vertex_at, course, place)) for place in wanted})
     return [_new_tower(line, course[number], nodes[number]) for number in numbers]
 
 
@@ -170,7 +172,7 @@ def with_voltages(gap: DataGap, parameters: dict[str, Any]) -> list[Change]:
 
 
 def _asset(key: int | None) -> Asset:
-    asset = Asset.objects.filter(pk=key, vanished_at=None).first()
+    asset = None if key is None else Asset.objects.filter(pk=key, vanished_at=None).first()
     if asset is None:
         raise CannotRepair(_("What the gap is about is gone. The ground is being searched again."))
     return asset

@@ -93,7 +93,11 @@ def read_zone_file(path: Path, *, source_format: str = "") -> tuple[ZoneFile, st
 
 def stated_validity(content: ZoneFile) -> tuple[datetime | None, datetime | None]:
     """From when and until when the file says that it holds."""
-    return content.valid_from and parse_datetime(content.valid_from), content.valid_until and parse_datetime(content.valid_until)
+    return _instant(content.valid_from), _instant(content.valid_until)
+
+
+def _instant(stated: str | None) -> datetime | None:
+    return parse_datetime(stated) if stated else None
 
 
 def set_name_of(path: Path, set_name: str | None) -> str:
@@ -110,9 +114,10 @@ def refuse_if_elsewhere(zone_set: ZoneSet | None, content: ZoneFile, what_to_do:
         raise ZoneFileError([GeometryFault("", f"the set {zone_set.name!r} has zones, all of them elsewhere: {what_to_do}")])
 
 
-def extent_of(content: ZoneFile) -> list[float]:
+def extent_of(content: ZoneFile) -> tuple[float, float, float, float]:
     """West, south, east, north [deg]."""
-    return shapely.total_bounds([zone.geometry for zone in content.zones]).tolist()
+    west, south, east, north = shapely.total_bounds([zone.geometry for zone in content.zones]).tolist()
+    return west, south, east, north
 
 
 def zone_counts(content: ZoneFile) -> dict[str, Any]:
@@ -123,7 +128,8 @@ def zone_counts(content: ZoneFile) -> dict[str, Any]:
         "polygons": sum(zone.circle is None for zone in content.zones),
         "with_schedule": sum(zone.schedule is not None for zone in content.zones),
         "restrictions": dict(sorted(Counter(zone.restriction or "not stated" for zone in content.zones).items())),
-        "extent": extent_of(content), "provider": content.provider, "valid_from": content.valid_from, "valid_until": content.valid_until,
+        "extent": list(extent_of(content)), "provider": content.provider,
+        "valid_from": content.valid_from, "valid_until": content.valid_until,
         "notes": list(content.notes),
     }  # fmt: skip
 

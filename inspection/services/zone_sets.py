@@ -193,6 +193,8 @@ def _record(facts: dict[str, Any]) -> ZoneRecord:
         facts["lower_limit_m"], facts["lower_reference"], facts["upper_limit_m"], facts["upper_reference"], facts["source_heights"]
     )
     geometry = shapely.from_geojson(json.dumps(facts["geometry"]))
+    if not isinstance(geometry, shapely.MultiPolygon):
+        raise TypeError(f"a zone's area is a MultiPolygon, not a {geometry.geom_type}")
     return ZoneRecord(
         identifier=facts["identifier"], layer=facts["layer"], name=facts["name"], geometry=geometry,
         band=band, restriction=facts["restriction"], reason=facts["reason"], circle=facts["circle"], schedule=facts["schedule"],

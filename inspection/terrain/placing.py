@@ -21,7 +21,7 @@ _EDGE_PLACES = 41
 _NEXT_TO_POLE = 0.05  # cosine of the latitude at which steps in longitude stop growing
 _WGS84 = CRS.from_epsg(4326)
 
-network.set_network_enabled(False)  # type: ignore[attr-defined]
+network.set_network_enabled(False)
 
 
 class PlacedAsItStands:

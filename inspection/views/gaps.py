@@ -11,8 +11,8 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from inspection.models import DataGap, GapKind, GapState
-from inspection.selectors.gaps import WORST_FIRST, gap_summary, gaps
+from inspection.models import GapKind, GapState
+from inspection.selectors.gaps import WORST_FIRST, DrawnGap, gap_summary, gaps
 from inspection.serializers.gaps import (
     DismissSerializer,
     GapCollectionSerializer,
@@ -144,14 +144,14 @@ def _repairs() -> Iterator[None]:
         raise ApiProblem(409, "cannot_undo", str(error)) from error
 
 
-def _gap(gap_id: int) -> DataGap:
+def _gap(gap_id: int) -> DrawnGap:
     gap = gaps().filter(pk=gap_id).first()
     if gap is None:
         raise Http404
     return gap
 
 
-def _feature(gap: DataGap) -> dict[str, Any]:
+def _feature(gap: DrawnGap) -> dict[str, Any]:
     repairs = []
     for offer in offers_of(gap):
         preview, refused = None, ""
@@ -167,7 +167,7 @@ def _feature(gap: DataGap) -> dict[str, Any]:
 def _feature_now(gap_id: int) -> dict[str, Any] | None:
     """None when the gap has gone with its asset."""
     gap = gaps().filter(pk=gap_id).first()
-    return gap and _feature(gap)
+    return _feature(gap) if gap else None
 
 
 def _kinds(request: Request) -> list[GapKind]:

@@ -1,7 +1,5 @@
 """The ground as a whole, and its tiles."""
 
-from typing import cast
-
 from django.http import Http404, HttpResponse
 from django.utils.cache import get_conditional_response
 from drf_spectacular.types import OpenApiTypes
@@ -40,7 +38,7 @@ class Tile(APIView):
         etag = f'"{edition}"'
         not_changed = get_conditional_response(request._request, etag=etag)
         if not_changed is not None:
-            response = cast(HttpResponse, not_changed)
+            response = not_changed
         else:
             try:
                 tile = selectors.tile_of_edition(zoom, column, row, edition if changed_at else None)

@@ -28,6 +28,7 @@ from inspection.serializers.imports import (
 from inspection.services.overpass import area_of
 from inspection.services.proposals import pipeline
 from inspection.services.uploads import UploadTooLarge, check_size_for
+from inspection.tasks import send_job_of
 from inspection.views.parameters import invalid
 from inspection.views.uploads import CuratorsAlone
 from workspace.errors import ApiProblem
@@ -35,7 +36,6 @@ from workspace.idempotency import idempotent
 from workspace.paging import page_of
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
-from workspace.tasks import send_job_on_commit
 
 IN_ANOTHER_STATE = {409: OpenApiResponse(description="It is in another state; somebody else may have been faster.")}
 
@@ -102,7 +102,7 @@ class ImportList(APIView):
                 kind=values["kind"], created_by=request.user, parameters=values.get("parameters", {}),
                 provenance=dict(values.get("provenance", {})), **self._where_from(values),
             )  # fmt: skip
-            send_job_on_commit(proposal.job)
+            send_job_of(proposal)
         response = _answer(proposal.pk, 202)
         response["Location"] = reverse("api-import", args=[proposal.pk])
         return response
@@ -152,7 +152,7 @@ class ImportDetail(APIView):
         parameters = _parameters(request)
         try:
             with transaction.atomic():
-                send_job_on_commit(pipeline.read_again(proposal=_proposal(proposal_id), parameters=parameters, actor=request.user).job)
+                send_job_of(pipeline.read_again(proposal=_proposal(proposal_id), parameters=parameters, actor=request.user))
         except pipeline.WrongState as error:
             raise _too_late(error) from error
         return _answer(proposal_id, 202)
@@ -189,7 +189,7 @@ class ImportApply(APIView):
         parameters = _parameters(request)
         try:
             with transaction.atomic():
-                send_job_on_commit(pipeline.ask_to_apply(proposal=_proposal(proposal_id), parameters=parameters, actor=request.user).job)
+                send_job_of(pipeline.ask_to_apply(proposal=_proposal(proposal_id), parameters=parameters, actor=request.user))
         except pipeline.WrongState as error:
             raise _too_late(error) from error
         return _answer(proposal_id, 202)

@@ -1,7 +1,6 @@
 """The ground of a box for the 3D view."""
 
 from hashlib import sha256
-from typing import cast
 
 from django.http import HttpResponse
 from django.utils.cache import get_conditional_response
@@ -38,7 +37,7 @@ class SceneOfBox(APIView):
             raise invalid("bbox", _(str(error))) from error
         etag = _etag(box)
         not_changed = get_conditional_response(request._request, etag=etag)
-        response = cast(HttpResponse, not_changed) if not_changed is not None else Response(scene_json(scene_in(box)))
+        response = not_changed if not_changed is not None else Response(scene_json(scene_in(box)))
         response["ETag"] = etag
         response["Cache-Control"] = "private, no-cache"  # kept, but asked for again: a zone may have come
         return response

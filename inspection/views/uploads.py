@@ -22,7 +22,7 @@ from workspace.signed_in import SignedInRequest
 class CuratorsAlone(RolePermission):
     """What comes in is for curators to see, too."""
 
-    def has_permission(self, request: SignedInRequest, view: object) -> bool:
+    def has_permission(self, request: Request, view: object) -> bool:
         self.message = "Only curators bring data in. Ask an administrator for the curator role."
         return request.user.is_authenticated and request.user.role in CURATORS
 
@@ -81,8 +81,9 @@ class UploadBytes(APIView):
     )
     def put(self, request: Request, upload_id: UUID, first_byte: int) -> Response:
         upload = _upload(upload_id)
+        content = request.data if isinstance(request.data, bytes) else b""  # without a body no parser is asked
         try:
-            upload = receive_part(upload=upload, first_byte=first_byte, content=request.data)
+            upload = receive_part(upload=upload, first_byte=first_byte, content=content)
         except UploadGap as error:
             raise ApiProblem(409, "gap", str(error), details={"received_bytes": upload_of_id(upload.pk).received_bytes}) from error
         except UploadRefused as error:

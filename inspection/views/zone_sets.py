@@ -11,7 +11,7 @@ from rest_framework.views import APIView
 
 from inspection.models import ImportKind, ProposalOrigin, ZoneSet, ZoneSubscription
 from inspection.selectors.imports import proposal_of_id
-from inspection.selectors.zone_sets import BY_NAME, NEWEST_VERSION_FIRST, versions_of, zone_sets, zone_subscriptions
+from inspection.selectors.zone_sets import BY_NAME, NEWEST_VERSION_FIRST, CountedZoneSet, versions_of, zone_sets, zone_subscriptions
 from inspection.serializers.imports import ProposalSerializer, proposal_json
 from inspection.serializers.zone_sets import (
     FetchJobSerializer,
@@ -31,6 +31,7 @@ from inspection.services.proposals.pipeline import start_proposal
 from inspection.services.proposals.zones import roll_back_name
 from inspection.services.subscriptions import AlreadySubscribed, ask_to_fetch, change_subscription, subscribe, unsubscribe
 from inspection.services.zone_sets import empty_zone_set
+from inspection.tasks import send_job_of
 from inspection.views.parameters import invalid
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
@@ -41,7 +42,7 @@ from workspace.signed_in import SignedInRequest
 from workspace.tasks import send_job_on_commit
 
 
-def _zone_set(set_id: int) -> ZoneSet:
+def _zone_set(set_id: int) -> CountedZoneSet:
     try:
         return zone_sets().get(pk=set_id)
     except ZoneSet.DoesNotExist as error:
@@ -122,7 +123,7 @@ class ZoneSetRollBack(APIView):
                 parameters={"set": zone_set.pk, "set_name": zone_set.name, "version": version.number}, provenance={},
                 created_by=request.user,
             )  # fmt: skip
-            send_job_on_commit(proposal.job)
+            send_job_of(proposal)
         answer = Response(proposal_json(proposal_of_id(proposal.pk)), status=202)
         answer["Location"] = reverse("api-import", args=[proposal.pk])
         return answer

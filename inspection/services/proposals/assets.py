@@ -125,10 +125,10 @@ def _first_cell(file: AssetFile, name: str) -> list[str]:
 def _changes(found: Difference) -> Iterator[Change]:
     for action in ChangeAction:
         for asset, stated in found.pairs(action, MOST_CHANGES):
-            before, after = differing(asset and _shown(asset), stated and _shown(stated))
+            before, after = differing(_shown(asset) if asset else None, _shown(stated) if stated else None)
             one = stated or asset
             if one is not None:
-                yield Change(action, one.kind, _label(one), asset and asset.pk, one.geometry, before, after)
+                yield Change(action, one.kind, _label(one), asset.pk if asset else None, one.geometry, before, after)
 
 
 def _shown(asset: Asset) -> dict[str, Any]:

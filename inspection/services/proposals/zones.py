@@ -72,8 +72,8 @@ def _roll_back(version: ZoneSetVersion, actor: User | None) -> DataImport:
     data_import = DataImport.objects.create(
         kind=ImportKind.ZONES, file_name=roll_back_name(version), sha256=origin.sha256 if origin else "",
         attribution=origin.attribution if origin else "", licence=origin.licence if origin else "", imported_by=actor,
-        source_address=origin.source_address if origin else "", fetched_at=origin and origin.fetched_at,
-        valid_from=origin and origin.valid_from, valid_until=origin and origin.valid_until,
+        source_address=origin.source_address if origin else "", fetched_at=origin.fetched_at if origin else None,
+        valid_from=origin.valid_from if origin else None, valid_until=origin.valid_until if origin else None,
         is_synthetic=bool(origin and origin.is_synthetic), counts=found.numbers | {"layers": len(records)},
     )  # fmt: skip
     make_so(zone_set, found, data_import=data_import, actor=actor, edited=edited)
@@ -130,8 +130,8 @@ def _changes(found: ZoneDifference) -> Iterator[Change]:
         yield Change(ChangeAction.CHANGED, "zone", _label(record), zone.pk, _drawn(record), before, after)
     for zone in found.vanished:
         yield Change(ChangeAction.VANISHED, "zone", _label(zone), zone.pk, zone.geometry, before=_shown(zone_facts(zone)))
-    for zone, record in found.kept:
-        yield _kept(zone, record)
+    for zone, kept in found.kept:
+        yield _kept(zone, kept)
 
 
 def _kept(zone: NoFlyZone, record: ZoneRecord | None) -> Change:
