@@ -140,7 +140,7 @@ class ApiTokenAdmin(admin.ModelAdmin):
     list_select_related = ["user"]
     search_fields = ["name", "user__username"]
     readonly_fields = ["name", "user", "created_at", "expires_at", "revoked_at", "last_used_at"]
-    fields = readonly_fields
+    fields = [*readonly_fields]
     actions = ["revoke"]
 
     def has_add_permission(self, request: HttpRequest) -> bool:

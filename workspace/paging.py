@@ -4,7 +4,7 @@ import base64
 import binascii
 import json
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from django.core.exceptions import ValidationError as DjangoValidationError
 from django.db.models import Model, Q, QuerySet
@@ -14,15 +14,18 @@ from rest_framework.request import Request
 from workspace.errors import ApiProblem
 
 
+Row = TypeVar("Row", bound=Model)
+
+
 @dataclass(frozen=True)
-class Page:
-    rows: list[Any]
+class Page(Generic[Row]):
+    rows: list[Row]
     next: str | None  # path and query of the next page
 
 
 def page_of(
-    request: Request, queryset: QuerySet[Any], *, order: tuple[str, ...] = ("pk",), default_limit: int = 100, max_limit: int = 1000
-) -> Page:
+    request: Request, queryset: QuerySet[Any, Row], *, order: tuple[str, ...] = ("pk",), default_limit: int = 100, max_limit: int = 1000
+) -> Page[Row]:
     """The page that `?limit=` and `?cursor=` ask for.
 
     `order` names model fields or annotations ("-" for descending); the last one must be unique.

@@ -8,7 +8,9 @@ from rest_framework import serializers
 from workspace.models import Job, JobState
 from workspace.stored_words import in_words
 
-Declared: TypeAlias = Any  # a serializer's field named as an attribute of DRF's own, such as `label`: DRF takes it out of the class
+# A declared field named as an attribute that serializers have, such as `label`, or None to leave out an inherited one: DRF takes declared
+# fields out of the class, so neither overrides anything.
+Declared: TypeAlias = Any
 
 
 class ErrorDetailSerializer(serializers.Serializer):
