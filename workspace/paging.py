@@ -13,7 +13,6 @@ from rest_framework.request import Request
 
 from workspace.errors import ApiProblem
 
-
 Row = TypeVar("Row", bound=Model)
 
 
