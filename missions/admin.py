@@ -25,6 +25,7 @@ from missions.models import (
 from workspace.admin import ReadOnlyAdmin
 from workspace.admin_history import HistoryAdmin
 from workspace.services import record_change
+from workspace.signed_in import user_of
 
 
 class _FleetAdmin(HistoryAdmin):
@@ -35,7 +36,7 @@ class _FleetAdmin(HistoryAdmin):
             obj.revision += 1
         super().save_model(request, obj, form, change)
         record_change(
-            organisation=obj.organisation, actor=request.user, action="change" if change else "create",
+            organisation=obj.organisation, actor=user_of(request), action="change" if change else "create",
             subject_type=self.history_subject, subject_id=obj.pk, after={name: str(form.cleaned_data[name]) for name in form.changed_data},
         )  # fmt: skip
 

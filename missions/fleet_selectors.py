@@ -1,7 +1,7 @@
 """Reads of the fleet: UAVs, their types, bases and credentials, always within one organisation."""
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 from django.db.models import Count, Prefetch, Q, QuerySet
 
@@ -49,7 +49,20 @@ def uavs_that_match(
     return uavs.filter(state=state) if state else uavs.exclude(state=UavState.RETIRED)
 
 
-def with_use(uavs: QuerySet[Uav]) -> QuerySet[Uav]:
+class UavUse(TypedDict):
+    mission_count: int
+    credentials_in_force: list[UavCredential]
+
+
+if TYPE_CHECKING:
+    from django_stubs_ext import WithAnnotations
+
+    UavWithUse = WithAnnotations[Uav, UavUse]
+else:
+    UavWithUse = Uav
+
+
+def with_use(uavs: QuerySet[Uav]) -> QuerySet[UavWithUse]:
     """With the number of missions that use each, and what it can prove itself with."""
     of_today = Q(mission_uavs__mission__deleted_at=None)
     in_force = UavCredential.objects.filter(revoked_at=None).order_by("kind")

@@ -92,8 +92,10 @@ def routes_of_mission_in_time(mission: Mission) -> list[TimedRoute | None]:
 
 
 def _departure_s(route: Route) -> float:
-    departure_s: float = route.mission.departs_at.timestamp()
-    return departure_s
+    departs_at = route.mission.departs_at
+    if departs_at is None:
+        raise ValueError("flights are looked for where their mission's departure is stated")
+    return departs_at.timestamp()
 
 
 def _departs_s(route: Route) -> float:

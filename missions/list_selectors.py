@@ -5,11 +5,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict
 from uuid import UUID
 
 from django.contrib.gis.db.models import GeometryField
-from django.contrib.gis.geos import GEOSGeometry, Polygon
+from django.contrib.gis.geos import GEOSGeometry, LineString, Polygon
 from django.core.cache import cache
 from django.db.models import CharField, Count, Exists, F, FloatField, Func, IntegerField, Max, OuterRef, Q, QuerySet, Subquery, Value
 from django.db.models.functions import Coalesce, Lower
@@ -89,7 +89,25 @@ def missions_found(organisation: Organisation, asked: MissionFilter) -> QuerySet
     return missions
 
 
-def mission_rows(missions: QuerySet[Mission]) -> QuerySet[Mission]:
+class MissionFigures(TypedDict):
+    """What the query for the list's rows works out."""
+
+    target_count: int
+    unassigned_count: int
+    uav_count: int
+    is_simulated: bool
+    duration_s: float | None
+
+
+if TYPE_CHECKING:
+    from django_stubs_ext import WithAnnotations
+
+    ListedMission = WithAnnotations[Mission, MissionFigures]
+else:
+    ListedMission = Mission
+
+
+def mission_rows(missions: QuerySet[Mission]) -> QuerySet[ListedMission]:
     """The same with counts, times, routes and something to sort each column by."""
     longest = (
         Route.objects.filter(mission=OuterRef("pk")).order_by().values("mission").annotate(longest=Max("duration_s")).values("longest")
@@ -149,7 +167,8 @@ def sketch(mission: Mission) -> list[list[list[float]]]:
 
 
 def _rounded(line: GEOSGeometry | None) -> list[list[float]]:
-    coords = () if line is None else line.simplify(SKETCH_TOLERANCE_DEG).coords
+    simple = None if line is None else line.simplify(SKETCH_TOLERANCE_DEG)
+    coords = simple.coords if isinstance(simple, LineString) else ()
     return [[round(lon, 5), round(lat, 5)] for lon, lat, *_ in coords] if len(coords) > 1 else []
 
 

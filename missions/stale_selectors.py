@@ -202,7 +202,7 @@ def _uavs(mission: Mission, changes: Sequence[UavChange]) -> list[StaleCause]:
 
 
 def _bases(mission: Mission) -> list[StaleCause]:
-    landing = [route for route in mission.routes.all() if route.lands_at is not None]
+    landing = [(route, (route.lands_at.x, route.lands_at.y)) for route in mission.routes.all() if route.lands_at is not None]
     if mission.state == MissionState.DRAFT or not landing:
         return []
     bases = bases_landed_at([mission], mission.organisation_id)
@@ -211,10 +211,10 @@ def _bases(mission: Mission) -> list[StaleCause]:
             "base",
             _("%(uav)s is to land at %(base)s, which is no longer there.") % {"uav": route.mission_uav.name, "base": route.base_name},
             route.mission_uav.sequence,
-            position=route.lands_at.coords,
+            position=place,
         )
-        for route in landing
-        if route.lands_at.coords not in bases
+        for route, place in landing
+        if place not in bases
     ]
 
 
@@ -232,10 +232,11 @@ def _vanished_targets(mission: Mission) -> list[StaleCause]:
 
 
 def _passed_assets_gone(mission: Mission) -> list[StaleCause]:
-    passed = {waypoint.asset_id for route in mission.routes.all() for waypoint in route.waypoints.all()} - {None}
+    waypoints = (waypoint for route in mission.routes.all() for waypoint in route.waypoints.all())
+    passed = {waypoint.asset_id for waypoint in waypoints if waypoint.asset_id is not None}
     targets = {target.asset_id for target in mission.targets.all()}
     gone = set(Asset.objects.filter(vanished_at__isnull=False, pk__in=passed - targets).values_list("pk", flat=True))
-    causes = {}
+    causes: dict[int, StaleCause] = {}
     for route in mission.routes.all():
         for waypoint in route.waypoints.all():
             if waypoint.asset_id in gone:

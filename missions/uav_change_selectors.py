@@ -74,7 +74,7 @@ def uav_changes(mission: UUID) -> list[UavChange]:
 
 def missions_with_other_uavs(missions: QuerySet[Mission] | Iterable[Mission]) -> frozenset[UUID]:
     """Those of the missions that have a plan to be flown which counts on UAVs as they are no more."""
-    pks = missions.values("pk") if isinstance(missions, QuerySet) else [mission.pk for mission in missions]
+    pks: Iterable[UUID] = missions.values_list("pk", flat=True) if isinstance(missions, QuerySet) else [mission.pk for mission in missions]
     changes = _changes(Mission.objects.filter(pk__in=pks, state__in=TO_BE_FLOWN))
     return frozenset(pk for pk, own in changes.items() if any(change.concerns_plan for change in own))
 
@@ -202,10 +202,12 @@ def _figure_words(change: FigureChange) -> str:
         "rotor_disk_m2": (_("rotor area"), "m²", 1.0, ""),
         "hover_power_w": (_("power in the hover"), "W", 1.0, _("worked out")),
     }[change.name]
-    kept, now = _told_apart(
-        *(None if value is None else value / scale for value in (change.kept, change.now)), DECIMALS.get(change.name, 1)
-    )
+    kept, now = _told_apart(_scaled(change.kept, scale), _scaled(change.now, scale), DECIMALS.get(change.name, 1))
     return f"{words} {kept or nothing} → {now or nothing}{f' {unit}' if now else ''}"
+
+
+def _scaled(value: Any, scale: float) -> float | None:
+    return None if value is None else value / scale
 
 
 def _told_apart(kept: float | None, now: float | None, decimals: int) -> tuple[str, str]:

@@ -12,6 +12,7 @@ from inspection.models import Asset
 from missions.models.fleet import EndAction, Uav
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
 
+LONGEST_NAME = 200
 LONGEST_SENSOR = 100
 
 
@@ -38,7 +39,7 @@ class Mission(models.Model):
 
     id = models.UUIDField(primary_key=True, default=uuid.uuid4, editable=False)
     organisation = models.ForeignKey(Organisation, on_delete=models.CASCADE, default=DEFAULT_ORGANISATION_ID, related_name="missions")
-    name = models.CharField(max_length=200)
+    name = models.CharField(max_length=LONGEST_NAME)
     author = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="missions")
     state = models.CharField(max_length=20, choices=MissionState.choices, default=MissionState.DRAFT)
     objective = models.CharField(max_length=10, choices=Objective.choices, default=Objective.TOTAL)

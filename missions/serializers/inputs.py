@@ -263,7 +263,9 @@ class OptionsSerializer(KnownFieldsSerializer):
     def _uav_requests(self, uavs: list[dict[str, Any]]) -> tuple[UavRequest, ...]:
         """Stored UAVs are those of the organisation in the serializer's context."""
         ids = [uav["id"] for uav in uavs if uav.get("id") is not None]
-        stored = {row.pk: row for row in uavs_of_organisation(self.context["organisation"]).filter(pk__in=ids)} if ids else {}
+        stored: dict[int | None, Uav] = (
+            {row.pk: row for row in uavs_of_organisation(self.context["organisation"]).filter(pk__in=ids)} if ids else {}
+        )
         faults = {
             str(index): {"id": f"There is no UAV {uav['id']}."}
             for index, uav in enumerate(uavs)
@@ -291,7 +293,7 @@ def _checked_uav(index: int, uav: dict[str, Any], stored: Uav | None) -> UavRequ
 
 def _uav_request(uav: dict[str, Any], stored: Uav | None) -> UavRequest:
     if stored is None:
-        known = {
+        known: dict[str, Any] = {
             "max_range_m": None,
             "cruise_speed_mps": settings.FLIGHT_RULES.cruise_speed_mps,
             "end_action": EndAction.HOVER,

@@ -19,7 +19,8 @@ class KnownFieldsSerializer(serializers.Serializer):
         if isinstance(data, Mapping):
             unknown = [str(name)[:LONGEST_TOLD] for name in data if name not in self.fields]
             if unknown:
-                told = self.context.setdefault(UNKNOWN_TOLD, [])
+                context = self.context
+                told = context.setdefault(UNKNOWN_TOLD, []) if isinstance(context, dict) else []
                 full = unknown[: max(0, MOST_TOLD - len(told))]
                 told += full
                 words = {name: [_words(name, self.fields)] for name in full}

@@ -11,6 +11,7 @@ from missions.fleet_selectors import bases_of_organisation
 from missions.serializers.inputs import OptionsSerializer, UavInputSerializer, plan_request
 from missions.services import BaseRequest, InvalidRequest, PlanRequest, with_bases
 from missions.services.reachability import CODES, NO_UAV
+from workspace.serializers import Declared
 
 MOST_FLIGHTS = 100  # a UAV from a base is one
 
@@ -30,9 +31,9 @@ class ReachabilityInputSerializer(OptionsSerializer):
         allow_null=True,
         help_text="west, south, east, north in degrees of what is asked about; west > east crosses the 180th meridian; null: everything",
     )
-    targets = None
-    locks = None
-    objective = None
+    targets: Declared = None
+    locks: Declared = None
+    objective: Declared = None
 
     def validate_box(self, value: list[float] | None) -> tuple[float, ...] | None:
         if value is None:

@@ -9,7 +9,7 @@ from inspection.selectors import asset_detail, asset_label
 from missions.flight_plan.conditions import conditions_from_json, conditions_to_json
 from missions.flight_plan.performance import performance_from_json, performance_to_json
 from missions.flight_plan.waypoints import KINDS, NONE
-from missions.list_selectors import sketch
+from missions.list_selectors import ListedMission, sketch
 from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, Waypoint, WaypointKind
 from missions.selectors import approval_in_force, open_plan_of_mission
 from missions.serializers.commands import approval_json
@@ -57,7 +57,7 @@ def mission_json(mission: Mission) -> dict[str, Any]:
 
 
 def mission_summary(
-    mission: Mission, revision: int, drawing: dict[str, Any], bases: frozenset[tuple[float, ...]], *, has_other_uavs: bool
+    mission: ListedMission, revision: int, drawing: dict[str, Any], bases: frozenset[tuple[float, ...]], *, has_other_uavs: bool
 ) -> dict[str, Any]:
     """A line of the list, as loaded by list_selectors.mission_rows.
 
@@ -148,7 +148,7 @@ def _plan(mission: Mission) -> dict[str, Any] | None:
     """The stored plan in the shape in which the planner answers; null for a draft."""
     if mission.planned_at is None:
         return None
-    sequence_of = {target.pk: target.sequence for target in mission.targets.all()}
+    sequence_of: dict[int | None, int] = {target.pk: target.sequence for target in mission.targets.all()}
     return {
         "objective": mission.objective,
         "return_to_start": mission.return_to_start,
@@ -188,7 +188,7 @@ def _straight(waypoints: Sequence[Waypoint], length_m: float) -> dict[str, float
     return straight_json(position, kind, target, length_m)
 
 
-def _route(route: Route, mission: Mission, sequence_of: dict[int, int]) -> dict[str, Any]:
+def _route(route: Route, mission: Mission, sequence_of: dict[int | None, int]) -> dict[str, Any]:
     waypoints = list(route.waypoints.all())
     uav = route.mission_uav
     targets = [sequence_of[waypoint.target_id] for waypoint in waypoints if waypoint.kind == WaypointKind.TARGET]

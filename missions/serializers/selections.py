@@ -10,22 +10,23 @@ from missions.models import SavedSelection, TargetPriority
 from missions.selection_selectors import KeptTarget, kept_targets
 from missions.serializers.inputs import OptionsSerializer, TargetInputSerializer
 from missions.serializers.shapes import TaskOutputSerializer
+from workspace.serializers import Declared
 
 
 class SelectionInputSerializer(OptionsSerializer):
     """A name, and targets as in a mission; UAVs, what is tied or locked to them, and options are not kept."""
 
-    uavs = None
-    objective = None
-    return_to_start = None
-    locks = None
+    uavs: Declared = None
+    objective: Declared = None
+    return_to_start: Declared = None
+    locks: Declared = None
     name = serializers.CharField(max_length=100)
     targets = TargetInputSerializer(many=True, allow_empty=False)
 
 
 class SelectionTargetSerializer(serializers.Serializer):
     asset = serializers.IntegerField(allow_null=True)
-    label = serializers.CharField()
+    label: Declared = serializers.CharField()
     detail = serializers.CharField(help_text="the asset's second fact; may be empty")
     length_m = serializers.FloatField(allow_null=True)
     kind = serializers.CharField(allow_null=True)

@@ -9,6 +9,7 @@ from missions.models import EndAction, MissionState, Objective, TargetPriority, 
 from missions.routing.problem import TaskKind
 from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializer
 from missions.serializers.commands import MissionApprovalSerializer
+from workspace.serializers import Declared
 
 
 class LineSerializer(serializers.Serializer):
@@ -258,7 +259,7 @@ class LastTargetSerializer(serializers.Serializer):
     asset = serializers.IntegerField(allow_null=True)
     position = PositionField(allow_null=True)
     stretch = serializers.ListField(child=PositionField(), allow_null=True)
-    label = serializers.CharField()
+    label: Declared = serializers.CharField()
 
 
 class LastStopSerializer(LastTargetSerializer):
@@ -323,7 +324,7 @@ class MissionUavSerializer(serializers.Serializer):
 
 class MissionTargetSerializer(serializers.Serializer):
     asset = serializers.IntegerField(allow_null=True)
-    label = serializers.CharField()
+    label: Declared = serializers.CharField()
     detail = serializers.CharField(help_text="the asset's second fact, as in the list of assets; may be empty")
     length_m = serializers.FloatField(allow_null=True, help_text="of the whole asset, where it is a line or a railway")
     kind = serializers.CharField(allow_null=True)

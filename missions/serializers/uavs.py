@@ -6,7 +6,7 @@ from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 from missions.fields import AboveZeroField, FiniteFloatField, PositionField
-from missions.fleet_selectors import bases_of_organisation, performance_with, types_of_organisation
+from missions.fleet_selectors import UavWithUse, bases_of_organisation, performance_with, types_of_organisation
 from missions.flight_plan.performance import OWN_PERFORMANCE_KEYS, InvalidPerformance
 from missions.models import CredentialKind, EndAction, LinkKind, Uav, UavState
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
@@ -135,7 +135,7 @@ class UavCollectionSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
-def uav_feature(uav: Uav) -> dict[str, Any]:
+def uav_feature(uav: UavWithUse) -> dict[str, Any]:
     """uav: a row with its use, see fleet_selectors.with_use."""
     properties = {field: getattr(uav, field) for field in OWN}
     properties |= {"max_range_m": uav.range_m, "cruise_speed_mps": uav.speed_mps, "type": uav.uav_type_id, "base": uav.base_id}

@@ -70,7 +70,7 @@ def approve_mission(
         held.ground_revision = checked_revision  # which the routes have just been checked against
         held.targets.update(state=TargetState.PENDING, state_at=None, state_reason="")
         held.routes.update(flights_flown=0, has_failed=False)
-        facts = {"approval": str(approval.pk), "sha256": approval.content_sha256}
+        facts: dict[str, Any] = {"approval": str(approval.pk), "sha256": approval.content_sha256}
         facts |= {} if longest_leg_m is None else {"longest_leg_m": longest_leg_m}
         change_state(held, MissionState.APPROVED, actor, "approve", facts)
     return approval

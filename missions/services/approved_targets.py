@@ -16,7 +16,9 @@ def approved_targets(mission: Mission) -> list[dict[str, Any]]:
     targets = list(mission.targets.all())
     assets = {target.asset_id for target in targets if target.asset_id is not None}
     shapes = Asset.objects.filter(pk__in=assets).annotate(shape=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
-    known = {key: (kind, json.loads(shape)) for key, kind, shape in shapes.values_list("pk", "kind", "shape")}
+    known: dict[int | None, tuple[str | None, Any]] = {
+        key: (kind, json.loads(shape)) for key, kind, shape in shapes.values_list("pk", "kind", "shape")
+    }
     found = []
     for target in targets:
         kind, geometry = known.get(target.asset_id, (None, None))

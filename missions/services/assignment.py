@@ -233,15 +233,16 @@ def quality_of(
     what it is worth beside this plan. As far as it is better, this plan is not proven, and bound and gap are of plans that keep clear of
     those zones alone, along the ways that are preferred there. None: it leaves out other targets, and tells nothing.
     """
-    bound: float | None = min(solution.lower_bound, value)
+    lower = min(solution.lower_bound, value)
+    bound: float | None = lower
     gap: float | None = solution.gap
     is_proven, gap_of = solution.is_proven, ALL_PLANS
     if share_of_freest is None:
         bound, gap, is_proven = None, None, False
     elif share_of_freest < 1.0 - PROVEN_GAP:
-        gap, is_proven, gap_of = (value - bound) / value, False, WITHOUT_TIMED_ZONES
+        gap, is_proven, gap_of = (value - lower) / value, False, WITHOUT_TIMED_ZONES
     elif value - _own_value(solution, objective) > UNCOUNTED[objective]:
-        gap, is_proven = (value - bound) / value, False
+        gap, is_proven = (value - lower) / value, False
     in_seconds = objective in (Objective.MAKESPAN, Objective.TIME)
     return {
         "lower_bound_m": math.floor(bound * 1_000) / 1_000 if bound is not None and objective is Objective.TOTAL else None,

@@ -47,7 +47,7 @@ class Attempt:
 
     def drawn_alone(self, uav: int, order: Sequence[int], ground: GroundHeights | None) -> PlannedRoute | None:
         """One flight of one UAV, by its number in the request, over these visits; None where the wind over the ground stops it."""
-        alone = [[order] if other == uav else [] for other in self.uavs]
+        alone = [(tuple(order),) if other == uav else () for other in self.uavs]
         try:
             return self.drawing.routes(self.uavs, alone, ground)[uav]
         except InvalidRequest:

@@ -24,7 +24,7 @@ class PlanProgress:
 
     share: float
     message: str
-    draw: Callable[[], dict[str, Any]] | None = None
+    draw: Callable[[], dict[str, Any] | None] | None = None
 
 
 OnPlanProgress = Callable[[PlanProgress], None]

@@ -75,7 +75,7 @@ def restore_base(*, organisation: Organisation, actor: User, key: int) -> Base:
     """Raises NotDeleted or NameTaken."""
     facts = facts_to_restore(Base, organisation=organisation, key=key)
     row = Base(
-        pk=key, organisation=organisation, name=facts["name"], note=facts["note"], location=Point(*facts["position"], srid=4326),
+        pk=key, organisation=organisation, name=facts["name"], note=facts["note"], location=Point(facts["position"], srid=4326),
         revision=facts["revision"] + 1,
     )  # fmt: skip
     return stored(row, actor=actor, action="restore", before=None, facts=_base_facts)

@@ -6,7 +6,8 @@ from typing import Any
 from django.utils.translation import gettext as _
 
 from missions.models import InspectionTarget, Mission, MissionState, TargetState
-from missions.services.missions import LONGEST_NAME, create_mission, request_of_mission
+from missions.models.missions import LONGEST_NAME
+from missions.services.missions import create_mission, request_of_mission
 from missions.services.refused import refuse
 from workspace.models import User
 

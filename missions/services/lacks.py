@@ -48,6 +48,8 @@ def least_missing(plan: Sequence[LeftOut], other: Sequence[LeftOut]) -> list[Lef
             return item
         if item.missing is None:
             return same
+        if same.missing is None:
+            return item
         if item.missing == 0.0 or same.missing == 0.0:
             return item if item.missing == 0.0 else same
         if item.reason != same.reason:

@@ -7,7 +7,8 @@ from django.db import transaction
 from django.db.models import Model
 
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Route, TargetState, Waypoint
-from missions.services.missions import LONGEST_NAME, note
+from missions.models.missions import LONGEST_NAME
+from missions.services.missions import note
 from missions.services.still_apart import separation_of_stored
 from workspace.models import User
 
@@ -50,10 +51,10 @@ def duplicate_mission(*, mission: Mission, author: User, name: str = "") -> Miss
     return copy
 
 
-def _copied(model: type[Model], rows: Iterable[Any], **values: Any) -> dict[int, Any]:
+def _copied(model: type[Model], rows: Iterable[Any], **values: Any) -> dict[int | None, Any]:
     """The rows under the new mission, by the primary keys of the old ones."""
     old = list(rows)
-    new = model.objects.bulk_create([_copy_of(row, **values) for row in old])
+    new = model._default_manager.bulk_create([_copy_of(row, **values) for row in old])
     return {before.pk: after for before, after in zip(old, new, strict=True)}
 
 

@@ -166,7 +166,7 @@ def _store_routes(mission: Mission, plan: dict[str, Any]) -> None:
             battery_percent=route.get("battery_percent"),
             base_name=route.get("base") or "",
             begun_by=route.get("begun_by"),
-            lands_at=Point(*route["geometry"]["coordinates"][-1], srid=4326) if route.get("base") and route["geometry"] else None,
+            lands_at=Point(route["geometry"]["coordinates"][-1], srid=4326) if route.get("base") and route["geometry"] else None,
             geometry=LineString(route["geometry"]["coordinates"], srid=4326) if route["geometry"] else None,
         )
         for mission_uav, route in zip(mission.mission_uavs.all(), plan["routes"], strict=True)
@@ -177,7 +177,7 @@ def _store_routes(mission: Mission, plan: dict[str, Any]) -> None:
                 route=row,
                 sequence=sequence,
                 kind=waypoint["kind"],
-                position=Point(*waypoint["position"], srid=4326),
+                position=Point(waypoint["position"], srid=4326),
                 asset_id=waypoint["asset"] if waypoint["asset"] in still_there else None,
                 target_id=None if waypoint["target"] is None else targets[waypoint["target"]],
                 task=waypoint["task"],

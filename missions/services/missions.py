@@ -40,7 +40,6 @@ from missions.services.wishes import refuse_contradictions
 from workspace.models import Organisation, User
 from workspace.services import record_change
 
-LONGEST_NAME = Mission._meta.get_field("name").max_length
 BESIDE_ROUTES = ("name", "lost_link")  # what routes do not hang on
 MOST_NAMES = 5  # that an entry of the history keeps
 EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}

@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
+from functools import partial
 
 import numpy as np
 from django.conf import settings
@@ -84,21 +85,21 @@ def _check(mission: Mission, route: Route) -> ReturnCheck:
             "%(parameter)s was not read from %(uav)s: how high it returns is not known, and the way of Return and Abort is not checked."
         )
         return ReturnCheck(place, name, key, ReturnState.UNKNOWN, (words % {**values, "parameter": _height_names()},))
-    facts = {"parameter": own.parameter, "height_m": own.height_m, "read_at": uav.autopilot_return_read_at}
+    checked = partial(ReturnCheck, place, name, key, parameter=own.parameter, height_m=own.height_m, read_at=uav.autopilot_return_read_at)
     unknown = _why_unknown(own, name, has_rally=bool(rally_points(mission, place)))
     if unknown:
-        return ReturnCheck(place, name, key, ReturnState.UNKNOWN, (unknown,), **facts)
+        return checked(ReturnState.UNKNOWN, (unknown,))
     try:
         flights = frozen_route(route, mission).flights
     except NotARoute:
-        return ReturnCheck(place, name, key, ReturnState.NOT_CHECKED, (), **facts)
+        return checked(ReturnState.NOT_CHECKED, ())
     table, ways = _ways(mission, route, flights, shuns_home=own.shuns_home)
     found = [trouble for way in ways for trouble in way.troubles(_levels(way, own))]
     if not found:
-        return ReturnCheck(place, name, key, ReturnState.CLEAR, **facts)
+        return checked(ReturnState.CLEAR)
     safe_m = _safe_height_m(ways, own)
     warnings = [*dict.fromkeys(_words(trouble, table) for trouble in found), _advice(own, safe_m)]
-    return ReturnCheck(place, name, key, ReturnState.IN_THE_WAY, tuple(warnings), **facts, safe_height_m=safe_m)
+    return checked(ReturnState.IN_THE_WAY, tuple(warnings), safe_height_m=safe_m)
 
 
 def _why_unknown(own: OwnReturn, name: str, *, has_rally: bool) -> str:

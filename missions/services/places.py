@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from functools import cached_property, partial
 
 import numpy as np
-from django.contrib.gis.geos import GEOSGeometry, LineString, MultiPolygon, Point
+from django.contrib.gis.geos import GEOSGeometry, LineString, MultiPolygon, Point, Polygon
 from django.utils.translation import gettext as _
 from django.utils.translation import override
 
@@ -170,8 +170,8 @@ def _on_area(geometry: GEOSGeometry, index: int, position: LonLat) -> LonLat:
     """The position itself if it lies on the bridge's area, else the nearest point of its outline."""
     if geometry.contains(Point(*position, srid=4326)):
         return position
-    polygons = geometry if isinstance(geometry, MultiPolygon) else [geometry]
-    outlines = [np.array(ring.coords)[:, :2] for polygon in polygons for ring in polygon]
+    parts = geometry if isinstance(geometry, MultiPolygon) else [geometry]
+    outlines = [np.array(ring.coords)[:, :2] for part in parts if isinstance(part, Polygon) for ring in part]
     nearest = min((nearest_on_line(outline, position) for outline in outlines), key=lambda place: place.distance_m)
     _refuse_far(f"targets.{index}.position", nearest.distance_m)
     return nearest.position

@@ -65,7 +65,9 @@ def plan_to_json(
     as_text: bool = False,
 ) -> dict[str, Any]:
     """as_text: lines and waypoints are ready JSON, which orjson alone takes; it writes the same bytes as of plain lists."""
-    coordinates, waypoints = (line_text, waypoints_text) if as_text else (np.ndarray.tolist, waypoints_to_json)
+    coordinates: Callable[[FloatArray], Any]
+    waypoints: Callable[[Waypoints], Any]
+    coordinates, waypoints = (line_text, waypoints_text) if as_text else (line_to_json, waypoints_to_json)
     column = column_text if as_text else column_to_json
     lengths_m = [round(route.length_m, 3) for route in routes]
     flat_ground_assumed = not has_terrain or any(route.is_flat for route in routes)
@@ -174,6 +176,10 @@ def locked_targets(flown: Sequence[int], runs: Iterable[Sequence[int]]) -> list[
     """Of the targets that a UAV flies those that are locked to it; runs are its locks."""
     locked = {target for run in runs for target in run}
     return [target for target in flown if target in locked] if locked else []
+
+
+def line_to_json(line: FloatArray) -> list[Any]:
+    return line.tolist()
 
 
 def waypoints_to_json(waypoints: Waypoints) -> list[dict[str, Any]]:

@@ -52,15 +52,16 @@ def delete_uav(*, uav: Uav, actor: User, expected_revision: int | None = None) -
 def restore_uav(*, organisation: Organisation, actor: User, key: int) -> Uav:
     """As it was when it was deleted, but without credentials. Raises NotDeleted, NameTaken or SystemIdTaken."""
     facts = facts_to_restore(Uav, organisation=organisation, key=key)
+    type_key, base_key = facts.get("uav_type"), facts.get("base")
     uav = Uav(  # an entry of before there were states, types and bases says nothing of them
         pk=key, organisation=organisation, revision=facts.get("revision", 1) + 1,
         **{field: facts[field] for field in FIELDS if field in facts},
-        uav_type=UavType.objects.filter(organisation=organisation, pk=facts.get("uav_type")).first(),
+        uav_type=None if type_key is None else UavType.objects.filter(organisation=organisation, pk=type_key).first(),
     )  # fmt: skip
-    base = Base.objects.filter(organisation=organisation, pk=facts.get("base")).first()
+    base = None if base_key is None else Base.objects.filter(organisation=organisation, pk=base_key).first()
     if base is not None:
         uav.base, uav.base_name = base, base.name  # perhaps it has another name by now
-    uav.location = Point(*facts["position"], srid=4326)
+    uav.location = Point(facts["position"], srid=4326)
     located_at = facts.get("located_at")
     uav.located_at = located_at and datetime.fromisoformat(located_at)
     return stored(uav, actor=actor, action="restore", before=None, facts=_facts)

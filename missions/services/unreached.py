@@ -121,7 +121,7 @@ def _all_have_enough(target: TargetRequest, crew: _Crew, visits: Sequence[int]) 
     """Each UAV that could do it alone has its most: which they are, where they are few."""
     if target.uav:
         return f"It is tied to {target.uav}, which has as many targets as it may have."
-    able = crew.within[:, list(visits)].any(axis=1)
+    able = np.asarray(crew.within[:, list(visits)].any(axis=1))
     if len(crew.uavs) != len(able) or able.sum() > MOST_NAMED:  # a UAV may have been put out of service meanwhile
         fitting = f"Each UAV with the sensor {target.sensor}" if target.sensor else "Each UAV"
         return f"{fitting} that has the range for it has as many targets as it may have."

@@ -198,7 +198,7 @@ def _detours(
     if end is not None:
         tos.append(end[0])
         nodes.append(end[1])
-    found = []
+    found: list[tuple[float, list[tuple[int, str]]]] = []
     for flown_m, least_m, left, right, passed in zip(legs_m, free_m, froms, tos, nodes, strict=False):
         extra_m = flown_m - least_m
         if not (np.isfinite(extra_m) and extra_m >= LEAST_DETOUR_M):

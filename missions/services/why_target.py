@@ -164,9 +164,9 @@ def _stretches_outside(place: Place, scene: Scene) -> list[list[list[float]]]:
 
 def _spare_uavs(request: PlanRequest, place: Place, organisation: Organisation) -> list[UavRequest]:
     """UAVs of the fleet that are fit to fly, are not in the request and have the range at least straight, the nearest first."""
-    taken = {uav.uav for uav in request.uavs}
+    taken = {uav.uav for uav in request.uavs if uav.uav is not None}
     found = []
-    for uav in uavs_of_organisation(organisation).filter(state=UavState.ACTIVE).exclude(pk__in=taken - {None}):
+    for uav in uavs_of_organisation(organisation).filter(state=UavState.ACTIVE).exclude(pk__in=taken):
         at = LonLat(*uav.location.coords)
         away_m = float(distance_m(np.array([at]), np.array([place.course[0]]))[0])
         if uav.range_m is None or away_m <= uav.range_m:

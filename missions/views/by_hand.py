@@ -5,7 +5,6 @@ from uuid import UUID
 
 from django.http import Http404
 from drf_spectacular.utils import OpenApiResponse, extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -98,7 +97,7 @@ class LegChecks(APIView):
         request=by_hand.LegChecksInputSerializer,
         responses=by_hand.LegChecksSerializer,
     )
-    def post(self, request: Request) -> Response:
+    def post(self, request: SignedInRequest) -> Response:
         body = by_hand.LegChecksInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         departs_at = body.validated_data.get("departs_at")

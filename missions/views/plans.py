@@ -139,7 +139,8 @@ def _awaited(response: Response, wait_s: int) -> Response:
     except NoRoomToWait:
         return response
     if job is not None and job.state == JobState.FAILED:
-        code, message = str(job.error["code"]), in_words(str(job.error["message"]))
+        error = job.error or {}
+        code, message = str(error.get("code", "")), in_words(str(error.get("message", "")))
         status = STATUS_OF_FAILURE.get(code, 500)
         raise ApiProblem(status, code, message, retry_after_s=JOBS_RETRY_AFTER_S if status == 503 else None)
     headers = {name: response[name] for name in ("Location", "Idempotency-Replayed") if name in response}

@@ -5,7 +5,6 @@ from uuid import UUID
 
 from django.http import Http404
 from drf_spectacular.utils import OpenApiResponse, extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -75,7 +74,7 @@ class ReplanOfferAccept(APIView):
         responses={200: shapes.ReplanOfferSerializer, **REFUSED},
     )
     @idempotent
-    def post(self, request: Request, offer_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, offer_id: UUID) -> Response:
         return _decided(request, offer_id, accept_offer)
 
 
@@ -88,7 +87,7 @@ class ReplanOfferDecline(APIView):
         responses={200: shapes.ReplanOfferSerializer, **REFUSED},
     )
     @idempotent
-    def post(self, request: Request, offer_id: UUID) -> Response:
+    def post(self, request: SignedInRequest, offer_id: UUID) -> Response:
         return _decided(request, offer_id, decline_offer)
 
 

@@ -54,7 +54,7 @@ def _problems(user: User, selection_id: int | None = None) -> Iterator[None]:
         except SelectionNameTaken as error:
             raise ApiProblem(409, "name_taken", _("Another saved selection has this name.")) from error
         except SelectionChanged as error:
-            now = selections_of_organisation(user.organisation).filter(pk=selection_id).first()
+            now = None if selection_id is None else selections_of_organisation(user.organisation).filter(pk=selection_id).first()
             details = {"current": selection_json(now) if now else None}
             raise ApiProblem(412, "changed", _("The saved selection was changed in the meantime."), details=details) from error
 

@@ -32,14 +32,14 @@ INPUT = PolymorphicProxySerializer(
 )
 
 
-def uav_or_404(user: User, uav_id: int) -> Uav:
+def uav_or_404(user: User, uav_id: int) -> fleet_selectors.UavWithUse:
     uav = _uav_now(user, uav_id)
     if uav is None:
         raise Http404
     return uav
 
 
-def _uav_now(user: User, uav_id: int) -> Uav | None:
+def _uav_now(user: User, uav_id: int) -> fleet_selectors.UavWithUse | None:
     return fleet_selectors.with_use(fleet_selectors.uavs_of_organisation(user.organisation)).filter(pk=uav_id).first()
 
 

@@ -52,7 +52,7 @@ def accept_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
         given_up = [uav["place"] for uav in uavs if uav["change"] in GIVEN_UP]
         mission.routes.filter(mission_uav__sequence__in=given_up).update(continued_by=held.continuation)
         approval = approve_mission(mission=held.continuation, actor=actor, is_under_way=True)
-        continuation = held_mission(held.continuation_id, None)
+        continuation = held_mission(held.continuation.pk, None)
         _hand_over_targets(mission, continuation, held.difference)
         why = f"Continues {mission.name}."
         told = []

@@ -1,7 +1,8 @@
 """Ways of sharing out what is left: from the one that disturbs least to the one in which everybody may do anything."""
 
+import dataclasses
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 from typing import Any
 
@@ -62,7 +63,7 @@ class Proposal:
     continued: Mapping[int, Continued]
     recalled: frozenset[int]
     unreached: Mapping[int, tuple[str, str]]
-    plan: dict[str, Any] = field(default_factory=dict)
+    plan: dict[str, Any] = dataclasses.field(default_factory=dict)
 
     @property
     def merit(self) -> tuple[tuple[int, ...], int, float]:

@@ -96,7 +96,8 @@ def rests_of(mission: Mission, cause: Cause, now: datetime) -> list[Rest]:
 def _rest(
     route: Route, approved: Mapping[str, Any], approval: Approval, targets: Mapping[int, InspectionTarget], cause: Cause, now: datetime
 ) -> Rest:
-    uav = Uav.objects.filter(pk=route.mission_uav.uav_id).first()
+    key = route.mission_uav.uav_id
+    uav = None if key is None else Uav.objects.filter(pk=key).first()
     rows = tuple(route.waypoints.all())
     points = tuple(passed_point(row, targets) for row in rows)
     orders = _orders(uav, approval)

@@ -8,11 +8,12 @@ from django.db import transaction
 
 from missions.flight_plan.conditions import conditions_from_json
 from missions.models import Mission, MissionUav, Route
+from missions.models.missions import LONGEST_NAME
 from missions.routing.problem import Objective
 from missions.selectors import mission_of_organisation
 from missions.services.approval_checks import reasons_against
 from missions.services.mission_plans import store_plan
-from missions.services.missions import LONGEST_NAME, check_lost_link, create_mission
+from missions.services.missions import check_lost_link, create_mission
 from missions.services.plan_json import NO_QUALITY, column_to_json, timing_to_json, total_energy_wh, waypoints_to_json
 from missions.services.refused import Reason
 from missions.services.replanning.composing import Continued
