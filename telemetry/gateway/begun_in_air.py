@@ -4,7 +4,7 @@ from django.conf import settings
 
 from missions.mavlink.content import FlightLoad
 from missions.mavlink.points_between import FLOWN
-from telemetry.ground_station.leg import beside_leg, beside_place
+from telemetry.ground_station.leg import BesideLeg, beside_leg, beside_place
 from telemetry.ground_station.vehicle_state import VehicleState
 
 SAME_M = 1.0  # of two legs that are as near it is on the first
@@ -20,6 +20,7 @@ def item_to_begin_with(load: FlightLoad, begun_by: int, state: VehicleState) -> 
     if last is None or state.position is None or state.altitude_relative_m is None:
         return None
     found, nearest_m = None, settings.RESUME_DISTANCE_M
+    beside: BesideLeg | None
     for number in (place for place in places if place <= last):
         if number == places[0]:
             beside = beside_place(load.mission[number], state.position, state.altitude_relative_m)

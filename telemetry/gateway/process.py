@@ -73,7 +73,7 @@ class Gateway:
 
     def dropped(self) -> dict[str, int]:
         """What was no frame of a UAV, by cause."""
-        return {**self.damages, **self.listeners.damages}
+        return {**self.damages, **{str(cause): number for cause, number in self.listeners.damages.items()}}
 
     def not_ready(self) -> list[str]:
         """A gateway works while it listens and knows its UAVs: a database that goes away later takes no vehicle's address from it."""

@@ -5,6 +5,7 @@ Somebody else may have put another list on it since it was loaded, and it may ha
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import partial
 
 from django.conf import settings
 
@@ -32,6 +33,10 @@ class Reading:
     words: str = ""
 
 
+def _tell(on_item: Callable[[int], None], before: int, done: int) -> None:
+    on_item(before + done)
+
+
 async def read_aboard(
     session: Session, load: FlightLoad, beside: Mapping[str, str], is_wanted: Callable[[], bool], on_item: Callable[[int], None]
 ) -> Reading | None:
@@ -42,7 +47,7 @@ async def read_aboard(
     before = 0
     for kind in MissionType:
         for _ in range(READINGS):
-            reading = await _read(session, load, kind, beside, is_wanted, lambda done, before=before: on_item(before + done))
+            reading = await _read(session, load, kind, beside, is_wanted, partial(_tell, on_item, before))
             if reading is None or reading.is_aboard:
                 break
         if reading is None or not reading.is_aboard:

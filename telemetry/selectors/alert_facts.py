@@ -34,10 +34,10 @@ def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
         "loaded_sha256", "loaded_approval", "loaded_flight", "loaded_doubt", "autopilot",
     )  # fmt: skip
     found = {}
-    for uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate, *loaded in rows:
+    for uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate, sha256, approval, flight, doubt, autopilot in rows:
         rate = believed_rate(clock_rate if is_simulated else None)
         heard_s = None if heard_at is None else heard_at.timestamp()
-        found[uav_id] = (LinkFacts(heard_s, mode, is_armed, is_in_air, rate), Loaded(*loaded))
+        found[uav_id] = (LinkFacts(heard_s, mode, is_armed, is_in_air, rate), Loaded(sha256, approval, flight, doubt, autopilot))
     return found
 
 
@@ -59,7 +59,7 @@ def orders_to(flying: Sequence[tuple[int, UUID]]) -> dict[int, tuple[Order | Non
 
     It is also while a UAV is held to be given another one.
     """
-    values = {
+    values: dict[str, str | list[int] | list[UUID] | list[CommandState]] = {
         "uavs": [uav for uav, _ in flying], "missions": [mission for _, mission in flying],
         "mission_axis": CommandAxis.MISSION, "flight_axis": CommandAxis.FLIGHT,
         "open": list(OPEN_COMMANDS), "counting": [*OPEN_COMMANDS, CommandState.APPLIED],

@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from datetime import datetime
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict
 from uuid import UUID
 
 from django.db.models import Count, QuerySet
@@ -37,7 +37,19 @@ def open_alerts_of(uav_ids: Collection[int], codes: Collection[str]) -> dict[int
     return found
 
 
-def alerts_of_organisation(organisation: Organisation) -> QuerySet[Alert]:
+class NotesOfAlert(TypedDict):
+    note_count: int
+
+
+if TYPE_CHECKING:
+    from django_stubs_ext import WithAnnotations
+
+    AlertWithNotes = WithAnnotations[Alert, NotesOfAlert]
+else:
+    AlertWithNotes = Alert
+
+
+def alerts_of_organisation(organisation: Organisation) -> QuerySet[AlertWithNotes]:
     return Alert.objects.filter(organisation=organisation).select_related("acknowledged_by", "uav").annotate(note_count=Count("notes"))
 
 
@@ -55,7 +67,7 @@ class AlertFilter:
     opened_before: datetime | None = None
 
 
-def alerts_that_match(organisation: Organisation, wanted: AlertFilter) -> QuerySet[Alert]:
+def alerts_that_match(organisation: Organisation, wanted: AlertFilter) -> QuerySet[AlertWithNotes]:
     alerts = alerts_of_organisation(organisation)
     if wanted.is_open is not None:
         alerts = alerts.filter(closed_at__isnull=wanted.is_open)

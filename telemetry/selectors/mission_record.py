@@ -53,10 +53,13 @@ def fixes_of(mission: Mission, uav_id: int) -> list[Fix]:
     return in_order([_fix(*row) for row in columns.iterator(chunk_size=5_000)])
 
 
-def _fix(at_s: float, lon: float, lat: float, link: str, stream: int, sequence: int, *told: Any) -> Fix:
+def _fix(
+    at_s: float, lon: float, lat: float, link: str, stream: int, sequence: int, altitude_relative_m: float | None,
+    battery_percent: float | None, waypoint: int | None, is_in_air: bool | None,
+) -> Fix:  # fmt: skip
     """By MAVLink a record's number is the time since boot [ms]."""
     clock_s = sequence / 1_000.0 if link == LinkKind.MAVLINK else None
-    return Fix(at_s, LonLat(lon, lat), *told, boot=stream, clock_s=clock_s)
+    return Fix(at_s, LonLat(lon, lat), altitude_relative_m, battery_percent, waypoint, is_in_air, boot=stream, clock_s=clock_s)
 
 
 def fastest_mps(route: FrozenRoute, figures: dict[str, Any]) -> float:

@@ -95,16 +95,20 @@ class StoredReport:
 
 def watched_flights() -> list[WatchedFlight]:
     """UAVs of missions on their way, and those still in the air after theirs ended; each once."""
-    values = {"on_its_way": list(ON_ITS_WAY), "over": list(OVER), "longest_s": STILL_IN_THE_AIR_S}
     with connection.cursor() as cursor:
-        cursor.execute(_FLYING, values)
+        cursor.execute(_FLYING, {"on_its_way": list(ON_ITS_WAY), "over": list(OVER), "longest_s": STILL_IN_THE_AIR_S})
         rows = cursor.fetchall()
     return [_flight(*row) for row in rows]
 
 
-def _flight(*row: Any) -> WatchedFlight:
-    lon, lat = row[6:8]
-    return WatchedFlight(*row[:6], None if lon is None else LonLat(lon, lat), *row[8:])
+def _flight(
+    uav_id: int, organisation_id: int, name: str, mission_id: UUID, approval_id: UUID, flight: int, lon: float | None, lat: float | None,
+    heard_at: datetime | None, mode: str, is_armed: bool | None, is_in_air: bool | None, waypoint: int | None, clock_rate: float | None,
+) -> WatchedFlight:  # fmt: skip
+    home = None if lon is None or lat is None else LonLat(lon, lat)
+    return WatchedFlight(
+        uav_id, organisation_id, name, mission_id, approval_id, flight, home, heard_at, mode, is_armed, is_in_air, waypoint, clock_rate
+    )
 
 
 def last_record_id() -> int:

@@ -7,6 +7,7 @@ from missions.fields import PositionField
 from missions.models import LinkKind, MissionState, OfferState, TargetState
 from missions.serializers.commands import CommandSerializer
 from telemetry.serializers.alerts import AlertSerializer
+from workspace.serializers import Declared
 
 
 class LoadedSerializer(serializers.Serializer):
@@ -144,7 +145,7 @@ class MissionPlaceSerializer(serializers.Serializer):
 
 class LiveTargetSerializer(serializers.Serializer):
     place = serializers.IntegerField(help_text="in the mission's list, from 0")
-    label = serializers.CharField()
+    label: Declared = serializers.CharField()
     state = serializers.ChoiceField(choices=TargetState.choices)
     state_at = serializers.DateTimeField(allow_null=True)
     state_reason = serializers.CharField(allow_blank=True)

@@ -3,6 +3,7 @@
 from rest_framework import serializers
 
 from missions.models import MissionState, TargetState, WaypointKind
+from workspace.serializers import Declared
 
 
 class RecordApprovalSerializer(serializers.Serializer):
@@ -127,7 +128,7 @@ class RecordRouteSerializer(serializers.Serializer):
 
 class RecordTargetSerializer(serializers.Serializer):
     place = serializers.IntegerField()
-    label = serializers.CharField()
+    label: Declared = serializers.CharField()
     asset = serializers.IntegerField(allow_null=True)
     state = serializers.ChoiceField(choices=TargetState.choices)
     state_at = serializers.DateTimeField(allow_null=True)

@@ -11,6 +11,7 @@ from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.services.flying import FlightEnd
 from telemetry.decoding.companion_reports import FLAGS, INTEGERS, LONGEST_MODE, NUMBERS, instant
 from telemetry.services.results import NewResult
+from workspace.serializers import Declared
 
 MOST_RECORDS = 1_000
 MOST_ACKNOWLEDGEMENTS = 100
@@ -52,7 +53,7 @@ class ReportSerializer(serializers.Serializer):
 
 class ReportsSerializer(serializers.Serializer):
     stream = StreamField()
-    records = ReportSerializer(many=True, min_length=1, max_length=MOST_RECORDS)
+    records: serializers.ListSerializer[Any] = serializers.ListSerializer(child=ReportSerializer(), min_length=1, max_length=MOST_RECORDS)
 
 
 class ReportsEnvelopeSerializer(KnownFieldsSerializer):
@@ -90,7 +91,9 @@ class AcknowledgementSerializer(KnownFieldsSerializer):
 
 
 class AcknowledgementsSerializer(KnownFieldsSerializer):
-    acknowledgements = AcknowledgementSerializer(many=True, min_length=1, max_length=MOST_ACKNOWLEDGEMENTS)
+    acknowledgements: serializers.ListSerializer[Any] = serializers.ListSerializer(
+        child=AcknowledgementSerializer(), min_length=1, max_length=MOST_ACKNOWLEDGEMENTS
+    )
 
 
 class NotedSerializer(serializers.Serializer):
@@ -157,8 +160,10 @@ def read_result(sent: Any) -> tuple[NewResult | None, dict[str, str]]:
 
 class ResultsSerializer(serializers.Serializer):
     stream = StreamField()
-    results = ResultSerializer(many=True, max_length=MOST_RESULTS)
-    flights = EndedFlightSerializer(many=True, required=False, max_length=MOST_RESULTS)
+    results: serializers.ListSerializer[Any] = serializers.ListSerializer(child=ResultSerializer(), max_length=MOST_RESULTS)
+    flights: serializers.ListSerializer[Any] = serializers.ListSerializer(
+        child=EndedFlightSerializer(), required=False, max_length=MOST_RESULTS
+    )
 
 
 class ResultsEnvelopeSerializer(KnownFieldsSerializer):
@@ -166,7 +171,9 @@ class ResultsEnvelopeSerializer(KnownFieldsSerializer):
 
     stream = StreamField()
     results = serializers.ListField(max_length=MOST_RESULTS)
-    flights = EndedFlightSerializer(many=True, required=False, max_length=MOST_RESULTS)
+    flights: serializers.ListSerializer[Any] = serializers.ListSerializer(
+        child=EndedFlightSerializer(), required=False, max_length=MOST_RESULTS
+    )
 
 
 class StoredResultsSerializer(serializers.Serializer):
@@ -223,7 +230,7 @@ class RouteContentSerializer(serializers.Serializer):
 
 class RouteTargetSerializer(serializers.Serializer):
     place = serializers.IntegerField(help_text="in the mission's list, from 0")
-    label = serializers.CharField()
+    label: Declared = serializers.CharField()
     kind = serializers.CharField(allow_null=True, help_text="of the asset: tower, line, railway, bridge; null: a bare position")
     task = RouteTaskSerializer()
     position = PositionField(allow_null=True)

@@ -15,10 +15,11 @@ def state_alert_limits(*, row: UavType | Mission, limits: Any, actor: User) -> N
     stated = checked_limits(limits)
     limits_of(stated)
     with transaction.atomic():
-        held = type(row).objects.select_for_update(no_key=True).get(pk=row.pk)
+        rows = Mission.objects.filter(pk=row.pk) if isinstance(row, Mission) else UavType.objects.filter(pk=row.pk)
+        held = rows.select_for_update(no_key=True).get()
         before, held.alert_limits = held.alert_limits, stated
         if before != stated:
-            type(row).objects.filter(pk=row.pk).update(alert_limits=stated)
+            rows.update(alert_limits=stated)
             record_change(
                 organisation=row.organisation, actor=actor, action="state-alert-limits",
                 subject_type="mission" if isinstance(row, Mission) else "uav_type", subject_id=row.pk, before=before, after=stated,

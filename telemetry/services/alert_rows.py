@@ -89,7 +89,7 @@ def close_alerts_of_ended_missions(*, codes: Collection[str], but: Collection[in
 
 def _close(ids: Sequence[int], reason: str, now: datetime) -> None:
     with connection.cursor() as cursor:
-        cursor.execute(_CLOSE, [now, reason, json.dumps([step(CLOSED, now, reason=reason)]), ids])
+        cursor.execute(_CLOSE, [now, reason, json.dumps([step(CLOSED, now, reason=reason)]), list(ids)])
 
 
 def _is_worth_writing(row: OpenRow, change: Opened, now: datetime) -> bool:

@@ -120,7 +120,8 @@ def _with_heights_above_ground(records: Sequence[NewRecord]) -> list[NewRecord]:
         [[nan if (value := getattr(record.measurement, name)) is None else value for name in place] for record in records], dtype=np.float64
     )
     above = np.full(len(told), nan)
-    asked = np.isfinite(told).all(axis=1) & [record.measurement.altitude_agl_m is None for record in records]
+    has_no_height = np.array([record.measurement.altitude_agl_m is None for record in records], dtype=bool)
+    asked = np.asarray(np.isfinite(told).all(axis=1)) & has_no_height
     if asked.any():
         above[asked] = told[asked, 2] - ground_heights_m(told[asked, :2])
     return [

@@ -80,7 +80,9 @@ RETURNING uav_id, signing, boots, losses, loaded_sha256, limits, CASE WHEN is_ar
 
 def take_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> list[Lease]:
     """Those of the UAVs that the gateway may serve from now on, and whose commands nobody else carries any more. holder: "name/run"."""
-    values = {"uav_ids": sorted(uav_ids), "holder": holder, "lease_s": lease_s, "unheard_s": UNHEARD_S, "namesake_s": NAMESAKE_S}
+    values: dict[str, list[int] | str | float] = {
+        "uav_ids": sorted(uav_ids), "holder": holder, "lease_s": lease_s, "unheard_s": UNHEARD_S, "namesake_s": NAMESAKE_S,
+    }  # fmt: skip
     with connection.cursor() as cursor:
         cursor.execute(TAKE, values)
         rows = cursor.fetchall()

@@ -111,9 +111,10 @@ def forget_what_is_over(*, flying: Collection[int]) -> None:
 def show_estimates(*, made: Sequence[Made], holder: str) -> dict[int, int]:
     """For live pages; only of UAVs that the watch still holds. Returns these with their organisations."""
     made = sorted(made, key=lambda one: one.uav_id)
-    columns = [[one.uav_id for one in made], [one.mission_id for one in made], [json.dumps(estimate_to_json(one.estimate)) for one in made]]
+    uavs, missions = [one.uav_id for one in made], [one.mission_id for one in made]
+    estimates = [json.dumps(estimate_to_json(one.estimate)) for one in made]
     with connection.cursor() as cursor:
-        cursor.execute(_SHOW, [*columns, holder])
+        cursor.execute(_SHOW, [uavs, missions, estimates, holder])
         return dict(cursor.fetchall())
 
 

@@ -44,7 +44,7 @@ class Alerts(APIView):
 
 class AlertDetail(APIView):
     @extend_schema(operation_id="get_alert", summary="An alert, its notes and its course", responses=shapes.AlertDetailSerializer)
-    def get(self, request: Request, alert_id: int) -> Response:
+    def get(self, request: SignedInRequest, alert_id: int) -> Response:
         return Response(_detail(_alert(request, alert_id)))
 
 

@@ -5,7 +5,6 @@ from uuid import UUID
 from django.http import FileResponse, Http404
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -36,7 +35,7 @@ class MissionRecord(APIView):
         ),
         responses=MissionRecordSerializer,
     )
-    def get(self, request: Request, mission_id: UUID) -> Response:
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         return Response(MissionRecordSerializer(mission_record(_mission(request, mission_id))).data)
 
 

@@ -7,7 +7,7 @@ from django.contrib.auth.models import AnonymousUser
 from drf_spectacular.extensions import OpenApiAuthenticationExtension
 from drf_spectacular.plumbing import build_bearer_security_scheme_object
 from rest_framework.authentication import BaseAuthentication, get_authorization_header
-from rest_framework.exceptions import AuthenticationFailed
+from rest_framework.exceptions import AuthenticationFailed, NotAuthenticated
 from rest_framework.permissions import BasePermission
 from rest_framework.request import Request
 
@@ -64,11 +64,18 @@ class UavsAlone(BasePermission):
         return isinstance(request.auth, UavAccess)
 
 
+def uav_of(request: Request) -> UavAccess:
+    """Return the UAV that asks, in a view that is for UAVs alone. Raises NotAuthenticated if none does."""
+    if not isinstance(request.auth, UavAccess):
+        raise NotAuthenticated
+    return request.auth
+
+
 class UavRate(ScopedRate):
     """Counts requests per UAV."""
 
     def get_cache_key(self, request: Request, view: Any) -> str:
-        return str(self.cache_format % {"scope": self.scope, "ident": f"uav:{request.auth.uav_id}"})
+        return str(self.cache_format % {"scope": self.scope, "ident": f"uav:{uav_of(request).uav_id}"})
 
 
 _ACCESS = f"""

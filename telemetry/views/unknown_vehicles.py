@@ -8,6 +8,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions.fleet_selectors import types_of_organisation
+from missions.models import Uav
 from missions.serializers.uavs import UavFeatureSerializer, uav_feature
 from missions.views.fleet_problems import TAKEN, fleet_problems
 from missions.views.problems import refusals
@@ -100,7 +101,7 @@ class UnknownVehicleIgnoring(APIView):
         return Response(vehicle_json(unknown_vehicles().get(pk=vehicle_id)))
 
 
-def _adopted(vehicle: UnknownVehicle, request: SignedInRequest, uav: object) -> int:
+def _adopted(vehicle: UnknownVehicle, request: SignedInRequest, uav: Uav | NewUav) -> int:
     try:
         with refusals():
             return adopt_vehicle(vehicle=vehicle, actor=request.user, uav=uav).pk
