@@ -25,8 +25,8 @@ UP_THERE = 0.95  # of a take-off's height
 class Vehicle(Protocol):
     """What flying a mission needs of a simulated UAV; see simulation.flight.uav.SimulatedUav."""
 
-    now_s: float
-
+    @property
+    def now_s(self) -> float: ...
     @property
     def state(self) -> Any: ...
     def step(self) -> None: ...

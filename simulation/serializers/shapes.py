@@ -6,7 +6,7 @@ from missions.serializers.shapes import WindLayerOutputSerializer
 from simulation.models import VerdictLevel
 from simulation.rehearsing.sky import Named
 from workspace.models import JobState
-from workspace.serializers import JobErrorField
+from workspace.serializers import Declared, JobErrorField
 
 MOST_CONDITIONS = 8
 LEVELS = VerdictLevel.choices
@@ -77,7 +77,7 @@ class ApproachSerializer(serializers.Serializer):
 
 class RehearsedTargetSerializer(serializers.Serializer):
     target = serializers.IntegerField(help_text="place in the mission, from 0")
-    label = serializers.CharField()
+    label: Declared = serializers.CharField()
     level = serializers.ChoiceField(choices=LEVELS)
     is_reached = serializers.BooleanField()
     closest_m = serializers.FloatField(allow_null=True, help_text="to its waypoint, the worst of several")
@@ -152,7 +152,7 @@ class RehearsalUavSerializer(serializers.Serializer):
 class RehearsalLimitSerializer(serializers.Serializer):
     name = serializers.CharField()
     value = serializers.FloatField()
-    source = serializers.CharField()
+    source: Declared = serializers.CharField()
     words = serializers.CharField()
 
 

@@ -44,6 +44,9 @@ NOT_OF_THE_FLEET = gettext_lazy(
 class ConditionsField(serializers.JSONField):
     """A name, or an object; read by simulation.views.skies."""
 
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+
 
 class FaultsSerializer(KnownFieldsSerializer):
     """What goes wrong from now on; what is left out stays as it is."""
@@ -114,7 +117,7 @@ class PoolUavSerializer(KnownFieldsSerializer):
 
 
 class SimulationInputSerializer(KnownFieldsSerializer):
-    uavs = PoolUavSerializer(many=True, min_length=1, max_length=MOST_POOL_UAVS)
+    uavs: serializers.ListSerializer[Any] = serializers.ListSerializer(child=PoolUavSerializer(), min_length=1, max_length=MOST_POOL_UAVS)
     lifetime_s = serializers.IntegerField(
         min_value=SHORTEST_LIFETIME_S,
         max_value=LONGEST_TOLD_S,
@@ -217,7 +220,7 @@ class SimulationPageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
-TOLD = tuple(name for name in ToldSerializer().fields if name != "at")
+TOLD = tuple(name for name in ToldSerializer().get_fields() if name != "at")
 
 
 def simulation_json(simulation: Simulation) -> dict[str, Any]:
