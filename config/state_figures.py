@@ -76,8 +76,8 @@ class InstallationState:
             connections.close_all()  # this thread's alone
 
     def _jobs(self, now: datetime) -> dict[str, Values]:
-        counts: defaultdict[tuple[str, str], int] = defaultdict(int)
-        ages_s: defaultdict[tuple[str, str], float] = defaultdict(float)
+        counts: defaultdict[tuple[str, ...], float] = defaultdict(int)
+        ages_s: defaultdict[tuple[str, ...], float] = defaultdict(float)
         for queue in self._queues():
             for state in OPEN_STATES:
                 counts[queue, str(state)] = 0
@@ -93,7 +93,7 @@ class InstallationState:
         try:
             with self._celery.connection_for_read() as connection:
                 channel: Any = connection.default_channel
-                lengths = {(queue,): float(channel.client.llen(queue)) for queue in self._queues()}
+                lengths: dict[tuple[str, ...], float] = {(queue,): float(channel.client.llen(queue)) for queue in self._queues()}
         except (RedisError, OperationalError, OSError):
             return {REDIS: {(): 0.0}}
         return {REDIS: {(): 1.0}, QUEUE: lengths}

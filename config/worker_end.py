@@ -91,7 +91,7 @@ class SoftEnd(StartStopStep):
 
     def _leave(self) -> None:
         """The loop ends the worker, and what has no acknowledgement is put back into its queue."""
-        state.should_terminate = os.EX_OK
+        state.should_terminate = os.EX_OK  # type: ignore[assignment] # its stub knows None alone
         _later(GO_S, self._kill_processes)
 
     def _kill_processes(self) -> None:

@@ -162,6 +162,6 @@ def metrics_text() -> bytes:
     """Of this process, or of all that count into one folder."""
     if PROCESSES_FOLDER in os.environ:
         together = CollectorRegistry()
-        MultiProcessCollector(together)  # type: ignore[no-untyped-call]
+        MultiProcessCollector(together)
         return generate_latest(together)
     return generate_latest(REGISTRY)

@@ -1,13 +1,13 @@
 """The mypy plugin of django-stubs, with one fault corrected: a foreign key with a default was read as one that may be None."""
 
-from django.db.models import Field, ForeignKey
+from django.db.models import Field, ForeignKey, ForeignObjectRel
 from mypy.options import Options
 from mypy_django_plugin.django.context import DjangoContext
 from mypy_django_plugin.main import NewSemanalDjangoPlugin
 
 
 class Context(DjangoContext):
-    def get_field_nullability(self, field: Field, method: str | None) -> bool:
+    def get_field_nullability(self, field: Field | ForeignObjectRel, method: str | None) -> bool:
         """Return whether `row.field_id` may be None; of a method's argument, whether None may be passed."""
         if method is None and isinstance(field, ForeignKey):
             return field.null

@@ -24,7 +24,8 @@ def python_components() -> list[Component]:
     found = []
     for distribution in distributions():
         told = distribution.metadata
-        name, licence = told["Name"], told.get("License-Expression") or told.get("License") or ""
+        name = told["Name"]
+        licence = next(filter(None, (told[field] for field in ("License-Expression", "License") if field in told)), "")
         if not licence or len(licence) > LONGEST_LICENCE:
             classes = [entry.rpartition(":: ")[2] for entry in told.get_all("Classifier") or [] if entry.startswith("License ::")]
             licence = ", ".join(classes)

@@ -18,7 +18,7 @@ import django
 from babel.messages.catalog import Catalog
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
-from django.template import Engine, Template, engines
+from django.template import Engine, Template
 from django.template.base import Node
 from django.templatetags.i18n import BlockTranslateNode, TranslateNode
 
@@ -56,7 +56,7 @@ def compile_all() -> None:
 
 
 def texts_of_templates() -> Iterator[Text]:
-    engine = engines["django"].engine
+    engine = Engine.get_default()
     for path in sorted(TEMPLATES.rglob("*.html")) + sorted(TEMPLATES.rglob("*.txt")):
         yield from texts_of_template(path.read_text(), engine)
 
@@ -166,8 +166,9 @@ def missing_on_server(language: str) -> list[Text]:
 
 def left_over_on_server(language: str) -> list[Text]:
     used = set(server_texts())
-    ids = [message.id if isinstance(message.id, str) else tuple(message.id) for message in catalogue(language) if message.id]
-    return [text for text in ids if text not in used]
+    ids = [message.id for message in catalogue(language) if message.id]
+    texts: list[Text] = [text if isinstance(text, str) else (text[0], text[1]) for text in ids]
+    return [text for text in texts if text not in used]
 
 
 def _strings(string: object) -> list[str]:
