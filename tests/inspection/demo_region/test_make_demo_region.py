@@ -10,7 +10,7 @@ import pytest
 from django.contrib.gis.gdal import GDALRaster
 from django.core.management import call_command
 
-from inspection.demo_region import BASES, make_region
+from inspection.demo_region import BASES, make_quillmoor, make_region, write_osm_file
 from inspection.selectors import ground_heights_m
 from inspection.services import import_terrain
 from inspection.terrain.terrain_file import opened_terrain
@@ -38,6 +38,16 @@ def test_two_runs_write_the_same_bytes(written: tuple[Path, str], tmp_path: Path
     for name in NAMES:
         first, second = written[0] / name, tmp_path / "made" / "on the way" / name
         assert hashlib.sha256(first.read_bytes()).digest() == hashlib.sha256(second.read_bytes()).digest(), name
+
+
+def test_the_second_region_is_written_on_request(tmp_path: Path) -> None:
+    output = StringIO()
+    call_command("make_demo_region", str(tmp_path / "files"), "--region", "quillmoor", "--seed", "3", stdout=output)
+    (path,) = (tmp_path / "files").iterdir()
+    write_osm_file(tmp_path / "expected.osm.pbf", make_quillmoor(seed=3))
+    assert path.name == "quillmoor.osm.pbf"
+    assert path.read_bytes() == (tmp_path / "expected.osm.pbf").read_bytes()
+    assert output.getvalue().startswith("Quillmoor (synthetic, seed 3): ") and str(path) in output.getvalue()
 
 
 def test_the_zone_file_is_an_ed269_document_that_says_synthetic(written: tuple[Path, str]) -> None:
