@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { isAlike, merged } from "../../static/js/mission/actions/merge.js";
-import { changedParts } from "../../static/js/mission/actions/saving.js";
+import { changedParts } from "../../static/js/mission/actions/save_request.js";
 import {
   compassText,
   conditionsOf,

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { changedParts } from "../../static/js/mission/actions/saving.js";
+import { changedParts } from "../../static/js/mission/actions/save_request.js";
 import { grouped, wordsOfEntry } from "../../static/js/mission/panels/history.js";
 import { savedWords } from "../../static/js/mission/panels/saved_state.js";
 import { basisOf, EMPTY, targetOf, withTargets } from "../../static/js/mission/selection.js";

@@ -23,7 +23,7 @@ globalThis.WebSocket = undefined; // jobs are asked for
 const { createActions } = await import("../../static/js/mission/actions/actions.js");
 const { howFarWords } = await import("../../static/js/mission/panels/foot.js");
 const { isWorse } = await import("../../static/js/mission/compare.js");
-const { planOf } = await import("../../static/js/mission/actions/planning.js");
+const { planOf } = await import("../../static/js/mission/actions/plan_results.js");
 const { refusalOf } = await import("../../static/js/mission/actions/refusals.js");
 const { savedWords } = await import("../../static/js/mission/panels/saved_state.js");
 
@@ -61,7 +61,10 @@ const storedMission = (selection, more) => ({
   ...more,
 });
 const settle = async () => {
-  for (let turn = 0; turn < 40; turn += 1) await Promise.resolve(), await new Promise(setImmediate);
+  for (let turn = 0; turn < 40; turn += 1) {
+    await Promise.resolve();
+    await new Promise(setImmediate);
+  }
 };
 
 /** A page with the stored mission "m" open; serve({ method, path, body }): the answer to each request, all of which are kept in `asked`. */
@@ -103,7 +106,11 @@ function opened(context, serve, state = {}) {
     { canPlan: true, userId: 1, userName: "opal" },
     { dropOwn() {}, keep: () => true, read: () => null },
   );
-  return { store, history, actions, asked, tick: (ms) => (context.mock.timers.tick(ms), settle()) };
+  const tick = (ms) => {
+    context.mock.timers.tick(ms);
+    return settle();
+  };
+  return { store, history, actions, asked, tick };
 }
 
 const refusal = (message, more) => json({ error: { code: "invalid", message, ...more } }, 400);
@@ -166,7 +173,10 @@ const jobDone = (id, selection) => json({ id, state: "done", result: planMade(se
 function planner({ others = 0, ends = ["j1"], save }) {
   let jobs = 0;
   return ({ method, path, body }) => {
-    if (path === "/plans") return json({ job: `j${(jobs += 1)}` }, 202);
+    if (path === "/plans") {
+      jobs += 1;
+      return json({ job: `j${jobs}` }, 202);
+    }
     if (path.startsWith("/jobs?")) return json({ results: Array.from({ length: others }, () => ({})), next: null });
     if (path.endsWith("/cancel")) return json({});
     if (path.startsWith("/jobs/"))

@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { isAlike, merged, wordsOfChange } from "../../static/js/mission/actions/merge.js";
-import { planOf } from "../../static/js/mission/actions/planning.js";
+import { planOf } from "../../static/js/mission/actions/plan_results.js";
 import { createRunningJob } from "../../static/js/mission/actions/running_job.js";
-import { changedParts } from "../../static/js/mission/actions/saving.js";
+import { changedParts } from "../../static/js/mission/actions/save_request.js";
 import { factsOfUav } from "../../static/js/mission/fleet.js";
 import {
   bestWordsOf,

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { withResult } from "../../static/js/mission/actions/planning.js";
+import { withResult } from "../../static/js/mission/actions/plan_results.js";
 import {
   counterpart,
   endsBetween,

@@ -22,6 +22,8 @@ export const EMPTY = Object.freeze({
   ...UNSAID,
 });
 
+export const MOST_TARGETS = 500; // of a mission: missions/routing/rules.py
+
 /**
  * Two picks of the same place are one target: the asset whole, or one point of it.
  *

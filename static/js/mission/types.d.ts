@@ -244,7 +244,7 @@ export interface Planning {
 // what the page tells
 
 /** A way out of a problem: an act, or an address. */
-export type WayOut = { label: string } & ({ act: () => unknown } | { href: () => string });
+export type WayOut = { label: string; act?: () => unknown; href?: () => string };
 
 export interface Problem {
   title: string;

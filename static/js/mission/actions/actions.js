@@ -9,19 +9,68 @@ import { basisOf } from "../selection.js";
 import { createConflicts } from "./conflicts.js";
 import { createFleetActions } from "./fleet_actions.js";
 import { createLocking } from "./locking.js";
+import { createOpening } from "./opening.js";
 import { createPicking } from "./picking.js";
 import { createPlanning } from "./planning.js";
 import { createRallyPoints } from "./rally_points.js";
 import { refusalOf } from "./refusals.js";
 import { createRunningJob } from "./running_job.js";
 import { createSaving } from "./saving.js";
+import { createStoredMission } from "./stored_mission.js";
 
-/** page: { mission, canPlan, userName }; drafts: see draft.js. */
+/** @import { MissionContext, MissionPageData, MissionSelection, MissionStore, ProblemOptions, WayOut } from "../types.d.ts" */
+
+/**
+ * @param {MissionStore} store
+ * @param {MissionContext["history"]} history
+ * @param {MissionPageData} page
+ * @param {MissionContext["drafts"]} drafts
+ */
 export function createActions(store, history, page, drafts) {
+  const context = createContext(store, history, page, drafts);
+  const { waitForJob, makeRoom, ...planning } = createPlanning(context);
+  const conflicts = createConflicts(
+    context,
+    { save: () => saving.save(), keepMineAsCopy: () => saving.keepMineAsCopy() },
+    showBoth,
+  );
+  const saving = createSaving(context, { waitForJob, makeRoom }, conflicts);
+  return {
+    failed: context.failed,
+    ...createPicking(context),
+    ...createLocking(context),
+    ...planning,
+    ...saving,
+    ...conflicts,
+    ...createOpening(context, conflicts),
+    ...createFleetActions(context),
+    ...createRallyPoints(context),
+    ...createHandEditing(context, { save: saving.save, keepOpen: createStoredMission(context).keepOpen }),
+  };
+}
+
+/**
+ * What the actions share: the selection and its history, and how a problem is told.
+ *
+ * @param {MissionStore} store
+ * @param {MissionContext["history"]} history
+ * @param {MissionPageData} page
+ * @param {MissionContext["drafts"]} drafts
+ * @returns {MissionContext}
+ */
+function createContext(store, history, page, drafts) {
   const selection = () => store.state.selection;
+  /** @param {MissionSelection} next */
   const change = (next) => history.changeTo(settled(next));
 
-  /** Stays until the next try; with `untilChanged` until something else is picked, whatever is saved meanwhile. */
+  /**
+   * Stays until the next try; with `untilChanged` until something else is picked, whatever is saved meanwhile.
+   *
+   * @param {string} title
+   * @param {string} text
+   * @param {WayOut[]} [actions]
+   * @param {ProblemOptions} [how]
+   */
   function problem(title, text, actions = [], { untilChanged = false, level = "critical", isOfSaving = false } = {}) {
     store.update({
       problem: { title, text, actions, level, isOfSaving, about: untilChanged ? basisOf(selection()) : null },
@@ -31,7 +80,13 @@ export function createActions(store, history, page, drafts) {
     if (state.problem?.about && state.problem.about !== basisOf(state.selection)) store.update({ problem: null });
   });
 
-  /** What an error says, and what helps: { words, ways }. `asked`: the selection that was refused. */
+  /**
+   * What an error says, and what helps. `asked`: the selection that was refused.
+   *
+   * @param {unknown} error
+   * @param {MissionSelection} [asked]
+   * @returns {{ words: string, ways: WayOut[] | null }}
+   */
   function read(error, asked = selection()) {
     if (!(error instanceof ApiError))
       return {
@@ -42,13 +97,22 @@ export function createActions(store, history, page, drafts) {
     const { words, ways } = refusalOf(error, asked) ?? { words: error.message, ways: [] };
     return {
       words,
-      ways: ways.map(({ changed, ...way }) => (changed ? { ...way, act: () => change(changed(selection())) } : way)),
+      ways: ways.map(({ label, href, changed }) =>
+        changed ? { label, act: () => change(changed(selection())) } : { label, href },
+      ),
     };
   }
 
-  /** `actions` try it again: what the server refuses as it stands has other ways out. */
+  /**
+   * `actions` try it again: what the server refuses as it stands has other ways out.
+   *
+   * @param {string} title
+   * @param {unknown} error
+   * @param {WayOut[]} [actions]
+   * @param {ProblemOptions} [how]
+   */
   function failed(title, error, actions = [], how = {}) {
-    if (error.isSignedOut) {
+    if (error instanceof ApiError && error.isSignedOut) {
       const words = page.canPlan ? t("Your selection is kept in this browser.") : t("Sign in to go on.");
       problem(t("You are signed out."), words, [{ label: t("Sign in"), href: signInAddress }], {
         ...how,
@@ -60,7 +124,7 @@ export function createActions(store, history, page, drafts) {
     }
   }
 
-  const context = {
+  return {
     store,
     history,
     selection,
@@ -72,20 +136,5 @@ export function createActions(store, history, page, drafts) {
     drafts,
     running: { stopping: null },
     runningJob: createRunningJob({ user: page.userId }),
-  };
-  const { waitForJob, makeRoom, ...planning } = createPlanning(context);
-  let saving = null;
-  const conflicts = createConflicts(context, () => saving, showBoth);
-  saving = createSaving(context, { waitForJob, makeRoom }, conflicts);
-  return {
-    failed,
-    ...createPicking(context),
-    ...createLocking(context),
-    ...planning,
-    ...saving,
-    ...conflicts,
-    ...createFleetActions(context),
-    ...createRallyPoints(context),
-    ...createHandEditing(context, saving),
   };
 }

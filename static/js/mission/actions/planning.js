@@ -1,79 +1,92 @@
 /** Planning what is picked: by the chosen objective, then by the other to set beside it; following a large job, and stopping it. */
 
-import { follow, get, post } from "../../api.js";
+import { ApiError, get, isAbort, post } from "../../api.js";
 import { followLive } from "../../live/jobs.js";
 import { say, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { isSamePlan, isWorse, summaryOfPlan } from "../compare.js";
-import {
-  figuresOf,
-  isPlanCurrent,
-  isWithoutBattery,
-  OBJECTIVES,
-  otherObjective,
-  qualityOf,
-  sentenceOf,
-  unreachedOf,
-  wishWordsOf,
-} from "../plan_view.js";
+import { figuresOf, isPlanCurrent, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "../plan_view.js";
 import * as picks from "../selection.js";
+import { cancelJob, createPlanBeside, MOST_PLANNED_AT_ONCE } from "./plan_beside.js";
+import { planOf, withResult } from "./plan_results.js";
 
-const MOST_PLANNED_AT_ONCE = 12; // up to here the server answers at once, and a mission that is opened gets both plans
-const MOST_KEPT = 16; // plans that undo, redo and the choice of what is best at bring back at once
+/** @import { Answer } from "../../api.js" */
+/** @import { JobLink } from "../../api_types.d.ts" */
+/** @import { BestSoFar, MissionContext, MissionSelection, PickedTarget, Planning, PlanResult, ShortPlan, ShownPlan } from "../types.d.ts" */
 
-/** The plan of a result, with the selection that it was made for: its indices point into that. */
-export function planOf(result, selection) {
-  const { targets, uavs, charging_w = null } = selection;
+/** @typedef {ReturnType<typeof createPlanBeside>} PlanBeside */
+/** @typedef {(signal: AbortSignal) => Promise<PlanResult | { job: string }>} Begin gives the plan, or the job that makes it */
+
+/** @param {MissionContext} context */
+export function createPlanning(context) {
+  const { store, selection, change } = context;
+  const aside = createPlanBeside(store);
+  const waitForJob = createWaiting(context);
+  const { plan, resume } = createSearch(context, aside, waitForJob);
+  showKnownPlans(context, aside);
+  rememberLastPlan(context);
+
   return {
-    result,
-    basis: picks.basisOf(selection),
-    freeBasis: picks.basisOf(picks.withoutWishes(selection)),
-    targets,
-    uavs,
-    charging_w,
+    plan,
+    resume,
+    ...createStopping(context),
+    waitForJob,
+    makeRoom: aside.giveWay,
+    planAlternatives: () => {
+      if (store.state.plan && isPlanCurrent(store.state)) void aside.wantAll(selection());
+    },
+    stopAlternatives: aside.stop,
+    /** A line of which only parts can be flown becomes these parts. @param {PickedTarget} target @param {number[][][]} stretches */
+    replaceByStretches(target, stretches) {
+      const parts = stretches.map((stretch) => {
+        const part = { ...target, position: null, stretch, centre: stretch[0] };
+        return { ...part, key: picks.keyOf(part) };
+      });
+      store.update({ why: null });
+      change({
+        ...selection(),
+        targets: selection().targets.flatMap((other) => (other.key === target.key ? parts : [other])),
+      });
+    },
   };
 }
 
-/** Results by what they were made for; the oldest go, and those of another ground: a zone may have come in since. */
-export function withResult(figures, basis, result) {
-  const rest = Object.entries(figures).filter(
-    ([known, other]) => known !== basis && other.ground_revision === result.ground_revision,
-  );
-  return Object.fromEntries([...rest.slice(-MOST_KEPT + 1), [basis, result]]);
-}
+/** @type {Planning} */
+const BEGINNING = { what: "", share: null, job: null, best: null, isStopping: false };
 
-/** A large plan names its job: whoever stores the plan stores this one, and no other that a second search would find. */
-const ofJob = (job) => job.result && { ...job.result, job: job.id };
-
-/** context: see actions.js. `running.stopping` is the AbortController of what is being waited for. */
-export function createPlanning({ store, selection, change, problem, failed, running, page, runningJob }) {
-  async function waitForJob(jobId, what) {
+/**
+ * Follows a job, its progress on the page.
+ *
+ * @param {MissionContext} context
+ * @returns {(job: string, what: string) => Promise<unknown>} what it has made
+ */
+function createWaiting({ store, running }) {
+  return async (jobId, what) => {
     const job = await followLive(jobId, {
       signal: running.stopping?.signal,
-      onProgress: (at) =>
+      onProgress: (at) => {
+        const { planning } = store.state;
+        const best = /** @type {BestSoFar | null} */ (at.best) ?? planning?.best ?? null;
+        const isQueued = at.state === "queued";
+        const share = isQueued ? null : at.progress;
         store.update({
-          planning: {
-            ...store.state.planning,
-            what,
-            found: at.message,
-            share: at.state === "queued" ? null : at.progress,
-            isQueued: at.state === "queued",
-            best: at.best ?? store.state.planning?.best ?? null,
-            job: jobId,
-          },
-        }),
+          planning: { ...BEGINNING, ...planning, what, found: at.message, share, isQueued, best, job: jobId },
+        });
+      },
     });
     if (job.state === "cancelled" && !job.result) throw new DOMException("stopped", "AbortError");
-    return job;
-  }
+    return job.result;
+  };
+}
 
-  function missing() {
-    if (!selection().targets.length)
-      return [t("Nothing picked yet."), t("Click a tower, bridge or track on the map, then plan.")];
-    if (!selection().uavs.length) return [t("No UAV is chosen."), t("Tick one in the list, or add the first one.")];
-    return null;
-  }
-
+/**
+ * @param {MissionContext} context
+ * @param {PlanBeside} aside
+ * @param {ReturnType<typeof createWaiting>} waitForJob
+ */
+function createSearch(context, aside, waitForJob) {
+  const { store, selection, problem, failed, running, page, runningJob } = context;
+  const show = createShowing(context, aside, plan);
   let isWanted = false; // somebody asked while a save was under way
   store.listen(["saving"], ({ saving }) => {
     if (saving || !isWanted) return;
@@ -87,79 +100,47 @@ export function createPlanning({ store, selection, change, problem, failed, runn
       isWanted = true;
       return;
     }
-    const lacking = missing();
+    const asked = selection();
+    const lacking = lackingOf(asked);
     if (lacking) {
       problem(...lacking, [], { untilChanged: true });
       return;
     }
-    const asked = selection();
     await search(asked, async (signal) => {
-      const answer = await post("/plans", picks.requestOf(asked), { signal });
-      return answer.status === 202 ? { job: answer.data.job } : answer.data;
+      const answer = /** @type {Answer<PlanResult | JobLink>} */ (
+        await post("/plans", picks.requestOf(asked), { signal })
+      );
+      return /** @type {PlanResult | { job: string }} */ (
+        answer.status === 202 ? { job: answer.data.job } : answer.data
+      );
     });
   }
 
-  /** Shows the plan of what was asked once `begin(signal)` gives it, or the { job } that makes it. */
+  /** Shows the plan of what was asked. @param {MissionSelection} asked @param {Begin} begin */
   async function search(asked, begin) {
     const what = tn(asked.targets.length, "Planning {count} target", "Planning {count} targets");
     const mission = store.state.mission?.id ?? null;
     aside.stop();
     running.stopping = new AbortController();
-    store.update({ planning: { what, share: null, job: null, best: null, isStopping: false }, problem: null });
+    store.update({ planning: { ...BEGINNING, what }, problem: null });
     try {
-      let result = await begin(running.stopping.signal);
-      if (!result.routes) {
-        const { job } = result;
-        store.update({ planning: { ...store.state.planning, job } });
+      const begun = await begin(running.stopping.signal);
+      if ("routes" in begun) show(planOf(begun, asked), asked);
+      else {
+        const { job } = begun;
+        store.update({ planning: { ...BEGINNING, ...store.state.planning, job } });
         runningJob.keep(mission, { job, selection: asked });
-        result = { ...(await waitForJob(job, what)).result, job }; // saved by the job's number
+        const result = /** @type {PlanResult} */ (await waitForJob(job, what));
+        show(planOf({ ...result, job }, asked), asked); // saved by the job's number
       }
-      const made = planOf(result, asked);
-      const before = store.state.plan;
-      if (before?.basis === made.basis && isWorse(made, before)) {
-        toast(t("The new plan is no better ({figures}). The one on the page stays.", { figures: figuresOf(result) }));
-        aside.want(asked);
-        return;
-      }
-      if (store.state.planning.isStopping) toast(t("Stopped. The best plan so far is kept."));
-      store.update({
-        plan: made,
-        figures: withResult(store.state.figures, made.basis, result),
-        planIsStored: false,
-        chosenRoute: null,
-        why: null,
-      });
-      const { sentence, facts } = sentenceOf(made);
-      const unreached = unreachedOf(made).length;
-      const quality = qualityOf(result);
-      say(
-        [
-          `${sentence}. ${facts}.`,
-          quality?.words,
-          wishWordsOf(result),
-          unreached && tn(unreached, "{count} target is not reached.", "{count} targets are not reached."),
-        ]
-          .filter(Boolean)
-          .join(" "),
-      );
-      if (picks.basisOf(selection()) === made.basis) aside.want(asked);
-      else if (!isPlanCurrent(store.state)) tellChanged();
     } catch (error) {
-      if (error.name === "AbortError") toast(t("Planning stopped. Nothing was changed."));
+      if (isAbort(error)) toast(t("Planning stopped. Nothing was changed."));
       else failed(t("Not planned."), error, [{ label: t("Plan again"), act: plan }], { untilChanged: true, asked });
     } finally {
       runningJob.drop(mission);
       running.stopping = null;
       store.update({ planning: null });
     }
-  }
-
-  function tellChanged() {
-    const words = t("The plan is of what was picked when planning began.");
-    problem(t("The selection has changed since."), words, [{ label: t("Plan again"), act: plan }], {
-      untilChanged: true,
-      level: "warning",
-    });
   }
 
   /** A large plan that was being made when the page was left: its progress comes back, or its result. */
@@ -171,39 +152,116 @@ export function createPlanning({ store, selection, change, problem, failed, runn
       try {
         await get(`/jobs/${kept.job}`, { signal });
       } catch (error) {
-        if (error.status === 404) throw new DOMException("gone", "AbortError"); // cleared away since
+        if (error instanceof ApiError && error.status === 404) throw new DOMException("gone", "AbortError"); // cleared away since
         throw error;
       }
       return { job: kept.job };
     });
   }
 
-  /** Drops the search with what it has found. */
-  function cancel() {
-    cancelJob(store.state.planning?.job);
-    running.stopping?.abort();
+  return { plan, resume };
+}
+
+/**
+ * Shows a plan once it is made, where it is no worse than the one on the page.
+ *
+ * @param {MissionContext} context
+ * @param {PlanBeside} aside
+ * @param {() => Promise<void>} planAgain
+ * @returns {(made: ShownPlan, asked: MissionSelection) => void}
+ */
+function createShowing({ store, selection, problem }, aside, planAgain) {
+  function tellChanged() {
+    const words = t("The plan is of what was picked when planning began.");
+    problem(t("The selection has changed since."), words, [{ label: t("Plan again"), act: planAgain }], {
+      untilChanged: true,
+      level: "warning",
+    });
   }
 
-  async function stop() {
-    const job = store.state.planning?.job;
-    if (!job) {
-      running.stopping?.abort();
+  return (made, asked) => {
+    const { result } = made;
+    const before = store.state.plan;
+    if (before?.basis === made.basis && isWorse(made, before)) {
+      toast(t("The new plan is no better ({figures}). The one on the page stays.", { figures: figuresOf(result) }));
+      aside.want(asked);
       return;
     }
-    store.update({ planning: { ...store.state.planning, isStopping: true } });
-    try {
-      await post(`/jobs/${job}/cancel`, {});
-    } catch (error) {
-      if (error.status === 409) return; // it ended by itself
-      if (store.state.planning) store.update({ planning: { ...store.state.planning, isStopping: false } });
-      failed(t("Not stopped."), error);
-    }
-  }
+    if (store.state.planning?.isStopping) toast(t("Stopped. The best plan so far is kept."));
+    store.update({
+      plan: made,
+      figures: withResult(store.state.figures, made.basis, result),
+      planIsStored: false,
+      chosenRoute: null,
+      why: null,
+    });
+    say(wordsOf(made));
+    if (picks.basisOf(selection()) === made.basis) aside.want(asked);
+    else if (!isPlanCurrent(store.state)) tellChanged();
+  };
+}
 
-  const aside = planBeside(store);
+/** What is missing for a plan, and what helps; null where nothing is. @param {MissionSelection} selection @returns {[string, string] | null} */
+function lackingOf({ targets, uavs }) {
+  if (!targets.length) return [t("Nothing picked yet."), t("Click a tower, bridge or track on the map, then plan.")];
+  if (!uavs.length) return [t("No UAV is chosen."), t("Tick one in the list, or add the first one.")];
+  return null;
+}
 
-  // A selection that has been planned before, by undo or by the other objective, shows its plan again; so it does when the answer to an
-  // earlier save brings back the plan of what was picked then.
+/** A new plan for those who do not see it. @param {ShownPlan} made */
+function wordsOf(made) {
+  const { sentence, facts } = sentenceOf(made);
+  const unreached = unreachedOf(made).length;
+  return [
+    `${sentence}. ${facts}.`,
+    qualityOf(made.result)?.words,
+    wishWordsOf(made.result),
+    unreached && tn(unreached, "{count} target is not reached.", "{count} targets are not reached."),
+  ]
+    .filter(Boolean)
+    .join(" ");
+}
+
+/** @param {MissionContext} context */
+function createStopping({ store, failed, running }) {
+  /** @param {boolean} isStopping */
+  const put = (isStopping) => {
+    const { planning } = store.state;
+    if (planning) store.update({ planning: { ...planning, isStopping } });
+  };
+  return {
+    /** Drops the search with what it has found. */
+    cancel() {
+      cancelJob(store.state.planning?.job);
+      running.stopping?.abort();
+    },
+    /** Ends the search, and keeps the best plan so far. */
+    async stop() {
+      const job = store.state.planning?.job;
+      if (!job) {
+        running.stopping?.abort();
+        return;
+      }
+      put(true);
+      try {
+        await post(`/jobs/${job}/cancel`, {});
+      } catch (error) {
+        if (error instanceof ApiError && error.status === 409) return; // it ended by itself
+        put(false);
+        failed(t("Not stopped."), error);
+      }
+    },
+  };
+}
+
+/**
+ * A selection that has been planned before, by undo or by the other objective, shows its plan again; so it does when the answer to an
+ * earlier save brings back the plan of what was picked then.
+ *
+ * @param {MissionContext} context
+ * @param {PlanBeside} aside
+ */
+function showKnownPlans({ store, page }, aside) {
   store.listen(["selection", "plan"], (state) => {
     const basis = picks.basisOf(state.selection);
     const known = state.figures[basis];
@@ -219,165 +277,16 @@ export function createPlanning({ store, selection, change, problem, failed, runn
     if (page.canPlan && isShownAsStored && state.selection.targets.length <= MOST_PLANNED_AT_ONCE)
       aside.want(state.selection);
   });
+}
 
-  let shown = null; // the plan on the page in short
+/** The plan before the one on the page is kept in short, to compare. @param {MissionContext} context */
+function rememberLastPlan({ store }) {
+  /** @type {ShortPlan | null} */
+  let shown = null;
   store.listen(["plan"], ({ plan: now }) => {
     if (!now) return;
     const summary = summaryOfPlan(now);
     if (shown && !isSamePlan(shown, summary)) store.update({ lastPlan: shown });
     shown = summary;
   });
-
-  /** A line of which only parts can be flown becomes these parts. */
-  function replaceByStretches(target, stretches) {
-    const parts = stretches.map((stretch) => {
-      const part = { ...target, position: null, stretch, centre: stretch[0] };
-      return { ...part, key: picks.keyOf(part) };
-    });
-    store.update({ why: null });
-    change({
-      ...selection(),
-      targets: selection().targets.flatMap((other) => (other.key === target.key ? parts : [other])),
-    });
-  }
-
-  return {
-    plan,
-    stop,
-    cancel,
-    resume,
-    replaceByStretches,
-    waitForJob,
-    makeRoom: aside.giveWay,
-    planAlternatives: () => store.state.plan && isPlanCurrent(store.state) && aside.wantAll(selection()),
-    stopAlternatives: aside.stop,
-  };
-}
-
-function cancelJob(job) {
-  if (job) post(`/jobs/${job}/cancel`, {}).catch(() => {}); // nobody waits for it
-}
-
-/**
- * The same by another objective, planned behind the page: its figures stand in the choice, and one click shows it. All of them where somebody
- * compares.
- *
- * A large one waits until the plan on the page is saved and nothing else of this person's runs, and gives way to what is asked for.
- */
-function planBeside(store) {
-  let wanted = null; // the selection of a large plan, until its other one is begun
-  let running = null; // the same while it is made
-  let stopping = null;
-  let job = null;
-
-  function stop() {
-    wanted = running = null;
-    stopping?.abort();
-    cancelJob(job);
-    [stopping, job] = [null, null];
-    store.update({ planningBeside: null });
-  }
-
-  /** To a save that the server has to plan for; the large one is made after it. */
-  function giveWay() {
-    if (!running || running.targets.length <= MOST_PLANNED_AT_ONCE) return;
-    const later = running;
-    stop();
-    wanted = later;
-  }
-
-  function want(asked) {
-    if (asked.targets.length <= MOST_PLANNED_AT_ONCE) void start(asked);
-    else {
-      wanted = asked;
-      beginWanted(store.state);
-    }
-  }
-
-  function beginWanted({ saving, planning, planIsStored, selection }) {
-    if (!wanted || saving || planning || !planIsStored) return;
-    const asked = wanted;
-    wanted = null;
-    if (picks.basisOf(selection) === picks.basisOf(asked)) void start(asked);
-  }
-  store.listen(["saving", "planning", "planIsStored"], beginWanted);
-
-  async function isAlone(signal) {
-    return (await get("/jobs?open=true&mine=true&limit=1", { signal })).data.results.length === 0;
-  }
-
-  async function start(asked) {
-    const other = { ...asked, objective: otherObjective(asked.objective) };
-    const basis = picks.basisOf(other);
-    if (store.state.figures[basis] || store.state.planningBeside === basis) return;
-    const own = begin(asked);
-    try {
-      if (asked.targets.length > MOST_PLANNED_AT_ONCE && !(await isAlone(own.signal))) return;
-      await make(other, own);
-    } catch (error) {
-      if (error.name !== "AbortError")
-        say(t("The other way of planning has no figures: {reason}", { reason: error.message }));
-    } finally {
-      end(own);
-    }
-  }
-
-  /** One after the other; what is refused says why, and the next is made. */
-  async function wantAll(asked) {
-    stop();
-    const own = begin(asked);
-    try {
-      for (const { value } of OBJECTIVES) {
-        const other = { ...asked, objective: value };
-        if (own.signal.aborted) return;
-        if (store.state.figures[picks.basisOf(other)] || (value === "energy" && isWithoutBattery(store.state.plan)))
-          continue;
-        try {
-          await make(other, own);
-        } catch (error) {
-          if (error.name === "AbortError") return;
-          store.update({ refusedBeside: { ...store.state.refusedBeside, [picks.basisOf(other)]: error.message } });
-        }
-      }
-    } finally {
-      end(own);
-    }
-  }
-
-  function begin(asked) {
-    stopping = new AbortController();
-    running = asked;
-    return stopping;
-  }
-
-  function end(own) {
-    if (stopping !== own) return;
-    [stopping, job, running] = [null, null, null];
-    store.update({ planningBeside: null });
-  }
-
-  async function make(other, own) {
-    const basis = picks.basisOf(other);
-    store.update({ planningBeside: basis });
-    const answer = await post("/plans", picks.requestOf(other)); // not cut short: a job that nobody knows of could not be stopped
-    const begun = answer.status === 202 ? answer.data.job : null;
-    if (own.signal.aborted) return void cancelJob(begun);
-    job = begun;
-    const made = job ? (await follow(job, { signal: own.signal })).result : answer.data;
-    job = null;
-    const result = made && begun ? { ...made, job: begun } : made;
-    if (result && !own.signal.aborted) store.update({ figures: withResult(store.state.figures, basis, result) });
-  }
-
-  return {
-    want,
-    wantAll,
-    stop,
-    giveWay,
-    keepOnlyFor(selection) {
-      const { planningBeside } = store.state;
-      const wanted = OBJECTIVES.map(({ value }) => picks.basisOf({ ...selection, objective: value }));
-      if (planningBeside && !wanted.includes(planningBeside)) stop();
-    },
-  };
 }

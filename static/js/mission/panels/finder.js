@@ -4,8 +4,7 @@ import { ApiError, get } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
 import { placesFound } from "../../map/places_found.js";
 import { t, tn } from "../../text.js";
-import { MOST_TARGETS } from "../actions/picking.js";
-import { detailOf } from "../selection.js";
+import { detailOf, MOST_TARGETS } from "../selection.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { AssetCollection, AssetFeature } from "../../api_types.d.ts" */

@@ -4,7 +4,7 @@ import { find, h, icon } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { boundsIn } from "../../../uav_figures.js";
 import { LONG_UNIT, SPEED_UNIT } from "../../../units.js";
-import { MOST_TARGETS } from "../../actions/picking.js";
+import { MOST_TARGETS } from "../../selection.js";
 
 /** @import { EndActionEnum } from "../../../api_types.d.ts" */
 /** @import { OwnFigure } from "../../../uav_figures.js" */

@@ -1,0 +1,125 @@
+/** Picking what stands in an area or along a line, as the server finds it. */
+
+import { get, post } from "../../api.js";
+import { toast } from "../../page/toast.js";
+import { t, tn } from "../../text.js";
+import * as picks from "../selection.js";
+
+/** @import { Answer } from "../../api.js" */
+/** @import { BridgesOutput, PickedAsset, StretchPart, SupportsOutput, WithinOutput } from "../../api_types.d.ts" */
+/** @import { MissionContext, PickedTarget } from "../types.d.ts" */
+
+/** @typedef {(targets: PickedTarget[], words: (added: string) => string) => number} AddMany adds many at once and says so */
+
+/** @param {PickedAsset[]} rows */
+const rowsToTargets = (rows) => rows.map(picks.targetOfRow);
+
+/** @param {MissionContext} context @param {AddMany} addMany */
+export function createNetworkPicking(context, addMany) {
+  return { ...createAreaPicking(context, addMany), ...createLinePicking(context, addMany) };
+}
+
+/** @param {MissionContext} context @param {AddMany} addMany */
+function createAreaPicking({ problem, failed }, addMany) {
+  /** What stands inside a ring. @param {number[][]} ring @param {{ from?: string }} [how] */
+  async function addArea(ring, { from = t("the area") } = {}) {
+    try {
+      const { data } = /** @type {Answer<WithinOutput>} */ (
+        await post("/assets/within", { polygon: { type: "Polygon", coordinates: [ring] } })
+      );
+      if (data.count > data.assets.length) {
+        problem(
+          t("{count} assets stand there.", { count: data.count }),
+          t("A mission takes {most}. Take a smaller area, or pick whole lines.", { most: picks.MOST_TARGETS }),
+          [],
+          { untilChanged: true },
+        );
+      } else if (!data.count) toast(t("No tower and no bridge stands in {area}.", { area: from }));
+      else addMany(rowsToTargets(data.assets), (added) => t("{added} from {area}.", { added, area: from }));
+    } catch (error) {
+      failed(t("The area could not be read."), error);
+    }
+  }
+
+  /** @param {[number, number, number, number]} box */
+  const addBox = ([west, south, east, north]) =>
+    addArea(
+      [
+        [west, south],
+        [east, south],
+        [east, north],
+        [west, north],
+      ],
+      { from: t("the box") },
+    );
+
+  return { addArea, addBox };
+}
+
+/** @param {MissionContext} context @param {AddMany} addMany */
+function createLinePicking({ failed }, addMany) {
+  /** What lies between two supports; null where that failed, which is said. @param {number} from @param {number} to */
+  async function stretchBetween(from, to) {
+    try {
+      return /** @type {Answer<SupportsOutput>} */ (await get(`/assets/stretch?from=${from}&to=${to}`)).data;
+    } catch (error) {
+      failed(t("There is no stretch between the two."), error, [], { untilChanged: true });
+      return null;
+    }
+  }
+
+  /** @param {PickedAsset[]} rows */
+  const addSupports = (rows) => addMany(rowsToTargets(rows), (added) => t("{added} along the line.", { added }));
+
+  /** Flown along: one target for each line that the path follows. @param {StretchPart[]} parts */
+  function addStretch(parts) {
+    const targets = parts.map(({ line, stretch, length_m }) => {
+      const [[west, south], [east, north]] = stretch;
+      const centre = [(west + east) / 2, (south + north) / 2];
+      return picks.targetOf({ id: line.id, kind: line.kind, properties: { ...line, length_m }, centre, stretch });
+    });
+    addMany(targets, (added) => t("{added} to fly along.", { added }));
+  }
+
+  /** @param {number} line */
+  async function addTowersOf(line) {
+    try {
+      const { data } = /** @type {Answer<SupportsOutput>} */ (await get(`/assets/${line}/supports`));
+      if (data.supports.length) addSupports(data.supports);
+      else toast(t("This line has no towers in the data."));
+    } catch (error) {
+      failed(t("The towers could not be read."), error);
+    }
+  }
+
+  /**
+   * Every bridge that carries the railway: of this section, or of all that are joined to it under the same name.
+   *
+   * @param {number} railway
+   * @param {{ allSections?: boolean }} [how]
+   */
+  async function addBridgesOf(railway, { allSections = true } = {}) {
+    try {
+      const { data } = /** @type {Answer<BridgesOutput>} */ (
+        await get(`/assets/${railway}/bridges?sections=${allSections ? "all" : "own"}`)
+      );
+      const sections = tn(data.sections, "{count} section", "{count} sections");
+      if (data.bridges.length)
+        addMany(rowsToTargets(data.bridges), (added) =>
+          t("{added}: every bridge of {sections} of the railway.", { added, sections }),
+        );
+      else
+        toast(
+          tn(
+            data.sections,
+            "No bridge carries this section of the railway.",
+            "No bridge carries one of the {count} sections of this railway.",
+          ),
+        );
+    } catch (error) {
+      failed(t("The bridges could not be read."), error);
+    }
+  }
+
+  return { stretchBetween, addSupports, addStretch, addTowersOf, addBridgesOf };
+}

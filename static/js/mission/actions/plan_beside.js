@@ -1,0 +1,168 @@
+/** The same selection planned by another objective behind the page: its figures stand in the choice, and one click shows it. */
+
+import { follow, get, isAbort, post } from "../../api.js";
+import { say } from "../../page/toast.js";
+import { t } from "../../text.js";
+import { isWithoutBattery, OBJECTIVES, otherObjective } from "../plan_view.js";
+import * as picks from "../selection.js";
+import { withResult } from "./plan_results.js";
+
+/** @import { Answer } from "../../api.js" */
+/** @import { JobLink, JobPage } from "../../api_types.d.ts" */
+/** @import { MissionPageState, MissionSelection, MissionStore, PlanResult } from "../types.d.ts" */
+
+export const MOST_PLANNED_AT_ONCE = 12; // up to here the server answers at once, and a mission that is opened gets both plans
+
+/** @param {unknown} error */
+const wordsOf = (error) => (error instanceof Error ? error.message : String(error));
+
+/** @param {string | null | undefined} job */
+export function cancelJob(job) {
+  if (job) post(`/jobs/${job}/cancel`, {}).catch(() => {}); // nobody waits for it
+}
+
+/**
+ * Plans one selection after the other; what is begun anew ends what went before.
+ *
+ * @param {MissionStore} store
+ */
+function createSideSearch(store) {
+  /** @type {MissionSelection | null} */
+  let running = null;
+  /** @type {AbortController | null} */
+  let stopping = null;
+  /** @type {string | null} */
+  let job = null;
+
+  return {
+    running: () => running,
+    /** @param {MissionSelection} asked */
+    begin(asked) {
+      stopping = new AbortController();
+      running = asked;
+      return stopping;
+    },
+    /** @param {AbortController} own */
+    end(own) {
+      if (stopping !== own) return;
+      stopping = job = running = null;
+      store.update({ planningBeside: null });
+    },
+    stop() {
+      stopping?.abort();
+      cancelJob(job);
+      stopping = job = running = null;
+      store.update({ planningBeside: null });
+    },
+    /** @param {MissionSelection} other @param {AbortController} own */
+    async make(other, own) {
+      const basis = picks.basisOf(other);
+      store.update({ planningBeside: basis });
+      const answer = /** @type {Answer<PlanResult | JobLink>} */ (await post("/plans", picks.requestOf(other))); // not cut short: a job that nobody knows of could not be stopped
+      const begun = "job" in answer.data && answer.status === 202 ? (answer.data.job ?? null) : null;
+      if (own.signal.aborted) {
+        cancelJob(begun);
+        return;
+      }
+      job = begun;
+      const made = job ? (await follow(job, { signal: own.signal })).result : answer.data;
+      job = null;
+      const result = /** @type {PlanResult | null} */ (made && begun ? { ...made, job: begun } : made);
+      if (result && !own.signal.aborted) store.update({ figures: withResult(store.state.figures, basis, result) });
+    },
+  };
+}
+
+/**
+ * Plans by one other objective, or by all of them where somebody compares. A large one waits until the plan on the page is saved and
+ * nothing else of this person's runs, and gives way to what is asked for.
+ *
+ * @param {MissionStore} store
+ */
+export function createPlanBeside(store) {
+  const search = createSideSearch(store);
+  /** @type {MissionSelection | null} */
+  let wanted = null; // the selection of a large plan, until its other one is begun
+
+  function stop() {
+    wanted = null;
+    search.stop();
+  }
+
+  /** @param {Readonly<MissionPageState>} state */
+  function beginWanted({ saving, planning, planIsStored, selection }) {
+    if (!wanted || saving || planning || !planIsStored) return;
+    const asked = wanted;
+    wanted = null;
+    if (picks.basisOf(selection) === picks.basisOf(asked)) void start(asked);
+  }
+  store.listen(["saving", "planning", "planIsStored"], beginWanted);
+
+  /** @param {AbortSignal} signal */
+  async function isAlone(signal) {
+    const { data } = /** @type {Answer<JobPage>} */ (await get("/jobs?open=true&mine=true&limit=1", { signal }));
+    return data.results.length === 0;
+  }
+
+  /** @param {MissionSelection} asked */
+  async function start(asked) {
+    const other = { ...asked, objective: otherObjective(asked.objective) };
+    const basis = picks.basisOf(other);
+    if (store.state.figures[basis] || store.state.planningBeside === basis) return;
+    const own = search.begin(asked);
+    try {
+      if (asked.targets.length > MOST_PLANNED_AT_ONCE && !(await isAlone(own.signal))) return;
+      await search.make(other, own);
+    } catch (error) {
+      if (!isAbort(error)) say(t("The other way of planning has no figures: {reason}", { reason: wordsOf(error) }));
+    } finally {
+      search.end(own);
+    }
+  }
+
+  return {
+    stop,
+    /** @param {MissionSelection} asked */
+    want(asked) {
+      if (asked.targets.length <= MOST_PLANNED_AT_ONCE) void start(asked);
+      else {
+        wanted = asked;
+        beginWanted(store.state);
+      }
+    },
+    /** One after the other; what is refused says why, and the next is made. @param {MissionSelection} asked */
+    async wantAll(asked) {
+      stop();
+      const own = search.begin(asked);
+      try {
+        for (const { value } of OBJECTIVES) {
+          const other = { ...asked, objective: value };
+          const basis = picks.basisOf(other);
+          if (own.signal.aborted) return;
+          if (store.state.figures[basis] || (value === "energy" && isWithoutBattery(store.state.plan))) continue;
+          try {
+            await search.make(other, own);
+          } catch (error) {
+            if (isAbort(error)) return;
+            store.update({ refusedBeside: { ...store.state.refusedBeside, [basis]: wordsOf(error) } });
+          }
+        }
+      } finally {
+        search.end(own);
+      }
+    },
+    /** To a save that the server has to plan for; the large one is made after it. */
+    giveWay() {
+      const later = search.running();
+      if (!later || later.targets.length <= MOST_PLANNED_AT_ONCE) return;
+      stop();
+      wanted = later;
+    },
+    /** @param {MissionSelection} selection */
+    keepOnlyFor(selection) {
+      const { planningBeside } = store.state;
+      const bases = OBJECTIVES.map(({ value }) => picks.basisOf({ ...selection, objective: value }));
+      if (planningBeside && !bases.includes(planningBeside)) stop();
+    },
+  };
+}

@@ -1,0 +1,41 @@
+/** Plans as they are kept on the page: with what they were made for, and by it. Values in, values out. */
+
+import * as picks from "../selection.js";
+
+/** @import { MissionPageState, MissionSelection, PlanResult, ShownPlan } from "../types.d.ts" */
+
+const MOST_KEPT = 16; // plans that undo, redo and the choice of what is best at bring back at once
+
+/**
+ * The plan of a result, with the selection that it was made for: its indices point into that.
+ *
+ * @param {PlanResult} result
+ * @param {MissionSelection} selection
+ * @returns {ShownPlan}
+ */
+export function planOf(result, selection) {
+  const { targets, uavs, charging_w = null } = selection;
+  return {
+    result,
+    basis: picks.basisOf(selection),
+    freeBasis: picks.basisOf(picks.withoutWishes(selection)),
+    targets,
+    uavs,
+    charging_w,
+  };
+}
+
+/**
+ * Results by what they were made for; the oldest go, and those of another ground: a zone may have come in since.
+ *
+ * @param {MissionPageState["figures"]} figures
+ * @param {string} basis
+ * @param {PlanResult} result
+ * @returns {MissionPageState["figures"]}
+ */
+export function withResult(figures, basis, result) {
+  const rest = Object.entries(figures).filter(
+    ([known, other]) => known !== basis && other.ground_revision === result.ground_revision,
+  );
+  return Object.fromEntries([...rest.slice(-MOST_KEPT + 1), [basis, result]]);
+}

@@ -1,0 +1,75 @@
+/** What a save sends: a whole new mission, or the parts of a stored one that differ. Values in, values out. */
+
+import { t } from "../../text.js";
+import { clockText, dayText } from "../../units.js";
+import { UNSAID } from "../flight_options.js";
+import { basisOf, requestOf } from "../selection.js";
+
+/** @import { MissionInputRequest, PlanInputRequest } from "../../api_types.d.ts" */
+/** @import { MissionPageState, MissionSelection, Version } from "../types.d.ts" */
+
+/**
+ * @typedef {object} Attempt to save
+ * @property {Version} asked what was on the page
+ * @property {Partial<MissionInputRequest>} body
+ * @property {string} key by which the server knows the attempt again
+ * @property {boolean} isNew
+ * @property {boolean} asCopy
+ */
+
+const UNASKED = { locks: [], ...UNSAID };
+const PARTS = /** @type {(keyof PlanInputRequest)[]} */ ([
+  "uavs",
+  "targets",
+  "objective",
+  "return_to_start",
+  ...Object.keys(UNASKED),
+]);
+
+const freshKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
+
+/**
+ * The parts of a selection that differ from what is stored, as the API takes them.
+ *
+ * @param {MissionSelection} selection
+ * @param {MissionSelection | null | undefined} stored
+ * @returns {Partial<PlanInputRequest>}
+ */
+export function changedParts(selection, stored) {
+  /** @type {Partial<PlanInputRequest>[]} */
+  const [now, before] = [requestOf(selection), stored ? requestOf(stored) : {}].map((body) => ({
+    ...UNASKED,
+    ...body,
+  }));
+  const changed = PARTS.filter((part) => JSON.stringify(now[part]) !== JSON.stringify(before[part]));
+  const movesPlaces = changed.includes("targets") || changed.includes("uavs"); // locks name UAVs and places in the list of targets
+  if (movesPlaces && now.locks?.length && !changed.includes("locks")) changed.push("locks");
+  return Object.fromEntries(changed.map((part) => [part, now[part]]));
+}
+
+/** @param {string} typed @param {MissionPageState["mission"]} mission */
+const nameOf = (typed, mission) =>
+  typed.trim() ||
+  mission?.name ||
+  t("Mission of {day}, {time}", { day: dayText(new Date().toISOString()), time: clockText(Date.now()) });
+
+/**
+ * @param {Pick<MissionPageState, "mission" | "plan" | "planIsStored" | "stored" | "selection" | "name">} state
+ * @param {boolean} asCopy
+ * @returns {Attempt}
+ */
+export function attemptOf({ mission, plan, planIsStored, stored, selection, name: typed }, asCopy) {
+  const isNew = !mission || asCopy;
+  const basis = basisOf(selection);
+  /** @type {Attempt["body"]} */
+  const body = isNew ? requestOf(selection) : changedParts(selection, stored?.selection);
+  const name = nameOf(typed, mission);
+  if (asCopy) body.name = t("{name} (copy)", { name });
+  else if (name !== mission?.name) body.name = name;
+  const isPlanNew = isNew || !planIsStored || !stored || basis !== basisOf(stored.selection);
+  if (plan?.basis === basis && isPlanNew) {
+    body.plan = true;
+    if (plan.result.job) body.plan_of = plan.result.job;
+  }
+  return { asked: { selection, name: typed }, body, key: freshKey(), isNew, asCopy };
+}

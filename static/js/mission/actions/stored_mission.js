@@ -1,0 +1,59 @@
+/** The stored mission on the page: what the server has of it, under what has been changed here since. */
+
+import * as picks from "../selection.js";
+import { planOf, withResult } from "./plan_results.js";
+
+/** @import { Mission } from "../../api_types.d.ts" */
+/** @import { MissionContext, MissionSelection, Problem, ShownPlan, Version } from "../types.d.ts" */
+
+/** What is said of a plan stays over a save: it stands until something else is picked. @param {Problem | null} standing */
+export const unlessOfSaving = (standing) => (standing?.about && !standing.isOfSaving ? standing : null);
+
+/** @param {Pick<MissionContext, "store" | "history" | "selection">} context */
+export function createStoredMission({ store, history, selection }) {
+  /** @param {Mission} mission */
+  function storedOf(mission) {
+    const stored = picks.selectionOf(mission, store.state.fleet);
+    return { stored, plan: mission.plan ? planOf(mission.plan, stored) : null };
+  }
+
+  /** @param {Mission} mission @param {MissionSelection} stored @param {ShownPlan | null} plan */
+  function shownAs(mission, stored, plan) {
+    store.update({
+      mission,
+      stored: { name: mission.name, selection: stored },
+      plan: plan ?? store.state.plan,
+      planIsStored: Boolean(plan),
+      savedBasis: picks.storedBasisOf(stored),
+      figures: plan ? withResult(store.state.figures, plan.basis, plan.result) : store.state.figures,
+      problem: unlessOfSaving(store.state.problem),
+      conflict: null,
+      isAway: false,
+    });
+  }
+
+  return {
+    storedOf,
+    shownAs,
+    /** @param {Mission} mission */
+    openStored(mission) {
+      const { stored, plan } = storedOf(mission);
+      history.startFrom(stored);
+      store.update({ name: mission.name });
+      shownAs(mission, stored, plan);
+    },
+    /**
+     * The mission as it has just been stored. The history stays, and what was changed meanwhile stays as well.
+     *
+     * @param {Mission} mission
+     * @param {Version} asked
+     */
+    keepOpen(mission, asked) {
+      const { stored, plan } = storedOf(mission);
+      const isAsAsked = picks.storedBasisOf(stored) === picks.storedBasisOf(asked.selection);
+      if (selection() === asked.selection && !isAsAsked) history.settle(stored);
+      if (store.state.name === asked.name && asked.name.trim()) store.update({ name: mission.name });
+      shownAs(mission, stored, plan);
+    },
+  };
+}
