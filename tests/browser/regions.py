@@ -30,7 +30,7 @@ class Region:
     centre: Position  # of the infrastructure; nothing of it is nearer than 10 m
     everything: str  # box around the region
     towers: str  # box with a row of towers that stand alone, outside the zones
-    all_towers: str  # box with towers around both start positions
+    all_towers: str  # box with towers around both start positions; plans of a few of them are proven
     bridges: str  # box with bridges that stand alone
     railways: str  # box with railways
     lines: str  # box with a flyable power line
@@ -96,7 +96,7 @@ ELME_VALLEY = Region(
     centre=[26.6, 25.7],
     everything="26.39,25.57,26.81,25.83",
     towers="26.59,25.62,26.665,25.70",
-    all_towers="26.49,25.62,26.72,25.76",
+    all_towers="26.53,25.62,26.70,25.70",
     bridges="26.63,25.705,26.73,25.725",
     railways="26.43,25.67,26.51,25.70",
     lines="26.40,25.63,26.50,25.72",
@@ -120,7 +120,7 @@ ELME_VALLEY = Region(
     tower_label=r"[EHV]\d{3}-\d+",
     picture_line=r"H133-(\d+)",
     picture_towers="26.58,25.65,26.67,25.72",
-    sortie_battery_wh=240.0,
+    sortie_battery_wh=170.0,
     afternoon_utc="13:00",
     night_utc="16:10",
 )
