@@ -44,7 +44,9 @@ export const WHY = { name: "why", label: t("Why (kept in the history)") };
  */
 /** @typedef {Partial<AskedFlyer> & { name: string }} AskedOf */
 
-/** @type {Record<Exclude<CommandKind, "upload-mission" | "clear-mission">, (flyer: AskedFlyer) => Omit<Question, "opener">>} */
+/** @typedef {Exclude<CommandKind, "upload-mission" | "clear-mission">} AskedKind */
+
+/** @type {Record<AskedKind, (flyer: AskedFlyer) => Omit<Question, "opener">>} */
 const ASKED = {
   start: ({ name, route }) => ({
     title: t("Start {name}?", { name }),
@@ -159,7 +161,7 @@ const ASKED = {
 /**
  * What confirmAct asks.
  *
- * @param {keyof typeof ASKED} kind
+ * @param {AskedKind} kind
  * @param {AskedOf} flyer
  */
 export const questionOf = (kind, flyer) => ASKED[kind](/** @type {AskedFlyer} */ (flyer));

@@ -2,7 +2,10 @@
 
 import { t } from "../text.js";
 
+/** @import { Alert, AlertLevel } from "../api_types.d.ts" */
+
 const KEY = "spanwise.alarm";
+/** [Hz, after s, for s] @type {Partial<Record<AlertLevel, [number, number, number][]>>} */
 const SOUNDS = {
   critical: [
     [880, 0, 0.16],
@@ -11,9 +14,10 @@ const SOUNDS = {
     [660, 0.6, 0.22],
   ],
   warning: [[520, 0, 0.28]],
-}; // [Hz, after s, for s]
+};
 const LOUDNESS = 0.18;
 
+/** @returns {{ sound: boolean, notify: boolean }} */
 function remembered() {
   try {
     return { sound: false, notify: false, ...JSON.parse(localStorage.getItem(KEY) ?? "{}") };
@@ -22,8 +26,14 @@ function remembered() {
   }
 }
 
-/** Those that have come since the last look and that somebody is to be told of: one cause once, and again where it has become worse. */
+/**
+ * Those that have come since the last look and that somebody is to be told of: one cause once, and again where it has become worse.
+ *
+ * @param {Alert[]} alerts
+ * @param {Map<number, AlertLevel>} told level by id
+ */
 export function newAlerts(alerts, told) {
+  /** @param {Alert} alert */
   const isNew = ({ id, level, closed_at, acknowledged_at }) =>
     closed_at === null && acknowledged_at === null && told.get(id) !== level;
   return alerts.filter(isNew);
@@ -31,26 +41,30 @@ export function newAlerts(alerts, told) {
 
 export function createAlarm() {
   let choice = remembered();
+  /** @type {AudioContext | null} */
   let audio = null;
 
+  /** @param {AlertLevel} level */
   function play(level) {
     const notes = SOUNDS[level];
     if (!notes || !choice.sound) return;
     audio ??= new AudioContext();
-    void audio.resume();
+    const output = audio;
+    void output.resume();
     for (const [hertz, after_s, for_s] of notes) {
-      const [tone, volume] = [audio.createOscillator(), audio.createGain()];
-      const begin_s = audio.currentTime + after_s;
+      const [tone, volume] = [output.createOscillator(), output.createGain()];
+      const begin_s = output.currentTime + after_s;
       tone.type = level === "critical" ? "square" : "sine";
       tone.frequency.value = hertz;
       volume.gain.setValueAtTime(LOUDNESS, begin_s);
       volume.gain.exponentialRampToValueAtTime(0.001, begin_s + for_s);
-      tone.connect(volume).connect(audio.destination);
+      tone.connect(volume).connect(output.destination);
       tone.start(begin_s);
       tone.stop(begin_s + for_s);
     }
   }
 
+  /** @param {Partial<ReturnType<typeof remembered>>} change */
   function keep(change) {
     choice = { ...choice, ...change };
     try {
@@ -62,21 +76,23 @@ export function createAlarm() {
 
   return {
     choice: () => choice,
-    /** By a click: browsers let nothing sound before one. */
+    /** By a click: browsers let nothing sound before one. @param {boolean} isOn */
     setSound(isOn) {
       keep({ sound: isOn });
       if (isOn) play("warning");
     },
-    /** Resolves to whether the browser lets us. */
+    /** Resolves to whether the browser lets us. @param {boolean} isOn */
     async setNotify(isOn) {
       const isAllowed = isOn && "Notification" in globalThis && (await Notification.requestPermission()) === "granted";
       keep({ notify: isAllowed });
       return isAllowed === isOn;
     },
+    /** @param {Alert[]} alerts */
     sound: (alerts) => {
       if (alerts.some(({ level }) => level === "critical")) play("critical");
       else if (alerts.some(({ level }) => level === "warning")) play("warning");
     },
+    /** @param {Alert[]} alerts */
     notify(alerts) {
       if (
         !choice.notify ||

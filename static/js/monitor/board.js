@@ -5,6 +5,26 @@ import { routeLetter } from "../domain/palette.js";
 import { t } from "../text.js";
 import { isHeld } from "./uav_words.js";
 
+/** @import { LiveMission, LiveTarget, LiveUav, Mission, TargetState } from "../api_types.d.ts" */
+
+/**
+ * A target on the board.
+ *
+ * @typedef {object} BoardRow
+ * @property {string} key
+ * @property {string} mission
+ * @property {number} place in the mission's list
+ * @property {number | null} uav place of the UAV that flies to it
+ * @property {string} pill
+ * @property {string} label
+ * @property {BoardState} state
+ * @property {string | null} at when it is expected or was reached
+ * @property {boolean} isExpected
+ * @property {string} reason
+ */
+/** @typedef {TargetState | "held"} BoardState `held`: its UAV holds on the way to it */
+
+/** @type {Record<BoardState, { words: string, image: string, rank: number }>} */
 export const STATES = {
   held: { words: t("Held"), image: "circle-pause", rank: 0 },
   "in-progress": { words: t("In progress"), image: "circle-dot", rank: 1 },
@@ -14,33 +34,55 @@ export const STATES = {
   complete: { words: t("Complete"), image: "circle-check", rank: 5 },
 };
 
+/** @type {Record<string, string>} */
 const REASONS = {
   "flight-failed": t("Its flight failed."),
   "not-reached": t("The UAV went past it at a distance."),
   "not-held": t("The UAV did not stay long enough."),
 };
 
-/** Why a target was skipped or failed: a known code in words, anything else as it is. */
-export const reasonWords = (reason) => REASONS[reason] ?? reason ?? "";
+/**
+ * Why a target was skipped or failed: a known code in words, anything else as it is.
+ *
+ * @param {string | null | undefined} reason
+ */
+export const reasonWords = (reason) => REASONS[reason ?? ""] ?? reason ?? "";
 
-/** Number of each target on its route, by its place in the mission; from the mission as the REST API shows it. */
+/**
+ * Number of each target on its route, by its place in the mission; from the mission as the REST API shows it.
+ *
+ * @param {Mission | undefined} detail
+ */
 export function numbersOf(detail) {
+  /** @type {Map<number, number>} */
   const numbers = new Map();
   for (const route of detail?.plan?.routes ?? [])
-    route.targets.forEach((target, index) => numbers.set(target, index + 1));
+    for (const [index, target] of route.targets.entries()) numbers.set(target, index + 1);
   return numbers;
 }
 
-/** "C3", or the bare number of a target that nobody flies to. */
+/**
+ * "C3", or the bare number of a target that nobody flies to.
+ *
+ * @param {Pick<LiveTarget, "place" | "uav">} target
+ * @param {Map<number, number>} numbers
+ */
 export const pillOf = (target, numbers) =>
   target.uav === null ? `${target.place + 1}` : `${routeLetter(target.uav)}${numbers.get(target.place) ?? ""}`;
 
-/** Rows: [{ key, mission, place, uav, pill, label, state, at, isExpected, reason }], what goes on first, what is done last. */
+/**
+ * Rows: [{ key, mission, place, uav, pill, label, state, at, isExpected, reason }], what goes on first, what is done last.
+ *
+ * @param {LiveMission[]} missions
+ * @param {LiveUav[]} uavs
+ * @param {Map<string, Mission>} details
+ * @returns {BoardRow[]}
+ */
 export function boardRows(missions, uavs, details) {
   const rows = missions.flatMap((mission) => {
     const numbers = numbersOf(details.get(mission.id));
     const flying = new Map(uavs.filter((uav) => uav.mission === mission.id).map((uav) => [uav.place, uav]));
-    return mission.targets.map((target) => rowOf(mission, target, flying.get(target.uav), numbers));
+    return mission.targets.map((target) => rowOf(mission, target, numbers, flying.get(target.uav ?? -1)));
   });
   return rows.sort(
     (a, b) =>
@@ -50,22 +92,30 @@ export function boardRows(missions, uavs, details) {
   );
 }
 
-/** What is to come by its time, what is over the newest first. */
+/** What is to come by its time, what is over the newest first. @param {BoardRow} a @param {BoardRow} b */
 function later(a, b) {
   const [one, other] = [a, b].map(({ at }) => (at ? Date.parse(at) : Infinity));
   if (one === other) return 0;
   return a.isExpected || a.at === null || b.at === null ? one - other : other - one;
 }
 
-function rowOf(mission, target, uav, numbers) {
+/**
+ * @param {LiveMission} mission
+ * @param {LiveTarget} target
+ * @param {Map<number, number>} numbers
+ * @param {LiveUav | undefined} uav
+ * @returns {BoardRow}
+ */
+function rowOf(mission, target, numbers, uav) {
   const arrivals = uav?.estimated?.arrivals ?? [];
   const arrival = arrivals.find((entry) => entry.target === target.place);
-  const isToCome = ["pending", "in-progress"].includes(target.state);
+  const isToCome = target.state === "pending" || target.state === "in-progress";
   const isNext = arrivals.find((entry) => entry.target !== null)?.target === target.place;
+  /** @type {BoardState} */
   const state =
-    isToCome && isNext && isHeld(uav)
+    isToCome && isNext && uav && isHeld(uav)
       ? "held"
-      : target.state === "pending" && isNext && inAir(uav)
+      : target.state === "pending" && isNext && uav && inAir(uav)
         ? "in-progress"
         : target.state;
   return {

@@ -3,15 +3,22 @@
 import { t } from "../text.js";
 import { numberText } from "../units.js";
 
+/** @import { LiveLink } from "../api_types.d.ts" */
+
 const ALIKE = 0.1; // as much as what was learnt of a clock may be off
 
-/** Its seconds a second: the whole number that is learnt more or less; 1 of what is no simulated UAV. */
+/**
+ * Its seconds a second: the whole number that is learnt more or less; 1 of what is no simulated UAV.
+ *
+ * @param {{ link?: Pick<LiveLink, "clock_rate"> | null, is_simulated: boolean }} uav
+ */
 export function rateOf({ link, is_simulated }) {
   const rate = is_simulated ? (link?.clock_rate ?? 1) : 1;
   const whole = Math.round(rate);
   return Math.abs(rate - whole) <= ALIKE * rate ? whole : Math.round(rate * 10) / 10;
 }
 
+/** @param {number} rate */
 export const rateWords = (rate) =>
   t("It flies {rate} times as fast as the clock on the wall, by which all times here are told.", {
     rate: numberText(rate, Number.isInteger(rate) ? 0 : 1),

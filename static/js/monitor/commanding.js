@@ -6,14 +6,19 @@ import { LATE, questionOf } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
 import { flyingUavs } from "../domain/in_air.js";
 import { returnOf } from "../domain/own_return.js";
-import { routeLetter } from "../domain/palette.js";
 import { confirmAct } from "../page/confirm.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
 import { unheardLines } from "./unheard.js";
 
+/** @import { CommandKind, LiveMission, LiveUav, Mission, ReturnCheck, ReturnChecks } from "../api_types.d.ts" */
+/** @import { Answer } from "../api.js" */
+/** @import { AskedKind } from "../domain/command_questions.js" */
+/** @import { Commanding, MonitorStore } from "./types.d.ts" */
+
 const AGAIN = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
+/** @type {Record<"pause" | "return", { title: (uavs: number) => string, lines: string[], act: string, isBack: boolean }>} */
 const ALL = {
   pause: {
     title: (uavs) => tn(uavs, "Pause {count} UAV?", "Pause all {count} UAVs?"),
@@ -29,10 +34,15 @@ const ALL = {
   },
 };
 
-/** Figures of now in a question: the battery, what is left, the targets that stay open. */
+/**
+ * Figures of now in a question: the battery, what is left, the targets that stay open.
+ *
+ * @param {Pick<LiveUav, "measured" | "estimated" | "place">} uav
+ * @param {LiveMission | undefined} mission
+ */
 export function figuresLine({ measured, estimated, place }, mission) {
   const open = (mission?.targets ?? []).filter(
-    ({ uav, state }) => uav === place && ["pending", "in-progress"].includes(state),
+    ({ uav, state }) => uav === place && (state === "pending" || state === "in-progress"),
   ).length;
   const said = [
     typeof measured?.battery_percent === "number" &&
@@ -45,9 +55,15 @@ export function figuresLine({ measured, estimated, place }, mission) {
   return said.length ? `${said.join(", ")}.`.replace(/^./, (first) => first.toLocaleUpperCase()) : "";
 }
 
+/** The UAV in its mission's plan. @param {LiveUav} uav @param {Map<string, Mission>} details */
+const plannedOf = ({ mission, place }, details) => details.get(mission ?? "")?.uavs[place ?? -1];
+
+/** @param {MonitorStore} store @returns {Commanding} */
 export function createCommanding(store) {
+  /** @param {LiveUav} uav */
   const certainty = (uav) => certaintyOf(uav, store.state.now_ms);
 
+  /** @param {LiveUav} uav @param {CommandKind} kind @param {Record<string, any>} [filled] what was filled in */
   async function told(uav, kind, { why = "", ...parameters } = {}) {
     try {
       await post(`/uavs/${uav.id}/commands`, { kind, why, parameters }, { headers: { "Idempotency-Key": AGAIN() } });
@@ -60,25 +76,26 @@ export function createCommanding(store) {
     }
   }
 
+  /** @param {LiveUav} uav @param {CommandKind} kind @returns {Promise<ReturnCheck | undefined>} */
   async function wayHome(uav, kind) {
-    if (!["return", "abort"].includes(kind) || uav.mission === null) return undefined;
+    if (!["return", "abort"].includes(kind) || uav.mission === null || uav.place === null) return undefined;
     try {
-      return returnOf((await get(`/missions/${uav.mission}/returns`)).data.results, uav.place);
+      const { data } = /** @type {Answer<ReturnChecks>} */ (await get(`/missions/${uav.mission}/returns`));
+      return returnOf(data.results, uav.place);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       return undefined; // the question says that nobody has looked
     }
   }
 
-  /** opener: the button out of which the question grows. */
+  /** @type {Commanding["ask"]} */
   async function ask(id, kind, opener = null) {
     const uav = store.state.uavs.find((entry) => entry.id === id);
     if (!uav) return;
     const mission = store.state.missions.find((entry) => entry.id === uav.mission);
-    const planned = store.state.details.get(uav.mission)?.uavs[uav.place];
+    const planned = plannedOf(uav, store.state.details);
     const question = questionOf(kind, {
       name: uav.name,
-      letter: uav.place === null ? "" : routeLetter(uav.place),
       speed_mps: planned?.cruise_speed_mps ?? uav.measured?.speed_mps ?? 5,
       returns: await wayHome(uav, kind),
     });
@@ -88,8 +105,8 @@ export function createCommanding(store) {
     if (asked) await told(uav, kind, asked);
   }
 
-  /** kind: "pause" or "return". */
-  async function askAll(kind, opener) {
+  /** @type {Commanding["askAll"]} */
+  async function askAll(kind, opener = null) {
     const uavs = flyingUavs(store.state);
     const { title, lines, ...rest } = ALL[kind];
     if (!uavs.length) return void toast(t("No UAV is in the air."));

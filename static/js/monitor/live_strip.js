@@ -5,12 +5,33 @@ import { MEASURED } from "../domain/certainty.js";
 import { profileOf } from "../domain/route_profile.js";
 import { layOut, scaleOf } from "../mission/strips/span_strip.js";
 
+/** @import { LiveUav, Route, TargetState } from "../api_types.d.ts" */
+/** @import { Certainty } from "../domain/certainty.js" */
+/** @import { Pill } from "../mission/strips/span_strip.js" */
+
+/** @typedef {{ at_m: number, within_m: number }} Progress */
+/**
+ * @typedef {object} LiveStripOptions
+ * @property {Pick<Route, "waypoints" | "length_m">} route
+ * @property {number} width_px
+ * @property {string} label for screen readers
+ * @property {Map<number, TargetState>} states of each target by its place
+ * @property {Progress | null} progress as progressOf says it
+ * @property {Certainty | null} certainty
+ */
+
 const HEIGHT_PX = 34;
 const MIDDLE_PX = 18;
 const DART_PX = 9;
 const LEAST_BRACKET_PX = 9;
 
-/** How far along its route a UAV is [m], and how far off that may be: { at_m, within_m }; null where nobody knows. */
+/**
+ * How far along its route a UAV is [m], and how far off that may be: { at_m, within_m }; null where nobody knows.
+ *
+ * @param {Pick<LiveUav, "estimated" | "measured"> & { link?: Pick<LiveUav["link"], "waypoint_sequence"> | null }} uav
+ * @param {readonly number[]} places of its waypoints along the route [m]
+ * @returns {Progress | null}
+ */
 export function progressOf({ estimated, measured, link }, places) {
   if (estimated && estimated.along_route_m !== null)
     return { at_m: estimated.along_route_m, within_m: estimated.bound.along_m };
@@ -20,14 +41,16 @@ export function progressOf({ estimated, measured, link }, places) {
     : { at_m: places[Math.min(Math.max(0, next - 1), places.length - 1)], within_m: 0 };
 }
 
-/** states: of each target by its place, "complete" and so on. `progress` as progressOf says it. */
+/** @param {LiveStripOptions} options */
 export function liveStrip({ route, width_px, label, states, progress, certainty }) {
   const profile = profileOf(route.waypoints, route.length_m);
   const plan = layOut(profile, route.length_m, width_px);
   const { x } = scaleOf(route.length_m, width_px);
   const at = progress ? x(Math.min(route.length_m, Math.max(0, progress.at_m))) : plan.start;
+  /** @param {number} x1 @param {number} x2 @param {boolean} off @param {string} kind */
   const leg = (x1, x2, off, kind) =>
     x2 > x1 && svg("line", { x1, x2, y1: MIDDLE_PX, y2: MIDDLE_PX, class: `strip-leg ${kind}${off ? " off" : ""}` });
+  /** @param {number} place [px] */
   const base = (place) => svg("rect", { x: place - 4, y: MIDDLE_PX - 4, width: 8, height: 8, class: "strip-base" });
   return svg(
     "svg",
@@ -53,12 +76,20 @@ export function liveStrip({ route, width_px, label, states, progress, certainty 
   );
 }
 
-/** Filled once all of its targets are done, red where one failed. */
+/**
+ * Filled once all of its targets are done, red where one failed.
+ *
+ * @param {Pill<number | null>} pill
+ * @param {Map<number, TargetState>} states
+ */
 function drawPill({ x, width, label, targets }, states) {
-  const of = (state) => targets.some((target) => states.get(target) === state);
+  /** @param {number | null} target */
+  const stateOf = (target) => (target === null ? undefined : states.get(target));
+  /** @param {TargetState} state */
+  const of = (state) => targets.some((target) => stateOf(target) === state);
   const look = of("failed")
     ? "failed"
-    : targets.every((target) => states.get(target) === "complete")
+    : targets.every((target) => stateOf(target) === "complete")
       ? "complete"
       : of("skipped")
         ? "skipped"
@@ -71,6 +102,7 @@ function drawPill({ x, width, label, targets }, states) {
   );
 }
 
+/** @param {number} at [px] @param {number} half_px @param {Certainty | null} certainty */
 function drawUav(at, half_px, certainty) {
   const dart = svg("path", {
     class: "strip-uav",

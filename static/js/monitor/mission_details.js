@@ -3,11 +3,19 @@
 import { ApiError, get } from "../api.js";
 import { inAir } from "../domain/in_air.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { LiveMission, Mission } from "../api_types.d.ts" */
+/** @import { MonitorStore } from "./types.d.ts" */
+
+/** @typedef {Map<number, { parts: number[][][], last_ms: number }>} Flown lines by UAV */
+/** @typedef {{ geometry: { coordinates: number[] } | null, properties: { uav: number, measured_at: string, is_from_future?: boolean } }} Report */
+
 const MOST_RECORDS = 900;
 const GAP_S = 45; // no line is drawn over a longer silence: nobody knows what was flown
 
-/** The log as parts of a line by UAV: Map of uav → { parts: [[lon lat, …], …], last_ms }. */
+/** The log as parts of a line by UAV: Map of uav → { parts: [[lon lat, …], …], last_ms }. @param {Report[]} features */
 export function flownParts(features) {
+  /** @type {Flown} */
   const flown = new Map();
   for (const { geometry, properties } of features) {
     if (geometry && !properties.is_from_future)
@@ -16,29 +24,41 @@ export function flownParts(features) {
   return flown;
 }
 
-/** Puts one more report behind a UAV's line; an older one, or the same, changes nothing. Returns whether it was put there. */
+/**
+ * Puts one more report behind a UAV's line; an older one, or the same, changes nothing. Returns whether it was put there.
+ *
+ * @param {Flown} flown
+ * @param {number} uav
+ * @param {number[]} position
+ * @param {number} at_ms
+ * @param {number} [gap_s]
+ */
 export function addReport(flown, uav, position, at_ms, gap_s = GAP_S) {
   const known = flown.get(uav);
   if (!known) flown.set(uav, { parts: [[position]], last_ms: at_ms });
   else if (at_ms <= known.last_ms) return false;
   else {
     if (at_ms - known.last_ms > gap_s * 1000) known.parts.push([position]);
-    else known.parts.at(-1).push(position);
+    else known.parts.at(-1)?.push(position);
     known.last_ms = at_ms;
   }
   return true;
 }
 
+/** @param {MonitorStore} store */
 export function createMissionDetails(store) {
+  /** @type {Map<string, number>} */
   const asked = new Map(); // mission → revision that was read
+  /** @type {Flown} */
   const flown = new Map();
 
+  /** @param {LiveMission} mission */
   async function read({ id, revision }) {
     if (asked.get(id) === revision) return;
     const isFirst = !asked.has(id);
     asked.set(id, revision);
     try {
-      const { data } = await get(`/missions/${id}`);
+      const { data } = /** @type {Answer<Mission>} */ (await get(`/missions/${id}`));
       store.update({ details: new Map([...store.state.details, [id, data]]) });
       if (isFirst) await readFlown(id);
     } catch (error) {
@@ -47,9 +67,14 @@ export function createMissionDetails(store) {
     }
   }
 
+  /** @param {string} mission */
   async function readFlown(mission) {
+    /** @type {Report[]} */
     const features = [];
-    for (let next = `/telemetry?mission=${mission}&most=${MOST_RECORDS}&limit=1000`; next; ) {
+    /** @type {string | null} */
+    let next = `/telemetry?mission=${mission}&most=${MOST_RECORDS}&limit=1000`;
+    while (next) {
+      /** @type {Answer<{ features: Report[], next: string | null }>} */
       const { data } = await get(next);
       features.push(...data.features);
       next = data.next;
@@ -57,14 +82,16 @@ export function createMissionDetails(store) {
     for (const [uav, line] of flownParts(features)) {
       const live = flown.get(uav)?.parts.flat() ?? [];
       flown.set(uav, line);
-      live.slice(-1).forEach((position) => line.parts.at(-1).push(position));
+      line.parts.at(-1)?.push(...live.slice(-1));
     }
     tell();
   }
 
   const tell = () => store.update({ flown: new Map([...flown].map(([uav, { parts }]) => [uav, parts])) });
 
-  store.listen(["missions"], ({ missions }) => missions.forEach((mission) => void read(mission)));
+  store.listen(["missions"], ({ missions }) => {
+    for (const mission of missions) void read(mission);
+  });
   store.listen(["uavs"], ({ uavs }) => {
     const isNew = uavs.map(
       (uav) =>

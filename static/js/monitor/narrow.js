@@ -1,6 +1,6 @@
 /** Where the window is narrow, alerts and board are the side's second tab instead of a panel of their own. */
 
-import { byId } from "../dom.js";
+import { byId, find } from "../dom.js";
 
 const narrow = matchMedia("(max-width: 1099px)");
 
@@ -10,7 +10,7 @@ export function mountNarrow() {
   const tabs = byId("narrow-tabs");
 
   function place() {
-    const isBoard = narrow.matches && tabs.querySelector(":checked").value === "board";
+    const isBoard = narrow.matches && find(tabs, ":checked", HTMLInputElement).value === "board";
     (narrow.matches ? byId("part-board") : byId("right")).append(parts);
     tabs.hidden = !narrow.matches;
     byId("right").hidden = narrow.matches;
@@ -23,9 +23,9 @@ export function mountNarrow() {
   place();
   return {
     showBoard() {
-      tabs.querySelector("[value=board]").checked = true;
+      find(tabs, "[value=board]", HTMLInputElement).checked = true;
       place();
-      parts.parentElement.scrollTop = 0;
+      parts.parentElement?.scrollTo(0, 0);
       byId("alerts-title").focus({ preventScroll: true });
     },
   };

@@ -4,12 +4,17 @@ import { routeLetter } from "../domain/palette.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
 
+/** @import { LiveOffer, OfferState } from "../api_types.d.ts" */
+/** @import { OfferCause, OfferDifference, OfferFigures } from "./types.d.ts" */
+
+/** @type {Record<string, string>} */
 const CAUSES = {
   "uav-out": t("A UAV has dropped out"),
   "zone-active": t("A no-fly zone has come into force"),
   "battery-short": t("A battery will not do"),
   "asked-for": t("Asked for"),
 };
+/** @type {Record<string, string>} */
 const CHANGES = {
   untouched: t("flies on as approved"),
   changed: t("gets another route"),
@@ -17,6 +22,7 @@ const CHANGES = {
   out: t("has dropped out"),
 };
 
+/** @type {Partial<Record<OfferState, string>>} */
 const OUTCOMES = {
   accepted: t("The other plan is flown."),
   declined: t("The other plan was declined: what was approved is flown."),
@@ -24,30 +30,55 @@ const OUTCOMES = {
   impossible: t("No other plan can be flown."),
 };
 
-/** Of an offer that is over: { strong, rest }. */
+/** What another plan changes; empty while it is computed. @param {Pick<LiveOffer, "difference">} offer */
+export const differenceOf = ({ difference }) => /** @type {OfferDifference} */ (difference ?? {});
+
+/** @param {Pick<LiveOffer, "cause">} offer */
+const causeOf = ({ cause }) => /** @type {OfferCause} */ (cause ?? {});
+
+/**
+ * Of an offer that is over: { strong, rest }.
+ *
+ * @param {Pick<LiveOffer, "state" | "outcome" | "decided_by" | "decided_at">} offer
+ */
 export const overWords = ({ state, outcome, decided_by, decided_at }) => ({
-  strong: OUTCOMES[state],
-  rest: decided_by ? t("Decided by {who}, {time}.", { who: decided_by, time: clockText(decided_at) }) : (outcome ?? ""),
+  strong: OUTCOMES[state] ?? "",
+  rest: decided_by
+    ? t("Decided by {who}, {time}.", { who: decided_by, time: decided_at ? clockText(decided_at) : "" })
+    : (outcome ?? ""),
 });
 
+/** @param {Pick<LiveOffer, "state">} offer */
 export const isUndecided = ({ state }) => state === "computing" || state === "open";
-/** Of a zone: which one, and between which targets it lies across whose route. */
-export const causeWords = ({ code, cause }) =>
-  cause?.leg
+/**
+ * Of a zone: which one, and between which targets it lies across whose route.
+ *
+ * @param {Pick<LiveOffer, "code" | "cause">} offer
+ */
+export function causeWords({ code, cause }) {
+  const { leg, zone_name = "", uav_name = "" } = causeOf({ cause });
+  return leg
     ? t("{zone} lies across the route of {uav}, {way}", {
-        zone: cause.zone_name,
-        uav: cause.uav_name,
-        way: wayWords(cause.leg),
+        zone: zone_name,
+        uav: uav_name,
+        way: wayWords(leg),
       })
     : (CAUSES[code] ?? code);
+}
 
+/** @param {[string | null, string | null]} leg */
 function wayWords([start, end]) {
   if (start && end) return t("{start} to {end}|way", { start, end });
   return start ? t("after {start}", { start }) : end ? t("start to {end}|way", { end }) : t("on its way");
 }
 
-/** The sentence first: "2 UAVs get another route, 3 targets change hands, 1 stays undone." */
-export function sentenceOf({ difference: { uavs = [], targets = [], unreached = 0 } }) {
+/**
+ * The sentence first: "2 UAVs get another route, 3 targets change hands, 1 stays undone."
+ *
+ * @param {Pick<LiveOffer, "difference">} offer
+ */
+export function sentenceOf(offer) {
+  const { uavs = [], targets = [], unreached = 0 } = differenceOf(offer);
   const changed = uavs.filter(({ change }) => change === "changed").length;
   const handed = targets.filter(({ to }) => to !== null).length;
   return [
@@ -59,6 +90,7 @@ export function sentenceOf({ difference: { uavs = [], targets = [], unreached = 
     .join(", ");
 }
 
+/** @param {OfferFigures} figures */
 const figureWords = (figures) =>
   [
     lengthText(figures.length_m),
@@ -68,9 +100,13 @@ const figureWords = (figures) =>
     .filter(Boolean)
     .join(", ");
 
-/** Per UAV: [{ place, letter, name, what, before, after, why }]. Of one that is out its reason names it and says all. */
-export const uavLines = ({ difference: { uavs = [] } }) =>
-  uavs.map(({ place, name, change, before, after, why, gained, lost }) => {
+/**
+ * Per UAV: [{ place, letter, name, what, before, after, why }]. Of one that is out its reason names it and says all.
+ *
+ * @param {Pick<LiveOffer, "difference">} offer
+ */
+export const uavLines = (offer) =>
+  (differenceOf(offer).uavs ?? []).map(({ place, name, change, before, after, why, gained, lost }) => {
     const saysAll = change === "out" && Boolean(why);
     const counts = [gained.length > 0 && `+${gained.length}`, lost.length > 0 && `−${lost.length}`];
     return {
@@ -84,9 +120,9 @@ export const uavLines = ({ difference: { uavs = [] } }) =>
     };
   });
 
-/** Per target that changes hands or is given up: ["Tower 31: B → C", …] */
-export const targetLines = ({ difference: { targets = [] } }) =>
-  targets.map(
+/** Per target that changes hands or is given up: ["Tower 31: B → C", …] @param {Pick<LiveOffer, "difference">} offer */
+export const targetLines = (offer) =>
+  (differenceOf(offer).targets ?? []).map(
     ({ label, from, to, message }) =>
       `${label}: ${from === null ? "—" : routeLetter(from)} → ${to === null ? message || t("not reached") : routeLetter(to)}`,
   );

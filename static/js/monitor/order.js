@@ -1,22 +1,35 @@
 /** What stands above what: UAVs and alerts. Values in, values out. */
 
+/** @import { Alert, AlertLevel, LiveUav } from "../api_types.d.ts" */
+
+/** @type {Record<AlertLevel, number>} */
 const RANKS = { critical: 0, warning: 1, advisory: 2 };
 const CALM = 3;
 
+/** @param {Pick<Alert, "closed_at">} alert */
 export const isOpenAlert = ({ closed_at }) => closed_at === null;
+/** @param {Pick<Alert, "closed_at" | "acknowledged_at">} alert */
 export const isUnanswered = (alert) => isOpenAlert(alert) && alert.acknowledged_at === null;
 
-/** The worst open alert of each UAV: Map of uav → rank, 0 for critical. */
+/** The worst open alert of each UAV: Map of uav → rank, 0 for critical. @param {Alert[]} alerts */
 function worstOf(alerts) {
+  /** @type {Map<number | null, number>} */
   const worst = new Map();
   for (const { uav, level } of alerts.filter(isOpenAlert))
     worst.set(uav, Math.min(worst.get(uav) ?? CALM, RANKS[level]));
   return worst;
 }
 
-/** The chosen one, then by alert level, then by landing time, then by place. */
+/**
+ * The chosen one, then by alert level, then by landing time, then by place.
+ *
+ * @param {LiveUav[]} uavs
+ * @param {Alert[]} alerts
+ * @param {number | null} chosen
+ */
 export function inOrder(uavs, alerts, chosen) {
   const worst = worstOf(alerts);
+  /** @param {LiveUav} uav */
   const keys = (uav) => [
     uav.id === chosen ? 0 : 1,
     worst.get(uav.id) ?? CALM,
@@ -27,8 +40,13 @@ export function inOrder(uavs, alerts, chosen) {
   return sorted(uavs, keys);
 }
 
-/** Unanswered ones of the highest level first, the newest first; then those somebody knows of, then what is over. */
+/**
+ * Unanswered ones of the highest level first, the newest first; then those somebody knows of, then what is over.
+ *
+ * @param {Alert[]} alerts
+ */
 export function alertsInOrder(alerts) {
+  /** @param {Alert} alert */
   const keys = (alert) => [
     isOpenAlert(alert) ? (alert.acknowledged_at === null ? RANKS[alert.level] : CALM) : CALM + 1,
     -Date.parse(alert.opened_at),
@@ -36,12 +54,13 @@ export function alertsInOrder(alerts) {
   return sorted(alerts, keys);
 }
 
+/** @template Item @param {Item[]} items @param {(item: Item) => number[]} keysOf */
 function sorted(items, keysOf) {
   return items
-    .map((item) => [keysOf(item), item])
-    .sort(([a], [b]) => {
+    .map((item) => ({ keys: keysOf(item), item }))
+    .sort(({ keys: a }, { keys: b }) => {
       const at = a.findIndex((key, index) => key !== b[index]);
       return at < 0 ? 0 : a[at] < b[at] ? -1 : 1;
     })
-    .map(([, item]) => item);
+    .map(({ item }) => item);
 }

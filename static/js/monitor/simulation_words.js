@@ -3,6 +3,9 @@
 import { t, tn } from "../text.js";
 import { heightText, numberText, percentText, speedText } from "../units.js";
 
+/** @import { SimulatedVehicle, Simulation } from "../api_types.d.ts" */
+/** @import { Told } from "./types.d.ts" */
+
 export const SPEEDS = [1, 2, 5, 10].map((speed) => [
   speed,
   speed === 1 ? t("Real time") : t("{speed}× real time", { speed }),
@@ -16,8 +19,19 @@ const WEAK_SHARE = 0.2;
 const WIND_AGL_M = 10;
 const BEHIND_S = 2; // of real time that was lost, from which on it is told
 
+/**
+ * A fault by the name of its button.
+ *
+ * @typedef {object} Fault
+ * @property {string} name
+ * @property {string} image name of an icon
+ * @property {string} words
+ * @property {boolean} [lasts] it is over after a time
+ * @property {(vehicle: SimulatedVehicle, flown_s: number) => object} of what is sent for a vehicle, for so many of its seconds
+ */
+
 /** Faults by the name of their button: what is sent for a vehicle, for so many of its seconds. */
-export const FAULTS = [
+export const FAULTS = /** @type {Fault[]} */ ([
   {
     name: "link",
     image: "signal",
@@ -39,30 +53,38 @@ export const FAULTS = [
     of: ({ battery_wh }) => ({ battery_wh_left: Math.round(battery_wh * WEAK_SHARE * 10) / 10 }),
   },
   { name: "motor", image: "octagon-alert", words: t("Motor failure"), of: () => ({ motor_failed: 0 }) },
-];
+]);
 /** What can be mended; a battery stays as it is. */
-export const WELL = {
+export const WELL = /** @type {Fault} */ ({
   name: "well",
   image: "circle-check",
   words: t("All well again"),
   of: () => ({ link_lost_for_s: 0, gps_lost_for_s: 0, motor_failed: null }),
-};
+});
 
-/** The same wind at all heights. */
+/** The same wind at all heights. @param {number} speed_mps @param {number} from_deg */
 export const windOf = (speed_mps, from_deg, gusts_mps = 0) => ({
   wind: [{ altitude_agl_m: WIND_AGL_M, speed_mps, from_deg: ((from_deg % 360) + 360) % 360 }],
   gusts_mps,
 });
 
+/** @template {{ state: string }} Item @param {Item | null | undefined} simulation @returns {simulation is Item} */
 export const isPresent = (simulation) => simulation?.state === "wanted" || simulation?.state === "flying";
+/** @param {Pick<SimulatedVehicle, "state">} vehicle */
 export const isFlown = (vehicle) => vehicle.state === "flying";
 
-/** How much of the flight so many seconds of the clock are; "" in real time. */
+/**
+ * How much of the flight so many seconds of the clock are; "" in real time.
+ *
+ * @param {number} seconds
+ * @param {number} speed
+ */
 export function lastsWords(seconds, speed) {
   if (speed === 1 || !Number.isFinite(seconds)) return "";
   return t("By the clock on the wall; {flown} s of the flight.", { flown: numberText(Math.round(seconds * speed)) });
 }
 
+/** @param {SimulatedVehicle["conditions"]} conditions */
 function airWords({ wind: [layer], gusts_mps }) {
   if (!layer?.speed_mps) return t("calm");
   const words = t("wind {speed} from {degrees}°", {
@@ -72,7 +94,7 @@ function airWords({ wind: [layer], gusts_mps }) {
   return gusts_mps > 0 ? `${words}, ${t("gusts {speed}", { speed: speedText(gusts_mps) })}` : words;
 }
 
-/** How one of its UAVs does: { words, isBad }. */
+/** How one of its UAVs does: { words, isBad }. @param {SimulatedVehicle} vehicle @returns {Told} */
 export function vehicleWords({ state, message, told, conditions }) {
   if (state === "failed") return { words: message, isBad: true };
   if (state === "ended") return { words: t("Ended"), isBad: false };
@@ -94,7 +116,13 @@ export function vehicleWords({ state, message, told, conditions }) {
   };
 }
 
-/** One sentence about a simulation, and whether something is wrong with it. */
+/**
+ * One sentence about a simulation, and whether something is wrong with it.
+ *
+ * @param {Simulation | null} simulation
+ * @param {boolean} canFly
+ * @returns {Told}
+ */
 export function stateWords(simulation, canFly) {
   if (!simulation) {
     const words = canFly
@@ -124,7 +152,7 @@ export function stateWords(simulation, canFly) {
     lost.length > 0 && t("Lost with their simulator: {names}.", { names: lost.map(({ name }) => name).join(", ") }),
     (simulation.pace?.slipped_s ?? 0) > BEHIND_S &&
       t("This machine is too slow for that pace: {seconds} s behind.", {
-        seconds: Math.round(simulation.pace.slipped_s),
+        seconds: Math.round(simulation.pace?.slipped_s ?? 0),
       }),
   ];
   return { words: said.filter(Boolean).join(" "), isBad: crashed.length + lost.length > 0 };

@@ -14,7 +14,13 @@ import {
   speedText,
 } from "../units.js";
 
+/** @import { LiveUav } from "../api_types.d.ts" */
+/** @import { Certainty } from "../domain/certainty.js" */
+
+/** @typedef {Partial<Record<"altitude_relative_m" | "altitude_agl_m" | "altitude_amsl_m", number | null>>} Heights */
+
 const AMBER = "warning";
+/** @type {[RegExp, string, string][]} */
 const MODES = [
   [/^(MISSION|AUTO)$/, t("Mission|mode"), "active"],
   [/^(HOLD|LOITER|POSHOLD|BRAKE|PAUSED?)$/, t("Holding"), AMBER],
@@ -23,7 +29,12 @@ const MODES = [
   [/^(TAKEOFF|TAKE-OFF)$/, t("Taking off"), "active"],
 ];
 
-/** { words, level }: what it does, as far as it has told. */
+/**
+ * { words, level }: what it does, as far as it has told.
+ *
+ * @param {Pick<LiveUav, "measured"> & Partial<Pick<LiveUav, "link">>} uav
+ * @returns {{ words: string, level: string | null }}
+ */
 export function stateOf({ measured, link }) {
   const mode = (measured?.mode || link?.mode || "").trim();
   const isInAir = inAir({ measured, link });
@@ -34,9 +45,10 @@ export function stateOf({ measured, link }) {
   return known ? { words: known[1], level: known[2] } : { words: mode || t("In the air"), level: null };
 }
 
+/** @param {Pick<LiveUav, "measured" | "link">} uav */
 export const isHeld = (uav) => stateOf(uav).words === t("Holding");
 
-/** { words, isLate }: "0.7 s ago", "no report for 74 s". */
+/** { words, isLate }: "0.7 s ago", "no report for 74 s". @param {LiveUav} uav @param {number} now_ms */
 export function ageWords(uav, now_ms) {
   const age_s = reportAge_s(uav, now_ms);
   if (age_s === null) return { words: t("no report yet"), isLate: false };
@@ -46,18 +58,27 @@ export function ageWords(uav, now_ms) {
   return { words: t("no report for {age}", { age }), isLate: isLate(uav, now_ms) };
 }
 
+/** @param {Heights} [heights] @returns {[number | null, string]} */
 function heightOf({ altitude_relative_m = null, altitude_agl_m = null, altitude_amsl_m = null } = {}) {
   if (altitude_relative_m !== null) return [altitude_relative_m, t("over take-off")];
   if (altitude_agl_m !== null) return [altitude_agl_m, t("over ground")];
   return [altitude_amsl_m, t("over the sea")];
 }
 
-/** Four figures: [{ figure, unit, words }]; "~" before what is not measured, "—" for what nobody knows. */
+/**
+ * Four figures: [{ figure, unit, words }]; "~" before what is not measured, "—" for what nobody knows.
+ *
+ * @param {LiveUav} uav
+ * @param {Certainty | null} certainty
+ */
 export function figuresOf({ measured, estimated }, certainty) {
   const mark = certainty === MEASURED ? "" : "~\u2009";
+  /** @type {Heights & { speed_mps?: number | null }} */
   const told = (certainty === MEASURED ? measured : estimated) ?? measured ?? {};
   const [height_m, above] = heightOf(told);
+  /** @template Value @param {Value | null | undefined} value @param {(value: Value) => string} text */
   const said = (value, text) => (value === null || value === undefined ? "—" : `${mark}${text(value)}`);
+  /** @param {string} text @param {string} words */
   const split = (text, words) => {
     const [figure, unit = ""] = text.split(/\u00a0(?=[^\u00a0]*$)/);
     return { figure, unit, words };
@@ -71,12 +92,19 @@ export function figuresOf({ measured, estimated }, certainty) {
   ];
 }
 
-/** The box under an estimated UAV: { strong, rest }; null for a measured one, and for one whose next report is not due yet. */
+/**
+ * The box under an estimated UAV: { strong, rest }; null for a measured one, and for one whose next report is not due yet.
+ *
+ * @param {LiveUav} uav
+ * @param {Certainty | null} certainty
+ * @param {number} now_ms
+ * @returns {{ strong: string, rest: string } | null}
+ */
 export function estimateWords(uav, certainty, now_ms) {
   const { estimated, measured } = uav;
   if (certainty === null || certainty === MEASURED || (certainty === ESTIMATED && !isLate(uav, now_ms))) return null;
   const seen = measured ? t("Last report {time}.", { time: exactClockText(measured.measured_at) }) : "";
-  if (certainty === LOST) return { strong: t("Lost: nobody can say where it is now."), rest: seen };
+  if (certainty === LOST || !estimated) return { strong: t("Lost: nobody can say where it is now."), rest: seen };
   const contact = estimated.contact_expected_at
     ? t("Contact expected by {time}.", { time: exactClockText(estimated.contact_expected_at) })
     : seen;
@@ -86,23 +114,30 @@ export function estimateWords(uav, certainty, now_ms) {
   };
 }
 
-/** One fact beside its name on the map. */
+/** One fact beside its name on the map. @param {LiveUav} uav @param {Certainty | null} certainty */
 export function mapFact(uav, certainty) {
   if (certainty === LOST) return t("lost");
-  if (certainty === ESTIMATED) return t("estimated, ±{distance}", { distance: lengthText(withinOf_m(uav.estimated)) });
+  if (certainty === ESTIMATED && uav.estimated)
+    return t("estimated, ±{distance}", { distance: lengthText(withinOf_m(uav.estimated)) });
   const state = stateOf(uav);
   if (state.level === AMBER) return state.words.toLocaleLowerCase();
   const [height_m] = heightOf(uav.measured ?? {});
   return height_m === null ? state.words : heightText(height_m);
 }
 
-/** { next, at, toGo }: where it flies next, when, and what is left; words or "". labelOf(target) names a target of its mission. */
+/**
+ * { next, at, toGo }: where it flies next, when, and what is left; words or "". labelOf(target) names a target of its mission.
+ *
+ * @param {Pick<LiveUav, "estimated">} uav
+ * @param {(target: number) => string} labelOf
+ */
 export function nextOf({ estimated }, labelOf) {
   if (!estimated) return { next: "", at: "", toGo: "" };
   const arrival = estimated.arrivals.find(({ target }) => target !== null);
+  const target = arrival?.target ?? null;
   return {
-    next: arrival ? labelOf(arrival.target) : estimated.ends_at ? t("Landing") : "",
-    at: arrival ? exactClockText(arrival.at) : "",
+    next: target !== null ? labelOf(target) : estimated.ends_at ? t("Landing") : "",
+    at: arrival?.at ? exactClockText(arrival.at) : "",
     toGo: estimated.to_go_m === null ? "" : t("{distance} to go", { distance: lengthText(estimated.to_go_m) }),
   };
 }

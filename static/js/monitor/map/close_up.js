@@ -2,10 +2,10 @@
 
 import { h, icon } from "../../dom.js";
 import { ESTIMATED, withinOf_m } from "../../domain/certainty.js";
-import { provideImages } from "../../map/images.js";
+import { provideImages } from "../../map/look/images.js";
+import { mapStyle, repaint } from "../../map/look/style.js";
 import { boxAround, tellFaults } from "../../map/map_view.js";
 import { maplibre } from "../../map/maplibre.js";
-import { mapStyle, repaint } from "../../map/style.js";
 import { t } from "../../text.js";
 import { ellipseRing, metresPerPixel } from "./ellipse.js";
 import * as flightLayers from "./flight_layers.js";

@@ -3,12 +3,17 @@
 import { routeNumber } from "../../domain/palette.js";
 import { ellipseRing, metresPerPixel } from "./ellipse.js";
 
+/** @import { Palette } from "../../domain/palette.js" */
+/** @import { GeoJSONSource, Geometry, MapLibreMap } from "../../map/types.d.ts" */
+/** @import { Bound, DrawnUav, FlownLine, OfferedRoute } from "../types.d.ts" */
+
 const BEFORE = "line-labels";
 const LEAST_RING_PX = 14;
 const CLEAR_PX = 48;
 const NOTHING = { type: "FeatureCollection", features: [] };
 const SOURCES = ["flown", "last-report", "ellipses", "offered"];
 
+/** @param {Palette} palette */
 const colourOf = (palette) => [
   "case",
   ["get", "isLost"],
@@ -16,6 +21,7 @@ const colourOf = (palette) => [
   ["match", ["get", "route"], ...palette.routes.flatMap((colour, index) => [index + 1, colour]), palette.inkSecond],
 ];
 
+/** @param {Palette} palette @returns {LayerSpecification[]} */
 function layersOf(palette) {
   const round = { "line-cap": "round", "line-join": "round" };
   const colour = colourOf(palette);
@@ -78,8 +84,10 @@ function layersOf(palette) {
   ];
 }
 
+/** @param {MapLibreMap} map */
 const thinRoutes = (map) => map.setPaintProperty("routes", "line-width", 1.6);
 
+/** @param {MapLibreMap} map @param {Palette} palette */
 export function addTo(map, palette) {
   for (const source of SOURCES) map.addSource(source, { type: "geojson", data: NOTHING });
   for (const layer of layersOf(palette)) map.addLayer(layer, BEFORE);
@@ -87,6 +95,7 @@ export function addTo(map, palette) {
   thinRoutes(map);
 }
 
+/** @param {MapLibreMap} map @param {Palette} palette */
 export function recolour(map, palette) {
   for (const { id, paint } of layersOf(palette))
     for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
@@ -94,6 +103,7 @@ export function recolour(map, palette) {
   thinRoutes(map);
 }
 
+/** @param {{ place: number | null, certainty: string }} uav @param {Geometry} geometry */
 const feature = (uav, geometry, more = {}) => ({
   type: "Feature",
   properties: { route: uav.place === null ? 0 : routeNumber(uav.place), isLost: uav.certainty === "lost", ...more },
@@ -101,7 +111,14 @@ const feature = (uav, geometry, more = {}) => ({
 });
 const shown = new WeakMap(); // source → what it shows, in one text
 
-/** Only what is another is drawn: each time costs the whole map a frame, and the clock ticks without anything having moved. */
+/**
+ * Only what is another is drawn: each time costs the whole map a frame, and the clock ticks without anything having moved.
+ *
+ * @param {MapLibreMap} map
+ * @param {string} name of the source
+ * @param {object[]} features
+ * @param {string} [key]
+ */
 function show(map, name, features, key = JSON.stringify(features)) {
   const source = map.getSource(name);
   if (!source || shown.get(source) === key) return;
@@ -109,13 +126,13 @@ function show(map, name, features, key = JSON.stringify(features)) {
   source.setData({ type: "FeatureCollection", features });
 }
 
-/** A line of thousands of places grows at its end. */
+/** A line of thousands of places grows at its end. @param {FlownLine[]} uavs */
 const lineKey = (uavs) =>
   JSON.stringify(
     uavs.map(({ place, parts }) => [place, parts.length, parts.at(-1)?.length, parts.at(-1)?.at(-1), parts[0]?.[0]]),
   );
 
-/** uavs: [{ place, certainty, parts: [[lon lat, …], …] }] */
+/** uavs: [{ place, certainty, parts: [[lon lat, …], …] }] @param {MapLibreMap} map @param {FlownLine[]} uavs */
 export function showFlown(map, uavs) {
   show(
     map,
@@ -130,13 +147,24 @@ export function showFlown(map, uavs) {
   );
 }
 
-/** The time of a last report is left out where the UAV itself would stand on it. */
+/**
+ * The time of a last report is left out where the UAV itself would stand on it.
+ *
+ * @param {MapLibreMap} map
+ * @param {number[]} last
+ * @param {number[]} position
+ */
 function isClear(map, { last, position }) {
   const [from, to] = [map.project(last), map.project(position)];
   return Math.hypot(from.x - to.x, from.y - to.y) >= CLEAR_PX;
 }
 
-/** uavs that are estimated or lost: [{ place, certainty, position, bound, last: lon lat or null, words }]. */
+/**
+ * uavs that are estimated or lost: [{ place, certainty, position, bound, last: lon lat or null, words }].
+ *
+ * @param {MapLibreMap} map
+ * @param {UncertainUav[]} uavs
+ */
 export function showUncertain(map, uavs) {
   const zoom = map.getZoom();
   show(
@@ -163,7 +191,12 @@ export function showUncertain(map, uavs) {
   );
 }
 
-/** Routes of another plan that is offered: [{ place, geometry }]. */
+/**
+ * Routes of another plan that is offered: [{ place, geometry }].
+ *
+ * @param {MapLibreMap} map
+ * @param {OfferedRoute[]} routes
+ */
 export function showOffered(map, routes) {
   show(
     map,

@@ -7,6 +7,10 @@ import { mergePills } from "../../map/pills.js";
 import { t } from "../../text.js";
 import { STATES } from "../board.js";
 
+/** @import { TargetState } from "../../api_types.d.ts" */
+/** @import { MapLibreMap } from "../../map/types.d.ts" */
+/** @import { Pill } from "../../map/pills.js" */
+
 const MOST = 200;
 const stateOf = (members) => (members.every(({ state }) => state === members[0].state) ? members[0].state : "pending");
 

@@ -7,6 +7,9 @@ import { markSimulated } from "../../simulated.js";
 import { t } from "../../text.js";
 import { between, GLIDE_MS } from "./glide.js";
 
+/** @import { MapLibreMap } from "../../map/types.d.ts" */
+/** @import { MarkedUav } from "../types.d.ts" */
+
 const CERTAINTIES = { measured: t("measured"), estimated: t("estimated"), lost: t("lost") };
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 

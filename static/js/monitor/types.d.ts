@@ -1,0 +1,149 @@
+/** Shapes that the modules of the live page share. Positions are longitude, latitude [deg]. */
+
+import type { Alert, Command, Live, LiveMission, LiveOffer, LiveUav, Mission } from "../api_types.d.ts";
+import type { AskedKind } from "../domain/command_questions.js";
+import type { Certainty } from "../domain/certainty.js";
+import type { FeedState } from "../live/feed.js";
+import type { Box, Geometry, Ground, MapPage } from "../map/types.d.ts";
+import type { Store } from "../store.js";
+
+/** What the server writes into the page. */
+export interface MonitorPage extends MapPage {
+  /** the only mission of the page; null: all that fly */
+  mission: string | null;
+  canFly: boolean;
+  hasSimulated: boolean;
+  bounds: Box | null;
+  extent: Box | null;
+}
+
+/** A route of another plan that is offered, by the UAV's place in the mission that flies now. */
+export interface OfferedRoute {
+  place: number;
+  geometry: Geometry;
+}
+
+/** What the feed tells, what was read beside it, and what the operator looks at. */
+export interface MonitorState extends Live {
+  /** missions as the REST API shows them, by id */
+  details: Map<string, Mission>;
+  /** lines flown so far, by UAV; a silence begins another part */
+  flown: Map<number, number[][][]>;
+  offered: OfferedRoute[];
+  ground: Ground | null;
+  /** id of a UAV */
+  chosen: number | null;
+  isFollowing: boolean;
+  showsLog: boolean;
+  link: FeedState | null;
+  /** since when `link` is so, by the server's clock */
+  since_ms: number;
+  /** false until the first snapshot is shown: what comes later is news */
+  isWhole: boolean;
+  /** the server's time */
+  now_ms: number;
+}
+
+export type MonitorStore = Store<MonitorState>;
+
+/** What a UAV's route would be, or is. */
+export interface OfferFigures {
+  length_m: number;
+  ends_at?: string | null;
+  battery_percent?: number | null;
+}
+
+/** What another plan changes for a UAV. */
+export interface OfferUav {
+  place: number;
+  /** in the plan that is offered; null: it flies none of it */
+  continuation_place: number | null;
+  name: string;
+  change: string;
+  before?: OfferFigures | null;
+  after?: OfferFigures | null;
+  why: string;
+  gained: number[];
+  lost: number[];
+}
+
+/** A target that another UAV would fly to, or none (`to` null). */
+export interface OfferTarget {
+  label: string;
+  from: number | null;
+  to: number | null;
+  message?: string;
+}
+
+/** LiveOffer.difference (missions/continuing): empty while the plan is computed. */
+export interface OfferDifference {
+  uavs?: OfferUav[];
+  targets?: OfferTarget[];
+  unreached?: number;
+  valid_until?: string | null;
+}
+
+/** LiveOffer.cause */
+export interface OfferCause {
+  zone_name?: string;
+  uav_name?: string;
+  /** labels of the targets before and behind the zone */
+  leg?: [string | null, string | null];
+}
+
+/** Words of a live page and whether they tell of something wrong. */
+export interface Told {
+  words: string;
+  isBad: boolean;
+}
+
+/** Where a UAV may be 95 of 100 times. */
+export interface Bound {
+  along_m: number;
+  across_m: number;
+  bearing_deg: number;
+}
+
+/** A UAV as the map marks it; `isMarked`: as simulated. */
+export interface MarkedUav {
+  id: number | string;
+  name: string;
+  letter: string;
+  place: number | null;
+  position: number[];
+  heading_deg: number | null;
+  certainty: Certainty;
+  fact: string;
+  isMarked: boolean;
+  isChosen: boolean;
+}
+
+/** A UAV as the live map draws it with its last report and its estimate. */
+export interface DrawnUav extends Omit<MarkedUav, "id" | "isMarked"> {
+  id: number;
+  isSimulated: boolean;
+  routeClass: string;
+  bound: Bound | null;
+  last: number[] | null;
+  words: string;
+}
+
+/** A line flown, in parts. */
+export interface FlownLine {
+  place: number | null;
+  parts: number[][][];
+}
+
+export interface PlannedLine {
+  sequence: number;
+  geometry: Geometry | null;
+}
+
+/** What the operator tells UAVs from the live page. */
+export interface Commanding {
+  /** opener: the button out of which the question grows */
+  ask(id: number, kind: AskedKind, opener?: HTMLElement | null): Promise<void>;
+  askAll(kind: "pause" | "return", opener?: HTMLElement | null): Promise<void>;
+}
+
+export type { Alert, Command, LiveMission, LiveOffer, LiveUav };
