@@ -11,7 +11,7 @@ from django.test import Client
 from django.urls import reverse
 
 from inspection.graph.ground_data import NO_OSM_NODE
-from inspection.models import Asset, AssetKind, NoFlyZone, ZoneSet
+from inspection.models import Asset, AssetKind, DataImport, ImportKind, NoFlyZone, ZoneSet
 from inspection.selectors import ground_revision
 from inspection.services import WrongGeometry, save_asset
 from missions.models import InspectionTarget, Mission, Uav
@@ -159,6 +159,13 @@ def test_what_cannot_be_stored_is_shown_back_with_its_fault(client: Client, fiel
 @pytest.mark.django_db(transaction=True)
 def test_a_list_filtered_by_what_no_column_holds_is_a_bad_request(client: Client) -> None:
     assert client.get("/admin/inspection/asset/?kind__exact=%00").status_code == 400
+
+
+def test_the_filter_by_import_counts_the_assets_of_each(client: Client) -> None:
+    source = DataImport.objects.create(kind=ImportKind.OSM, file_name="region.osm.pbf", sha256="0")
+    tower(data_import=source)
+    answer = client.get(reverse("admin:inspection_asset_changelist"), {"_facets": "True"})
+    assert f"region.osm.pbf, {source.imported_at:%d %b %Y} (1)" in answer.content.decode()
 
 
 def test_the_service_too_refuses_a_geometry_of_another_kind(curator: User) -> None:
