@@ -1,11 +1,13 @@
 """Static files under names that change with their content, so that browsers keep them for a year."""
 
-import re
 from typing import Any
 
 from django.contrib.staticfiles.storage import ManifestStaticFilesStorage
 
 LONGEST_CHAIN = 12  # modules that import modules: one pass over all files for each step
+# Whose imports are rewritten: our own modules and style sheets, and libraries that consist of several modules. Other libraries are
+# served as they came; looking for imports in them takes most of the time. A library's files are named with and without lib/.
+REWRITTEN_FOLDERS = ("js", "css", "lib/maplibre-gl", "maplibre-gl", "lib/three", "three")
 
 
 class HashedStaticFiles(ManifestStaticFilesStorage):
@@ -14,18 +16,13 @@ class HashedStaticFiles(ManifestStaticFilesStorage):
     support_js_module_import_aggregation = True
     max_post_process_passes = LONGEST_CHAIN
 
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        self._patterns = {
+            f"{folder}/{extension}": patterns for folder in REWRITTEN_FOLDERS for extension, patterns in self._patterns.items()
+        }
+
     def stored_name(self, name: str) -> str:
         if not self.hashed_files:
             return name
         return str(super().stored_name(name))
-
-    def url_converter(self, name: str, *args: Any, **kwargs: Any) -> Any:
-        """Libraries are served as they came: only our own modules and style sheets are looked into."""
-        convert = super().url_converter(name, *args, **kwargs)
-        if name.startswith(("js/", "css/", "lib/maplibre-gl/", "lib/three/")):
-            return convert
-        return _unchanged
-
-
-def _unchanged(match: re.Match[str]) -> str:
-    return match[0]

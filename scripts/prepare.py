@@ -1,6 +1,7 @@
 """Bring a database up to the program, before the program starts: migrations, static files, data, the graph.
 
 python -m scripts.prepare [--osm FILE]... [--zones FILE]...
+python -m scripts.prepare --static-files      (these alone; the other way starts it beside the rest)
 """
 
 import argparse
@@ -8,7 +9,10 @@ import hashlib
 import json
 import os
 import secrets
+import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from io import StringIO
 from pathlib import Path
 
@@ -43,6 +47,23 @@ def collect_static_files(places: Places) -> None:
     with step("Static files"):
         call_command("collectstatic", interactive=False, verbosity=0)
         stamp.write_text(digest.hexdigest())
+
+
+@contextmanager
+def static_files_meanwhile() -> Iterator[None]:
+    """Collect static files in a process beside what is done meanwhile. Raises CommandError if that fails."""
+    command = [sys.executable, "-m", "scripts.prepare", "--static-files"]
+    collecting = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    try:
+        yield
+        lines = collecting.communicate()[0]
+    finally:
+        if collecting.returncode is None:
+            collecting.kill()
+            collecting.wait()
+    if collecting.returncode:
+        raise CommandError(f"Static files could not be collected:\n{lines}")
+    print(lines, end="", flush=True)
 
 
 def is_without_ground() -> bool:
@@ -91,22 +112,31 @@ def main() -> None:
     parser = argparse.ArgumentParser()
     parser.add_argument("--osm", type=Path, action="append", default=[])
     parser.add_argument("--zones", type=Path, action="append", default=[])
+    parser.add_argument("--static-files", action="store_true")
     options = parser.parse_args()
     places = Places(state_directory())
     os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
     django.setup()
 
-    migrate()
-    collect_static_files(places)
+    if options.static_files:
+        collect_static_files(places)
+        return
+    with static_files_meanwhile():
+        migrate()
+        load_data(places, options.osm, options.zones)
+
+
+def load_data(places: Places, osm_files: list[Path], zone_files: list[Path]) -> None:
+    """Load the demo region into a database that is new or empty, or the operator's files, and build the graph."""
     if places.first_load.exists() or is_without_ground():
         # Noted until all is done: a load that is interrupted is taken up again. ./run notes it before it makes a database.
         if not places.first_load.exists():
             places.first_load.write_text(json.dumps({"demo_user": False}))
         if json.loads(places.first_load.read_text())["demo_user"]:
             make_demo_user(password_file(places))
-        if not (options.osm or options.zones):
+        if not (osm_files or zone_files):
             load_demo_region(places.state / "demo")
-    load_own_data(options.osm, options.zones)
+    load_own_data(osm_files, zone_files)
     with step("Inspection graph"):
         call_command("build_graph", stdout=StringIO())
     places.first_load.unlink(missing_ok=True)
