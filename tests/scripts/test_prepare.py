@@ -1,0 +1,46 @@
+"""Static files are collected beside the load of the data, and a failure of either ends the start."""
+
+import subprocess
+import sys
+
+import pytest
+from django.core.management import CommandError
+
+from scripts import prepare
+
+
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> list[subprocess.Popen]:
+    """The process that collects; it runs the code in its place."""
+    processes = []
+    popen = subprocess.Popen
+
+    def start(command: list[str], **options) -> subprocess.Popen:
+        assert command[1:] == ["-m", "scripts.prepare", "--static-files"]
+        processes.append(popen([sys.executable, "-c", start.code], **options))
+        return processes[-1]
+
+    start.code = ""
+    monkeypatch.setattr(prepare.subprocess, "Popen", start)
+    processes.append(start)
+    return processes
+
+
+def test_what_it_says_is_printed_after_what_was_done_meanwhile(started, capsys):
+    started.pop().code = "print('Static files … 2.0 s')"
+    with prepare.static_files_meanwhile():
+        print("Database migrations … 3.0 s")
+    assert capsys.readouterr().out.splitlines() == ["Database migrations … 3.0 s", "Static files … 2.0 s"]
+
+
+def test_its_failure_fails_the_start_with_its_words(started):
+    started.pop().code = "print('images.js could not be found'); raise SystemExit(1)"
+    with pytest.raises(CommandError, match=r"images\.js could not be found"), prepare.static_files_meanwhile():
+        pass
+
+
+def test_a_failure_meanwhile_ends_it(started):
+    started.pop().code = "import time; time.sleep(60)"
+    with pytest.raises(CommandError, match="no such file"), prepare.static_files_meanwhile():
+        raise CommandError("no such file")
+    assert started[0].returncode is not None
