@@ -176,7 +176,7 @@ def carry_out(steps: list[Step]) -> None:
     expected_s = about_s(steps)
     progress = Progress(expected_s)
     if expected_s >= WORTH_TELLING_S:
-        print(f"To be set up, about {expected_s:.0f} s with downloads: {', '.join(step.text for step in steps)}", flush=True)
+        print(f"To be set up, about {expected_s:.0f} s, less after another checkout: {', '.join(step.text for step in steps)}", flush=True)
     waiting, done = list(steps), set[str]()
     known = {step.text for step in steps}
     running: dict[Future[None], Step] = {}

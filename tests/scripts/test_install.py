@@ -52,7 +52,7 @@ def test_it_is_said_beforehand_how_long_it_takes(capsys):
     steps = [Step("libraries", 15.0, nothing), Step("core", 70.0, nothing, ["libraries"]), Step("packages", 20.0, nothing)]
     assert about_s(steps) == 85.0
     carry_out(steps)
-    assert capsys.readouterr().out.splitlines()[0] == "To be set up, about 85 s with downloads: libraries, core, packages"
+    assert capsys.readouterr().out.splitlines()[0] == "To be set up, about 85 s, less after another checkout: libraries, core, packages"
 
 
 def test_what_goes_on_is_said_now_and_then(capsys, monkeypatch):
