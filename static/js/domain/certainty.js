@@ -73,5 +73,5 @@ export function standsAt({ measured, estimated }, certainty) {
   return certainty === MEASURED ? (report ?? estimate) : (estimate ?? report);
 }
 
-/** Radius [m] in which it is 95 of 100 times. @param {EstimateShape} estimated */
+/** Radius [m] in which it is 95 of 100 times. @param {{ bound: Pick<EstimateShape["bound"], "along_m" | "across_m"> }} estimated */
 export const withinOf_m = ({ bound }) => Math.max(bound.along_m, bound.across_m);

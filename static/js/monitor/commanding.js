@@ -14,7 +14,6 @@ import { unheardLines } from "./unheard.js";
 
 /** @import { CommandKind, LiveMission, LiveUav, Mission, ReturnCheck, ReturnChecks } from "../api_types.d.ts" */
 /** @import { Answer } from "../api.js" */
-/** @import { AskedKind } from "../domain/command_questions.js" */
 /** @import { Commanding, MonitorStore } from "./types.d.ts" */
 
 const AGAIN = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;

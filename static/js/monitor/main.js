@@ -24,34 +24,45 @@ import { mountSimulation } from "./panels/simulation.js";
 import { mountUrgent } from "./panels/urgent.js";
 import { placed } from "./placed.js";
 
+/** @import { Stage } from "../scene/stage.js" */
+
+/** @import { Answer } from "../api.js" */
+/** @import { Live } from "../api_types.d.ts" */
+/** @import { Touched } from "../live/shown.js" */
+/** @import { Ground } from "../map/types.d.ts" */
+/** @import { MonitorPage, MonitorState } from "./types.d.ts" */
+
 const TICK_MS = 500;
 
-const page = readPage();
-const store = createStore({
-  uavs: [],
-  missions: [],
-  alerts: [],
-  commands: [],
-  offers: [],
-  details: new Map(),
-  flown: new Map(),
-  offered: [],
-  ground: null,
-  chosen: null,
-  isFollowing: false,
-  showsLog: false,
-  link: null,
-  since_ms: 0,
-  isWhole: false,
-  now_ms: Date.now(),
-});
+const page = /** @type {MonitorPage} */ (readPage());
+const store = createStore(
+  /** @type {MonitorState} */ ({
+    uavs: [],
+    missions: [],
+    alerts: [],
+    commands: [],
+    offers: [],
+    details: new Map(),
+    flown: new Map(),
+    offered: [],
+    ground: null,
+    chosen: null,
+    isFollowing: false,
+    showsLog: false,
+    link: null,
+    since_ms: 0,
+    isWhole: false,
+    now_ms: Date.now(),
+  }),
+);
 
+/** @param {number} id of a UAV */
 const pick = (id) => store.update({ chosen: id, isFollowing: store.state.isFollowing && store.state.chosen === id });
 const layout = mountWorkbench({ dockOnPhone: null });
 const map = mountMonitorMap(store, page, { pick });
 const scene = mountSceneOpener(() => {
   const mission = missionSeen(store.state);
-  return mission && { mission, now_ms: () => feed.now_ms(), follow: followFeed };
+  return mission !== null && { mission, now_ms: () => feed.now_ms(), follow: followFeed };
 });
 const commanding = page.canFly ? createCommanding(store) : null;
 const narrow = mountNarrow();
@@ -75,24 +86,25 @@ mountSimulation(page);
 mountUrgent(store, { open: narrow.showBoard });
 const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
 
-/** On the page of one mission that one, else the one of the chosen UAV, else the first. */
+/** On the page of one mission that one, else the one of the chosen UAV, else the first. @param {Readonly<MonitorState>} state */
 const missionSeen = ({ uavs, chosen, missions }) =>
   page.mission ?? uavs.find(({ id }) => id === chosen)?.mission ?? missions[0]?.id ?? null;
 store.listen(["missions"], (state) => scene.show(missionSeen(state) !== null));
 
-/** The 3D view is told what the page is told. */
+/** The 3D view is told what the page is told. @param {Stage} stage */
 function followFeed(stage) {
   const { source } = stage;
   if (source.kind !== "live") return () => {};
   let { revision } = source;
   return store.listen(["uavs", "now_ms", "link"], ({ uavs, now_ms, link, since_ms }) => {
     stage.sayStale(staleWords({ link, since_ms, now_ms }));
-    if (!source.take({ uavs, now_ms })) return;
+    if (!source.take?.({ uavs, now_ms })) return;
     stage.refresh(source.revision !== revision);
     revision = source.revision;
   });
 }
 
+/** @param {number} by 1 or -1 */
 function step(by) {
   const { uavs, alerts, chosen } = store.state;
   const order = inOrder(uavs, alerts, null);
@@ -112,6 +124,9 @@ const byNumber = Array.from({ length: 8 }, (_, place) => ({
   },
 }));
 
+/** @param {KeyboardEvent} event */
+const isOnControl = ({ target }) => target instanceof Element && target.closest("button, a, input, summary") !== null;
+
 startChrome({
   bindings: [
     ...byNumber,
@@ -120,7 +135,7 @@ startChrome({
     {
       keys: ["enter"],
       words: t("Show the chosen UAV on the map"),
-      act: (event) => !event.target.closest("button, a, input, summary") && map.jumpTo(store.state.chosen),
+      act: (event) => !isOnControl(event) && map.jumpTo(store.state.chosen),
     },
     ...alertKeys,
     ...commandKeys,
@@ -134,7 +149,9 @@ startChrome({
     {
       keys: ["escape"],
       words: t("Close"),
-      act: () => map.closeTop() || store.update({ chosen: null, isFollowing: false }),
+      act() {
+        if (!map.closeTop()) store.update({ chosen: null, isFollowing: false });
+      },
     },
   ],
 });
@@ -142,18 +159,22 @@ startChrome({
 // What comes in is drawn together, once a frame at most; what nobody looks at, by and by.
 
 const HIDDEN_MS = 500;
+/** @type {Set<keyof Live> | null} */
 let waiting = null; // the kinds that have changed since the last drawing
 
+/** @param {Touched | null} touched */
 function take(touched) {
-  const kinds = touched ? KINDS.filter((kind) => touched[kind].size) : KINDS;
-  if (waiting) return void kinds.forEach((kind) => waiting.add(kind));
-  waiting = new Set(kinds);
+  const kinds = touched ? KINDS.filter((kind) => touched[kind]?.size) : KINDS;
+  const isDrawing = waiting !== null;
+  waiting = new Set([...(waiting ?? []), ...kinds]);
+  if (isDrawing) return;
   if (document.hidden) setTimeout(show, HIDDEN_MS);
   else requestAnimationFrame(show);
 }
 
 function show() {
-  const told = Object.fromEntries([...waiting].map((kind) => [kind, [...feed.shown[kind].values()]]));
+  /** @type {Partial<Live>} */
+  const told = Object.fromEntries([...(waiting ?? [])].map((kind) => [kind, [...feed.shown[kind].values()]]));
   if (told.uavs || told.missions) told.uavs = placed([...feed.shown.uavs.values()], [...feed.shown.missions.values()]);
   waiting = null;
   store.update({ ...told, now_ms: feed.now_ms() });
@@ -170,7 +191,7 @@ addEventListener("pagehide", () => feed.close());
 
 async function load() {
   try {
-    store.update({ ground: (await get("/ground")).data });
+    store.update({ ground: /** @type {Answer<Ground>} */ (await get("/ground")).data });
   } catch (error) {
     if (!(error instanceof ApiError)) throw error; // the map says itself that it cannot be read
   }

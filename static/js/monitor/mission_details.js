@@ -74,8 +74,7 @@ export function createMissionDetails(store) {
     /** @type {string | null} */
     let next = `/telemetry?mission=${mission}&most=${MOST_RECORDS}&limit=1000`;
     while (next) {
-      /** @type {Answer<{ features: Report[], next: string | null }>} */
-      const { data } = await get(next);
+      const { data } = /** @type {Answer<{ features: Report[], next: string | null }>} */ (await get(next));
       features.push(...data.features);
       next = data.next;
     }

@@ -17,6 +17,8 @@ import { t, tn } from "../text.js";
 import { heightText } from "../units.js";
 import * as layers from "./record_layers.js";
 
+/** @import { MarkedUav } from "../monitor/types.d.ts" */
+
 /** @import { Answer } from "../api.js" */
 /** @import { RecordTarget } from "../api_types.d.ts" */
 /** @import { Geometry, Ground, MapControls } from "../map/types.d.ts" */
@@ -39,20 +41,23 @@ const idOf = ({ uav, place }) => uav ?? `place ${place}`;
  * @param {Pick<ReplayRoute, "uav" | "place" | "name" | "track">} route
  * @param {number} at_ms
  * @param {number | null} looked place of the UAV that is looked at
+ * @returns {MarkedUav | null}
  */
 export function markerOf({ uav, place, name, track }, at_ms, looked) {
   const moment = momentOf(track, at_ms);
-  if (!moment?.sample.position) return null;
+  const position = moment?.sample.position;
+  if (!moment || !position) return null;
   const { kind, sample } = moment;
   return {
     id: idOf({ uav, place }),
     name,
     place,
     letter: routeLetter(place),
-    position: sample.position,
+    position,
     heading_deg: sample.heading_deg,
     certainty: kind === SILENT ? LOST : kind,
     fact: factOf(moment),
+    isMarked: false,
     isChosen: looked === place,
   };
 }

@@ -1,16 +1,19 @@
 /** What is flown, where the last report was, and the ellipse of an estimate: layers between routes and labels. */
 
 import { routeNumber } from "../../domain/palette.js";
+import { addSources, setPaint, sourceOf } from "../../map/look/style.js";
 import { ellipseRing, metresPerPixel } from "./ellipse.js";
 
 /** @import { Palette } from "../../domain/palette.js" */
-/** @import { GeoJSONSource, Geometry, MapLibreMap } from "../../map/types.d.ts" */
-/** @import { Bound, DrawnUav, FlownLine, OfferedRoute } from "../types.d.ts" */
+/** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { FeatureCollection, Geometry, MapLibreMap } from "../../map/types.d.ts" */
+/** @import { DrawnUav, FlownLine, OfferedRoute } from "../types.d.ts" */
+
+/** A UAV that is estimated or lost. @typedef {Pick<DrawnUav, "place" | "certainty" | "position" | "bound" | "last" | "words">} UncertainUav */
 
 const BEFORE = "line-labels";
 const LEAST_RING_PX = 14;
 const CLEAR_PX = 48;
-const NOTHING = { type: "FeatureCollection", features: [] };
 const SOURCES = ["flown", "last-report", "ellipses", "offered"];
 
 /** @param {Palette} palette */
@@ -25,7 +28,7 @@ const colourOf = (palette) => [
 function layersOf(palette) {
   const round = { "line-cap": "round", "line-join": "round" };
   const colour = colourOf(palette);
-  return [
+  const layers = [
     {
       id: "offered",
       type: "line",
@@ -82,6 +85,7 @@ function layersOf(palette) {
       paint: { "text-color": palette.ink, "text-halo-color": palette.halo, "text-halo-width": 2 },
     },
   ];
+  return /** @type {LayerSpecification[]} */ (layers);
 }
 
 /** @param {MapLibreMap} map */
@@ -89,7 +93,7 @@ const thinRoutes = (map) => map.setPaintProperty("routes", "line-width", 1.6);
 
 /** @param {MapLibreMap} map @param {Palette} palette */
 export function addTo(map, palette) {
-  for (const source of SOURCES) map.addSource(source, { type: "geojson", data: NOTHING });
+  addSources(map, SOURCES);
   for (const layer of layersOf(palette)) map.addLayer(layer, BEFORE);
   map.setPaintProperty("routes-casing", "line-width", 4);
   thinRoutes(map);
@@ -97,8 +101,7 @@ export function addTo(map, palette) {
 
 /** @param {MapLibreMap} map @param {Palette} palette */
 export function recolour(map, palette) {
-  for (const { id, paint } of layersOf(palette))
-    for (const [name, value] of Object.entries(paint)) map.setPaintProperty(id, name, value);
+  for (const layer of layersOf(palette)) setPaint(map, layer);
   map.setPaintProperty("routes-casing", "line-width", 4);
   thinRoutes(map);
 }
@@ -120,10 +123,10 @@ const shown = new WeakMap(); // source → what it shows, in one text
  * @param {string} [key]
  */
 function show(map, name, features, key = JSON.stringify(features)) {
-  const source = map.getSource(name);
+  const source = sourceOf(map, name);
   if (!source || shown.get(source) === key) return;
   shown.set(source, key);
-  source.setData({ type: "FeatureCollection", features });
+  source.setData(/** @type {FeatureCollection} */ ({ type: "FeatureCollection", features }));
 }
 
 /** A line of thousands of places grows at its end. @param {FlownLine[]} uavs */
@@ -154,8 +157,8 @@ export function showFlown(map, uavs) {
  * @param {number[]} last
  * @param {number[]} position
  */
-function isClear(map, { last, position }) {
-  const [from, to] = [map.project(last), map.project(position)];
+function isClear(map, last, position) {
+  const [from, to] = [last, position].map(([longitude, latitude]) => map.project([longitude, latitude]));
   return Math.hypot(from.x - to.x, from.y - to.y) >= CLEAR_PX;
 }
 
@@ -170,24 +173,23 @@ export function showUncertain(map, uavs) {
   show(
     map,
     "ellipses",
-    uavs
-      .filter(({ bound }) => bound)
-      .map((uav) =>
-        feature(uav, {
-          type: "Polygon",
-          coordinates: [ellipseRing(uav.position, uav.bound, LEAST_RING_PX * metresPerPixel(zoom, uav.position[1]))],
-        }),
-      ),
+    uavs.flatMap((uav) => {
+      if (!uav.bound) return [];
+      const ring = ellipseRing(uav.position, uav.bound, LEAST_RING_PX * metresPerPixel(zoom, uav.position[1]));
+      return feature(uav, { type: "Polygon", coordinates: [ring] });
+    }),
   );
   show(
     map,
     "last-report",
-    uavs
-      .filter(({ last }) => last)
-      .flatMap((uav) => [
-        feature(uav, { type: "LineString", coordinates: [uav.last, uav.position] }),
-        feature(uav, { type: "Point", coordinates: uav.last }, { words: isClear(map, uav) ? uav.words : "" }),
-      ]),
+    uavs.flatMap((uav) => {
+      const { last, position, words } = uav;
+      if (!last) return [];
+      return [
+        feature(uav, { type: "LineString", coordinates: [last, position] }),
+        feature(uav, { type: "Point", coordinates: last }, { words: isClear(map, last, position) ? words : "" }),
+      ];
+    }),
   );
 }
 

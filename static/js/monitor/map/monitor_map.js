@@ -18,14 +18,27 @@ import * as flightLayers from "./flight_layers.js";
 import { createTargetPills } from "./target_pills.js";
 import { createUavMarkers } from "./uav_markers.js";
 
+/** @import { LiveUav } from "../../api_types.d.ts" */
+/** @import { FeatureCollection } from "../../map/types.d.ts" */
+/** @import { DrawnUav, FlownLine, MonitorPage, MonitorState, MonitorStore, PlannedLine } from "../types.d.ts" */
+
 const NEAR_ZOOM = 13.5;
+const JUMP_MS = 350;
+const FOLLOW_MS = 300;
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
-/** What is drawn of a UAV; null while it was never seen. */
+/**
+ * What is drawn of a UAV; null while it was never seen.
+ *
+ * @param {LiveUav} uav
+ * @param {number} now_ms
+ * @param {number | null} chosen
+ * @returns {DrawnUav | null}
+ */
 export function drawnUav(uav, now_ms, chosen) {
   const certainty = certaintyOf(uav, now_ms);
   const at = standsAt(uav, certainty);
-  if (!at) return null;
+  if (!at || !certainty) return null;
   const isSure = certainty === MEASURED;
   return {
     ...at,
@@ -38,101 +51,156 @@ export function drawnUav(uav, now_ms, chosen) {
     isChosen: uav.id === chosen,
     isSimulated: uav.is_simulated,
     routeClass: uav.place === null ? "" : `route-${routeNumber(uav.place)}`,
-    bound: isSure || certainty === LOST ? null : uav.estimated.bound,
+    bound: isSure || certainty === LOST ? null : (uav.estimated?.bound ?? null),
     last: isSure ? null : (uav.measured?.position ?? null),
     words: uav.measured ? t("last report {time}", { time: exactClockText(uav.measured.measured_at) }) : "",
   };
 }
 
-export function mountMonitorMap(store, page, { pick }) {
-  const container = byId("map");
-  const frame = container.parentElement;
-  const view = createMap(container, {
-    baseMap: page.baseMap,
-    satellite: page.satellite,
-    under: rememberedUnder(page),
-    describe: t("Map"),
-    bounds: page.bounds ?? page.extent,
-    extent: page.extent,
-  });
-  const { map } = view;
-  const tip = createTip(frame);
-  let parts = null; // once the map has its style
-  const controls = mountControls(view, page, {
-    fit: () => fit(),
-    recoloured: (palette) => (flightLayers.recolour(map, palette), parts?.closeUp.recolour()),
-  });
-  map.on("dragstart", () => store.update({ isFollowing: false }));
-  showTipsOnly(map, { controls, tip });
+/** @param {Pick<MonitorState, "uavs" | "now_ms" | "chosen">} state */
+const drawnUavs = ({ uavs, now_ms, chosen }) => uavs.flatMap((uav) => drawnUav(uav, now_ms, chosen) ?? []);
 
-  const drawn = ({ uavs, now_ms, chosen }) => uavs.map((uav) => drawnUav(uav, now_ms, chosen)).filter(Boolean);
-  const routesShown = ({ missions, details }) =>
-    missions.flatMap(({ id }) =>
-      (details.get(id)?.plan?.routes ?? []).map((route, sequence) => ({ sequence, geometry: route.geometry })),
-    );
-  const flownOf = ({ uavs, flown }) =>
-    uavs.filter(({ id }) => flown.has(id)).map((uav) => ({ place: uav.place, parts: flown.get(uav.id) }));
-  const collection = (routes) => ({
-    type: "FeatureCollection",
-    features: routes
-      .filter(({ geometry }) => geometry)
-      .map(({ sequence, geometry }) => ({
-        type: "Feature",
-        properties: { sequence, route: routeNumber(sequence), dashed: false },
-        geometry,
-      })),
+/** @param {Pick<MonitorState, "missions" | "details">} state @returns {PlannedLine[]} */
+const plannedLines = ({ missions, details }) =>
+  missions.flatMap(({ id }) =>
+    (details.get(id)?.plan?.routes ?? []).map(({ geometry }, sequence) => ({ sequence, geometry })),
+  );
+
+/** @param {Pick<MonitorState, "uavs" | "flown">} state @returns {FlownLine[]} */
+const flownLines = ({ uavs, flown }) => uavs.flatMap(({ id, place }) => ({ place, parts: flown.get(id) ?? [] }));
+
+/** @param {PlannedLine[]} routes @returns {FeatureCollection} */
+const collection = (routes) => ({
+  type: "FeatureCollection",
+  features: routes.flatMap(({ sequence, geometry }) =>
+    geometry
+      ? [{ type: "Feature", properties: { sequence, route: routeNumber(sequence), dashed: false }, geometry }]
+      : [],
+  ),
+});
+
+/** @param {Pick<MonitorState, "missions" | "details">} state */
+const pillsOf = ({ missions, details }) =>
+  missions.flatMap((mission) => {
+    const detail = details.get(mission.id);
+    const numbers = numbersOf(detail);
+    return mission.targets.flatMap((target) => {
+      const position = detail?.targets[target.place]?.position;
+      if (!position) return [];
+      return {
+        key: `${mission.id} ${target.place}`,
+        position,
+        sequence: target.uav,
+        letter: target.uav === null ? "" : routeLetter(target.uav),
+        number: numbers.get(target.place) ?? target.place + 1,
+        name: `${pillOf(target, numbers)} ${target.label}`,
+        state: target.state,
+        isMissed: false,
+      };
+    });
   });
 
-  function drawUavs(state) {
-    const shown = drawn(state);
-    const isMixed = !state.uavs.every(({ is_simulated }) => is_simulated); // else the head of the page says it once
-    parts.markers.update(shown.map((uav) => ({ ...uav, isMarked: uav.isSimulated && isMixed })));
-    flightLayers.showUncertain(
-      map,
-      shown.filter(({ certainty }) => certainty !== MEASURED),
-    );
-    const chosen = shown.find(({ isChosen }) => isChosen) ?? null;
-    parts.closeUp.update(chosen, collection(routesShown(state)), flownOf(state));
-    if (state.isFollowing && chosen) map.easeTo({ center: chosen.position, duration: calm.matches ? 0 : 300 });
+/** @param {MonitorStore} store @param {MonitorPage} page @param {{ pick: (uav: number) => void }} on */
+export const mountMonitorMap = (store, page, on) => new MonitorMap(store, page, on);
+
+class MonitorMap {
+  #store;
+  #page;
+  #pick;
+  #frame;
+  #view;
+  #controls;
+  /** @type {{ markers: ReturnType<typeof createUavMarkers>, pills: ReturnType<typeof createTargetPills>, closeUp: ReturnType<typeof createCloseUp> } | null} */
+  #parts = null; // once the map has its style
+
+  /** @param {MonitorStore} store @param {MonitorPage} page @param {{ pick: (uav: number) => void }} on */
+  constructor(store, page, { pick }) {
+    this.#store = store;
+    this.#page = page;
+    this.#pick = pick;
+    const container = byId("map");
+    this.#frame = /** @type {HTMLElement} */ (container.parentElement);
+    this.#view = createMap(container, {
+      baseMap: page.baseMap,
+      satellite: page.satellite,
+      under: rememberedUnder(page),
+      describe: t("Map"),
+      bounds: page.bounds ?? page.extent,
+      extent: page.extent,
+    });
+    const { map } = this.#view;
+    const tip = createTip(this.#frame);
+    this.#controls = mountControls(this.#view, page, {
+      fit: () => this.fit(),
+      recoloured: (palette) => {
+        flightLayers.recolour(map, palette);
+        this.#parts?.closeUp.recolour();
+      },
+    });
+    map.on("dragstart", () => store.update({ isFollowing: false }));
+    showTipsOnly(map, { controls: this.#controls, tip });
+    this.ready = this.#view.ready.then(() => this.#start());
+    this.opensAtPlace = this.#view.opensAtPlace;
+    this.bindings = this.#controls.bindings;
   }
 
-  function drawTargets({ missions, details }) {
-    parts.pills.update(
-      missions
-        .flatMap((mission) => {
-          const detail = details.get(mission.id);
-          const numbers = numbersOf(detail);
-          return mission.targets.map((target) => ({
-            key: `${mission.id} ${target.place}`,
-            position: detail?.targets[target.place]?.position ?? null,
-            sequence: target.uav,
-            letter: target.uav === null ? "" : routeLetter(target.uav),
-            number: numbers.get(target.place) ?? target.place + 1,
-            name: `${pillOf(target, numbers)} ${target.label}`,
-            state: target.state,
-            isMissed: false,
-          }));
-        })
-        .filter(({ position }) => position),
-    );
+  closeTop() {
+    return this.#controls.closeTop();
   }
 
-  function start() {
-    flightLayers.addTo(map, view.palette());
-    parts = {
-      markers: createUavMarkers(map, { onPick: pick }),
-      pills: createTargetPills(map),
-      closeUp: createCloseUp(view, frame, page),
+  /** @param {number} steps */
+  zoom(steps) {
+    this.#view.map.zoomTo(this.#view.map.getZoom() + steps);
+  }
+
+  /** @param {{ animate?: boolean }} [how] */
+  fit(how) {
+    this.#view.map.resize();
+    const { state } = this.#store;
+    const lines = plannedLines(state).flatMap(({ geometry }) => (geometry?.type === "LineString" ? geometry : []));
+    const places = [
+      ...lines.flatMap(({ coordinates }) => coordinates),
+      ...drawnUavs(state).map(({ position }) => position),
+    ];
+    const box = boxAround(places);
+    this.#view.fit(places.length > 1 ? box : (this.#page.extent ?? box), how);
+  }
+
+  /** Brings a UAV into view, near enough to see what it does. @param {number | null} id */
+  jumpTo(id) {
+    const uav = drawnUavs(this.#store.state).find((entry) => entry.id === id);
+    if (uav) this.showPlace(uav.position);
+    return Boolean(uav);
+  }
+
+  /** @param {number[]} position */
+  showPlace([longitude, latitude]) {
+    const { map } = this.#view;
+    map.easeTo({
+      center: [longitude, latitude],
+      zoom: Math.max(map.getZoom(), NEAR_ZOOM),
+      duration: calm.matches ? 0 : JUMP_MS,
+    });
+  }
+
+  #start() {
+    const [store, { map }] = [this.#store, this.#view];
+    flightLayers.addTo(map, this.#view.palette());
+    const pills = createTargetPills(map);
+    this.#parts = {
+      markers: createUavMarkers(map, { onPick: this.#pick }),
+      pills,
+      closeUp: createCloseUp(this.#view, this.#frame, this.#page),
     };
     store.listen(["missions", "details"], (state) => {
-      routesLayer.update(map, routesShown(state));
-      drawTargets(state);
+      routesLayer.update(map, plannedLines(state));
+      pills.update(pillsOf(state));
     });
-    store.listen(["flown", "uavs"], (state) => flightLayers.showFlown(map, flownOf(state)));
-    store.listen(["uavs", "now_ms", "chosen", "details", "isFollowing"], drawUavs);
+    store.listen(["flown", "uavs"], (state) => flightLayers.showFlown(map, flownLines(state)));
+    store.listen(["uavs", "now_ms", "chosen", "details", "isFollowing"], (state) => this.#drawUavs(state));
     store.listen(["offered"], ({ offered }) => flightLayers.showOffered(map, offered));
-    store.listen(["ground"], ({ ground }) => controls.setGround(ground));
-    map.on("zoomend", () => drawUavs(store.state));
+    store.listen(["ground"], ({ ground }) => this.#controls.setGround(ground));
+    map.on("zoomend", () => this.#drawUavs(store.state));
     store.listen(["uavs"], ({ uavs }) =>
       map
         .getCanvas()
@@ -140,37 +208,21 @@ export function mountMonitorMap(store, page, { pick }) {
     );
   }
 
-  function positions(state) {
-    const routes = routesShown(state).flatMap(({ geometry }) => geometry?.coordinates ?? []);
-    return [...routes, ...drawn(state).map(({ position }) => position)];
+  /** @param {MonitorState} state */
+  #drawUavs(state) {
+    if (!this.#parts) return;
+    const { map } = this.#view;
+    const shown = drawnUavs(state);
+    const isMixed = !state.uavs.every(({ is_simulated }) => is_simulated); // else the head of the page says it once
+    this.#parts.markers.update(shown.map((uav) => ({ ...uav, isMarked: uav.isSimulated && isMixed })));
+    flightLayers.showUncertain(
+      map,
+      shown.filter(({ certainty }) => certainty !== MEASURED),
+    );
+    const chosen = shown.find(({ isChosen }) => isChosen) ?? null;
+    this.#parts.closeUp.update(chosen, collection(plannedLines(state)), flownLines(state));
+    if (!state.isFollowing || !chosen) return;
+    const [longitude, latitude] = chosen.position;
+    map.easeTo({ center: [longitude, latitude], duration: calm.matches ? 0 : FOLLOW_MS });
   }
-
-  function fit(options) {
-    map.resize();
-    const places = positions(store.state);
-    view.fit(places.length > 1 ? boxAround(places) : (page.extent ?? boxAround(places)), options);
-  }
-
-  return {
-    ready: view.ready.then(start),
-    opensAtPlace: view.opensAtPlace,
-    fit,
-    zoom: (steps) => map.zoomTo(map.getZoom() + steps),
-    bindings: controls.bindings,
-    closeTop: () => controls.closeTop(),
-    /** Brings a UAV into view, near enough to see what it does. */
-    jumpTo(id) {
-      const uav = drawn(store.state).find((entry) => entry.id === id);
-      if (uav)
-        map.easeTo({
-          center: uav.position,
-          zoom: Math.max(map.getZoom(), NEAR_ZOOM),
-          duration: calm.matches ? 0 : 350,
-        });
-      return Boolean(uav);
-    },
-    showPlace(position) {
-      map.easeTo({ center: position, zoom: Math.max(map.getZoom(), NEAR_ZOOM), duration: calm.matches ? 0 : 350 });
-    },
-  };
 }

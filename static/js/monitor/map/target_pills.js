@@ -7,29 +7,41 @@ import { mergePills } from "../../map/pills.js";
 import { t } from "../../text.js";
 import { STATES } from "../board.js";
 
+/** @import { Marker } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 /** @import { TargetState } from "../../api_types.d.ts" */
 /** @import { MapLibreMap } from "../../map/types.d.ts" */
 /** @import { Pill } from "../../map/pills.js" */
 
+/** @typedef {Omit<Pill, "x" | "y"> & { position: number[], state: TargetState }} TargetPill */
+
 const MOST = 200;
+/** @param {TargetPill[]} members @returns {TargetState} */
 const stateOf = (members) => (members.every(({ state }) => state === members[0].state) ? members[0].state : "pending");
 
+/** @param {MapLibreMap} map */
 export function createTargetPills(map) {
+  /** @type {TargetPill[]} */
   let pills = [];
+  /** @type {Marker[]} */
   let markers = [];
   let drawn = "";
 
   function draw() {
-    const placed = pills.slice(0, MOST).map((pill) => ({ ...pill, ...map.project(pill.position) }));
+    const placed = pills.slice(0, MOST).map((pill) => {
+      const [longitude, latitude] = pill.position;
+      const { x, y } = map.project([longitude, latitude]);
+      return { ...pill, x, y };
+    });
     const groups = mergePills(placed);
     const now = JSON.stringify(
       groups.map(({ label, members }) => [label, members.map(({ key, state }) => [key, state])]),
     );
     if (now === drawn) return;
     drawn = now;
-    markers.forEach((marker) => marker.remove());
+    for (const marker of markers) marker.remove();
     markers = groups.map(({ members, label }) => {
       const [first] = members;
+      const [longitude, latitude] = first.position;
       const state = stateOf(members);
       const words = members.map(({ name, state: own }) => `${name}: ${STATES[own].words}`).join("; ");
       const element = h(
@@ -42,13 +54,13 @@ export function createTargetPills(map) {
         },
         h("span", { class: "pill" }, label),
       );
-      return new maplibre.Marker({ element, subpixelPositioning: true }).setLngLat(first.position).addTo(map);
+      return new maplibre.Marker({ element, subpixelPositioning: true }).setLngLat([longitude, latitude]).addTo(map);
     });
   }
 
   map.on("zoomend", draw);
   return {
-    /** pills: [{ key, position, sequence or null, letter, number, name, state, isMissed: false }] */
+    /** @param {TargetPill[]} next */
     update(next) {
       pills = next;
       draw();

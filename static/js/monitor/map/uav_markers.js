@@ -7,38 +7,78 @@ import { markSimulated } from "../../simulated.js";
 import { t } from "../../text.js";
 import { between, GLIDE_MS } from "./glide.js";
 
+/** @import { Marker } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { Certainty } from "../../domain/certainty.js" */
 /** @import { MapLibreMap } from "../../map/types.d.ts" */
 /** @import { MarkedUav } from "../types.d.ts" */
 
+/** @template {number | string} Id @typedef {MarkedUav & { id: Id }} MarkedBy */
+/** A marker on its way from one place to another. @typedef {{ marker: Marker, parts: Parts, from: number[], to: number[], began_ms: number }} Flyer */
+/** @typedef {ReturnType<typeof drawMarker>} Parts */
+
+/** @type {Record<Certainty, string>} */
 const CERTAINTIES = { measured: t("measured"), estimated: t("estimated"), lost: t("lost") };
+const LOOKS = [...Object.keys(CERTAINTIES), ...[1, 2, 3, 4, 5, 6, 7, 8].map((number) => `route-${number}`)];
 const calm = matchMedia("(prefers-reduced-motion: reduce)");
 
-function drawMarker({ id, onPick }) {
+/** @param {() => void} onPick */
+function drawMarker(onPick) {
   const dart = svg("svg", { class: "flyer-dart", viewBox: "0 0 26 26", "aria-hidden": "true" });
   const letter = h("span", { class: "letter" });
   const name = h("strong", {});
   const certainty = h("span", { class: "unseen" });
   const fact = h("span", {});
+  /** @param {Event} event */
+  const onclick = (event) => {
+    event.stopPropagation();
+    onPick();
+  };
   const element = h(
     "button",
-    { type: "button", tabindex: "-1", class: "map-flyer", onclick: (event) => (event.stopPropagation(), onPick(id)) },
+    { type: "button", tabindex: "-1", class: "map-flyer", onclick },
     h("span", { class: "flyer-mark" }, dart),
     h("span", { class: "flyer-label" }, letter, name, certainty, fact),
   );
   return { element, dart, letter, name, certainty, fact };
 }
 
-/** A dart along its heading; without one a round mark that points nowhere. */
+/** A dart along its heading; without one a round mark that points nowhere. @param {number | null | undefined} heading_deg */
 function shapeOf(heading_deg) {
   if (heading_deg === null || heading_deg === undefined) return svg("circle", { cx: 13, cy: 13, r: 7 });
   return svg("path", { d: "M13 2L21 23L13 18L5 23Z", transform: `rotate(${heading_deg} 13 13)` });
 }
 
-/** onPick(id of a UAV). glide_ms: between two places; 0 where they follow each other as frames do. */
+/** @param {Parts} parts @param {MarkedUav} uav */
+function dress({ element, dart, letter, name, certainty, fact }, uav) {
+  const look = new Set([uav.certainty, uav.place === null ? "" : `route-${routeNumber(uav.place)}`]);
+  for (const kind of LOOKS) element.classList.toggle(kind, look.has(kind)); // the map has classes of its own on it
+  element.classList.toggle("chosen", uav.isChosen);
+  const words = CERTAINTIES[uav.certainty];
+  certainty.textContent = uav.fact.includes(words) ? ", " : `, ${words}, `;
+  dart.replaceChildren(shapeOf(uav.heading_deg));
+  letter.hidden = uav.letter === "";
+  letter.textContent = uav.letter;
+  name.textContent = uav.name;
+  markSimulated(name, uav.isMarked);
+  fact.textContent = uav.fact;
+}
+
+/** @param {readonly number[]} place @returns {[number, number]} */
+const lngLatOf = ([longitude, latitude]) => [longitude, latitude];
+
+/**
+ * Markers of UAVs that glide from place to place.
+ *
+ * @template {number | string} Id
+ * @param {MapLibreMap} map
+ * @param {{ onPick: (id: Id) => void, glide_ms?: number }} options glide_ms: between two places; 0 where they follow each other as frames do
+ */
 export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS }) {
-  const flyers = new Map(); // id → { marker, parts, from, to, began_ms }
+  /** @type {Map<Id, Flyer>} */
+  const flyers = new Map();
   let frame = 0;
 
+  /** @param {number} now_ms */
   function glide(now_ms) {
     frame = 0;
     let isMoving = false;
@@ -50,51 +90,35 @@ export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS }) {
     if (isMoving) frame = requestAnimationFrame(glide);
   }
 
+  /** @param {Flyer} flyer @param {number[]} position */
   function place(flyer, position) {
     if (flyer.to[0] === position[0] && flyer.to[1] === position[1]) return;
     Object.assign(flyer, { from: flyer.marker.getLngLat().toArray(), to: position, began_ms: performance.now() });
-    frame ||= requestAnimationFrame(glide);
+    if (!frame) frame = requestAnimationFrame(glide);
+  }
+
+  /** @param {MarkedBy<Id>} uav @returns {Flyer} */
+  function added(uav) {
+    const parts = drawMarker(() => onPick(uav.id));
+    const look = { element: parts.element, anchor: /** @type {const} */ ("left"), subpixelPositioning: true };
+    const marker = new maplibre.Marker({ ...look, offset: [-20, 0] }).setLngLat(lngLatOf(uav.position)).addTo(map);
+    const flyer = { marker, parts, from: uav.position, to: uav.position, began_ms: 0 };
+    flyers.set(uav.id, flyer);
+    return flyer;
   }
 
   return {
-    /** shown: [{ id, name, letter, place, position, heading_deg, certainty, fact, isMarked, isChosen }]; isMarked: as simulated */
+    /** Shows these UAVs and no others. @param {MarkedBy<Id>[]} shown */
     update(shown) {
       const seen = new Set(shown.map(({ id }) => id));
-      for (const [id, { marker }] of flyers) if (!seen.has(id)) marker.remove(), flyers.delete(id);
+      for (const [id, { marker }] of flyers) {
+        if (seen.has(id)) continue;
+        marker.remove();
+        flyers.delete(id);
+      }
       for (const uav of shown) {
-        if (!flyers.has(uav.id)) {
-          const parts = drawMarker({ id: uav.id, onPick });
-          const marker = new maplibre.Marker({
-            element: parts.element,
-            anchor: "left",
-            offset: [-20, 0],
-            subpixelPositioning: true,
-          })
-            .setLngLat(uav.position)
-            .addTo(map);
-          flyers.set(uav.id, { marker, parts, from: uav.position, to: uav.position, began_ms: 0 });
-        }
-        const flyer = flyers.get(uav.id);
-        const { element, dart, letter, name, certainty, fact } = flyer.parts;
-        const look = `map-flyer ${uav.certainty} ${uav.place === null ? "" : `route-${routeNumber(uav.place)}`}`.trim();
-        for (const kind of [
-          "map-flyer",
-          "measured",
-          "estimated",
-          "lost",
-          ...[1, 2, 3, 4, 5, 6, 7, 8].map((number) => `route-${number}`),
-        ])
-          element.classList.toggle(kind, look.split(" ").includes(kind));
-        element.classList.toggle("chosen", uav.isChosen);
-        certainty.textContent = uav.fact.includes(CERTAINTIES[uav.certainty])
-          ? ", "
-          : `, ${CERTAINTIES[uav.certainty]}, `;
-        dart.replaceChildren(shapeOf(uav.heading_deg));
-        letter.hidden = uav.letter === "";
-        letter.textContent = uav.letter;
-        name.textContent = uav.name;
-        markSimulated(name, uav.isMarked);
-        fact.textContent = uav.fact;
+        const flyer = flyers.get(uav.id) ?? added(uav);
+        dress(flyer.parts, uav);
         place(flyer, uav.position);
       }
     },
