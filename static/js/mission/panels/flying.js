@@ -24,7 +24,8 @@ import { simulatedMark } from "../../simulated.js";
 import { t } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";
 
-/** @import { Command, CommandKind, Mission } from "../../api_types.d.ts" */
+/** @import { Command, Mission } from "../../api_types.d.ts" */
+/** @import { AskedKind } from "../../domain/command_questions.js" */
 /** @import { Flyer, Said } from "../../domain/flying.js" */
 /** @import { Binding } from "../../page/keyboard.js" */
 /** @import { MissionPageState, MissionStore } from "../types.d.ts" */
@@ -33,9 +34,9 @@ import { exactClockText, exactText } from "../../units.js";
 /** @typedef {Flyer & { speed_mps: number }} FlyerHere */
 /** @typedef {{ store: MissionStore, flying: Flying, canFly: boolean, saveCopy: () => unknown }} FlyingContext */
 
-/** @type {CommandKind[]} */
+/** @type {AskedKind[]} */
 const BESIDE = ["hold", "return", "land"];
-/** @type {[CommandKind, string][]} */
+/** @type {[AskedKind, string][]} */
 const MORE = [
   ["arm", "plane-takeoff"],
   ["take-off", "plane-takeoff"],
@@ -67,7 +68,7 @@ export function mountFlying(store, flying, { canFly, saveCopy }) {
   byId("revoke").addEventListener("click", () => void flying.revoke());
   byId("abort").addEventListener("click", () => void flying.abort());
 
-  /** For the route that is chosen, or the only one: the question opens, nothing is done at once. @param {CommandKind} kind */
+  /** For the route that is chosen, or the only one: the question opens, nothing is done at once. @param {AskedKind} kind */
   function ask(kind) {
     const { mission, chosenRoute } = store.state;
     if (!mission || !isOnItsWay(mission)) return false;

@@ -183,11 +183,11 @@ function notice(level, image, title, text, acts = []) {
 }
 
 /** Something to do here, or an address as it is when it is followed. @param {WayOut} way */
-function wayOut(way) {
-  if ("act" in way) return h("button", { type: "button", class: "text-button", onclick: way.act }, way.label);
-  const link = h("a", { class: "text-button", href: way.href() }, way.label);
+function wayOut({ label, act, href }) {
+  if (act || !href) return h("button", { type: "button", class: "text-button", onclick: act }, label);
+  const link = h("a", { class: "text-button", href: href() }, label);
   link.addEventListener("click", () => {
-    link.href = way.href();
+    link.href = href();
   });
   return link;
 }
