@@ -28,9 +28,9 @@ def strip(page: Page, uav: str) -> Locator:
 
 
 def menu_of(page: Page, target: str) -> Locator:
-    page.get_by_role("button", name=f"Task of {target}").first.focus()
+    page.get_by_role("button", name=re.compile(rf"^Task of {re.escape(target)}: ")).first.focus()
     page.keyboard.press("Enter")
-    return page.get_by_role("group", name=f"Task and wishes: {target}")
+    return page.get_by_role("group", name=f"Task and wishes: {target}", exact=True)
 
 
 def names_in_order(page: Page) -> list[str]:
@@ -106,7 +106,7 @@ def test_the_order_is_changed_and_locked_by_keyboard_alone(visitor: Visitor) -> 
     page.keyboard.press("Enter")
     expect(page.get_by_text(f"{first} is locked as target 2 of Heron.")).to_be_visible()
     assert names_in_order(page)[:2] == [second, first]
-    page.get_by_role("list", name="Targets", exact=True).get_by_role("button", name=re.compile(f"^{first}")).first.focus()
+    page.get_by_role("list", name="Targets", exact=True).get_by_role("button", name=re.compile(f"^{first}\\b")).first.focus()
     page.keyboard.press("Alt+ArrowUp")
     assert names_in_order(page)[:2] == [first, second]
     menu = menu_of(page, first)
@@ -124,7 +124,7 @@ def test_the_order_is_changed_and_locked_by_keyboard_alone(visitor: Visitor) -> 
 
 def test_wishes_of_targets_and_uavs_are_saved_undone_and_seen_on_a_phone(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal", **PHONE)
-    sends(page, "bases", {"name": "Wishing yard", "position": region.centre})
+    sends(page, "bases", {"name": "Wishing yard", "position": region.at(0, 0.02)})
     sends(page, "uavs", {"name": "Sensing", "position": region.at(0, -0.05), "sensor": "Corona camera"})
     opens_mission(page, "With wishes", targets=5)
     expect(page.locator("#plan-quality")).to_contain_text("Proven soonest.")
