@@ -64,7 +64,7 @@ class UavsAlone(BasePermission):
         return isinstance(request.auth, UavAccess)
 
 
-def uav_of(request: Request) -> UavAccess:
+def uav_access(request: Request) -> UavAccess:
     """Return the UAV that asks, in a view that is for UAVs alone. Raises NotAuthenticated if none does."""
     if not isinstance(request.auth, UavAccess):
         raise NotAuthenticated
@@ -75,7 +75,7 @@ class UavRate(ScopedRate):
     """Counts requests per UAV."""
 
     def get_cache_key(self, request: Request, view: Any) -> str:
-        return str(self.cache_format % {"scope": self.scope, "ident": f"uav:{uav_of(request).uav_id}"})
+        return str(self.cache_format % {"scope": self.scope, "ident": f"uav:{uav_access(request).uav_id}"})
 
 
 _ACCESS = f"""

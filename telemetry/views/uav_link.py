@@ -30,7 +30,7 @@ from telemetry.services.companion_reports import USED_AGAIN, take_reports
 from telemetry.services.heard import note_heard_over_http
 from telemetry.services.results import EndedFlight, take_results
 from telemetry.services.uav_outbox import Acknowledgement, handed_to, note_acknowledgements
-from telemetry.views.uav_authentication import UavRate, UavsAlone, UavTokenAuthentication, uav_of
+from telemetry.views.uav_authentication import UavRate, UavsAlone, UavTokenAuthentication, uav_access
 from workspace.parsers import MeasuredJSONParser
 from workspace.renderers import FastJSONRenderer
 from workspace.sign_in_attempts import address_of
@@ -46,7 +46,7 @@ class UavView(APIView):
 
     def initial(self, request: Request, *args: Any, **kwargs: Any) -> None:
         super().initial(request, *args, **kwargs)
-        note_heard_over_http(uav_id=uav_of(request).uav_id, address=address_of(request))
+        note_heard_over_http(uav_id=uav_access(request).uav_id, address=address_of(request))
 
 
 class UavTelemetry(UavView):
@@ -66,7 +66,7 @@ class UavTelemetry(UavView):
     def post(self, request: Request) -> Response:
         received_at = timezone.now()
         envelope = _envelope(ReportsEnvelopeSerializer, request)
-        uav = uav_of(request)
+        uav = uav_access(request)
         sent = envelope["records"]
         taken = take_reports(uav_id=uav.uav_id, place=uav.place, stream=envelope["stream"], sent=sent, received_at=received_at)
         return Response(
@@ -104,7 +104,7 @@ class UavResults(UavView):
             else:
                 read.append((index, result))
         taken = take_results(
-            uav_id=uav_of(request).uav_id,
+            uav_id=uav_access(request).uav_id,
             stream=envelope["stream"],
             results=[result for _, result in read],
             flights=[
@@ -137,7 +137,7 @@ class UavRoute(UavView):
         },
     )
     def get(self, request: Request) -> Response:
-        uav_id = uav_of(request).uav_id
+        uav_id = uav_access(request).uav_id
         given = given_to(uav_id)
         known = request.headers.get("If-None-Match", "").removeprefix("W/")  # a proxy that packs answers makes it a weak one
         if known == _etag(uav_id, given):
@@ -172,7 +172,7 @@ class UavAcknowledgements(UavView):
             Acknowledgement(entry["command"], CommandState(entry["state"]), entry.get("reason", ""), entry.get("content_sha256"))
             for entry in told
         ]
-        noted = note_acknowledgements(uav_id=uav_of(request).uav_id, acknowledgements=acknowledgements)
+        noted = note_acknowledgements(uav_id=uav_access(request).uav_id, acknowledgements=acknowledgements)
         return Response(
             {"results": [{"command": one.command_id, "noted": one.noted, "state": one.state, "words": one.words} for one in noted]}
         )
