@@ -6,10 +6,12 @@ import { heightText, numberText, percentText, speedText } from "../units.js";
 /** @import { SimulatedVehicle, Simulation } from "../api_types.d.ts" */
 /** @import { Told } from "./types.d.ts" */
 
+/** @type {[number, string][]} */
 export const SPEEDS = [1, 2, 5, 10].map((speed) => [
   speed,
   speed === 1 ? t("Real time") : t("{speed}× real time", { speed }),
 ]);
+/** @type {[string, string][]} */
 export const AIRS = [
   ["as-planned", t("As planned")],
   ["calm", t("Calm")],

@@ -1,8 +1,8 @@
 /** Shapes that the modules of the live page share. Positions are longitude, latitude [deg]. */
 
 import type { Alert, Command, Live, LiveMission, LiveOffer, LiveUav, Mission } from "../api_types.d.ts";
-import type { AskedKind } from "../domain/command_questions.js";
 import type { Certainty } from "../domain/certainty.js";
+import type { AskedKind } from "../domain/command_questions.js";
 import type { FeedState } from "../live/feed.js";
 import type { Box, Geometry, Ground, MapPage } from "../map/types.d.ts";
 import type { Store } from "../store.js";
@@ -13,6 +13,8 @@ export interface MonitorPage extends MapPage {
   mission: string | null;
   canFly: boolean;
   hasSimulated: boolean;
+  /** of the only mission; the page's title until the feed tells it */
+  missionName?: string;
   bounds: Box | null;
   extent: Box | null;
 }

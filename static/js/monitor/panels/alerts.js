@@ -1,21 +1,34 @@
 /** Alerts: the worst on top, each with one act and Acknowledge; filters, and what is over. */
 
 import { ApiError, get, post } from "../../api.js";
-import { byId, h, icon, keyedList } from "../../dom.js";
-import { toggleMenu } from "../../page/chrome.js";
+import { byId, h, icon, keyedList, setChildren } from "../../dom.js";
 import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";
-import { createAlarm, newAlerts } from "../alarm.js";
 import { alertsInOrder, isOpenAlert, isUnanswered } from "../order.js";
+import { mountAlarm } from "./alarm_choice.js";
 
+/** @import { Answer } from "../../api.js" */
+/** @import { AlertLevel, AlertPage } from "../../api_types.d.ts" */
+/** @import { Binding } from "../../page/keyboard.js" */
+/** @import { Alert, Commanding, LiveUav, MonitorPage, MonitorState, MonitorStore } from "../types.d.ts" */
+
+/**
+ * @typedef {object} AlertActs
+ * @property {(uav: number) => void} pick
+ * @property {Commanding | null} commanding null for who cannot fly
+ * @property {() => void} showBoard shows the alerts where they are folded
+ */
+
+/** @type {Record<AlertLevel, { words: string, image: string }>} */
 const LEVELS = {
   critical: { words: t("Critical"), image: "octagon-alert" },
   warning: { words: t("Warning"), image: "triangle-alert" },
   advisory: { words: t("Advisory"), image: "info" },
 };
+/** What a cause is answered with. @type {Record<string, "return" | "hold" | "pause">} */
 const ACTS = {
   "battery-short": "return",
   "no-progress": "hold",
@@ -27,270 +40,263 @@ const ACTS = {
   "height-off": "hold",
 };
 const ACT_WORDS = {
-  return: (name) => t("Return {name}", { name }),
-  hold: (name) => t("Hold {name}", { name }),
-  pause: (name) => t("Pause {name}", { name }),
+  return: (/** @type {string} */ name) => t("Return {name}", { name }),
+  hold: (/** @type {string} */ name) => t("Hold {name}", { name }),
+  pause: (/** @type {string} */ name) => t("Pause {name}", { name }),
 };
 const HISTORY_AT_ONCE = 50;
 
-/** pick(uav id); commanding: null for who cannot fly; showBoard() shows them. Returns keys. */
-export function mountAlerts(store, page, { pick, commanding, showBoard }) {
-  const alarm = createAlarm();
-  const list = byId("alert-list");
-  const told = new Map(); // alert → level that was said
-  const canFly = page.canFly;
-  let past = []; // read from the history
-
-  async function tried(act, words) {
-    try {
-      await act();
-      say(words);
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      toast(error.message);
-    }
+/** @param {() => Promise<void>} act @param {string} words once it is done */
+async function tried(act, words) {
+  try {
+    await act();
+    say(words);
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    toast(error.message);
   }
+}
 
-  const acknowledge = (alert) => tried(() => post(`/alerts/${alert.id}/acknowledge`, {}), t("Acknowledged."));
+/** @param {Alert} alert */
+const acknowledge = (alert) =>
+  tried(async () => void (await post(`/alerts/${alert.id}/acknowledge`, {})), t("Acknowledged."));
 
-  async function note(alert) {
-    const asked = await confirmAct({
-      title: t("A note to this alert"),
-      lines: [alert.message],
-      field: { name: "text", label: t("Note; it is kept and never changed"), isNeeded: true },
-      act: t("Write it down"),
-      keep: t("Cancel"),
-    });
-    if (asked?.text) await tried(() => post(`/alerts/${alert.id}/notes`, { text: asked.text }), t("The note is kept."));
-  }
+/** @param {Alert} alert */
+async function note(alert) {
+  const asked = await confirmAct({
+    title: t("A note to this alert"),
+    lines: [alert.message],
+    field: { name: "text", label: t("Note; it is kept and never changed"), isNeeded: true },
+    act: t("Write it down"),
+    keep: t("Cancel"),
+  });
+  if (!asked?.text) return;
+  await tried(async () => void (await post(`/alerts/${alert.id}/notes`, { text: asked.text })), t("The note is kept."));
+}
 
-  function make() {
-    return h("li", { class: "alert" });
-  }
+/** What has become of an alert. @param {Alert} alert */
+function historyWords(alert) {
+  const said = [
+    alert.closed_at && t("Over since {time}.", { time: exactClockText(alert.closed_at) }),
+    alert.acknowledged_at &&
+      t("Acknowledged by {who}, {time}.", {
+        who: alert.acknowledged_by ?? t("somebody who has left"),
+        time: exactClockText(alert.acknowledged_at),
+      }),
+    alert.notes > 0 && tn(alert.notes, "{count} note.", "{count} notes."),
+  ];
+  return said.filter(Boolean).join(" ");
+}
 
-  function refresh(row, alert) {
-    const uav = store.state.uavs.find(({ id }) => id === alert.uav);
-    const key = JSON.stringify([
-      alert.revision,
-      alert.message,
-      alert.notes,
-      alert.acknowledged_at,
-      alert.closed_at,
-      alert.is_simulated,
-      uav?.name,
-      uav?.place,
-    ]);
-    if (row.dataset.key === key) return;
-    row.dataset.key = key;
-    const isKnown = !isUnanswered(alert);
-    row.className = `alert ${isKnown ? "known" : alert.level} ${isOpenAlert(alert) ? "" : "over"}`;
-    const level = LEVELS[alert.level];
-    const kind = canFly && isUnanswered(alert) && uav ? ACTS[alert.code] : null;
-    const said = [
-      alert.closed_at && t("Over since {time}.", { time: exactClockText(alert.closed_at) }),
-      alert.acknowledged_at &&
-        t("Acknowledged by {who}, {time}.", {
-          who: alert.acknowledged_by ?? t("somebody who has left"),
-          time: exactClockText(alert.acknowledged_at),
-        }),
-      alert.notes > 0 && tn(alert.notes, "{count} note.", "{count} notes."),
-    ]
-      .filter(Boolean)
-      .join(" ");
-    const act =
-      kind &&
-      h(
-        "button",
-        {
-          type: "button",
-          class: "button small",
-          onclick: (event) => (pick(uav.id), void commanding.ask(uav.id, kind, event.currentTarget)),
-        },
-        ACT_WORDS[kind](uav.name),
-      );
-    const known =
-      canFly &&
-      isUnanswered(alert) &&
-      h(
-        "button",
-        {
-          type: "button",
-          class: `button small ${act ? "quiet" : ""}`,
-          "data-act": "acknowledge",
-          onclick: () => void acknowledge(alert),
-        },
-        t("Acknowledge"),
-      );
-    const write =
-      canFly &&
-      h(
-        "button",
-        {
-          type: "button",
-          class: "icon-button tight",
-          "aria-label": t("A note to this alert"),
-          title: t("Note"),
-          onclick: () => void note(alert),
-        },
-        icon("message-square", "small"),
-      );
-    const hadFocus = row.contains(document.activeElement);
-    row.replaceChildren(
-      icon(isKnown ? "check" : level.image),
-      h(
-        "div",
-        { class: "alert-said" },
-        h(
-          "p",
-          { class: "alert-title" },
-          h("span", { class: "unseen" }, `${level.words}: `),
-          uav ? h("button", { type: "button", class: "alert-uav", onclick: () => pick(uav.id) }, uav.name) : null,
-          h("span", {}, alert.message),
-          alert.is_simulated && [" ", simulatedMark()],
-        ),
-        said && h("p", { class: "caption" }, said),
-        (act || known) && h("div", { class: "alert-acts" }, act, known),
-      ),
-      h(
-        "div",
-        { class: "alert-side" },
-        h("time", { datetime: alert.opened_at, title: exactText(alert.opened_at) }, exactClockText(alert.opened_at)),
-        write,
-      ),
-    );
-    if (hadFocus) row.querySelector("button")?.focus({ preventScroll: true });
-  }
+/** @param {Alert} alert @param {LiveUav | undefined} uav */
+const rowKey = (alert, uav) =>
+  JSON.stringify([
+    alert.revision,
+    alert.message,
+    alert.notes,
+    alert.acknowledged_at,
+    alert.closed_at,
+    alert.is_simulated,
+    uav?.name,
+    uav?.place,
+  ]);
 
-  const draw = keyedList(list, ({ id }) => id, make, refresh);
+/** @param {Alert} alert */
+const noteButton = (alert) =>
+  h(
+    "button",
+    {
+      type: "button",
+      class: "icon-button tight",
+      "aria-label": t("A note to this alert"),
+      title: t("Note"),
+      onclick: () => void note(alert),
+    },
+    icon("message-square", "small"),
+  );
 
-  // Filters and history
+/** @param {Alert} alert @param {boolean} isQuiet there is another act beside it */
+const acknowledgeButton = (alert, isQuiet) =>
+  h(
+    "button",
+    {
+      type: "button",
+      class: `button small ${isQuiet ? "quiet" : ""}`,
+      "data-act": "acknowledge",
+      onclick: () => void acknowledge(alert),
+    },
+    t("Acknowledge"),
+  );
 
-  const levels = h(
+/** @param {MonitorStore} store @param {MonitorPage} page @param {AlertActs} acts @returns {Binding[]} */
+export function mountAlerts(store, page, acts) {
+  const panel = new AlertPanel(store, page, acts);
+  mountAlarm(store);
+  byId("open-alerts").addEventListener("click", acts.showBoard);
+  if (!page.canFly) return [];
+  const words = t("Acknowledge the alert that has focus, or the first");
+  return [{ keys: ["a"], words, act: () => panel.acknowledgeFirst() }];
+}
+
+class AlertPanel {
+  #store;
+  #page;
+  #acts;
+  #list = byId("alert-list");
+  /** @type {Alert[]} */
+  #past = []; // read from the history
+  #levels = h(
     "select",
     { class: "input", "aria-label": t("Level") },
     h("option", { value: "" }, t("All levels")),
     Object.entries(LEVELS).map(([value, { words }]) => h("option", { value }, words)),
   );
-  const uavs = h("select", { class: "input", "aria-label": t("UAV") });
-  const history = h(
+  #uavs = h("select", { class: "input", "aria-label": t("UAV") });
+  #history = h(
     "button",
-    { type: "button", class: "button small", "aria-pressed": "false", onclick: () => void readHistory() },
+    { type: "button", class: "button small", "aria-pressed": "false", onclick: () => void this.#readHistory() },
     t("History"),
   );
-  byId("alert-filters").append(levels, uavs, history);
-  for (const select of [levels, uavs]) select.addEventListener("change", () => drawAll(store.state));
-  byId("alert-filter").addEventListener("click", () => {
+  #drawList = keyedList(
+    this.#list,
+    (/** @type {Alert} */ { id }) => id,
+    () => h("li", { class: "alert" }),
+    (row, alert) => this.#refresh(row, alert),
+  );
+
+  /** @param {MonitorStore} store @param {MonitorPage} page @param {AlertActs} acts */
+  constructor(store, page, acts) {
+    this.#store = store;
+    this.#page = page;
+    this.#acts = acts;
     const filters = byId("alert-filters");
-    filters.hidden = !filters.hidden;
-    byId("alert-filter").setAttribute("aria-expanded", `${!filters.hidden}`);
-  });
-
-  async function readHistory() {
-    const isOn = history.getAttribute("aria-pressed") !== "true";
-    history.setAttribute("aria-pressed", `${isOn}`);
-    past = [];
-    if (isOn)
-      await tried(
-        async () =>
-          (past = (
-            await get(`/alerts?state=closed&limit=${HISTORY_AT_ONCE}${page.mission ? `&mission=${page.mission}` : ""}`)
-          ).data.results),
-        t("The history is shown."),
-      );
-    drawAll(store.state);
+    filters.append(this.#levels, this.#uavs, this.#history);
+    for (const select of [this.#levels, this.#uavs]) select.addEventListener("change", () => this.#draw(store.state));
+    const opener = byId("alert-filter");
+    opener.addEventListener("click", () => {
+      filters.hidden = !filters.hidden;
+      opener.setAttribute("aria-expanded", `${!filters.hidden}`);
+    });
+    store.listen(["alerts", "uavs"], (state) => this.#draw(state));
   }
 
-  function drawUavChoice(state) {
-    const key = state.uavs.map(({ id, name }) => `${id} ${name}`).join();
-    if (uavs.dataset.key === key) return;
-    uavs.dataset.key = key;
-    const chosen = uavs.value;
-    uavs.replaceChildren(
-      h("option", { value: "" }, t("All UAVs")),
-      ...state.uavs.map(({ id, name }) => h("option", { value: `${id}` }, name)),
+  /** Of the alert that has focus, or the first. */
+  acknowledgeFirst() {
+    const own = document.activeElement?.closest(".alert");
+    const wanted = "[data-act=acknowledge]";
+    const button = own?.querySelector(wanted) ?? this.#list.querySelector(wanted);
+    if (button instanceof HTMLElement) button.click();
+  }
+
+  get #showsHistory() {
+    return this.#history.getAttribute("aria-pressed") === "true";
+  }
+
+  /** @param {HTMLElement} row @param {Alert} alert */
+  #refresh(row, alert) {
+    const uav = this.#store.state.uavs.find(({ id }) => id === alert.uav);
+    const key = rowKey(alert, uav);
+    if (row.dataset.key === key) return;
+    row.dataset.key = key;
+    const isKnown = !isUnanswered(alert);
+    const level = LEVELS[alert.level];
+    row.className = `alert ${isKnown ? "known" : alert.level} ${isOpenAlert(alert) ? "" : "over"}`;
+    const hadFocus = row.contains(document.activeElement);
+    const time = h(
+      "time",
+      { datetime: alert.opened_at, title: exactText(alert.opened_at) },
+      exactClockText(alert.opened_at),
     );
-    uavs.value = chosen;
+    setChildren(
+      row,
+      icon(isKnown ? "check" : level.image),
+      this.#said(alert, uav),
+      h("div", { class: "alert-side" }, time, this.#page.canFly && noteButton(alert)),
+    );
+    if (hadFocus) row.querySelector("button")?.focus({ preventScroll: true });
   }
 
-  function drawAll(state) {
-    drawUavChoice(state);
-    const isShown = ({ level, uav }) =>
-      (!levels.value || level === levels.value) && (!uavs.value || `${uav}` === uavs.value);
-    const live = state.alerts.filter((alert) => isOpenAlert(alert) || history.getAttribute("aria-pressed") === "true");
+  /** @param {Alert} alert @param {LiveUav | undefined} uav */
+  #said(alert, uav) {
+    const act = uav ? this.#actButton(alert, uav) : null;
+    const known = this.#page.canFly && isUnanswered(alert) && acknowledgeButton(alert, act !== null);
+    const past = historyWords(alert);
+    const pick = () => uav && this.#acts.pick(uav.id);
+    return h(
+      "div",
+      { class: "alert-said" },
+      h(
+        "p",
+        { class: "alert-title" },
+        h("span", { class: "unseen" }, `${LEVELS[alert.level].words}: `),
+        uav && h("button", { type: "button", class: "alert-uav", onclick: pick }, uav.name),
+        h("span", {}, alert.message),
+        alert.is_simulated && [" ", simulatedMark()],
+      ),
+      past && h("p", { class: "caption" }, past),
+      (act || known) && h("div", { class: "alert-acts" }, act, known),
+    );
+  }
+
+  /** What the operator would answer this cause with. @param {Alert} alert @param {LiveUav} uav */
+  #actButton(alert, uav) {
+    const kind = this.#page.canFly && isUnanswered(alert) ? ACTS[alert.code] : null;
+    if (!kind) return null;
+    /** @param {Event} event */
+    const ask = ({ currentTarget }) => {
+      this.#acts.pick(uav.id);
+      void this.#acts.commanding?.ask(uav.id, kind, /** @type {HTMLElement} */ (currentTarget));
+    };
+    return h("button", { type: "button", class: "button small", onclick: ask }, ACT_WORDS[kind](uav.name));
+  }
+
+  async #readHistory() {
+    const isOn = !this.#showsHistory;
+    this.#history.setAttribute("aria-pressed", `${isOn}`);
+    this.#past = [];
+    const mission = this.#page.mission ? `&mission=${this.#page.mission}` : "";
+    if (isOn)
+      await tried(async () => {
+        const answer = await get(`/alerts?state=closed&limit=${HISTORY_AT_ONCE}${mission}`);
+        this.#past = /** @type {Answer<AlertPage>} */ (answer).data.results;
+      }, t("The history is shown."));
+    this.#draw(this.#store.state);
+  }
+
+  /** @param {LiveUav[]} uavs */
+  #drawUavChoice(uavs) {
+    const key = uavs.map(({ id, name }) => `${id} ${name}`).join();
+    if (this.#uavs.dataset.key === key) return;
+    this.#uavs.dataset.key = key;
+    const chosen = this.#uavs.value;
+    setChildren(
+      this.#uavs,
+      h("option", { value: "" }, t("All UAVs")),
+      uavs.map(({ id, name }) => h("option", { value: `${id}` }, name)),
+    );
+    this.#uavs.value = chosen;
+  }
+
+  /** @param {Alert} alert */
+  #isShown({ level, uav }) {
+    const [wantedLevel, wantedUav] = [this.#levels.value, this.#uavs.value];
+    return (!wantedLevel || level === wantedLevel) && (!wantedUav || `${uav}` === wantedUav);
+  }
+
+  /** @param {Readonly<MonitorState>} state */
+  #draw(state) {
+    this.#drawUavChoice(state.uavs);
+    const live = state.alerts.filter((alert) => isOpenAlert(alert) || this.#showsHistory);
     const ids = new Set(live.map(({ id }) => id));
-    const shown = alertsInOrder([...live, ...past.filter(({ id }) => !ids.has(id))].filter(isShown));
+    const past = this.#past.filter(({ id }) => !ids.has(id));
+    const shown = alertsInOrder([...live, ...past].filter((alert) => this.#isShown(alert)));
     const open = state.alerts.filter(isUnanswered).length;
+    const openWords = open ? tn(open, "{count} open alert", "{count} open alerts") : t("Alerts");
     byId("alert-count").textContent = open ? t("{count} open", { count: open }) : "";
     byId("alert-badge").hidden = open === 0;
-    byId("alert-badge").textContent = open;
-    byId("open-alerts").setAttribute(
-      "aria-label",
-      open ? tn(open, "{count} open alert", "{count} open alerts") : t("Alerts"),
-    );
+    byId("alert-badge").textContent = `${open}`;
+    byId("open-alerts").setAttribute("aria-label", openWords);
     byId("no-alerts").hidden = shown.length > 0;
-    draw(shown);
+    this.#drawList(shown);
   }
-
-  // What is said and sounded, once a cause
-
-  function tell({ alerts, isWhole }) {
-    const fresh = newAlerts(alerts, told);
-    for (const { id, level } of alerts) told.set(id, level);
-    if (!isWhole || !fresh.length) return;
-    const critical = fresh.filter(({ level }) => level === "critical");
-    if (critical.length) byId("critical-spoken").textContent = critical.map(({ message }) => message).join(" ");
-    alarm.sound(fresh);
-    alarm.notify(fresh);
-  }
-
-  const sound = byId("alert-sound");
-  function drawSound() {
-    const { sound: isOn } = alarm.choice();
-    sound.replaceChildren(icon(isOn ? "volume-2" : "volume-x"));
-    sound.setAttribute("aria-label", isOn ? t("Sound and notifications: on") : t("Sound and notifications: off"));
-    sound.title = sound.getAttribute("aria-label");
-  }
-  const choiceRow = (words, isOn, onchange) =>
-    h(
-      "label",
-      { class: "switch-row" },
-      h("span", {}, words),
-      h("input", { class: "switch", type: "checkbox", role: "switch", checked: isOn, onchange }),
-    );
-  sound.addEventListener("click", () =>
-    toggleMenu(sound, () =>
-      h(
-        "div",
-        { class: "menu float alarm-menu", role: "group", "aria-label": t("Sound and notifications") },
-        choiceRow(
-          t("Sound for critical alerts and warnings"),
-          alarm.choice().sound,
-          ({ target }) => (alarm.setSound(target.checked), drawSound()),
-        ),
-        choiceRow(t("Notifications of the browser"), alarm.choice().notify, async ({ target }) => {
-          if (await alarm.setNotify(target.checked)) return;
-          target.checked = false;
-          toast(t("The browser does not allow notifications here."));
-        }),
-      ),
-    ),
-  );
-  drawSound();
-
-  byId("open-alerts").addEventListener("click", showBoard);
-  store.listen(["alerts", "uavs"], drawAll);
-  store.listen(["alerts", "isWhole"], tell);
-  return canFly
-    ? [
-        {
-          keys: ["a"],
-          words: t("Acknowledge the alert that has focus, or the first"),
-          act: () =>
-            (
-              document.activeElement?.closest?.(".alert")?.querySelector("[data-act=acknowledge]") ??
-              list.querySelector("[data-act=acknowledge]")
-            )?.click(),
-        },
-      ]
-    : [];
 }

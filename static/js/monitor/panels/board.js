@@ -1,6 +1,6 @@
 /** The board and the log of events, one of them at a time. */
 
-import { byId, h, icon, keyedList } from "../../dom.js";
+import { byId, find, h, icon, keyedList, setChildren } from "../../dom.js";
 import { routeNumber } from "../../domain/palette.js";
 import { simulatedMark } from "../../simulated.js";
 import { t } from "../../text.js";
@@ -8,10 +8,15 @@ import { clockText, exactClockText, exactText } from "../../units.js";
 import { boardRows, STATES } from "../board.js";
 import { eventsOf } from "../event_log.js";
 
-/** show(mission, place of a target) brings it into view on the map. */
-export function mountBoard(store, { show }) {
-  const body = h("tbody", {});
-  const table = h(
+/** @import { BoardRow } from "../board.js" */
+/** @import { LoggedEvent } from "../event_log.js" */
+/** @import { LiveMission, MonitorState, MonitorStore } from "../types.d.ts" */
+
+/** @typedef {(mission: string, place: number) => void} ShowTarget brings a target into view on the map */
+
+/** @param {Node} body */
+const tableOf = (body) =>
+  h(
     "table",
     { class: "board-table" },
     h("caption", { class: "unseen" }, t("Targets")),
@@ -28,80 +33,82 @@ export function mountBoard(store, { show }) {
     ),
     body,
   );
-  byId("board").append(table);
-  const log = byId("event-log");
-  const button = byId("switch-log");
 
-  const draw = keyedList(body, ({ key }) => key, make, refresh);
+/** @param {BoardRow} row @param {ShowTarget} show */
+function makeRow({ mission, place }, show) {
+  const name = h("button", { type: "button", class: "text-button", onclick: () => show(mission, place) });
+  return h(
+    "tr",
+    {},
+    h("td", {}, h("div", { class: "board-target" }, h("span", { class: "pill" }), name)),
+    h("td", { class: "board-state" }),
+    h("td", { class: "number" }),
+  );
+}
 
-  function make({ mission, place }) {
-    return h(
-      "tr",
-      {},
-      h(
-        "td",
-        {},
-        h(
-          "div",
-          { class: "board-target" },
-          h("span", { class: "pill" }),
-          h("button", { type: "button", class: "text-button", onclick: () => show(mission, place) }),
-        ),
-      ),
-      h("td", { class: "board-state" }),
-      h("td", { class: "number" }),
-    );
-  }
+/** @param {HTMLTableRowElement} row @param {BoardRow} target */
+function refreshRow(row, { uav, pill, label, state, at, isExpected, reason }) {
+  const { words, image } = STATES[state];
+  const key = JSON.stringify([uav, pill, label, state, at, reason]);
+  if (row.dataset.key === key) return;
+  row.dataset.key = key;
+  row.className = `${state} ${uav === null ? "" : `route-${routeNumber(uav)}`}`;
+  find(row, ".pill").textContent = pill;
+  find(row, "button").textContent = label;
+  setChildren(row.cells[1], h("span", {}, icon(image, "small"), words), reason && h("small", {}, reason));
+  const time = at && (isExpected ? `~\u2009${clockText(at)}` : exactClockText(at));
+  setChildren(row.cells[2], at ? h("time", { datetime: at, title: exactText(at) }, time) : "—");
+}
 
-  function refresh(row, { uav, pill, label, state, at, isExpected, reason }) {
-    const { words, image } = STATES[state];
-    const key = JSON.stringify([uav, pill, label, state, at, reason]);
-    if (row.dataset.key === key) return;
-    row.dataset.key = key;
-    row.className = `${state} ${uav === null ? "" : `route-${routeNumber(uav)}`}`;
-    row.querySelector(".pill").textContent = pill;
-    row.querySelector("button").textContent = label;
-    row.cells[1].replaceChildren(h("span", {}, icon(image, "small"), words), reason && h("small", {}, reason));
-    row.cells[2].replaceChildren(
-      at
-        ? h("time", { datetime: at, title: exactText(at) }, isExpected ? `~\u2009${clockText(at)}` : exactClockText(at))
-        : "—",
-    );
-  }
+/** @param {HTMLElement} row @param {LoggedEvent} event */
+function refreshEvent(row, { at, image, level, isSimulated, words }) {
+  if (row.dataset.words === words) return;
+  row.dataset.words = words;
+  row.className = level ?? "";
+  setChildren(
+    row,
+    icon(image, "small"),
+    h("span", {}, words, isSimulated && [" ", simulatedMark()]),
+    h("time", { datetime: at, title: exactText(at) }, exactClockText(at)),
+  );
+}
 
+/** @param {LiveMission[]} missions */
+function countWords(missions) {
+  const all = missions.reduce((sum, { counts }) => sum + counts.all, 0);
+  const done = missions.reduce((sum, { counts }) => sum + counts.complete, 0);
+  return all ? t("{done} of {all} complete", { done, all }) : "";
+}
+
+/** @param {MonitorStore} store @param {{ show: ShowTarget }} on */
+export function mountBoard(store, { show }) {
+  const body = h("tbody", {});
+  const [board, log, button] = [byId("board"), byId("event-log"), byId("switch-log")];
+  board.append(tableOf(body));
+  const drawRows = keyedList(
+    body,
+    ({ key }) => key,
+    (/** @type {BoardRow} */ row) => makeRow(row, show),
+    refreshRow,
+  );
   const drawLog = keyedList(
     log,
-    ({ key }) => key,
+    (/** @type {LoggedEvent} */ { key }) => key,
     () => h("li", {}),
-    (row, { at, image, level, isSimulated, words }) => {
-      if (row.dataset.words === words) return;
-      row.dataset.words = words;
-      row.className = level ?? "";
-      row.replaceChildren(
-        icon(image, "small"),
-        h("span", {}, words, isSimulated && [" ", simulatedMark()]),
-        h("time", { datetime: at, title: exactText(at) }, exactClockText(at)),
-      );
-    },
+    refreshEvent,
   );
 
+  /** @param {MonitorState} state */
+  function draw({ showsLog, missions, uavs, details, alerts, commands }) {
+    byId("board-count").textContent = countWords(missions);
+    button.setAttribute("aria-pressed", `${showsLog}`);
+    button.textContent = showsLog ? t("Back to the board") : t("Event log");
+    board.hidden = showsLog;
+    log.hidden = !showsLog;
+    if (showsLog) drawLog(eventsOf({ commands, alerts, missions }));
+    else drawRows(boardRows(missions, uavs, details));
+  }
+
   button.addEventListener("click", () => store.update({ showsLog: !store.state.showsLog }));
-  store.listen(
-    ["showsLog", "missions", "uavs", "details", "alerts", "commands"],
-    ({ showsLog, missions, uavs, details, alerts, commands }) => {
-      const counts = missions.reduce(
-        (sum, { counts: { complete, all } }) => ({ complete: sum.complete + complete, all: sum.all + all }),
-        { complete: 0, all: 0 },
-      );
-      byId("board-count").textContent = counts.all
-        ? t("{done} of {all} complete", { done: counts.complete, all: counts.all })
-        : "";
-      button.setAttribute("aria-pressed", `${showsLog}`);
-      button.textContent = showsLog ? t("Back to the board") : t("Event log");
-      byId("board").hidden = showsLog;
-      log.hidden = !showsLog;
-      if (showsLog) drawLog(eventsOf({ commands, alerts, missions }));
-      else draw(boardRows(missions, uavs, details));
-    },
-  );
+  store.listen(["showsLog", "missions", "uavs", "details", "alerts", "commands"], draw);
 }

@@ -14,7 +14,26 @@ import { liveStrip, progressOf } from "../live_strip.js";
 import { alertsInOrder, inOrder, isOpenAlert } from "../order.js";
 import { ageWords, estimateWords, figuresOf, nextOf, stateOf } from "../uav_words.js";
 
+/** @import { AlertLevel, Mission } from "../../api_types.d.ts" */
+/** @import { Certainty } from "../../domain/certainty.js" */
+/** @import { Alert, Command, LiveMission, LiveUav, MonitorState, MonitorStore } from "../types.d.ts" */
+
+/**
+ * @typedef {object} CardActs
+ * @property {boolean} isOfOne the page is one mission's, which then need not be named
+ * @property {(uav: number) => void} pick
+ * @property {(uav: number) => void} jumpTo
+ * @property {() => void} follow
+ */
+/** What is known of a card's UAV beside itself. @typedef {{ mission: LiveMission | null, detail: Mission | undefined, certainty: Certainty | null }} Known */
+
 const SAID_FOR_MS = 60_000; // a command that is over stays on the card
+const STRIP_MARGIN_PX = 32;
+const STRIP_STEP_M = 5; // a UAV that has moved less is drawn where it was
+/** @type {Record<AlertLevel, string>} */
+const LEVEL_ICONS = { critical: "octagon-alert", warning: "triangle-alert", advisory: "info" };
+
+/** @param {number} rate */
 const rateMark = (rate) =>
   h(
     "span",
@@ -22,9 +41,14 @@ const rateMark = (rate) =>
     t("{rate}×", { rate: numberText(rate, Number.isInteger(rate) ? 0 : 1) }),
     h("span", { class: "unseen" }, ` ${rateWords(rate)}`),
   );
-const LEVEL_ICONS = { critical: "octagon-alert", warning: "triangle-alert", advisory: "info" };
 
-/** What is under way for a UAV, or was until a moment ago; null. */
+/**
+ * What is under way for a UAV, or was until a moment ago; null.
+ *
+ * @param {Pick<LiveUav, "id">} uav
+ * @param {Command[]} commands
+ * @param {number} now_ms
+ */
 export function commandOf(uav, commands, now_ms) {
   const own = commands.filter(({ uav: { id } }) => id === uav.id).sort((a, b) => b.sequence - a.sequence);
   return (
@@ -34,183 +58,226 @@ export function commandOf(uav, commands, now_ms) {
   );
 }
 
-/** isOfOne: the page is one mission's, which then need not be named; pick(id), jumpTo(id), follow() */
-export function mountCards(store, { isOfOne, pick, jumpTo, follow }) {
+/** @param {MonitorStore} store @param {CardActs} acts */
+export function mountCards(store, acts) {
   const list = byId("uav-cards");
-  const parts = new WeakMap();
+  /** @type {WeakMap<HTMLElement, Card>} */
+  const cards = new WeakMap();
 
+  /** @param {LiveUav} uav */
   function make(uav) {
-    const at = {
-      letter: h("span", { class: "letter" }),
-      name: h("strong", {}),
-      chip: h("span", { class: "chip" }),
-      age: h("span", { class: "age" }),
-      mission: h("p", { class: "caption of-mission" }),
-      estimate: h("p", { class: "estimate" }),
-      figures: h("dl", { class: "figures" }),
-      strip: h("div", { class: "strip-place" }),
-      next: h("p", { class: "next" }),
-      command: h("p", { class: "card-command" }),
-      alerts: h("ul", { class: "card-alerts" }),
-      jump: h("button", { type: "button", class: "text-button", onclick: () => jumpTo(uav.id) }, t("Show on the map")),
-      follow: h(
-        "button",
-        { type: "button", class: "text-button", "aria-pressed": "false", onclick: follow },
-        t("Follow"),
-      ),
-    };
-    at.acts = h("div", { class: "card-acts" }, at.jump, at.follow);
-    at.head = h(
-      "button",
-      { type: "button", class: "card-head", "aria-pressed": "false", onclick: () => pick(uav.id) },
-      at.letter,
-      at.name,
-      at.chip,
-    );
-    const card = h(
-      "li",
-      { class: "card", onclick: (event) => !event.target.closest("button, a") && pick(uav.id) },
-      h("div", { class: "card-top" }, at.head, at.age),
-      at.mission,
-      at.command,
-      at.estimate,
-      at.figures,
-      at.strip,
-      at.next,
-      at.alerts,
-      at.acts,
-    );
-    parts.set(card, at);
-    return card;
+    const card = new Card(uav.id, acts);
+    cards.set(card.element, card);
+    return card.element;
   }
 
-  function refresh(card, uav) {
-    const { now_ms, chosen, isFollowing, missions, details, commands, alerts } = store.state;
-    const at = parts.get(card);
-    const certainty = certaintyOf(uav, now_ms);
-    const mission = missions.find(({ id }) => id === uav.mission) ?? null;
-    const detail = details.get(uav.mission);
-    const isChosen = uav.id === chosen;
-    card.className = `card ${uav.place === null ? "" : `route-${routeNumber(uav.place)}`} ${isChosen ? "chosen" : ""}`;
-    at.head.setAttribute("aria-pressed", `${isChosen}`);
-    at.letter.textContent = uav.place === null ? "–" : routeLetter(uav.place);
-    at.name.textContent = uav.name;
-    const state = stateOf(uav);
-    at.chip.textContent = state.words;
-    at.chip.className = `chip ${state.level === "warning" ? "aborted" : state.level === "active" ? "draft" : ""}`;
-    const age = ageWords(uav, now_ms);
-    refill(at.age, `${age.isLate} ${age.words}`, () => [age.isLate && icon("signal", "small"), age.words]);
-    at.age.classList.toggle("late", age.isLate);
-    const ofMission = mission
-      ? !isOfOne && h("a", { href: `/missions/${mission.id}/fly` }, mission.name)
-      : t("not in a mission");
+  const drawList = keyedList(
+    list,
+    ({ id }) => id,
+    make,
+    (element, uav) => cards.get(element)?.show(uav, store.state, list.clientWidth - STRIP_MARGIN_PX),
+  );
+  const draw = () => drawList(inOrder(store.state.uavs, store.state.alerts, store.state.chosen));
+  store.listen(["uavs", "missions", "details", "alerts", "commands", "chosen", "now_ms", "isFollowing"], ({ uavs }) => {
+    byId("no-uavs").hidden = uavs.length > 0;
+    draw();
+  });
+  store.listen(["chosen"], () => {
+    byId("part-uavs").scrollTop = 0; // it stands first
+  });
+  new ResizeObserver(draw).observe(list);
+}
+
+class Card {
+  #acts;
+  #letter = h("span", { class: "letter" });
+  #name = h("strong", {});
+  #chip = h("span", { class: "chip" });
+  #age = h("span", { class: "age" });
+  #about = h("p", { class: "caption of-mission" });
+  #estimate = h("p", { class: "estimate" });
+  #figures = h("dl", { class: "figures" });
+  #strip = h("div", { class: "strip-place" });
+  #next = h("p", { class: "next" });
+  #command = h("p", { class: "card-command" });
+  #alerts = h("ul", { class: "card-alerts" });
+  #follow;
+  #buttons;
+  #head;
+
+  /** @param {number} id of the UAV @param {CardActs} acts */
+  constructor(id, acts) {
+    this.#acts = acts;
+    /** @param {string} look @param {() => void} onclick @param {(string | Node)[]} children */
+    const button = (look, onclick, ...children) => h("button", { type: "button", class: look, onclick }, children);
+    this.#follow = button("text-button", acts.follow, t("Follow"));
+    this.#follow.setAttribute("aria-pressed", "false");
+    const jump = button("text-button", () => acts.jumpTo(id), t("Show on the map"));
+    this.#buttons = h("div", { class: "card-acts" }, jump, this.#follow);
+    this.#head = button("card-head", () => acts.pick(id), this.#letter, this.#name, this.#chip);
+    this.#head.setAttribute("aria-pressed", "false");
+    /** @param {MouseEvent} event */
+    const onclick = ({ target }) => {
+      if (target instanceof Element && !target.closest("button, a")) acts.pick(id);
+    };
+    this.element = h(
+      "li",
+      { class: "card", onclick },
+      h("div", { class: "card-top" }, this.#head, this.#age),
+      this.#about,
+      this.#command,
+      this.#estimate,
+      this.#figures,
+      this.#strip,
+      this.#next,
+      this.#alerts,
+      this.#buttons,
+    );
+  }
+
+  /** @param {LiveUav} uav @param {Readonly<MonitorState>} state @param {number} width_px of its strip, until it has one of its own */
+  show(uav, state, width_px) {
+    const { now_ms, missions, details, commands, alerts } = state;
+    const known = {
+      mission: missions.find(({ id }) => id === uav.mission) ?? null,
+      detail: details.get(uav.mission ?? ""),
+      certainty: certaintyOf(uav, now_ms),
+    };
+    const isChosen = uav.id === state.chosen;
+    this.#drawHead(uav, isChosen);
+    this.#drawAge(uav, now_ms);
+    this.#drawAbout(uav, known.mission);
+    this.#drawEstimate(uav, known.certainty, now_ms);
+    this.#drawFigures(uav, known.certainty);
+    this.#drawStrip(uav, known, Math.round(this.#strip.clientWidth || width_px));
+    this.#drawNext(uav, known);
+    this.#drawCommand(commandOf(uav, commands, now_ms));
+    this.#drawAlerts(alerts.filter((alert) => alert.uav === uav.id && isOpenAlert(alert)));
+    const isFollowed = state.isFollowing && isChosen;
+    this.#buttons.hidden = !isChosen;
+    this.#follow.setAttribute("aria-pressed", `${isFollowed}`);
+    this.#follow.textContent = isFollowed ? t("Following") : t("Follow");
+  }
+
+  /** @param {LiveUav} uav @param {boolean} isChosen */
+  #drawHead(uav, isChosen) {
+    const route = uav.place === null ? "" : `route-${routeNumber(uav.place)}`;
+    this.element.className = `card ${route} ${isChosen ? "chosen" : ""}`;
+    this.#head.setAttribute("aria-pressed", `${isChosen}`);
+    this.#letter.textContent = uav.place === null ? "–" : routeLetter(uav.place);
+    this.#name.textContent = uav.name;
+    const { words, level } = stateOf(uav);
+    this.#chip.textContent = words;
+    this.#chip.className = `chip ${level === "warning" ? "aborted" : level === "active" ? "draft" : ""}`;
+  }
+
+  /** @param {LiveUav} uav @param {number} now_ms */
+  #drawAge(uav, now_ms) {
+    const { words, isLate } = ageWords(uav, now_ms);
+    refill(this.#age, `${isLate} ${words}`, () => [isLate && icon("signal", "small"), words]);
+    this.#age.classList.toggle("late", isLate);
+  }
+
+  /** Whether it is simulated, and in which mission it flies. @param {LiveUav} uav @param {LiveMission | null} mission */
+  #drawAbout(uav, mission) {
     const rate = rateOf(uav);
+    const name = mission && h("a", { href: `/missions/${mission.id}/fly` }, mission.name);
+    const ofMission = name ? !this.#acts.isOfOne && name : t("not in a mission");
     const about = [uav.is_simulated && simulatedMark(), rate !== 1 && rateMark(rate), ofMission].filter(Boolean);
-    at.mission.hidden = about.length === 0;
-    refill(at.mission, JSON.stringify([mission && [mission.id, mission.name], uav.is_simulated, rate]), () =>
+    this.#about.hidden = about.length === 0;
+    refill(this.#about, JSON.stringify([mission && [mission.id, mission.name], uav.is_simulated, rate]), () =>
       about.flatMap((part, index) => (index ? [" ", part] : [part])),
     );
+  }
+
+  /** @param {LiveUav} uav @param {Certainty | null} certainty @param {number} now_ms */
+  #drawEstimate(uav, certainty, now_ms) {
     const estimate = estimateWords(uav, certainty, now_ms);
-    at.estimate.hidden = estimate === null;
-    if (estimate)
-      refill(at.estimate, `${estimate.strong} ${estimate.rest}`, () => [
-        icon("circle-dashed"),
-        h("span", {}, h("strong", {}, estimate.strong), ` ${estimate.rest}`),
-      ]);
+    this.#estimate.hidden = estimate === null;
+    if (!estimate) return;
+    refill(this.#estimate, `${estimate.strong} ${estimate.rest}`, () => [
+      icon("circle-dashed"),
+      h("span", {}, h("strong", {}, estimate.strong), ` ${estimate.rest}`),
+    ]);
+  }
+
+  /** @param {LiveUav} uav @param {Certainty | null} certainty */
+  #drawFigures(uav, certainty) {
     const figures = figuresOf(uav, certainty);
-    refill(at.figures, JSON.stringify(figures), () =>
+    refill(this.#figures, JSON.stringify(figures), () =>
       figures.map(({ figure, unit, words }) =>
         h("div", {}, h("dt", {}, words), h("dd", {}, figure, unit && h("small", {}, ` ${unit}`))),
       ),
     );
-    drawStrip(at, uav, detail, mission, certainty);
-    const numbers = numbersOf(detail);
-    const next = nextOf(uav, (place) => {
-      const target = mission?.targets[place];
-      return target ? `${pillOf(target, numbers)} ${target.label}` : t("a target");
-    });
-    at.next.hidden = !next.next && !next.toGo;
-    refill(at.next, JSON.stringify([next, certainty]), () => [
-      h(
-        "span",
-        {},
-        next.next && [
-          t("Next"),
-          " ",
-          h("strong", {}, next.next),
-          next.at && `, ${certainty === MEASURED ? "" : "~\u2009"}${next.at}`,
-        ],
-      ),
-      h("span", { class: "quiet-text" }, next.toGo),
-    ]);
-    drawCommand(at.command, commandOf(uav, commands, now_ms));
-    const open = alertsInOrder(alerts.filter((alert) => alert.uav === uav.id && isOpenAlert(alert)));
-    at.alerts.hidden = open.length === 0;
-    refill(
-      at.alerts,
-      JSON.stringify(open.map(({ id, revision, level, message }) => [id, revision, level, message])),
-      () =>
-        open.map(({ level, message, acknowledged_at }) =>
-          h(
-            "li",
-            { class: acknowledged_at ? "known" : level },
-            icon(acknowledged_at ? "check" : LEVEL_ICONS[level], "small"),
-            h("span", {}, message),
-          ),
-        ),
-    );
-    at.acts.hidden = !isChosen;
-    at.follow.setAttribute("aria-pressed", `${isFollowing && isChosen}`);
-    at.follow.textContent = isFollowing && isChosen ? t("Following") : t("Follow");
   }
 
-  /** Drawn again only where it would be another. */
-  function drawStrip(at, uav, detail, mission, certainty) {
+  /** Drawn again only where it would be another. @param {LiveUav} uav @param {Known} known @param {number} width_px */
+  #drawStrip(uav, { mission, detail, certainty }, width_px) {
     const route = uav.place === null ? null : detail?.plan?.routes[uav.place];
-    const width_px = Math.round(at.strip.clientWidth || list.clientWidth - 32);
-    at.strip.hidden = !route?.geometry;
-    if (at.strip.hidden || width_px <= 0) return;
+    this.#strip.hidden = !route?.geometry;
+    if (!route || this.#strip.hidden || width_px <= 0) return;
     const states = new Map((mission?.targets ?? []).map(({ place, state }) => [place, state]));
     const progress = progressOf(uav, profileOf(route.waypoints, route.length_m).places);
     const key = JSON.stringify([
       width_px,
-      detail.revision,
+      detail?.revision,
       certainty,
-      progress && [Math.round(progress.at_m / 5), Math.round(progress.within_m / 5)],
+      progress && [Math.round(progress.at_m / STRIP_STEP_M), Math.round(progress.within_m / STRIP_STEP_M)],
       [...states],
     ]);
-    if (at.strip.dataset.drawn === key) return;
-    at.strip.dataset.drawn = key;
-    const done = route.targets.filter((target) => states.get(target) === "complete").length;
+    if (this.#strip.dataset.drawn === key) return;
+    this.#strip.dataset.drawn = key;
     const label = t("{name}: {done} of {targets}, {flown} of {length} flown", {
       name: uav.name,
-      done,
+      done: route.targets.filter((target) => states.get(target) === "complete").length,
       targets: tn(route.targets.length, "{count} target", "{count} targets"),
       flown: progress ? lengthText(progress.at_m) : "—",
       length: lengthText(route.length_m),
     });
-    at.strip.replaceChildren(liveStrip({ route, width_px, label, states, progress, certainty }));
+    this.#strip.replaceChildren(liveStrip({ route, width_px, label, states, progress, certainty }));
   }
 
-  function drawCommand(place, command) {
-    place.hidden = command === null;
+  /** @param {LiveUav} uav @param {Known} known */
+  #drawNext(uav, { mission, detail, certainty }) {
+    const numbers = numbersOf(detail);
+    const said = nextOf(uav, (place) => {
+      const target = mission?.targets[place];
+      return target ? `${pillOf(target, numbers)} ${target.label}` : t("a target");
+    });
+    this.#next.hidden = !said.next && !said.toGo;
+    const at = said.at && `, ${certainty === MEASURED ? "" : "~\u2009"}${said.at}`;
+    refill(this.#next, JSON.stringify([said, certainty]), () => [
+      h("span", {}, said.next && [t("Next"), " ", h("strong", {}, said.next), at]),
+      h("span", { class: "quiet-text" }, said.toGo),
+    ]);
+  }
+
+  /** @param {Command | null} command */
+  #drawCommand(command) {
+    this.#command.hidden = command === null;
     if (!command) return;
     const said = commandWords(command);
-    place.className = `card-command ${said.level ?? ""}`;
-    refill(place, `${command.id} ${command.state} ${said.words}`, () => [
+    this.#command.className = `card-command ${said.level ?? ""}`;
+    refill(this.#command, `${command.id} ${command.state} ${said.words}`, () => [
       icon(said.image, "small"),
       h("span", {}, h("strong", {}, said.words), h("small", {}, timesOf(command, exactClockText))),
     ]);
   }
 
-  const draw = keyedList(list, ({ id }) => id, make, refresh);
-  store.listen(
-    ["uavs", "missions", "details", "alerts", "commands", "chosen", "now_ms", "isFollowing"],
-    ({ uavs, alerts, chosen }) => {
-      byId("no-uavs").hidden = uavs.length > 0;
-      draw(inOrder(uavs, alerts, chosen));
-    },
-  );
-  store.listen(["chosen"], () => (byId("part-uavs").scrollTop = 0)); // it stands first
-  new ResizeObserver(() => draw(inOrder(store.state.uavs, store.state.alerts, store.state.chosen))).observe(list);
+  /** @param {Alert[]} alerts open ones of the UAV */
+  #drawAlerts(alerts) {
+    const open = alertsInOrder(alerts);
+    this.#alerts.hidden = open.length === 0;
+    const key = JSON.stringify(open.map(({ id, revision, level, message }) => [id, revision, level, message]));
+    refill(this.#alerts, key, () =>
+      open.map(({ level, message, acknowledged_at }) =>
+        h(
+          "li",
+          { class: acknowledged_at ? "known" : level },
+          icon(acknowledged_at ? "check" : LEVEL_ICONS[level], "small"),
+          h("span", {}, message),
+        ),
+      ),
+    );
+  }
 }

@@ -7,6 +7,13 @@ import { routeLetter, routeNumber } from "../../domain/palette.js";
 import { t } from "../../text.js";
 import { isHeld } from "../uav_words.js";
 
+/** @import { AskedKind } from "../../domain/command_questions.js" */
+/** @import { Binding } from "../../page/keyboard.js" */
+/** @import { Commanding, LiveUav, MonitorState, MonitorStore } from "../types.d.ts" */
+
+/** @typedef {{ kind: AskedKind, image: string, words: string, isWide?: boolean, isDanger?: boolean }} CommandButton */
+
+/** @type {CommandButton[]} */
 const BUTTONS = [
   { kind: "pause", image: "pause", words: KINDS.pause },
   { kind: "hold", image: "hand", words: KINDS.hold, isWide: true },
@@ -16,33 +23,49 @@ const BUTTONS = [
   { kind: "abort", image: "octagon-alert", words: KINDS.abort, isDanger: true },
 ];
 
-/** commanding: see commanding.js. Returns the keys. */
+/** @param {Readonly<MonitorState>} state @returns {LiveUav | null} */
+const chosenFlyer = (state) => flyingUavs(state).find(({ id }) => id === state.chosen) ?? null;
+
+/** What Pause asks for now: a UAV that holds is resumed. @param {LiveUav} uav */
+const pauseOrResume = (uav) => (isHeld(uav) ? "resume" : "pause");
+
+/** @param {MonitorStore} store @param {Commanding} commanding */
+function makeButtons(store, commanding) {
+  return BUTTONS.map(({ kind, image, words, isWide, isDanger }) => {
+    /** @param {Event} event */
+    const ask = ({ currentTarget }) => {
+      const uav = chosenFlyer(store.state);
+      const opener = /** @type {HTMLElement} */ (currentTarget);
+      if (uav) void commanding.ask(uav.id, kind === "pause" ? pauseOrResume(uav) : kind, opener);
+    };
+    const look = `command-button ${isWide ? "wide" : ""} ${isDanger ? "danger" : ""}`;
+    const properties = { type: "button", class: look, "data-kind": kind, onclick: ask };
+    return h("button", properties, icon(image), h("span", {}, words));
+  });
+}
+
+/** "Pause all" and "Return all" in the head of the page. @param {MonitorStore} store @param {Commanding} commanding */
+function mountAll(store, commanding) {
+  const pause = byId("pause-all", HTMLButtonElement);
+  const home = byId("return-all", HTMLButtonElement);
+  pause.addEventListener("click", () => void commanding.askAll("pause", pause));
+  home.addEventListener("click", () => void commanding.askAll("return", home));
+  store.listen(["uavs", "missions"], (state) => {
+    const isIdle = flyingUavs(state).length === 0;
+    pause.disabled = isIdle;
+    home.disabled = isIdle;
+  });
+}
+
+/** @param {MonitorStore} store @param {Commanding} commanding @returns {Binding[]} */
 export function mountCommandBar(store, commanding) {
   const letter = h("span", { class: "letter" });
   const name = h("strong", {});
-  const buttons = BUTTONS.map(({ kind, image, words, isWide, isDanger }) => {
-    const button = h(
-      "button",
-      {
-        type: "button",
-        class: `command-button ${isWide ? "wide" : ""} ${isDanger ? "danger" : ""}`,
-        "data-kind": kind,
-        onclick: () => void commanding.ask(store.state.chosen, button.dataset.kind, button),
-      },
-      icon(image),
-      h("span", {}, words),
-    );
-    return button;
-  });
+  const buttons = makeButtons(store, commanding);
   const [pause] = buttons;
-  const bar = h(
-    "div",
-    { class: "command-bar float", role: "group", hidden: true },
-    h("span", { class: "command-who" }, letter, name),
-    buttons,
-  );
+  const who = h("span", { class: "command-who" }, letter, name);
+  const bar = h("div", { class: "command-bar float", role: "group", hidden: true }, who, buttons);
   byId("main").append(bar);
-  const chosenFlyer = (state) => flyingUavs(state).find(({ id }) => id === state.chosen) ?? null;
 
   store.listen(["chosen", "uavs", "missions"], (state) => {
     const uav = chosenFlyer(state);
@@ -56,31 +79,21 @@ export function mountCommandBar(store, commanding) {
       letter.className = `letter route-${routeNumber(uav.place)}`;
     }
     name.textContent = uav.name;
-    const kind = isHeld(uav) ? "resume" : "pause";
+    const kind = pauseOrResume(uav);
     if (pause.dataset.kind === kind) return;
     pause.dataset.kind = kind;
     pause.replaceChildren(icon(kind === "resume" ? "play" : "pause"), h("span", {}, KINDS[kind]));
   });
-  for (const [id, kind] of [
-    ["pause-all", "pause"],
-    ["return-all", "return"],
-  ])
-    byId(id).addEventListener("click", () => void commanding.askAll(kind, byId(id)));
-  store.listen(["uavs", "missions"], (state) =>
-    ["pause-all", "return-all"].forEach((id) => (byId(id).disabled = flyingUavs(state).length === 0)),
-  );
+  mountAll(store, commanding);
 
+  /** @param {string} keys @param {AskedKind} kind @param {string} words @returns {Binding} */
   const key = (keys, kind, words) => ({
     keys: [keys],
     words,
-    act: () => {
+    act() {
       const uav = chosenFlyer(store.state);
       if (!uav) return false;
-      void commanding.ask(
-        uav.id,
-        kind,
-        buttons.find((button) => button.dataset.kind === kind),
-      );
+      void commanding.ask(uav.id, kind, buttons.find((button) => button.dataset.kind === kind) ?? null);
       return true;
     },
   });

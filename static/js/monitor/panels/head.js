@@ -1,12 +1,16 @@
 /** The head of the page: which mission, its state, the facts of now; and what is said when nothing comes in any more. */
 
 import { signInAddress } from "../../api.js";
-import { byId, h, icon } from "../../dom.js";
+import { byId, h, icon, setChildren } from "../../dom.js";
 import { ASKED, LIVE } from "../../live/feed.js";
 import { staleWords } from "../../live/stale.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, speedText, zoneText } from "../../units.js";
 
+/** @import { LiveMission, LiveUav, MissionState } from "../../api_types.d.ts" */
+/** @import { MonitorPage, MonitorState, MonitorStore } from "../types.d.ts" */
+
+/** @type {Record<MissionState, string>} */
 const STATES = {
   draft: t("Draft"),
   planned: t("Planned"),
@@ -17,6 +21,7 @@ const STATES = {
   aborted: t("Aborted"),
   failed: t("Failed"),
 };
+/** @type {Partial<Record<MissionState, string>>} */
 const IMAGES = {
   approved: "badge-check",
   dispatched: "send",
@@ -27,69 +32,75 @@ const IMAGES = {
 };
 const LEAST_WIND_MPS = 0.5; // below, it comes from nowhere
 
-/** Wind as the newest report has it: "wind 5 m/s from 240°", or "". */
+/** Wind as the newest report has it: "wind 5 m/s from 240°", or "". @param {Pick<LiveUav, "measured">[]} uavs */
 export function windWords(uavs) {
-  const told = uavs.map(({ measured }) => measured).filter((measured) => typeof measured?.wind_speed_mps === "number");
-  const [newest] = told.sort((a, b) => Date.parse(b.measured_at) - Date.parse(a.measured_at));
+  const told = uavs.flatMap(({ measured }) => {
+    const speed_mps = measured?.wind_speed_mps;
+    return measured && typeof speed_mps === "number" ? [{ measured, speed_mps }] : [];
+  });
+  const [newest] = told.sort((a, b) => Date.parse(b.measured.measured_at) - Date.parse(a.measured.measured_at));
   if (!newest) return "";
+  const { wind_from_deg } = newest.measured;
   const from =
-    typeof newest.wind_from_deg === "number" && newest.wind_speed_mps >= LEAST_WIND_MPS
-      ? t("from {degrees}°", { degrees: Math.round(newest.wind_from_deg) })
+    typeof wind_from_deg === "number" && newest.speed_mps >= LEAST_WIND_MPS
+      ? t("from {degrees}°", { degrees: Math.round(wind_from_deg) })
       : "";
-  return `${t("wind {speed}", { speed: speedText(newest.wind_speed_mps) })} ${from}`.trim();
+  return `${t("wind {speed}", { speed: speedText(newest.speed_mps) })} ${from}`.trim();
 }
 
+/** @param {LiveUav[]} uavs @param {LiveMission[]} missions @param {LiveMission | null} mission the page's only one */
+function countWords(uavs, missions, mission) {
+  if (mission) return t("{done} of {all} complete", { done: mission.counts.complete, all: mission.counts.all });
+  return [
+    tn(uavs.length, "{count} UAV", "{count} UAVs"),
+    tn(missions.length, "{count} mission", "{count} missions"),
+  ].join(", ");
+}
+
+/** @param {string} name */
+function drawTitle(name) {
+  if (byId("page-title").textContent === name) return;
+  byId("page-title").textContent = name;
+  byId("bar-title").textContent = name;
+  document.title = `${name} · Spanwise`;
+}
+
+/** @param {HTMLElement} chip @param {LiveMission | null} mission */
+function drawState(chip, mission) {
+  chip.hidden = !mission;
+  if (!mission || chip.dataset.state === mission.state) return;
+  const image = IMAGES[mission.state];
+  chip.dataset.state = mission.state;
+  chip.className = `chip ${mission.state}`;
+  setChildren(chip, image && icon(image, "small"), STATES[mission.state]);
+}
+
+/** @param {Readonly<MonitorState>} state */
+function drawStale(state) {
+  const stale = byId("stale");
+  const said = staleWords(state);
+  const isWhole = state.link === LIVE || state.link === ASKED;
+  document.documentElement.dataset.link = said ? "cut" : isWhole ? "whole" : "opening";
+  if (stale.dataset.words === (said?.words ?? "")) return;
+  stale.dataset.words = said?.words ?? "";
+  stale.hidden = !said;
+  if (!said) return;
+  const door = said.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))];
+  setChildren(stale, icon("cloud-off"), h("span", {}, h("strong", {}, said.words), said.rest && ` ${said.rest}`, door));
+}
+
+/** @param {MonitorStore} store @param {MonitorPage} page */
 export function mountHead(store, page) {
   const chip = byId("mission-state");
-  const stale = byId("stale");
   store.listen(["missions", "uavs", "now_ms"], ({ missions, uavs, now_ms }) => {
-    const mission = page.mission ? missions.find(({ id }) => id === page.mission) : null;
-    const name = mission?.name ?? page.missionName ?? t("Live");
-    if (byId("page-title").textContent !== name) {
-      byId("page-title").textContent = name;
-      byId("bar-title").textContent = name;
-      document.title = `${name} · Spanwise`;
-    }
-    chip.hidden = !mission;
-    if (mission && chip.dataset.state !== mission.state) {
-      chip.dataset.state = mission.state;
-      chip.className = `chip ${mission.state}`;
-      chip.replaceChildren(
-        ...(IMAGES[mission.state] ? [icon(IMAGES[mission.state], "small")] : []),
-        STATES[mission.state],
-      );
-    }
-    const counts = mission
-      ? t("{done} of {all} complete", { done: mission.counts.complete, all: mission.counts.all })
-      : [
-          tn(uavs.length, "{count} UAV", "{count} UAVs"),
-          tn(missions.length, "{count} mission", "{count} missions"),
-        ].join(", ");
+    const mission = missions.find(({ id }) => id === page.mission) ?? null;
+    drawTitle(mission?.name ?? page.missionName ?? t("Live"));
+    drawState(chip, mission);
     const iso = new Date(now_ms).toISOString();
     const facts = byId("live-facts");
-    facts.textContent = [exactClockText(iso), windWords(uavs), counts].filter(Boolean).join(" · ");
+    const said = [exactClockText(iso), windWords(uavs), countWords(uavs, missions, mission)];
+    facts.textContent = said.filter(Boolean).join(" · ");
     facts.title = zoneText(iso);
   });
-  store.listen(["link", "since_ms", "now_ms"], (state) => {
-    const said = staleWords(state);
-    document.documentElement.dataset.link = said
-      ? "cut"
-      : state.link === LIVE || state.link === ASKED
-        ? "whole"
-        : "opening";
-    if (stale.dataset.words === (said?.words ?? "")) return;
-    stale.dataset.words = said?.words ?? "";
-    stale.hidden = !said;
-    if (said)
-      stale.replaceChildren(
-        icon("cloud-off"),
-        h(
-          "span",
-          {},
-          h("strong", {}, said.words),
-          said.rest && ` ${said.rest}`,
-          said.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))],
-        ),
-      );
-  });
+  store.listen(["link", "since_ms", "now_ms"], drawStale);
 }

@@ -1,170 +1,167 @@
 /** A card on top of the alerts for each offer of another plan: what would change, drawn dashed on the map, one confirmation. */
 
 import { ApiError, get, post } from "../../api.js";
-import { byId, h, icon } from "../../dom.js";
+import { byId, h, icon, setChildren } from "../../dom.js";
 import { routeNumber } from "../../domain/palette.js";
 import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { clockText } from "../../units.js";
-import { causeWords, isUndecided, overWords, sentenceOf, targetLines, uavLines } from "../offer_words.js";
+import { causeWords, differenceOf, isUndecided, overWords, sentenceOf, targetLines, uavLines } from "../offer_words.js";
 
+/** @import { Answer } from "../../api.js" */
+/** @import { Mission } from "../../api_types.d.ts" */
+/** @import { LiveOffer, MonitorPage, MonitorState, MonitorStore, OfferedRoute } from "../types.d.ts" */
+
+/** @param {LiveOffer} offer @param {"accept" | "decline"} act @param {string} words once it is done */
+async function decide(offer, act, words) {
+  try {
+    await post(`/replan-offers/${offer.id}/${act}`, {});
+    say(words);
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    toast(error.message);
+  }
+}
+
+/** @param {LiveOffer} offer @param {HTMLElement} opener */
+async function accept(offer, opener) {
+  const { uavs = [] } = differenceOf(offer);
+  const held = uavs.flatMap(({ change, name }) => (change === "changed" ? name : [])).join(", ");
+  const asked = await confirmAct({
+    title: t("Fly the other plan?"),
+    image: "waypoints",
+    opener,
+    lines: [
+      `${sentenceOf(offer)}.`,
+      held &&
+        t(
+          "{names}: held, given the new route while they hover, and started again. Where a step fails a UAV stays held.",
+          { names: held },
+        ),
+      ...targetLines(offer).slice(0, 6),
+      t("What is approved now ends; the rest goes on as a mission of its own."),
+    ],
+    keep: t("Keep the plan"),
+    act: t("Fly the other plan"),
+  });
+  if (asked) await decide(offer, "accept", t("The other plan is flown."));
+}
+
+/** @param {LiveOffer} offer */
+const computingCard = (offer) =>
+  h(
+    "article",
+    { class: "offer" },
+    h("h3", {}, icon("loader-circle"), t("Another plan is being worked out")),
+    h("p", { class: "caption" }, causeWords(offer)),
+  );
+
+/** What each UAV would fly. @param {LiveOffer} offer */
+const uavList = (offer) =>
+  h(
+    "ul",
+    { class: "offer-uavs" },
+    uavLines(offer).map(({ place, letter, name, what, before, after, why }) => {
+      const figures = (before || after) && h("small", {}, before ? `${before} → ${after}` : after);
+      const said = h("span", {}, h("strong", {}, name), ` ${what}`, figures, why && h("small", {}, why));
+      return h("li", { class: `route-${routeNumber(place)}` }, h("span", { class: "letter" }, letter), said);
+    }),
+  );
+
+/** Targets that change hands, folded. @param {LiveOffer} offer */
+function targetList(offer) {
+  const lines = targetLines(offer).map((line) => h("li", {}, line));
+  return lines.length > 0 && h("details", {}, h("summary", {}, t("Targets")), h("ul", {}, lines));
+}
+
+/** @param {LiveOffer} offer */
+function buttons(offer) {
+  /** @param {Event} event */
+  const onAccept = ({ currentTarget }) => void accept(offer, /** @type {HTMLElement} */ (currentTarget));
+  const onDecline = () => void decide(offer, "decline", t("Declined: the plan stays as it is."));
+  return h(
+    "div",
+    { class: "alert-acts" },
+    h("button", { type: "button", class: "button primary", onclick: onAccept }, t("Accept")),
+    h("button", { type: "button", class: "button", onclick: onDecline }, t("Decline")),
+  );
+}
+
+/** @param {LiveOffer} offer @param {boolean} canFly */
+function card(offer, canFly) {
+  if (offer.state === "computing") return computingCard(offer);
+  const { valid_until } = differenceOf(offer);
+  const until =
+    valid_until &&
+    h("p", { class: "caption" }, t("Holds until {time}. Dashed on the map.", { time: clockText(valid_until) }));
+  return h(
+    "article",
+    { class: "offer" },
+    h("h3", {}, icon("waypoints"), t("Another plan is offered")),
+    h("p", {}, h("strong", {}, `${causeWords(offer)}.`), ` ${sentenceOf(offer)}.`),
+    uavList(offer),
+    targetList(offer),
+    until,
+    canFly && buttons(offer),
+  );
+}
+
+/** What became of an offer, and where the flight goes on. @param {LiveOffer} offer @param {string | null} goesOn address @param {() => void} onPutAway */
+function overCard(offer, goesOn, onPutAway) {
+  const { strong, rest } = overWords(offer);
+  const words = t("Put away");
+  const image = icon(offer.state === "accepted" ? "circle-check" : "info", "small");
+  const put = { type: "button", class: "icon-button tight", "aria-label": words, title: words, onclick: onPutAway };
+  return h(
+    "article",
+    { class: "offer over" },
+    h("p", {}, image, h("span", {}, h("strong", {}, strong), rest && ` ${rest}`)),
+    h("button", put, icon("x", "small")),
+    goesOn && h("a", { class: "button primary", href: goesOn }, t("Watch it go on")),
+  );
+}
+
+/** Routes of the plan that is offered, by the UAVs that would fly them; none where it cannot be read. @param {LiveOffer} offer @returns {Promise<OfferedRoute[]>} */
+async function readRoutes(offer) {
+  try {
+    const { data } = /** @type {Answer<Mission>} */ (await get(`/missions/${offer.continuation}`));
+    return (differenceOf(offer).uavs ?? []).flatMap(({ place, continuation_place }) => {
+      const geometry = data.plan?.routes[continuation_place ?? -1]?.geometry;
+      return geometry ? { place, geometry } : [];
+    });
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    return [];
+  }
+}
+
+/** @param {MonitorStore} store @param {MonitorPage} page */
 export function mountOffers(store, page) {
   let drawn = "";
+  let routesOf = ""; // the mission whose routes are on the map
+  /** @type {Set<string>} */
   const putAway = new Set();
-  let routesOf = ""; // the offer whose routes are on the map
 
-  async function decide(offer, act, words) {
-    try {
-      await post(`/replan-offers/${offer.id}/${act}`, {});
-      say(words);
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      toast(error.message);
-    }
-  }
-
-  async function accept(offer, opener) {
-    const held = offer.difference.uavs
-      .filter(({ change }) => change === "changed")
-      .map(({ name }) => name)
-      .join(", ");
-    const asked = await confirmAct({
-      title: t("Fly the other plan?"),
-      image: "waypoints",
-      opener,
-      lines: [
-        `${sentenceOf(offer)}.`,
-        held &&
-          t(
-            "{names}: held, given the new route while they hover, and started again. Where a step fails a UAV stays held.",
-            { names: held },
-          ),
-        ...targetLines(offer).slice(0, 6),
-        t("What is approved now ends; the rest goes on as a mission of its own."),
-      ],
-      keep: t("Keep the plan"),
-      act: t("Fly the other plan"),
-    });
-    if (asked) await decide(offer, "accept", t("The other plan is flown."));
-  }
-
-  function card(offer) {
-    if (offer.state === "computing")
-      return h(
-        "article",
-        { class: "offer" },
-        h("h3", {}, icon("loader-circle"), t("Another plan is being worked out")),
-        h("p", { class: "caption" }, causeWords(offer)),
-      );
-    const { valid_until } = offer.difference;
-    return h(
-      "article",
-      { class: "offer" },
-      h("h3", {}, icon("waypoints"), t("Another plan is offered")),
-      h("p", {}, h("strong", {}, `${causeWords(offer)}.`), ` ${sentenceOf(offer)}.`),
-      h(
-        "ul",
-        { class: "offer-uavs" },
-        uavLines(offer).map(({ place, letter, name, what, before, after, why }) =>
-          h(
-            "li",
-            { class: `route-${routeNumber(place)}` },
-            h("span", { class: "letter" }, letter),
-            h(
-              "span",
-              {},
-              h("strong", {}, name),
-              ` ${what}`,
-              (before || after) && h("small", {}, before ? `${before} → ${after}` : after),
-              why && h("small", {}, why),
-            ),
-          ),
-        ),
-      ),
-      targetLines(offer).length > 0 &&
-        h(
-          "details",
-          {},
-          h("summary", {}, t("Targets")),
-          h(
-            "ul",
-            {},
-            targetLines(offer).map((line) => h("li", {}, line)),
-          ),
-        ),
-      valid_until &&
-        h("p", { class: "caption" }, t("Holds until {time}. Dashed on the map.", { time: clockText(valid_until) })),
-      page.canFly &&
-        h(
-          "div",
-          { class: "alert-acts" },
-          h(
-            "button",
-            { type: "button", class: "button primary", onclick: (event) => void accept(offer, event.currentTarget) },
-            t("Accept"),
-          ),
-          h(
-            "button",
-            {
-              type: "button",
-              class: "button",
-              onclick: () => void decide(offer, "decline", t("Declined: the plan stays as it is.")),
-            },
-            t("Decline"),
-          ),
-        ),
-    );
-  }
-
-  /** The newest that is over, until somebody puts it away: what became of it, and where the flight goes on. */
-  function over(offer) {
-    const { strong, rest } = overWords(offer);
-    const goesOn = offer.state === "accepted" && page.mission === offer.mission;
-    return h(
-      "article",
-      { class: "offer over" },
-      h(
-        "p",
-        {},
-        icon(offer.state === "accepted" ? "circle-check" : "info", "small"),
-        h("span", {}, h("strong", {}, strong), rest && ` ${rest}`),
-      ),
-      h(
-        "button",
-        {
-          type: "button",
-          class: "icon-button tight",
-          "aria-label": t("Put away"),
-          title: t("Put away"),
-          onclick: () => (putAway.add(offer.id), draw(store.state)),
-        },
-        icon("x", "small"),
-      ),
-      goesOn && h("a", { class: "button primary", href: `/missions/${offer.continuation}/fly` }, t("Watch it go on")),
-    );
-  }
-
-  /** The offered routes, in the colours of the UAVs that would fly them. */
+  /** The offered routes, in the colours of the UAVs that would fly them. @param {LiveOffer | undefined} offer */
   async function drawRoutes(offer) {
     const wanted = offer?.continuation ?? "";
     if (wanted === routesOf) return;
     routesOf = wanted;
-    let offered = [];
-    if (wanted) {
-      try {
-        const { routes } = (await get(`/missions/${wanted}`)).data.plan;
-        offered = offer.difference.uavs
-          .filter(({ continuation_place }) => continuation_place !== null)
-          .map(({ place, continuation_place }) => ({ place, geometry: routes[continuation_place]?.geometry }))
-          .filter(({ geometry }) => geometry);
-      } catch (error) {
-        if (!(error instanceof ApiError)) throw error;
-      }
-    }
+    const offered = offer && wanted ? await readRoutes(offer) : [];
     if (routesOf === wanted) store.update({ offered });
   }
 
+  /** The newest that is over stands until somebody puts it away. @param {LiveOffer} offer */
+  function over(offer) {
+    const isFollowed = offer.state === "accepted" && page.mission === offer.mission;
+    return overCard(offer, isFollowed ? `/missions/${offer.continuation}/fly` : null, () => {
+      putAway.add(offer.id);
+      draw(store.state);
+    });
+  }
+
+  /** @param {Readonly<MonitorState>} state */
   function draw({ offers }) {
     const undecided = offers.filter(isUndecided);
     const [newest] = offers
@@ -175,7 +172,7 @@ export function mountOffers(store, page) {
     if (key === drawn) return;
     drawn = key;
     byId("offers").hidden = undecided.length === 0 && last === null;
-    byId("offer-list").replaceChildren(...(last ? [over(last)] : undecided.map(card)));
+    setChildren(byId("offer-list"), last ? over(last) : undecided.map((offer) => card(offer, page.canFly)));
     void drawRoutes(undecided.find(({ state }) => state === "open"));
   }
 

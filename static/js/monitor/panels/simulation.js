@@ -20,17 +20,28 @@ import {
   windOf,
 } from "../simulation_words.js";
 
+/** @import { Answer } from "../../api.js" */
+/** @import { SimulatedVehicle, Simulation, SimulationPage } from "../../api_types.d.ts" */
+/** @import { Fault } from "../simulation_words.js" */
+/** @import { MonitorPage } from "../types.d.ts" */
+
+/** Sends something, says so, and looks what has become of it. @typedef {(act: () => Promise<unknown>, words?: string) => Promise<void>} Do */
+
 const EVERY_MS = 2000;
 const LASTS_S = 60; // of the clock on the wall, until somebody says otherwise
+const LONGEST_FAULT_S = 86_400;
 const [MOST_WIND_MPS, MOST_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/sky.py
 const AGAIN = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 
+/** @param {string} id @param {(readonly [number | string, string])[]} entries value and words of each */
 const choice = (id, entries) =>
   h(
     "select",
     { class: "input", id },
     entries.map(([value, words]) => h("option", { value }, words)),
   );
+
+/** @param {string} label @param {HTMLElement} input @param {string | null} [unit] */
 const field = (label, input, unit = null) =>
   h(
     "div",
@@ -38,6 +49,8 @@ const field = (label, input, unit = null) =>
     h("label", { for: input.id }, label),
     unit ? h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)) : input,
   );
+
+/** @param {string} id @param {number} value @param {number} min @param {number} max */
 const number = (id, value, min, max) =>
   h("input", {
     class: "input",
@@ -51,218 +64,259 @@ const number = (id, value, min, max) =>
     required: true,
   });
 
-export function mountSimulation(page) {
-  if (!page.hasSimulated) return;
-  const state = byId("simulation-state");
-  let newest = null;
+/** @param {string} words @param {string} id of its title @param {...(Node | Node[])} parts */
+const group = (words, id, ...parts) =>
+  h("div", { class: "simulation-group", role: "group", "aria-labelledby": id }, h("h3", { id }, words), parts);
 
-  async function done(act, words) {
+/** @param {MonitorPage} page */
+export function mountSimulation(page) {
+  if (page.hasSimulated) new SimulationPanel(page).open();
+}
+
+class SimulationPanel {
+  #page;
+  #state = byId("simulation-state");
+  /** @type {Simulation | null} */
+  #newest = null;
+  #start;
+  #changes;
+  #drawVehicles = keyedList(
+    byId("simulation-uavs"),
+    (/** @type {SimulatedVehicle} */ { id }) => id,
+    () => h("li", {}),
+    (row, vehicle) => this.#drawVehicle(row, vehicle),
+  );
+
+  /** @param {MonitorPage} page */
+  constructor(page) {
+    this.#page = page;
+    /** @type {Do} */
+    const act = (send, words) => this.#done(send, words);
+    this.#start = startForm(page, act);
+    this.#changes = new ChangesInFlight(act);
+    if (page.canFly) byId("simulation-acts").append(this.#start, this.#changes.element);
+  }
+
+  open() {
+    void this.#look();
+    setInterval(() => {
+      if (!document.hidden) void this.#look();
+    }, EVERY_MS);
+  }
+
+  /** @param {() => Promise<unknown>} send @param {string} [words] */
+  async #done(send, words) {
     try {
-      await act();
+      await send();
       if (words) say(words);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       toast(error.message);
     }
-    await look();
+    await this.#look();
   }
 
-  // how each does
-
-  const drawVehicles = keyedList(
-    byId("simulation-uavs"),
-    ({ id }) => id,
-    () => h("li", {}),
-    (row, vehicle) => {
-      const { words, isBad } = vehicleWords(vehicle);
-      const canEnd = page.canFly && isPresent(vehicle) && newest.vehicles.filter(isPresent).length > 1;
-      row.className = `route-${routeNumber(vehicle.sequence)} ${isBad ? "bad" : ""}`;
-      refill(row, JSON.stringify([vehicle.name, words, canEnd]), () => [
-        h("span", { class: "letter" }, routeLetter(vehicle.sequence)),
-        h("span", {}, h("strong", {}, vehicle.name), h("small", {}, words)),
-        canEnd &&
-          h(
-            "button",
-            {
-              type: "button",
-              class: "icon-button tight",
-              "aria-label": t("End {name}", { name: vehicle.name }),
-              title: t("End {name}", { name: vehicle.name }),
-              onclick: ({ currentTarget }) => void endOne(vehicle, currentTarget),
-            },
-            icon("x", "small"),
-          ),
-      ]);
-    },
-  );
-
-  async function endOne(vehicle, opener) {
-    const asked = await confirmAct({
-      title: t("End {name}?", { name: vehicle.name }),
-      lines: [t("It is gone at once, wherever it is: if it is in the air, its link is lost. The others fly on.")],
-      keep: t("Keep flying"),
-      act: t("End {name}", { name: vehicle.name }),
-      opener,
-    });
-    if (asked) await done(() => remove(`/simulated-vehicles/${vehicle.id}`));
-  }
-
-  // what is begun with
-
-  const startSpeed = choice("simulation-start-speed", SPEEDS);
-  const air = choice("simulation-air", AIRS);
-  const start = h(
-    "form",
-    {
-      class: "simulation-form",
-      onsubmit: (event) => {
-        event.preventDefault();
-        void done(
-          () =>
-            post(
-              `/missions/${page.mission}/simulated-flights`,
-              { speed: Number(startSpeed.value), conditions: air.value },
-              { headers: { "Idempotency-Key": AGAIN() } },
-            ),
-          t("Simulated UAVs are being started."),
-        );
-      },
-    },
-    h("div", { class: "simulation-pair" }, field(t("Pace"), startSpeed), field(t("Wind"), air)),
-    h("button", { class: "button", type: "submit" }, icon("play", "small"), t("Fly in simulation")),
-  );
-
-  // what is changed in flight
-
-  const speed = choice("simulation-speed", SPEEDS);
-  speed.addEventListener(
-    "change",
-    () => void done(() => patch(`/simulations/${newest.id}`, { speed: Number(speed.value) })),
-  );
-  const whose = choice("simulation-whose", []);
-  const address = () => (whose.value ? `/simulated-vehicles/${whose.value}` : `/simulations/${newest.id}`);
-  const meant = () =>
-    whose.value ? newest.vehicles.filter(({ id }) => id === whose.value) : newest.vehicles.filter(isPresent);
-
-  const inUnits = (most_mps) => Math.floor(most_mps / SPEED_UNIT.mps);
-  const wind = number("simulation-wind", Math.round(5 / SPEED_UNIT.mps), 0, inUnits(MOST_WIND_MPS));
-  const from = number("simulation-from", 270, 0, 360);
-  const gusts = number("simulation-gusts", 0, 0, inUnits(MOST_GUSTS_MPS));
-  const setWind = h(
-    "form",
-    {
-      class: "simulation-wind",
-      onsubmit: (event) => {
-        event.preventDefault();
-        const [speed_mps, gusts_mps] = [wind, gusts].map(({ valueAsNumber }) => valueAsNumber * SPEED_UNIT.mps);
-        void done(
-          () => patch(address(), { conditions: windOf(speed_mps, from.valueAsNumber, gusts_mps) }),
-          t("The wind has changed."),
-        );
-      },
-    },
-    h(
-      "div",
-      { class: "simulation-three" },
-      field(t("Speed|wind"), wind, SPEED_UNIT.unit),
-      field(t("From"), from, "°"),
-      field(t("Gusts"), gusts, SPEED_UNIT.unit),
-    ),
-    h("button", { class: "button small", type: "submit" }, t("Set the wind")),
-  );
-
-  const seconds = number("simulation-seconds", LASTS_S, 1, 3600);
-  const lasts = h("p", { class: "caption", id: "simulation-lasts" });
-  seconds.setAttribute("aria-describedby", lasts.id);
-  seconds.addEventListener("input", () => draw());
-  const faults = [...FAULTS, WELL].map(({ name, image, words, lasts: isLasting, of }) =>
-    h(
-      "button",
-      {
-        class: "button small",
-        type: "button",
-        "data-fault": name,
-        onclick: () => {
-          if (isLasting && !seconds.reportValidity()) return;
-          const flown_s = Math.min(seconds.valueAsNumber * newest.speed, 86_400);
-          void done(
-            () =>
-              Promise.all(
-                meant().map((vehicle) => patch(`/simulated-vehicles/${vehicle.id}`, { faults: of(vehicle, flown_s) })),
-              ),
-            t("{fault}: done.", { fault: words }),
-          );
-        },
-      },
-      icon(image, "small"),
-      words,
-    ),
-  );
-  const end = h(
-    "button",
-    {
-      class: "button small",
-      type: "button",
-      onclick: async () => {
-        const asked = await confirmAct({
-          title: t("End the simulation?"),
-          lines: [t("Its UAVs are gone at once, wherever they are: of those in the air the link is lost.")],
-          keep: t("Keep flying"),
-          act: t("End the simulation"),
-          opener: end,
-        });
-        if (asked) await done(() => remove(`/simulations/${newest.id}`));
-      },
-    },
-    icon("x", "small"),
-    t("End the simulation"),
-  );
-  const group = (words, id, ...parts) =>
-    h("div", { class: "simulation-group", role: "group", "aria-labelledby": id }, h("h3", { id }, words), parts);
-  const fly = h(
-    "div",
-    { class: "simulation-form" },
-    h("div", { class: "simulation-pair" }, field(t("Pace"), speed), field(t("Wind and faults of"), whose)),
-    group(t("Wind"), "simulation-wind-title", setWind),
-    group(
-      t("Faults"),
-      "simulation-faults",
-      h("div", { class: "simulation-faults" }, faults),
-      h("div", { class: "simulation-lasts" }, field(t("Link or GPS lost for"), seconds, "s"), lasts),
-    ),
-    end,
-  );
-  if (page.canFly) byId("simulation-acts").append(start, fly);
-
-  function draw() {
-    const { words, isBad } = stateWords(newest, page.canFly);
-    if (state.textContent !== words) state.textContent = words;
-    state.classList.toggle("bad", isBad);
-    drawVehicles(isPresent(newest) ? newest.vehicles : []);
-    start.hidden = isPresent(newest);
-    fly.hidden = !isPresent(newest);
-    if (!isPresent(newest)) return;
-    if (document.activeElement !== speed) speed.value = `${newest.speed}`;
-    lasts.textContent = lastsWords(seconds.valueAsNumber, newest.speed);
-    const flown = newest.vehicles.filter(isFlown);
-    const chosen = whose.value;
-    refill(whose, flown.map(({ id, name }) => `${id} ${name}`).join(), () => [
-      h("option", { value: "" }, t("All UAVs")),
-      flown.map(({ id, name }) => h("option", { value: id }, name)),
-    ]);
-    whose.value = flown.some(({ id }) => id === chosen) ? chosen : "";
-  }
-
-  async function look() {
+  async #look() {
     try {
-      const { data } = await get(`/missions/${page.mission}/simulated-flights?state=all&limit=1`);
-      newest = data.results[0] ?? null;
-      draw();
+      const answer = await get(`/missions/${this.#page.mission}/simulated-flights?state=all&limit=1`);
+      this.#newest = /** @type {Answer<SimulationPage>} */ (answer).data.results[0] ?? null;
+      this.#draw();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error; // the head of the page says that nothing comes in
     }
   }
 
-  void look();
-  setInterval(() => document.hidden || void look(), EVERY_MS);
+  #draw() {
+    const newest = this.#newest;
+    const { words, isBad } = stateWords(newest, this.#page.canFly);
+    if (this.#state.textContent !== words) this.#state.textContent = words;
+    this.#state.classList.toggle("bad", isBad);
+    const present = isPresent(newest) ? newest : null;
+    this.#drawVehicles(present?.vehicles ?? []);
+    this.#start.hidden = present !== null;
+    this.#changes.show(present);
+  }
+
+  /** @param {HTMLElement} row @param {SimulatedVehicle} vehicle */
+  #drawVehicle(row, vehicle) {
+    const { words, isBad } = vehicleWords(vehicle);
+    const others = (this.#newest?.vehicles ?? []).filter(isPresent).length - 1;
+    const canEnd = this.#page.canFly && isPresent(vehicle) && others > 0;
+    row.className = `route-${routeNumber(vehicle.sequence)} ${isBad ? "bad" : ""}`;
+    refill(row, JSON.stringify([vehicle.name, words, canEnd]), () => [
+      h("span", { class: "letter" }, routeLetter(vehicle.sequence)),
+      h("span", {}, h("strong", {}, vehicle.name), h("small", {}, words)),
+      canEnd && this.#endButton(vehicle),
+    ]);
+  }
+
+  /** @param {SimulatedVehicle} vehicle */
+  #endButton(vehicle) {
+    const words = t("End {name}", { name: vehicle.name });
+    /** @param {Event} event */
+    const onclick = async ({ currentTarget }) => {
+      const asked = await confirmAct({
+        title: t("End {name}?", { name: vehicle.name }),
+        lines: [t("It is gone at once, wherever it is: if it is in the air, its link is lost. The others fly on.")],
+        keep: t("Keep flying"),
+        act: words,
+        opener: /** @type {HTMLElement} */ (currentTarget),
+      });
+      if (asked) await this.#done(() => remove(`/simulated-vehicles/${vehicle.id}`));
+    };
+    const properties = { type: "button", class: "icon-button tight", "aria-label": words, title: words, onclick };
+    return h("button", properties, icon("x", "small"));
+  }
+}
+
+/** What a simulation is begun with. @param {MonitorPage} page @param {Do} act */
+function startForm(page, act) {
+  const speed = choice("simulation-start-speed", SPEEDS);
+  const air = choice("simulation-air", AIRS);
+  const begin = () =>
+    post(
+      `/missions/${page.mission}/simulated-flights`,
+      { speed: Number(speed.value), conditions: air.value },
+      { headers: { "Idempotency-Key": AGAIN() } },
+    );
+  /** @param {Event} event */
+  const onsubmit = (event) => {
+    event.preventDefault();
+    void act(begin, t("Simulated UAVs are being started."));
+  };
+  return h(
+    "form",
+    { class: "simulation-form", onsubmit },
+    h("div", { class: "simulation-pair" }, field(t("Pace"), speed), field(t("Wind"), air)),
+    h("button", { class: "button", type: "submit" }, icon("play", "small"), t("Fly in simulation")),
+  );
+}
+
+/** Pace, wind and faults of what flies, and its end. */
+class ChangesInFlight {
+  #act;
+  /** @type {Simulation | null} */
+  #flown = null;
+  #speed = choice("simulation-speed", SPEEDS);
+  #whose = choice("simulation-whose", []);
+  #seconds = number("simulation-seconds", LASTS_S, 1, 3600);
+  #lasts = h("p", { class: "caption", id: "simulation-lasts" });
+
+  /** @param {Do} act */
+  constructor(act) {
+    this.#act = act;
+    this.#speed.addEventListener("change", () => {
+      const speed = Number(this.#speed.value);
+      void this.#act(() => patch(this.#ofAll(), { speed }));
+    });
+    this.#seconds.setAttribute("aria-describedby", this.#lasts.id);
+    this.#seconds.addEventListener("input", () => this.#drawLasts());
+    const faults = [...FAULTS, WELL].map((fault) => this.#faultButton(fault));
+    this.element = h(
+      "div",
+      { class: "simulation-form" },
+      h(
+        "div",
+        { class: "simulation-pair" },
+        field(t("Pace"), this.#speed),
+        field(t("Wind and faults of"), this.#whose),
+      ),
+      group(t("Wind"), "simulation-wind-title", this.#windForm()),
+      group(
+        t("Faults"),
+        "simulation-faults",
+        h("div", { class: "simulation-faults" }, faults),
+        h("div", { class: "simulation-lasts" }, field(t("Link or GPS lost for"), this.#seconds, "s"), this.#lasts),
+      ),
+      this.#endButton(),
+    );
+  }
+
+  /** @param {Simulation | null} flown null: nothing flies */
+  show(flown) {
+    this.#flown = flown;
+    this.element.hidden = flown === null;
+    if (!flown) return;
+    if (document.activeElement !== this.#speed) this.#speed.value = `${flown.speed}`;
+    this.#drawLasts();
+    const vehicles = flown.vehicles.filter(isFlown);
+    const chosen = this.#whose.value;
+    refill(this.#whose, vehicles.map(({ id, name }) => `${id} ${name}`).join(), () => [
+      h("option", { value: "" }, t("All UAVs")),
+      vehicles.map(({ id, name }) => h("option", { value: id }, name)),
+    ]);
+    this.#whose.value = vehicles.some(({ id }) => id === chosen) ? chosen : "";
+  }
+
+  #drawLasts() {
+    if (this.#flown) this.#lasts.textContent = lastsWords(this.#seconds.valueAsNumber, this.#flown.speed);
+  }
+
+  #ofAll() {
+    return `/simulations/${this.#flown?.id}`;
+  }
+
+  /** UAVs that a fault is meant for. */
+  #meant() {
+    const vehicles = this.#flown?.vehicles ?? [];
+    return this.#whose.value ? vehicles.filter(({ id }) => id === this.#whose.value) : vehicles.filter(isPresent);
+  }
+
+  #windForm() {
+    /** @param {number} most_mps */
+    const inUnits = (most_mps) => Math.floor(most_mps / SPEED_UNIT.mps);
+    const wind = number("simulation-wind", Math.round(5 / SPEED_UNIT.mps), 0, inUnits(MOST_WIND_MPS));
+    const from = number("simulation-from", 270, 0, 360);
+    const gusts = number("simulation-gusts", 0, 0, inUnits(MOST_GUSTS_MPS));
+    /** @param {Event} event */
+    const onsubmit = (event) => {
+      event.preventDefault();
+      const address = this.#whose.value ? `/simulated-vehicles/${this.#whose.value}` : this.#ofAll();
+      const [speed_mps, gusts_mps] = [wind, gusts].map(({ valueAsNumber }) => valueAsNumber * SPEED_UNIT.mps);
+      const conditions = windOf(speed_mps, from.valueAsNumber, gusts_mps);
+      void this.#act(() => patch(address, { conditions }), t("The wind has changed."));
+    };
+    return h(
+      "form",
+      { class: "simulation-wind", onsubmit },
+      h(
+        "div",
+        { class: "simulation-three" },
+        field(t("Speed|wind"), wind, SPEED_UNIT.unit),
+        field(t("From"), from, "°"),
+        field(t("Gusts"), gusts, SPEED_UNIT.unit),
+      ),
+      h("button", { class: "button small", type: "submit" }, t("Set the wind")),
+    );
+  }
+
+  /** @param {Fault} fault */
+  #faultButton({ name, image, words, lasts, of }) {
+    const onclick = () => {
+      if (lasts && !this.#seconds.reportValidity()) return;
+      const flown_s = Math.min(this.#seconds.valueAsNumber * (this.#flown?.speed ?? 1), LONGEST_FAULT_S);
+      const send = () =>
+        Promise.all(
+          this.#meant().map((vehicle) => patch(`/simulated-vehicles/${vehicle.id}`, { faults: of(vehicle, flown_s) })),
+        );
+      void this.#act(send, t("{fault}: done.", { fault: words }));
+    };
+    const properties = { class: "button small", type: "button", "data-fault": name, onclick };
+    return h("button", properties, icon(image, "small"), words);
+  }
+
+  #endButton() {
+    /** @param {Event} event */
+    const onclick = async ({ currentTarget }) => {
+      const asked = await confirmAct({
+        title: t("End the simulation?"),
+        lines: [t("Its UAVs are gone at once, wherever they are: of those in the air the link is lost.")],
+        keep: t("Keep flying"),
+        act: t("End the simulation"),
+        opener: /** @type {HTMLElement} */ (currentTarget),
+      });
+      if (asked) await this.#act(() => remove(this.#ofAll()));
+    };
+    return h("button", { class: "button small", type: "button", onclick }, icon("x", "small"), t("End the simulation"));
+  }
 }

@@ -5,7 +5,9 @@ import { t } from "../../text.js";
 import { causeWords, isUndecided } from "../offer_words.js";
 import { alertsInOrder, isUnanswered } from "../order.js";
 
-/** open() shows the alerts and offers. */
+/** @import { MonitorStore } from "../types.d.ts" */
+
+/** @param {MonitorStore} store @param {{ open: () => void }} on open: shows the alerts and offers */
 export function mountUrgent(store, { open }) {
   const words = h("span", {});
   const box = h(
@@ -14,7 +16,7 @@ export function mountUrgent(store, { open }) {
     words,
     h("button", { type: "button", class: "text-button", onclick: open }, t("Decide")),
   );
-  byId("map").parentElement.append(box);
+  byId("map").parentElement?.append(box);
   store.listen(["alerts", "offers"], ({ alerts, offers }) => {
     const [worst] = alertsInOrder(alerts.filter(isUnanswered)).filter(({ level }) => level !== "advisory");
     const offer = offers.find((one) => isUndecided(one) && one.state !== "computing");
