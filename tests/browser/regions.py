@@ -31,6 +31,7 @@ class Region:
     everything: str  # box around the region
     towers: str  # box with a row of towers that stand alone, outside the zones
     all_towers: str  # box with towers around both start positions; plans of a few of them are proven
+    spread_towers: str  # box with towers whose routes go a long way
     bridges: str  # box with bridges that stand alone
     railways: str  # box with railways
     lines: str  # box with a flyable power line
@@ -54,7 +55,7 @@ class Region:
     tower_label: str  # pattern of the labels of the towers in `towers`
     picture_line: str  # pattern of the labels of one line's towers, at least 12, with their numbers
     picture_towers: str  # box with them
-    sortie_battery_wh: float  # too little for four of `all_towers` in one flight from `east`, enough for several flights
+    sortie_battery_wh: float  # too little for four of `spread_towers` in one flight from `east`, enough for several flights
     afternoon_utc: str
     night_utc: str  # an hour after sunset
 
@@ -97,6 +98,7 @@ ELME_VALLEY = Region(
     everything="26.39,25.57,26.81,25.83",
     towers="26.59,25.62,26.665,25.70",
     all_towers="26.53,25.62,26.70,25.70",
+    spread_towers="26.49,25.62,26.72,25.76",
     bridges="26.63,25.705,26.73,25.725",
     railways="26.43,25.67,26.51,25.70",
     lines="26.40,25.63,26.50,25.72",
@@ -120,7 +122,7 @@ ELME_VALLEY = Region(
     tower_label=r"[EHV]\d{3}-\d+",
     picture_line=r"H133-(\d+)",
     picture_towers="26.58,25.65,26.67,25.72",
-    sortie_battery_wh=170.0,
+    sortie_battery_wh=240.0,
     afternoon_utc="13:00",
     night_utc="16:10",
 )
@@ -131,6 +133,7 @@ COLUMBUS = Region(
     everything="-83.15,39.8,-82.85,40.1",
     towers="-82.98,39.87,-82.93,39.94",
     all_towers="-83.12,39.83,-82.86,40.0",
+    spread_towers="-83.12,39.83,-82.86,40.0",
     bridges="-82.97,39.96,-82.92,39.99",
     railways="-83.08,39.95,-83.03,39.99",
     lines="-83.1,39.85,-83.0,39.94",

@@ -24,7 +24,7 @@ HALF_DEG = 0.004
 
 
 def planned(page: Page, name: str, **options: Any) -> dict[str, Any]:
-    towers = asks(page, f"/assets?kind=tower&bbox={region.all_towers}&limit=200")["features"]
+    towers = asks(page, f"/assets?kind=tower&bbox={region.spread_towers}&limit=200")["features"]
     picked = [{"asset": tower["id"]} for tower in towers[:: len(towers) // 4][:4]]
     uavs = [{"name": "Heron", "position": region.west}, {"name": "Kite", "position": region.east}]
     body = {"name": name, "uavs": uavs, "targets": picked, "objective": "makespan", "return_to_start": True, "plan": True}
