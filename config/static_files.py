@@ -1,5 +1,6 @@
 """Static files under names that change with their content, so that browsers keep them for a year."""
 
+import re
 from typing import Any
 
 from django.contrib.staticfiles.storage import ManifestStaticFilesStorage
@@ -15,6 +16,7 @@ class HashedStaticFiles(ManifestStaticFilesStorage):
 
     support_js_module_import_aggregation = True
     max_post_process_passes = LONGEST_CHAIN
+    _patterns: dict[str, list[tuple[re.Pattern[str], str]]]  # Django's own: by folder and extension, what is replaced by what
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)
