@@ -6,10 +6,11 @@ from typing import Any
 
 import pytest
 from django.contrib import admin
-from django.contrib.gis.geos import LineString
+from django.contrib.gis.geos import LineString, Point
 from django.test import Client
 from django.urls import reverse
 
+import config.urls  # noqa: F401 - the models are registered when the addresses are read
 from inspection.graph.ground_data import NO_OSM_NODE
 from inspection.models import Asset, AssetKind, DataImport, ImportKind, NoFlyZone, ZoneSet
 from inspection.selectors import ground_revision
@@ -22,6 +23,10 @@ from workspace.models import ApiToken, AuditEntry, Role, User
 pytestmark = pytest.mark.django_db
 
 MODELS = sorted((model._meta.app_label, model._meta.model_name) for model in admin.site._registry)
+CURATED_MODELS = {  # infrastructure, zones, terrain, and the imports and graphs made of them
+    "asset", "assetset", "bridge", "datagap", "dataimport", "graphsnapshot", "ground", "importproposal", "noflyzone", "powerline",
+    "powertower", "railway", "terraintile", "upload", "zoneset", "zonesetversion", "zonesubscription",
+}  # fmt: skip
 
 
 @pytest.fixture
@@ -55,9 +60,28 @@ def test_every_list_opens_for_administrators(app: str, model: str) -> None:
 
 
 @pytest.mark.parametrize(("app", "model"), MODELS)
-def test_curators_see_the_ground_and_nothing_else(client: Client, app: str, model: str) -> None:
-    status = client.get(reverse(f"admin:{app}_{model}_changelist")).status_code
-    assert status == (200 if app == "inspection" else 403)
+def test_curators_open_infrastructure_and_zones_and_nothing_else(client: Client, app: str, model: str) -> None:
+    is_curated = app == "inspection" and model in CURATED_MODELS
+    assert client.get(reverse(f"admin:{app}_{model}_changelist")).status_code == (200 if is_curated else 403)
+    if not is_curated:
+        assert client.get(reverse(f"admin:{app}_{model}_add")).status_code == 403
+
+
+def test_the_admins_first_page_lists_all_models_for_administrators_and_curated_ones_for_curators(client: Client) -> None:
+    def listed(answer: Any) -> list[tuple[str, str]]:
+        apps = answer.context["app_list"]
+        return sorted((app["app_label"], entry["model"]._meta.model_name) for app in apps for entry in app["models"])
+
+    assert listed(client_of(somebody(Role.ADMINISTRATOR)).get("/admin/")) == MODELS
+    assert listed(client.get("/admin/")) == sorted(("inspection", model) for model in CURATED_MODELS)
+
+
+def test_curators_cannot_open_or_delete_a_row_of_the_fleet(client: Client, curator: User) -> None:
+    uav = Uav.objects.create(name="Kite", location=Point(10.0, 56.0, srid=4326), organisation=curator.organisation)
+    assert client.get(change_address(uav)).status_code == 403
+    assert client.post(change_address(uav), {"name": "Tern"}).status_code == 403
+    assert client.post(reverse("admin:missions_uav_delete", args=[uav.pk]), {"post": "yes"}).status_code == 403
+    assert Uav.objects.get().name == "Kite"
 
 
 def test_strangers_are_sent_to_the_programs_own_sign_in() -> None:
