@@ -14,9 +14,8 @@ import pytest
 
 from config.private_servers import DATABASE_NAME, DATABASE_ROLE
 from scripts import supervision
-from scripts.check import steps
 from scripts.database_cluster import create_database, database_exists, prepare_cluster, wait_for_database, wait_for_queue
-from scripts.places import PROJECT_DIR, Places, prepare_sockets, prepare_state, remove_sockets
+from scripts.places import Places, prepare_sockets, prepare_state, remove_sockets
 from scripts.processes import processes_in
 from scripts.programs import SERVERS_STAGE, Program, database_server, queue_server, web_programs
 from scripts.supervision import Supervisor
@@ -138,49 +137,3 @@ def test_every_queue_of_the_settings_has_a_worker(places: Places, settings: obje
         if "--queues" in program.command
     }
     assert queues == served
-
-
-def _expression(command: list[str]) -> str:
-    return command[command.index("-m", command.index("-m") + 1) + 1]
-
-
-def _expressions(arguments: list[str]) -> dict[str, str]:
-    """Of each step that runs pytest, by its name."""
-    return {step.name: _expression(step.command) for step in steps(arguments) if "pytest" in step.command}
-
-
-def test_fast_leaves_the_browser_out_and_long_takes_the_long_tests_in() -> None:
-    later, quick, all_kinds = "tests that wait for workers and simulated UAVs", "not browser and not long", "(browser or not browser)"
-    assert _expressions([]) == {
-        "pytest": quick, later: quick, "tests that wait": f"{all_kinds} and not long", "browser tests": "browser and not long",
-    }  # fmt: skip
-    assert _expressions(["--fast"]) == {"pytest": quick, later: quick, "tests that wait": quick}
-    assert _expressions(["--long"]) == {
-        "pytest": "not browser", later: "not browser", "tests that wait": all_kinds, "browser tests": "browser",
-    }  # fmt: skip
-
-
-def _places(name: str, arguments: list[str]) -> list[str]:
-    """What the step of this name runs of the tests, or leaves to others."""
-    [command] = [step.command for step in steps(arguments) if step.name == name]
-    return [argument for argument in command if argument.startswith(("tests/", "--ignore"))]
-
-
-@pytest.mark.parametrize("arguments", [[], ["--long"], ["--fast"]])
-def test_what_one_step_leaves_out_is_run_by_another(arguments: list[str]) -> None:
-    beside, later = _places("tests that wait", arguments), _places("tests that wait for workers and simulated UAVs", arguments)
-    pages = [place for place in beside if place.startswith("tests/browser")]
-    waiting = [place for place in beside if place not in pages] + later
-    assert waiting and all((PROJECT_DIR / place).exists() for place in (*waiting, *pages))
-    assert len({*waiting, *pages}) == len([*waiting, *pages])
-    assert _places("pytest", arguments) == [f"--ignore={place}" for place in waiting]
-    if "--fast" in arguments:
-        assert not pages
-    else:
-        assert _places("browser tests", arguments) == ["tests/browser", *(f"--ignore={place}" for place in pages)]
-
-
-def test_other_arguments_go_to_pytest_alone() -> None:
-    [step] = steps(["--fast", "tests/scripts", "-k", "port"])
-    assert step.command[-3:] == ["tests/scripts", "-k", "port"]
-    assert _expression(step.command) == "(not browser) and not long"

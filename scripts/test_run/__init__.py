@@ -1,0 +1,1 @@
+"""How ./check runs its steps and judges what the tests report."""

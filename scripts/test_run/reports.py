@@ -1,0 +1,77 @@
+"""Report of one run of tests: how many ran by kind, each skip with its reason, and the rule on skips.
+
+The reasons that a test may be skipped for are in pyproject.toml, [tool.spanwise.tests.allowed_skips]: a regular expression, and why.
+"""
+
+import json
+import re
+import tomllib
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+FORBIDDEN_SKIPS = 8  # exit code, beside those of pytest (0 to 5)
+NO_TESTS = 5  # as pytest says it
+KINDS = ("unit", "database", "browser", "javascript")
+TAP_SKIP = re.compile(r"^\s*(?:not )?ok \d+ - (?P<name>.*) # (?P<kind>SKIP|TODO)\b ?(?P<reason>.*)$", re.MULTILINE)
+TAP_TOTAL = re.compile(r"^# (?P<name>pass|fail) (?P<number>\d+)$", re.MULTILINE)
+
+
+@dataclass
+class Report:
+    """Number of tests that ran by kind, and the reason of each skipped one by its name."""
+
+    ran: Counter[str] = field(default_factory=Counter)
+    skipped: dict[str, str] = field(default_factory=dict)
+
+    def forbidden(self, allowed: Iterable[str]) -> dict[str, str]:
+        """Skips whose reason begins with none of the allowed patterns."""
+        patterns = list(allowed)
+        return {name: reason for name, reason in self.skipped.items() if not any(re.match(pattern, reason) for pattern in patterns)}
+
+    def judge(self, code: int, allowed: Iterable[str]) -> int:
+        """Exit code of the run: a failure where a test was skipped that may not be, or where no test ran."""
+        if code in (0, 1) and self.forbidden(allowed):
+            return FORBIDDEN_SKIPS
+        return NO_TESTS if code == 0 and not self.ran.total() else code
+
+    def write(self, path: Path) -> None:
+        path.write_text(json.dumps({"ran": self.ran, "skipped": self.skipped}))
+
+
+def allowed_skips(project: Path) -> list[str]:
+    """Return the patterns of the reasons that tests may be skipped for."""
+    settings = tomllib.loads((project / "pyproject.toml").read_text())
+    return list(settings.get("tool", {}).get("spanwise", {}).get("tests", {}).get("allowed_skips", {}))
+
+
+def read_report(path: Path) -> Report:
+    """Report that a run of pytest wrote; an empty one if it did not get that far."""
+    try:
+        kept = json.loads(path.read_text())
+    except OSError:
+        return Report()
+    return Report(Counter(kept["ran"]), kept["skipped"])
+
+
+def read_tap(path: Path) -> Report:
+    """Report of `node --test` in the Test Anything Protocol. What is only to do counts as skipped."""
+    try:
+        text = path.read_text()
+    except OSError:
+        return Report()
+    skipped = {found["name"]: found["reason"] or found["kind"].lower() for found in TAP_SKIP.finditer(text)}
+    ran = sum(int(found["number"]) for found in TAP_TOTAL.finditer(text))
+    return Report(Counter({"javascript": ran}), skipped)
+
+
+def summary(reports: Iterable[Report]) -> list[str]:
+    """Return the lines of counts by kind and of skips by reason."""
+    reports = list(reports)
+    ran = sum((report.ran for report in reports), Counter[str]())
+    reasons = Counter(reason for report in reports for reason in report.skipped.values())
+    lines = ["Tests: " + ", ".join(f"{ran[kind]:,} {kind}" for kind in KINDS if ran[kind])] if ran else []
+    if lines:
+        lines.append(f"Skipped: {reasons.total()}")
+    return [*lines, *(f"  {number:5}  {reason}" for reason, number in sorted(reasons.items()))]
