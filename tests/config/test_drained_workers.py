@@ -68,6 +68,7 @@ def wait_for(is_so: Callable[[], bool]) -> None:
         time.sleep(0.05)
 
 
+@pytest.mark.long
 def test_of_what_a_worker_has_under_way_nothing_is_lost_when_it_is_told_to_stop(queue: Queue) -> None:
     """What is short it finishes, what is long the next one gets, and what does not hear that it is to end is ended. On a machine that is
     busy with other things the next one may get all three.
@@ -83,6 +84,7 @@ def test_of_what_a_worker_has_under_way_nothing_is_lost_when_it_is_told_to_stop(
         wait_for(lambda: queue.notes().count("began") >= 5 and "done" in queue.notes())
 
 
+@pytest.mark.long
 def test_a_process_that_still_warms_up_holds_up_no_end(queue: Queue) -> None:
     """It hears no signal meanwhile; a task that was meant for it is the next worker's."""
     with queue.worker(warm_up_s=3_600.0) as process:

@@ -13,6 +13,14 @@ DEPLOY = Path(__file__).resolve().parents[2] / "deploy"
 OVERLAYS = ("small", "production", "production-keda")
 
 
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What is about deployment is run by ./check --long."""
+    for item in items:
+        if item.path.is_relative_to(Path(__file__).parent):
+            item.add_marker(pytest.mark.long)
+
+
 @functools.cache
 def rendered_text(overlay: str) -> str:
     kubectl = shutil.which("kubectl")

@@ -7,12 +7,8 @@ from collections.abc import Iterator
 
 import pytest
 
-pytest.importorskip("geventhttpclient")
-from geventhttpclient.connectionpool import ConnectionPool
-
-from deploy.load.kept_connections import keep_all_connections
-
 MOST_SELECT_KNOWS = 1_024
+NO_LOCUST = "Locust is not installed: requirements-benchmarks.txt has it"
 
 
 @pytest.fixture
@@ -30,8 +26,9 @@ def pair() -> Iterator[tuple[socket.socket, socket.socket]]:
 def test_an_open_connection_is_kept_and_one_that_has_ended_is_not(
     pair: tuple[socket.socket, socket.socket], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    ConnectionPool = pytest.importorskip("geventhttpclient.connectionpool", reason=NO_LOCUST).ConnectionPool  # noqa: N806 - a class
     monkeypatch.setattr(ConnectionPool, "_is_socket_alive", ConnectionPool._is_socket_alive)  # brought back afterwards
-    keep_all_connections()
+    pytest.importorskip("deploy.load.kept_connections").keep_all_connections()
     pool = ConnectionPool("localhost", 1, "localhost", 1)
     mine, theirs = pair
     assert pool._is_socket_alive(mine)

@@ -27,7 +27,7 @@ from workspace.job_watch import INTERVAL_S
 from workspace.models import Job, JobState, Role, User
 from workspace.services import cancel_job, requeue_lost_jobs
 
-pytestmark = pytest.mark.django_db(transaction=True)
+pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 
 PATIENCE_S = 60.0
 RING = b"[[9,47],[9.1,47],[9.1,47.1],[9,47]]"

@@ -31,7 +31,7 @@ from workspace import tasks
 from workspace.models import AuditEntry, Job, JobState, Role, User
 from workspace.services import LEASE_S, create_job
 
-pytestmark = pytest.mark.django_db(transaction=True)
+pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 
 PATIENCE_S = 420.0
 LARGE = 14
@@ -137,7 +137,6 @@ def test_a_plan_whose_worker_is_killed_is_taken_over(tmp_path: Path) -> None:
     assert list(Mission.objects.values_list("revision", flat=True)) == [job.parameters["revision"] + 1]
 
 
-@pytest.mark.long
 def test_twenty_killed_workers_lose_no_job_and_end_none_twice(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], record_property: Any
 ) -> None:

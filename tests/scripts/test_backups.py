@@ -71,6 +71,7 @@ def hashes(url: str) -> dict[str, str]:
     return found
 
 
+@pytest.mark.long
 def test_all_is_back_after_a_backup_and_a_restore(
     one: Places, databases: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -90,6 +91,7 @@ def test_all_is_back_after_a_backup_and_a_restore(
         assert connection.execute("INSERT INTO tower DEFAULT VALUES RETURNING id").fetchone() == (501,)
 
 
+@pytest.mark.long
 def test_what_is_there_stays_unless_it_is_to_be_replaced(one: Places, databases: list[str], tmp_path: Path) -> None:
     made = back_up(one, tmp_path / "backup")
     with database_at(databases[0]).connect() as connection:
@@ -109,6 +111,7 @@ def test_what_is_there_stays_unless_it_is_to_be_replaced(one: Places, databases:
     assert (one.state / "secret_key").read_text() == "the key of one"
 
 
+@pytest.mark.long
 def test_a_restore_that_fails_leaves_what_was_there(one: Places, databases: list[str], tmp_path: Path) -> None:
     with database_at(databases[0]).connect() as connection:  # it can be written down, and not be read back
         connection.execute("ALTER TABLE tower ADD CONSTRAINT low CHECK (id < 600) NOT VALID; CREATE FUNCTION half(x int) RETURNS int "
@@ -124,6 +127,7 @@ def test_a_restore_that_fails_leaves_what_was_there(one: Places, databases: list
     assert hashes(databases[0]) == before
 
 
+@pytest.mark.long
 def test_a_database_that_somebody_uses_is_left_alone(
     one: Places, databases: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -134,6 +138,7 @@ def test_a_database_that_somebody_uses_is_left_alone(
 
 
 @pytest.mark.parametrize("damage", ["changed", "missing", "added"])
+@pytest.mark.long
 def test_a_damaged_backup_is_refused(one: Places, tmp_path: Path, damage: str) -> None:
     made = back_up(one, tmp_path / "backup")
     verify(made)
@@ -149,6 +154,7 @@ def test_a_damaged_backup_is_refused(one: Places, tmp_path: Path, damage: str) -
         restore(one, made, replaces=True)
 
 
+@pytest.mark.long
 def test_nothing_is_backed_up_over_another_backup_or_from_an_empty_database(
     one: Places, databases: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

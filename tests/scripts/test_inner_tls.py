@@ -100,6 +100,7 @@ def folder() -> Iterator[Path]:
     shutil.rmtree(made)
 
 
+@pytest.mark.long
 def test_the_proxy_speaks_tls_to_whom_the_authority_has_named_and_to_nobody_else(folder: Path) -> None:
     nginx = find_program("nginx")
     if nginx is None:
@@ -164,6 +165,7 @@ def test_programs_speak_plain_http_unless_both_files_are_named(tmp_path: Path, m
     assert inner_certificate(tmp_path) is not None
 
 
+@pytest.mark.long
 def test_whoever_looks_after_the_certificate_tells_the_program_and_ends_with_it(tmp_path: Path) -> None:
     """A process that becomes a shell, as a container's becomes granian; the shell ends at the signal."""
     certificate, key = tmp_path / "tls.crt", tmp_path / "tls.key"

@@ -93,6 +93,7 @@ def _is_answered(site: Site) -> bool:
         return False
 
 
+@pytest.mark.long
 def test_no_request_is_lost_while_each_program_is_stopped_and_started_again(site: Site) -> None:
     answers: Counter[tuple[str, int]] = Counter()
     is_over = threading.Event()

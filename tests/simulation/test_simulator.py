@@ -108,6 +108,7 @@ def test_a_mission_is_flown_by_its_stand_in_and_a_lost_link_comes_back(mission, 
     assert not UavLink.objects.get(uav=uav).losses.get("wrong-signature")
 
 
+@pytest.mark.long
 def test_a_missions_uav_is_lost_with_a_simulator_that_is_killed_in_mid_air(mission, tmp_path):
     """The watch tells of its link; the simulator that comes back does not bring it back; the mission is aborted without it."""
     uav, port = Uav.objects.get(), free_port()

@@ -95,7 +95,8 @@ def kinds_of(count: int, chance: random.Random) -> tuple[list[CommandKind], list
     return calm[:split], later
 
 
-@pytest.mark.parametrize("count", [1_000, pytest.param(10_000, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("count", [1_000, 10_000])
 def test_no_command_is_lost_or_applied_out_of_order_and_the_urgent_wait_least(
     count: int, capsys: pytest.CaptureFixture[str], record_property: Any
 ) -> None:

@@ -50,6 +50,7 @@ def reporting(link: Link, *, every_s: float = 0.02) -> Iterator[list[int]]:
         thread.join()
 
 
+@pytest.mark.long
 def test_a_killed_gateway_loses_no_more_than_what_it_had_not_stored(tmp_path):
     unsigned_uav()
     port = free_port()

@@ -70,6 +70,7 @@ def shows(page: Page, uav: Uav, lon_deg: float) -> bool:
     return shown is not None and shown["measured"] is not None and shown["measured"]["position"][0] == lon_deg
 
 
+@pytest.mark.long
 def test_pages_of_a_program_that_is_told_to_stop_come_back_to_the_other_one(replicas: Replicas) -> None:
     uav, person = a_uav("Tern"), somebody()
     assert store_records([record(uav, 1, longitude_deg=10.0)]).stored == 1

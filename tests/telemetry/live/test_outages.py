@@ -23,7 +23,7 @@ from tests.workspace.people import somebody
 from workspace.models import User
 from workspace.services import create_api_token
 
-pytestmark = pytest.mark.django_db(transaction=True)
+pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 
 AGAIN_WITHIN_S = 10.0
 
@@ -74,7 +74,6 @@ def test_while_redis_is_killed_and_emptied_pages_stay_live(without_redis: Door) 
     kill_redis_often(without_redis, 2)
 
 
-@pytest.mark.long
 def test_redis_may_be_killed_and_emptied_ten_times(without_redis: Door) -> None:
     kill_redis_often(without_redis, 10)
 

@@ -18,7 +18,7 @@ from tests.telemetry.watch.program import watch_program
 from tests.workspace.people import somebody
 
 LONGEST_GAP_S = 8.0  # a lease, a round, and what a busy machine takes longer
-pytestmark = pytest.mark.django_db(transaction=True)
+pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 
 
 @pytest.fixture
