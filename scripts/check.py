@@ -71,7 +71,7 @@ def steps(arguments: list[str]) -> list[Step]:
     if rest:
         expression = "not browser" if is_fast else "browser or not browser"
         return [_pytest("pytest", f"({expression}){without_long}", rest)]
-    found = [_pytest("tests", f"not browser{without_long}", [], workers=TEST_WORKERS)]
+    found = [_pytest("tests", f"not browser{without_long}", ["--ignore=tests/browser"], workers=TEST_WORKERS)]
     if not is_fast:
         found.append(
             _pytest("browser tests", f"browser{without_long}", ["tests/browser"], lane="browser", workers=BROWSER_WORKERS, dist="loadfile")

@@ -93,10 +93,10 @@ def test_fast_leaves_the_browser_out_and_long_takes_the_long_tests_in() -> None:
     assert _expressions(["--long"]) == {"tests": "not browser", "browser tests": "browser"}
 
 
-def test_every_browser_test_is_in_the_folder_that_the_browser_step_runs() -> None:
+def test_the_folder_of_the_browser_step_has_every_browser_test_and_no_other() -> None:
     marked = [path for path in (PROJECT_DIR / "tests").glob("**/*.py") if re.search(r"\bmark\.browser\b", path.read_text())]
     browser, scripts = PROJECT_DIR / "tests" / "browser", PROJECT_DIR / "tests" / "scripts"
-    assert [path for path in marked if browser in path.parents]
+    assert [path for path in browser.glob("**/test_*.py") if path not in marked] == []
     assert [path for path in marked if not {browser, scripts} & set(path.parents)] == []
     [step] = [step for step in steps([]) if step.name == "browser tests"]
     assert "tests/browser" in step.command
