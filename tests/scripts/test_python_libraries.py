@@ -49,7 +49,13 @@ def test_a_lock_adds_to_its_base_and_pins_each_library_once_with_digests(lock):
 def test_the_locks_hold_what_pyproject_names():
     project = tomllib.loads((PROJECT_DIR / "pyproject.toml").read_text())
     wanted = {"requirements.txt": project["project"]["dependencies"]}
-    wanted |= {f"requirements-{group}.txt": names for group, names in project["dependency-groups"].items()}
+    groups = project["dependency-groups"]
+    wanted |= {
+        f"requirements-{group}.txt": [
+            name for entry in entries for name in ([entry] if isinstance(entry, str) else groups[entry["include-group"]])
+        ]
+        for group, entries in groups.items()
+    }
     assert set(wanted) == set(BASES)
     for lock, names in wanted.items():
         assert {normal(name) for name in names} <= set(map(normal, pinned(lock)))
