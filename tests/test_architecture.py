@@ -127,6 +127,15 @@ def test_every_pure_folder_is_under_the_strict_type_check() -> None:
     assert folders == set(pure_folders())
 
 
+def test_the_type_check_reads_every_program() -> None:
+    checked = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["mypy"]
+    assert {*APPS, "config", "scripts", "operation"} <= set(checked["files"])
+    assert checked["exclude"] == "/migrations/"
+    assert checked["disallow_untyped_defs"] and checked["check_untyped_defs"]
+    silenced = [override["module"] for override in checked["overrides"] if override.get("ignore_errors")]
+    assert silenced == []
+
+
 def test_modules_are_named_after_what_they_know() -> None:
     assert [relative(path) for path in own_files("*.py", "*.js") if path.stem in UNNAMED or path.parent.name in UNNAMED] == []
 
