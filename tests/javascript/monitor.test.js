@@ -3,7 +3,6 @@ import { test } from "node:test";
 import { certaintyOf, ESTIMATED, LOST, MEASURED, standsAt } from "../../static/js/domain/certainty.js";
 import { distance_m } from "../../static/js/domain/geodesy.js";
 import { flyingUavs, inAir } from "../../static/js/domain/in_air.js";
-import { newAlerts } from "../../static/js/monitor/alarm.js";
 import { boardRows } from "../../static/js/monitor/board.js";
 import { eventsOf } from "../../static/js/monitor/event_log.js";
 import { progressOf } from "../../static/js/monitor/live_strip.js";
@@ -11,7 +10,7 @@ import { ellipseRing, metresPerPixel } from "../../static/js/monitor/map/ellipse
 import { between } from "../../static/js/monitor/map/glide.js";
 import { addReport, flownParts } from "../../static/js/monitor/mission_details.js";
 import { causeWords, overWords, sentenceOf, targetLines } from "../../static/js/monitor/offer_words.js";
-import { alertsInOrder, inOrder } from "../../static/js/monitor/order.js";
+import { alertsInOrder, inOrder, newAlerts } from "../../static/js/monitor/order.js";
 import { placed } from "../../static/js/monitor/placed.js";
 import { ageWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
 import { unheardLines } from "../../static/js/monitor/unheard.js";

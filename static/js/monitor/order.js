@@ -64,3 +64,16 @@ function sorted(items, keysOf) {
     })
     .map(({ item }) => item);
 }
+
+/**
+ * Those that have come since the last look and that somebody is to be told of: one cause once, and again where it has become worse.
+ *
+ * @param {Alert[]} alerts
+ * @param {Map<number, AlertLevel>} told level by id
+ */
+export function newAlerts(alerts, told) {
+  /** @param {Alert} alert */
+  const isNew = ({ id, level, closed_at, acknowledged_at }) =>
+    closed_at === null && acknowledged_at === null && told.get(id) !== level;
+  return alerts.filter(isNew);
+}

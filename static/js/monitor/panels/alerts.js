@@ -7,8 +7,8 @@ import { say, toast } from "../../page/toast.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";
+import { mountAlarm } from "../alarm.js";
 import { alertsInOrder, isOpenAlert, isUnanswered } from "../order.js";
-import { mountAlarm } from "./alarm_choice.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { AlertLevel, AlertPage } from "../../api_types.d.ts" */
