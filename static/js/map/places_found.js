@@ -104,7 +104,7 @@ export async function placesFound(text, { signal, things = [] } = {}) {
  * Brings a found place into view.
  *
  * @param {MapLibreMap} map
- * @param {FoundPlace} place
+ * @param {Pick<FoundPlace, "position" | "zoom" | "box">} place
  * @param {(box: Box) => void} fit
  */
 export function goTo(map, place, fit) {

@@ -10,9 +10,9 @@ import { createHistory, createStore } from "../store.js";
 import { t } from "../text.js";
 import { createActions } from "./actions/actions.js";
 import { createDrafts } from "./actions/draft.js";
-import { createFlying } from "./actions/flying_actions.js";
 import { watchMission } from "./actions/together.js";
 import { standingUavs } from "./fleet.js";
+import { createFlying } from "./flying/flying_actions.js";
 import { lockOf } from "./locks.js";
 import { mountMap } from "./map/map_panel.js";
 import { mountApprove } from "./panels/approve.js";
@@ -41,9 +41,15 @@ import { EMPTY, uavOf } from "./selection.js";
 import { mountStages } from "./stages.js";
 import { createGrounds } from "./strips/profile.js";
 
+/** @import { Answer } from "../api.js" */
+/** @import { AssetFeature, Ground, UavCollection } from "../api_types.d.ts" */
+/** @import { MissionPageData, MissionPageState, MissionStore, Tool } from "./types.d.ts" */
+
+/** @type {MissionPageData} */
 const page = readPage();
 const isStage = page.stage === "rehearse";
-const store = createStore({
+/** @type {MissionPageState} */
+const BEGINNING = {
   ground: null,
   fleet: [],
   mission: null,
@@ -83,16 +89,20 @@ const store = createStore({
   connections: new Map(),
   isDispatching: false,
   rehearsal: NO_REHEARSAL,
-});
+};
+/** @type {MissionStore} */
+const store = createStore(BEGINNING);
 const history = createHistory(store, "selection");
 const editor = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 const drafts = createDrafts({ user: page.userId, editor });
 const actions = createActions(store, history, page, drafts);
 const flying = createFlying(store, { failed: actions.failed, page });
 
+/** @type {ReturnType<typeof mountUavs> | null} */
 let uavPanel = null;
 const layout = mountWorkbench({ dockOnPhone: byId("routes-on-phone") });
-const map = mountMap(store, actions, page, { askForUav: (position) => uavPanel.askForUav(position) });
+const map = mountMap(store, actions, page, { askForUav: (position) => uavPanel?.askForUav(position) });
+/** @param {AssetFeature} feature */
 const targetOfFeature = (feature) => actions.targetOfFeature(feature);
 mountStages(store);
 mountHeader(store, actions, page.canPlan, {
@@ -121,7 +131,10 @@ if (page.canPlan) {
 } else mountOptionsRead(store);
 mountLostLink(store, actions, {
   canPlan: page.canPlan,
-  showPlaces: (positions) => (layout.showMap(), map.showPlaces(positions)),
+  showPlaces(positions) {
+    layout.showMap();
+    map.showPlaces(positions);
+  },
 });
 mountFoot(store, actions);
 const grounds = createGrounds();
@@ -140,7 +153,7 @@ const finder = mountFinder({
       name,
       position,
       icon: "uav",
-      detail: base_name,
+      detail: base_name ?? "",
     })),
   goTo: (place) => map.goTo(place),
 });
@@ -160,7 +173,7 @@ startChrome({
     { keys: ["-"], words: t("Zoom out"), act: () => map.zoom(-1) },
     { keys: ["["], words: t("Fold the side"), act: layout.foldSide },
     { keys: ["]"], words: t("Fold the routes"), act: layout.foldDock },
-    { keys: ["escape"], words: page.canPlan ? t("Close, back to points") : t("Close"), act: escape },
+    { keys: ["escape"], words: page.canPlan ? t("Close, back to points") : t("Close"), act: closeTop },
     { keys: ["enter"], act: placeInTheMiddle },
   ],
 });
@@ -175,14 +188,19 @@ watchMission(store, {
 
 store.listen(["tool"], ({ tool }) => tool !== "point" && layout.showMap());
 
-/** What is stored of the mission: the run of a rehearsal that is shown, else the plan. */
+/**
+ * What is stored of the mission: the run of a rehearsal that is shown, else the plan.
+ *
+ * @returns {ReturnType<Parameters<typeof mountSceneOpener>[0]>}
+ */
 function sceneOfMission() {
   const { mission, rehearsal } = store.state;
   if (!mission?.plan) return null;
-  const run = rehearsal.track ? { kind: "rehearsal", rehearsal: rehearsal.detail.id, run: rehearsal.run } : null;
-  return { mission: mission.id, wanted: run };
+  const { track, detail, run } = rehearsal;
+  return { mission: mission.id, wanted: track && detail ? { kind: "rehearsal", rehearsal: detail.id, run } : null };
 }
 
+/** @type {string | null} */
 let plannedSeen = null;
 store.listen(["mission"], ({ mission }) => {
   scene.show(Boolean(mission?.plan));
@@ -190,6 +208,7 @@ store.listen(["mission"], ({ mission }) => {
   if (isOther && mission?.plan && scene.stage()?.source.kind === "plan") void scene.open({ takesFocus: false }); // it was planned anew
   plannedSeen = mission?.planned_at ?? null;
 });
+/** @type {MissionPageState["rehearsal"]["track"]} */
 let runSeen = null;
 store.listen(["rehearsal"], ({ rehearsal: { track } }) => {
   const isOther = track !== null && track !== runSeen;
@@ -198,6 +217,7 @@ store.listen(["rehearsal"], ({ rehearsal: { track } }) => {
 });
 
 function planningKeys() {
+  /** @param {Tool} tool */
   const choose = (tool) => () => store.update({ tool });
   return [
     { keys: ["p"], words: t("Plan, plan again"), act: actions.plan },
@@ -222,8 +242,8 @@ function planningKeys() {
 }
 
 function removeChosen() {
-  if (store.state.hand) return actions.removeByHand(store.state.hand.chosen);
-  const { chosenTargets } = store.state;
+  const { hand, chosenTargets } = store.state;
+  if (hand) return hand.chosen !== null && actions.removeByHand(hand.chosen);
   if (!chosenTargets.length) return false;
   actions.removeTargets(chosenTargets);
   return true;
@@ -236,12 +256,13 @@ function lockChosen() {
   return actions.lockTarget(chosenTarget);
 }
 
+/** @param {number} step */
 function shiftChosen(step) {
   const { chosenTarget } = store.state;
   return chosenTarget !== null && actions.shiftTarget(chosenTarget, step);
 }
 
-function escape() {
+function closeTop() {
   if (map.closeTop()) return;
   if (store.state.why) store.update({ why: null });
   else if (store.state.problem) store.update({ problem: null });
@@ -255,17 +276,21 @@ function placeInTheMiddle() {
     return true;
   }
   if (store.state.tool !== "place") return false;
-  uavPanel.askForUav();
+  uavPanel?.askForUav();
   return true;
 }
 
 // The selection outlives the page: it is kept a moment after each change, and dropped once there is nothing to keep.
-let keepTimer = 0;
+/** @type {ReturnType<typeof setTimeout> | undefined} */
+let keepTimer;
 let isKept = true;
 let isLoaded = false;
 store.listen(["selection", "name", "savedBasis", "mission", "conflict"], () => {
   clearTimeout(keepTimer);
-  if (page.canPlan && isLoaded) keepTimer = setTimeout(() => (isKept = actions.settleDraft()), 400);
+  if (!page.canPlan || !isLoaded) return;
+  keepTimer = setTimeout(() => {
+    isKept = actions.settleDraft();
+  }, 400);
 });
 addEventListener("pagehide", () => {
   if (page.canPlan && isLoaded) actions.settleDraft();
@@ -280,20 +305,22 @@ addEventListener("beforeunload", (event) => {
 });
 
 async function fleetOfOrganisation() {
-  const features = [];
-  for (let next = "/uavs?limit=100"; next; ) {
-    const { data } = await get(next);
-    features.push(...data.features);
+  const fleet = [];
+  /** @type {string | null} */
+  let next = "/uavs?limit=100";
+  while (next) {
+    const { data } = /** @type {Answer<UavCollection>} */ (await get(next));
+    fleet.push(...data.features.map(uavOf));
     next = data.next;
   }
-  return features.map(uavOf);
+  return fleet;
 }
 
 async function load() {
   try {
     const fleet = fleetOfOrganisation();
     fleet.catch(() => {}); // told below, after the map has its ground
-    store.update({ ground: (await get("/ground")).data });
+    store.update({ ground: /** @type {Answer<Ground>} */ (await get("/ground")).data });
     store.update({ fleet: await fleet });
     if (page.mission) await actions.open(page.mission);
     else if (page.canPlan) actions.openDraft();

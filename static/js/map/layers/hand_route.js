@@ -5,7 +5,7 @@ import { addSources, readToken, setFeatures, setPaint } from "../look/style.js";
 /** @import { LayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 /** @import { MapLibreMap, Position } from "../types.d.ts" */
 
-/** @typedef {{ position: Position, isByHand: boolean }} HandPoint */
+/** @typedef {{ position: number[], isByHand: boolean }} HandPoint */
 /** @typedef {{ chosen: number | null, stateOf: (leg: number) => string, isFree: (point: any) => boolean }} HandLook */
 
 const SOURCE = "hand-route";
@@ -130,13 +130,13 @@ export function show(map, points, { chosen, stateOf, isFree } = NO_LOOK) {
  * Places at which a new point can be drawn out of a leg: [{ index, position }], of legs that are long enough on the screen.
  *
  * @param {MapLibreMap} map
- * @param {readonly { position: Position }[]} points
- * @returns {{ index: number, position: Position }[]}
+ * @param {readonly { position: number[] }[]} points
+ * @returns {{ index: number, position: number[] }[]}
  */
 export function middlesOf(map, points) {
   return points.slice(1).flatMap(({ position }, index) => {
     const from = points[index].position;
-    const [a, b] = [map.project(from), map.project(position)];
+    const [a, b] = [from, position].map((place) => map.project(/** @type {Position} */ (place)));
     if (Math.hypot(a.x - b.x, a.y - b.y) < LEAST_MIDDLE_PX) return [];
     return [{ index, position: [(from[0] + position[0]) / 2, (from[1] + position[1]) / 2] }];
   });

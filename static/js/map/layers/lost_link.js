@@ -71,7 +71,7 @@ const feature = (type, coordinates, { fails = false, lit = false }) => ({
  * returns: [{ from, to, fails, lit }]; none takes them away.
  *
  * @param {MapLibreMap} map
- * @param {{ from: Position, to: Position, fails?: boolean, lit?: boolean }[]} returns
+ * @param {{ from: number[], to: number[], fails?: boolean, lit?: boolean }[]} returns
  */
 export function showReturns(map, returns) {
   if (!map.getSource(SOURCE)) {
@@ -103,7 +103,7 @@ export function createRallyPoints(map, { onMove }) {
   let marks = [];
   let drawn = "";
   return {
-    /** @param {{ name: string, position: Position }[]} points @param {boolean} canMove */
+    /** @param {{ name: string, position: number[] }[]} points @param {boolean} canMove */
     update(points, canMove) {
       const now = JSON.stringify([points, canMove]);
       if (now === drawn) return;
@@ -127,7 +127,7 @@ export function createRallyPoints(map, { onMove }) {
           const { lng, lat } = mark.getLngLat();
           onMove(index, [lng, lat]);
         });
-        return mark.setLngLat(position).addTo(map);
+        return mark.setLngLat(/** @type {Position} */ (position)).addTo(map);
       });
     },
   };

@@ -1,26 +1,45 @@
 /** Who else has the mission open, what they save, and whether the server is there: asked every few seconds while the page is looked at. */
 
-import { get, post } from "../../api.js";
+import { ApiError, get, post } from "../../api.js";
+
+/** @import { Answer } from "../../api.js" */
+/** @import { Mission, Presence } from "../../api_types.d.ts" */
+/** @import { FleetUav, MissionStore } from "../types.d.ts" */
+
+/**
+ * @typedef {object} Watching
+ * @property {string} editor the name of this page
+ * @property {() => Promise<FleetUav[]>} readFleet what flies, as it is now
+ * @property {(theirs: Mission) => Promise<void>} take a younger revision: see conflicts.js
+ * @property {(hasWaited?: boolean) => void} connectedAgain
+ * @property {() => void} tellDeleted
+ */
 
 const POLL_MS = 3000;
 const PRESENCE_MS = 6000;
 
-/** editor: the name of this page; readFleet(): what flies, as it is now; take(mission): see conflicts.js. */
+/** @param {MissionStore} store @param {Watching} watching */
 export function watchMission(store, { editor, readFleet, take, connectedAgain, tellDeleted }) {
-  let timer = 0;
+  /** @type {ReturnType<typeof setInterval> | undefined} */
+  let timer;
   let isAsking = false;
   let reportedAt = 0;
+  /** @type {string | null} */
   let toldDeleted = null;
+  /** @type {string | null} */
+  let watched = null;
 
-  const presence = (here) =>
-    post(`/missions/${store.state.mission.id}/presence`, { editor, here }, { keepalive: !here });
+  /** @param {string} id @param {boolean} here */
+  const presence = (id, here) => post(`/missions/${id}/presence`, { editor, here }, { keepalive: !here });
 
-  function failed(error) {
+  /** @param {unknown} error @param {Mission} mission */
+  function failed(error, mission) {
+    if (!(error instanceof ApiError)) throw error;
     if (error.isAway) store.update({ isAway: true });
-    else if (error.status === 404 && toldDeleted !== store.state.mission.id) {
-      toldDeleted = store.state.mission.id;
+    else if (error.status === 404 && toldDeleted !== mission.id) {
+      toldDeleted = mission.id;
       tellDeleted();
-    } else if (!error.status) throw error;
+    }
   }
 
   async function ask() {
@@ -28,30 +47,40 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
     if (!mission || saving || planning || isAsking) return;
     isAsking = true;
     try {
-      const answer = await get(`/missions/${mission.id}`, { headers: { "If-None-Match": `"${mission.revision}"` } });
+      const { data } = /** @type {Answer<Mission | null>} */ (
+        await get(`/missions/${mission.id}`, { headers: { "If-None-Match": `"${mission.revision}"` } })
+      );
       toldDeleted = null;
       const { mission: now, saving: isSaving, isAway: wasAway } = store.state;
-      if (answer.data && !isSaving && now.id === mission.id && answer.data.revision > now.revision)
-        await take(answer.data);
+      if (data && now && !isSaving && now.id === mission.id && data.revision > now.revision) await take(data);
       if (wasAway) connectedAgain(wasAway); // after theirs came in: what waits is saved on top of it
       if (Date.now() - reportedAt > PRESENCE_MS) await report();
     } catch (error) {
-      failed(error);
+      failed(error, store.state.mission ?? mission);
     } finally {
       isAsking = false;
     }
   }
 
   async function report() {
-    reportedAt = Date.now();
-    const { data } = await presence(true);
-    store.update({ others: data.others, groundRevision: data.ground_revision });
     const { mission } = store.state;
-    const isOnOtherGround = mission.plan && !mission.is_stale && mission.plan.ground_revision !== data.ground_revision;
-    const hasOtherUavs = JSON.stringify(mission.uav_changes) !== JSON.stringify(data.uav_changes);
+    if (!mission) return;
+    reportedAt = Date.now();
+    const { data } = /** @type {Answer<Presence>} */ (await presence(mission.id, true));
+    store.update({ others: data.others, groundRevision: data.ground_revision });
+    await followGround(data);
+  }
+
+  /** Reads what the map data or a UAV have changed though the mission has not. @param {Presence} present */
+  async function followGround(present) {
+    const { mission } = store.state;
+    if (!mission) return;
+    const { plan, is_stale: wasStale } = mission;
+    const isOnOtherGround = plan && !wasStale && plan.ground_revision !== present.ground_revision;
+    const hasOtherUavs = JSON.stringify(mission.uav_changes) !== JSON.stringify(present.uav_changes);
     if (!isOnOtherGround && !hasOtherUavs) return;
     const fleet = hasOtherUavs ? await readFleet() : store.state.fleet;
-    const { data: fresh } = await get(`/missions/${mission.id}`); // the ground or a UAV has changed, the mission has not
+    const { data: fresh } = /** @type {Answer<Mission>} */ (await get(`/missions/${mission.id}`));
     if (fresh.revision !== mission.revision || store.state.mission !== mission) return;
     const { is_stale, stale_reason, stale_causes, uav_changes } = fresh;
     store.update({ fleet, mission: { ...mission, is_stale, stale_reason, stale_causes, uav_changes } });
@@ -64,7 +93,6 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
     void ask();
   }
 
-  let watched = null;
   store.listen(["mission"], ({ mission }) => {
     if (!mission || mission.id === watched) return;
     watched = mission.id;
@@ -75,6 +103,6 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
   addEventListener("offline", () => store.update({ isAway: true }));
   addEventListener("online", () => (store.state.mission ? void ask() : connectedAgain()));
   addEventListener("pagehide", () => {
-    if (watched) presence(false).catch(() => {}); // the page is gone; the others forget it by themselves too
+    if (store.state.mission) presence(store.state.mission.id, false).catch(() => {}); // the page is gone; the others forget it by themselves too
   });
 }

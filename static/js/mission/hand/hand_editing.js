@@ -1,59 +1,132 @@
 /** Changing one route by hand: its points with undo and redo, what flying them would take asked about at once, and keeping them. */
 
-import { post, request } from "../../api.js";
+import { ApiError, request } from "../../api.js";
 import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { isPlanCurrent } from "../plan_view.js";
+import { createHandLooks, NO_FAULTS } from "./hand_looks.js";
 import * as hand from "./hand_route.js";
 
-const MOST_KNOWN = 50; // routes as they were wished, with what the server said of them
-const NO_FAULTS = hand.faultsOf(null);
+/** @import { Answer } from "../../api.js" */
+/** @import { Mission } from "../../api_types.d.ts" */
+/** @import { HandEdit, HandPoint, MissionContext, MissionPageState, MissionStore, Version } from "../types.d.ts" */
+
+/** @typedef {{ save: (how: { byItself: boolean }) => Promise<void>, keepOpen: (mission: Mission, asked: Version) => void }} Saving */
+/** @typedef {(change: Partial<HandEdit>) => void} Put */
+
+/** @param {HandPoint[]} original @param {number} sequence @returns {HandEdit} */
+const beginningOf = (original, sequence) => ({
+  sequence,
+  original,
+  points: original,
+  chosen: null,
+  dragged: null,
+  look: null,
+  isLookOld: true,
+  unknown: "",
+  faults: NO_FAULTS,
+  legs: new Map(),
+  canUndo: false,
+  canRedo: false,
+  isSaving: false,
+});
+
+/** Who plans anew, picks something else or closes the panel is not changing this route any more. @param {Readonly<MissionPageState>} state */
+function isStillOpen({ hand: edit, why, plan }) {
+  if (!edit) return true;
+  const route = plan?.result.routes[edit.sequence];
+  const isShown = why?.byHand === edit.sequence && Boolean(route?.geometry);
+  return isShown && route !== undefined && hand.pointsOf(route).length === edit.original.length;
+}
 
 /**
- * saving: { save(), keepOpen(mission, asked) }. While somebody changes a route, store.state.hand says all of it; else it is null.
+ * The points of the route with undo and redo.
  *
- * hand.look is what the server said last of the route as it is shown, and of as many points as it has now; hand.isLookOld tells that the
- * points have moved on since. hand.legs has the changed legs, and whether each is clear; null while that is not known.
+ * @param {MissionStore} store
+ * @param {ReturnType<typeof createHandLooks>} looks
  */
-export function createHandEditing({ store, history, selection, problem, wordsOf }, { save, keepOpen }) {
-  const looks = new Map(); // body → { faults, length_m, … } as asked
-  let [past, future] = [[], []];
-  let isAsking = false;
+function createSteps(store, { ask, knownOf, put }) {
+  /** @type {HandPoint[][]} */
+  let past = [];
+  /** @type {HandPoint[][]} */
+  let future = [];
 
+  /** @param {HandEdit} edit @param {HandPoint[]} points @param {number | null} chosen */
+  const show = (edit, points, chosen) => {
+    put({
+      points,
+      chosen: chosen !== null && points[chosen] ? chosen : null,
+      canUndo: past.length > 0,
+      canRedo: future.length > 0,
+      ...knownOf(edit, points),
+    });
+    void ask();
+  };
+
+  /**
+   * One step of the history.
+   *
+   * @param {(points: HandPoint[]) => HandPoint[]} change
+   * @param {number | null} chosen
+   */
+  function take(change, chosen) {
+    const edit = store.state.hand;
+    if (!edit) return false;
+    const points = change(edit.points);
+    if (points === edit.points) return false;
+    past.push(edit.points);
+    future = [];
+    show(edit, points, chosen);
+    return true;
+  }
+
+  /** @param {HandPoint[][]} from @param {HandPoint[][]} to */
+  function step(from, to) {
+    const [edit, points] = [store.state.hand, from.at(-1)];
+    if (!edit || !points) return false;
+    from.pop();
+    to.push(edit.points);
+    show(edit, points, edit.chosen);
+    return true;
+  }
+
+  return {
+    take,
+    undo: () => step(past, future),
+    redo: () => step(future, past),
+    beginAnew() {
+      past = [];
+      future = [];
+    },
+  };
+}
+
+/**
+ * While somebody changes a route, store.state.hand says all of it; else it is null.
+ *
+ * @param {MissionContext} context
+ * @param {Saving} saving
+ */
+export function createHandEditing(context, saving) {
+  const { store } = context;
+  const looks = createHandLooks(context);
+  const { ask, knownOf, put, forget } = looks;
+  const { take, undo, redo, beginAnew } = createSteps(store, looks);
   const state = () => store.state.hand;
-  const put = (change) => store.update({ hand: { ...state(), ...change } });
 
-  /** Opens a route; the plan has to be the stored one, and is stored first where it is not. */
+  /** Opens a route; the plan has to be the stored one, and is stored first where it is not. @param {number} sequence */
   async function begin(sequence) {
-    if (!store.state.planIsStored || !isPlanCurrent(store.state)) await save({ byItself: true });
+    if (!store.state.planIsStored || !isPlanCurrent(store.state)) await saving.save({ byItself: true });
     const { plan, planIsStored, mission } = store.state;
     const route = plan?.result.routes[sequence];
     if (!mission || !planIsStored || !isPlanCurrent(store.state) || !route?.geometry) {
       toast(t("A route is changed by hand once its plan is saved."));
       return;
     }
-    [past, future] = [[], []];
-    looks.clear();
-    const original = hand.pointsOf(route);
-    store.update({
-      hand: {
-        sequence,
-        original,
-        points: original,
-        chosen: null,
-        dragged: null,
-        look: null,
-        isLookOld: true,
-        unknown: "",
-        faults: NO_FAULTS,
-        legs: new Map(),
-        canUndo: false,
-        canRedo: false,
-        isSaving: false,
-      },
-      why: { byHand: sequence },
-      tool: "point",
-    });
+    beginAnew();
+    forget();
+    const edit = beginningOf(hand.pointsOf(route), sequence);
+    store.update({ hand: edit, why: { byHand: sequence }, tool: "point" });
     void ask();
   }
 
@@ -61,164 +134,120 @@ export function createHandEditing({ store, history, selection, problem, wordsOf 
     if (state()) store.update({ hand: null, why: store.state.why?.byHand === undefined ? store.state.why : null });
   }
 
-  const show = (points, chosen) => {
-    put({
-      points,
-      chosen: chosen !== null && points[chosen] ? chosen : null,
-      canUndo: past.length > 0,
-      canRedo: future.length > 0,
-      ...knownOf(points),
-    });
-    void ask();
-  };
-
-  /** One step of the history. */
-  function take(points, chosen = state().chosen) {
-    if (points === state().points) return false;
-    past.push(state().points);
-    future = [];
-    show(points, chosen);
-    return true;
-  }
-
-  const keyOf = (points) => JSON.stringify(hand.bodyOf(points));
-
-  /** What is known of these points, exactly or from a moment ago. */
-  function knownOf(points) {
-    const exact = looks.get(keyOf(points)) ?? null;
-    const { look: last, dragged, original } = state();
-    const look = exact ?? (last?.waypoints.length === points.length ? last : null);
-    const faults = look && (exact || dragged) ? hand.faultsOf(look.faults) : NO_FAULTS;
-    const isKnown = look !== null && (exact !== null || Boolean(dragged));
-    const legs = new Map(
-      hand
-        .changedLegs(points, original)
-        .map((index) => [index, isKnown ? { is_clear: hand.isLegClear(faults, index) } : null]),
-    );
-    return { look: exact ?? last, isLookOld: exact === null, faults, legs, unknown: "" };
-  }
-
-  /** What is shown on the map at this moment, dragged or not, is asked about: one request after the other. */
-  async function ask() {
-    const asked = state();
-    if (isAsking || !asked) return;
-    const points = asked.dragged ?? asked.points;
-    if (looks.has(keyOf(points))) return;
-    isAsking = true;
-    try {
-      const { data } = await post(
-        `/missions/${store.state.mission.id}/routes/${asked.sequence}/waypoints/look`,
-        hand.bodyOf(points),
-      );
-      looks.set(keyOf(points), data);
-      if (looks.size > MOST_KNOWN) looks.delete(looks.keys().next().value);
-      if (state()?.sequence !== asked.sequence) return;
-      put({ look: data });
-      put(knownOf(state().dragged ?? state().points));
-    } catch (error) {
-      if (state()) put({ unknown: t("Not checked: {reason}", { reason: wordsOf(error) }) });
-      return;
-    } finally {
-      isAsking = false;
-    }
-    void ask();
-  }
-
-  function step(from, to) {
-    if (!state() || !from.length) return false;
-    to.push(state().points);
-    show(from.pop(), state().chosen);
-    return true;
-  }
-
-  async function stored(mission, sequence, points) {
-    const answer = await request("PUT", `/missions/${mission.id}/routes/${sequence}/waypoints`, {
-      body: hand.bodyOf(points),
-      headers: { "If-Match": `"${mission.revision}"` },
-    });
-    return answer.data;
-  }
-
-  /** The route as it was before it was changed by hand last; who has changed the mission since is told so. */
-  async function takeBack(sequence) {
-    const { mission, name } = store.state;
-    if (state()) put({ isSaving: true });
-    try {
-      const { data } = await request("POST", `/missions/${mission.id}/routes/${sequence}/waypoints/undo`, {
-        headers: { "If-Match": `"${mission.revision}"` },
-      });
-      end();
-      keepOpen(data, { selection: selection(), name });
-      history.startFrom(selection());
-      store.update({ problem: null }); // what planning again would take away may be there no more
-      toast(t("The last change by hand is taken back."));
-    } catch (error) {
-      if (state()) put({ isSaving: false });
-      toast(t("Not undone: {reason}", { reason: wordsOf(error) }));
-    }
-  }
-
-  async function keep() {
-    const { sequence, points, original } = state();
-    if (!hand.changesOf(points, original)) return end();
-    const { mission, name } = store.state;
-    put({ isSaving: true });
-    try {
-      const data = await stored(mission, sequence, points);
-      end();
-      keepOpen(data, { selection: selection(), name });
-      history.startFrom(selection()); // a step back from here would plan anew, and the change by hand would be gone
-      say(t("The route is kept as changed by hand."));
-      toast(t("The route is kept as changed by hand."), { label: t("Undo"), act: () => takeBack(sequence) });
-    } catch (error) {
-      if (!state()) return undefined;
-      const faults = hand.faultsOf(error.details);
-      const places = faults.points.size + faults.legs.size;
-      const told = places || faults.other.length ? faults : { ...faults, other: [wordsOf(error)] };
-      toast(t("Not kept: {reason}", { reason: [...told.other, ...told.points.values(), ...told.legs.values()][0] }));
-      put({
-        isSaving: false,
-        faults: told,
-        chosen: [...faults.points.keys(), ...faults.legs.keys()][0] ?? state().chosen,
-      });
-      if (error.isSignedOut) problem(t("You are signed out."), wordsOf(error));
-    }
-    return undefined;
-  }
-
-  // Who plans anew, picks something else or closes the panel is not changing this route any more.
-  store.listen(["plan", "why"], ({ hand: now, why, plan }) => {
-    if (
-      now &&
-      (why?.byHand !== now.sequence ||
-        !plan?.result.routes[now.sequence]?.geometry ||
-        hand.pointsOf(plan.result.routes[now.sequence]).length !== now.original.length)
-    )
-      end();
+  store.listen(["plan", "why"], (now) => {
+    if (!isStillOpen(now)) end();
   });
 
   return {
     beginByHand: begin,
     endByHand: end,
-    keepByHand: keep,
-    chooseByHand: (chosen) => state() && put({ chosen }),
-    /** While it is dragged: shown and asked about, no step of the history. */
+    ...createKeeping(context, saving, { put, end }),
+    /** @param {number | null} chosen */
+    chooseByHand: (chosen) => put({ chosen }),
+    /** While it is dragged: shown and asked about, no step of the history. @param {HandPoint[]} points @param {number} chosen */
     dragByHand(points, chosen) {
       put({ dragged: points, chosen });
-      put(knownOf(points));
+      const edit = state();
+      if (edit) put(knownOf(edit, points));
       void ask();
     },
-    dropByHand(points, chosen) {
+    /** points: where it was let go; null: nothing is changed. @param {HandPoint[] | null} points @param {number | null} [chosen] */
+    dropByHand(points, chosen = null) {
       put({ dragged: null });
-      if (!points || !take(points, chosen)) put(knownOf(state().points));
+      if (points && take(() => points, chosen)) return;
+      const edit = state();
+      if (edit) put(knownOf(edit, edit.points));
     },
-    moveByHand: (index, position) => take(hand.moved(state().points, index, position), index),
-    raiseByHand: (index, height_m) => take(hand.raised(state().points, index, height_m), index),
-    paceByHand: (index, speed_mps) => take(hand.paced(state().points, index, speed_mps), index),
-    insertByHand: (index) => take(hand.inserted(state().points, index), index + 1),
-    removeByHand: (index) => take(hand.dropped(state().points, index), null),
-    takeBackByHand: () => takeBack(state().sequence),
-    undoByHand: () => step(past, future),
-    redoByHand: () => step(future, past),
+    /** @param {number} index @param {number[]} position */
+    moveByHand: (index, position) => take((points) => hand.moved(points, index, position), index),
+    /** @param {number} index @param {number} height_m */
+    raiseByHand: (index, height_m) => take((points) => hand.raised(points, index, height_m), index),
+    /** @param {number} index @param {number | null} speed_mps */
+    paceByHand: (index, speed_mps) => take((points) => hand.paced(points, index, speed_mps), index),
+    /** @param {number} index */
+    insertByHand: (index) => take((points) => hand.inserted(points, index), index + 1),
+    /** @param {number} index */
+    removeByHand: (index) => take((points) => hand.dropped(points, index), null),
+    undoByHand: undo,
+    redoByHand: redo,
+  };
+}
+
+/**
+ * Storing the route as it is changed, and taking the last change back.
+ *
+ * @param {MissionContext} context
+ * @param {Saving} saving
+ * @param {{ put: Put, end: () => void }} editing
+ */
+function createKeeping({ store, history, selection, problem, wordsOf }, { keepOpen }, { put, end }) {
+  /** @param {Mission} mission @param {string} name that the page had when it was asked */
+  function taken(mission, name) {
+    end();
+    keepOpen(mission, { selection: selection(), name });
+    history.startFrom(selection()); // a step back from here would plan anew, and the change by hand would be gone
+  }
+
+  /** The route as it was before it was changed by hand last; who has changed the mission since is told so. @param {number} sequence */
+  async function takeBack(sequence) {
+    const { mission, name } = store.state;
+    if (!mission) return;
+    put({ isSaving: true });
+    try {
+      const address = `/missions/${mission.id}/routes/${sequence}/waypoints/undo`;
+      const { data } = /** @type {Answer<Mission>} */ (
+        await request("POST", address, { headers: { "If-Match": `"${mission.revision}"` } })
+      );
+      taken(data, name);
+      store.update({ problem: null }); // what planning again would take away may be there no more
+      toast(t("The last change by hand is taken back."));
+    } catch (error) {
+      put({ isSaving: false });
+      toast(t("Not undone: {reason}", { reason: wordsOf(error) }));
+    }
+  }
+
+  /** What was refused is said at its points and legs. @param {unknown} error */
+  function tellRefused(error) {
+    const edit = store.state.hand;
+    if (!edit) return;
+    const faults = hand.faultsOf(error instanceof ApiError ? error.details : null);
+    const places = faults.points.size + faults.legs.size;
+    const told = places || faults.other.length ? faults : { ...faults, other: [wordsOf(error)] };
+    const [reason] = [...told.other, ...told.points.values(), ...told.legs.values()];
+    toast(t("Not kept: {reason}", { reason }));
+    const [place = edit.chosen] = [...faults.points.keys(), ...faults.legs.keys()];
+    put({ isSaving: false, faults: told, chosen: place });
+    if (error instanceof ApiError && error.isSignedOut) problem(t("You are signed out."), wordsOf(error));
+  }
+
+  return {
+    async keepByHand() {
+      const { hand: edit, mission, name } = store.state;
+      if (!edit || !mission) return;
+      const { sequence, points, original } = edit;
+      if (!hand.changesOf(points, original)) {
+        end();
+        return;
+      }
+      put({ isSaving: true });
+      try {
+        const { data } = /** @type {Answer<Mission>} */ (
+          await request("PUT", `/missions/${mission.id}/routes/${sequence}/waypoints`, {
+            body: hand.bodyOf(points),
+            headers: { "If-Match": `"${mission.revision}"` },
+          })
+        );
+        taken(data, name);
+        say(t("The route is kept as changed by hand."));
+        toast(t("The route is kept as changed by hand."), { label: t("Undo"), act: () => takeBack(sequence) });
+      } catch (error) {
+        tellRefused(error);
+      }
+    },
+    takeBackByHand: () => {
+      const edit = store.state.hand;
+      if (edit) void takeBack(edit.sequence);
+    },
   };
 }

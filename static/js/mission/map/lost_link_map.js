@@ -11,7 +11,17 @@ import {
 } from "../lost_link.js";
 import { isPlanCurrent } from "../plan_view.js";
 
-/** Returns { recolour() }. */
+/** @import { MapLibreMap } from "../../map/types.d.ts" */
+/** @import { MissionActions, MissionStore } from "../types.d.ts" */
+
+/**
+ * Returns { recolour() }.
+ *
+ * @param {MapLibreMap} map
+ * @param {MissionStore} store
+ * @param {Pick<MissionActions, "moveRallyPoint">} actions
+ * @param {{ canPlan: boolean }} page
+ */
 export function mountLostLinkMap(map, store, actions, { canPlan }) {
   const rally = layer.createRallyPoints(map, { onMove: actions.moveRallyPoint });
 
@@ -25,10 +35,12 @@ export function mountLostLinkMap(map, store, actions, { canPlan }) {
   store.listen(["selection", "plan", "litReturn", "hand"], (state) => {
     const { plan, selection, litReturn, hand } = state;
     const isChecked = !hand && ["home", "lost"].includes(checkStateOf(selection.lost_link, plan, isPlanCurrent(state)));
-    const failing = isChecked
-      ? returnLinesOf(plan).map((line) => ({ ...line, fails: true, lit: line.key === litReturn }))
-      : [];
-    layer.showReturns(map, [...(isChecked ? quietReturnsOf(plan) : []), ...failing]);
+    if (!plan || !isChecked) {
+      layer.showReturns(map, []);
+      return;
+    }
+    const failing = returnLinesOf(plan).map((line) => ({ ...line, fails: true, lit: line.key === litReturn }));
+    layer.showReturns(map, [...quietReturnsOf(plan), ...failing]);
   });
 
   return { recolour: () => layer.recolour(map) };

@@ -1,15 +1,22 @@
 /** The layer of what can be inspected: asked for when it is switched on and when what decides over it changes, with a legend of reasons. */
 
-import { post } from "../../api.js";
-import { h, icon, svg } from "../../dom.js";
+import { isAbort, post } from "../../api.js";
+import { h, icon, setChildren, svg } from "../../dom.js";
 import * as layer from "../../map/layers/reach.js";
-import { t, tn } from "../../text.js";
+import { t } from "../../text.js";
 import { numberText } from "../../units.js";
 import { questionOf, reachText, verdictOf } from "./reachable.js";
+
+/** @import { Answer } from "../../api.js" */
+/** @import { Reachability } from "../../api_types.d.ts" */
+/** @import { Child } from "../../dom.js" */
+/** @import { MapLibreMap } from "../../map/types.d.ts" */
+/** @import { MissionStore, PickedUav } from "../types.d.ts" */
 
 const REST_MS = 400; // after the last change
 const PROGRESS_AFTER_MS = 1000;
 
+/** @param {Child} drawing */
 const sample = (drawing) => svg("svg", { width: 34, height: 12, viewBox: "0 0 34 12", "aria-hidden": "true" }, drawing);
 const LEGEND = [
   {
@@ -45,102 +52,33 @@ const LEGEND = [
   },
 ];
 
-/** Returns { entry: for the layers menu, textOf(id), verdict(id), recolour(), close(): whether it was on }. */
+/** @typedef {{ answer: Reachability, uavs: PickedUav[] }} Answered uavs: as they were asked about */
+
+/**
+ * Returns { entry: for the layers menu, textOf(id), verdict(id), recolour(), close(): whether it was on }.
+ *
+ * @param {MapLibreMap} map
+ * @param {HTMLElement} frame
+ * @param {MissionStore} store
+ */
 export function mountReachLayer(map, frame, store) {
-  const card = h("section", { class: "reach-card float", "aria-label": t("What can be inspected"), hidden: true });
-  frame.append(card);
   let isOn = false;
-  let answer = null;
+  /** @type {Answered | null} */
+  let answered = null;
   let askedAs = ""; // the question in hand or answered
-  let uavs = [];
+  /** @type {AbortController | null} */
   let stopping = null;
-  let timer = 0;
-
-  const close = h(
-    "button",
-    {
-      type: "button",
-      class: "icon-button tight",
-      "aria-label": t("Close"),
-      title: t("Close"),
-      onclick: () => turn(false),
-    },
-    icon("x", "small"),
-  );
-  const head = (words) => h("div", { class: "reach-head" }, h("p", { role: "status" }, words), close);
-
-  function showWorking() {
-    card.replaceChildren(
-      head(t("Working out what can be inspected")),
-      h(
-        "div",
-        { class: "progress busy", role: "progressbar", "aria-label": t("Working out what can be inspected") },
-        h("i", {}),
-      ),
-      h(
-        "div",
-        {},
-        h("button", { type: "button", class: "button", onclick: () => (stopping?.abort(), turn(false)) }, t("Cancel")),
-      ),
-    );
-  }
-
-  function showAnswer() {
-    const { reachable, of, reasons, grounded } = answer;
-    const summary = of
-      ? t("{reachable} of {all} assets can be inspected, each in a flight of its own.", {
-          reachable: numberText(reachable),
-          all: numberText(of),
-        })
-      : t("There is no asset to inspect.");
-    const parts = [
-      head(h("strong", {}, summary)),
-      h(
-        "ul",
-        { class: "reach-legend", "aria-label": t("Legend") },
-        LEGEND.map(({ words, draw }) => h("li", {}, draw(), words)),
-      ),
-      reasons.length > 0 &&
-        h(
-          "ul",
-          { class: "reach-reasons", "aria-label": t("Reasons") },
-          [...reasons]
-            .sort((a, b) => b.count - a.count)
-            .map(({ message, count }) =>
-              h("li", {}, h("span", {}, message), h("span", { class: "count" }, numberText(count))),
-            ),
-        ),
-      grounded.length > 0 &&
-        h(
-          "ul",
-          { class: "reach-reasons", "aria-label": t("UAVs that cannot take off") },
-          grounded.map(({ uav, message }) => h("li", {}, `${uavs[uav]?.name ?? ""}: ${message}`)),
-        ),
-      h(
-        "p",
-        { class: "quiet-text" },
-        t("Point at an asset for its reason. Not all together: a plan says which ones fit."),
-      ),
-    ];
-    card.replaceChildren(...parts.filter(Boolean));
-  }
-
-  function showFault(title, words, again = true) {
-    card.replaceChildren(
-      head(h("strong", {}, title)),
-      h("p", { role: "alert" }, words),
-      again
-        ? h("div", {}, h("button", { type: "button", class: "button", onclick: () => void ask() }, t("Ask again")))
-        : "",
-    );
-  }
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  let timer;
+  const card = createCard(frame, { close: () => turn(false), ask: () => void ask() });
 
   function draw() {
+    const { answer } = answered ?? {};
     if (isOn && answer) layer.update(map, (id) => verdictOf(answer, id));
   }
 
   function clear() {
-    answer = null;
+    answered = null;
     if (map.getLayer("reach-lines")) layer.remove(map);
   }
 
@@ -151,36 +89,36 @@ export function mountReachLayer(map, frame, store) {
     if (!question) {
       askedAs = "";
       clear();
-      showFault(
-        t("No UAV is chosen."),
-        t("Tick one in the list: what can be inspected is worked out from where it starts."),
-        false,
-      );
+      const words = t("Tick one in the list: what can be inspected is worked out from where it starts.");
+      card.showFault(t("No UAV is chosen."), words, false);
       return;
     }
     const own = new AbortController();
     stopping = own;
     askedAs = JSON.stringify(question);
-    const slow = setTimeout(showWorking, answer ? PROGRESS_AFTER_MS : 0);
+    const slow = setTimeout(() => card.showWorking(), answered ? PROGRESS_AFTER_MS : 0);
     try {
-      const { data } = await post("/reachability", question, { signal: own.signal });
+      const { data } = /** @type {Answer<Reachability>} */ (
+        await post("/reachability", question, { signal: own.signal })
+      );
       if (stopping !== own || !isOn) return;
       clear();
-      [answer, uavs] = [data, selection.uavs];
-      showAnswer();
+      answered = { answer: data, uavs: selection.uavs };
+      card.showAnswer(answered);
       draw();
     } catch (error) {
-      if (error.name === "AbortError" || stopping !== own) return;
+      if (isAbort(error) || stopping !== own) return;
       clear();
-      showFault(t("Not worked out."), error.message);
+      card.showFault(t("Not worked out."), error instanceof Error ? error.message : String(error));
     } finally {
       clearTimeout(slow);
     }
   }
 
+  /** @param {boolean} next */
   function turn(next) {
     isOn = next;
-    card.hidden = !isOn;
+    card.show(isOn);
     if (isOn) void ask();
     else {
       stopping?.abort();
@@ -194,18 +132,116 @@ export function mountReachLayer(map, frame, store) {
     clearTimeout(timer);
     timer = setTimeout(ask, REST_MS);
   });
+  drawOnceRead(map, draw);
+
+  return {
+    entry: { words: t("What can be inspected"), isOn: () => isOn, turn },
+    /** @param {number} id */
+    textOf: (id) => (isOn && answered ? reachText(answered.answer, id, answered.uavs) : ""),
+    /** @param {number} id */
+    verdict: (id) => (isOn && answered ? verdictOf(answered.answer, id) : ""),
+    recolour() {
+      if (isOn) layer.recolour(map);
+    },
+    close() {
+      const wasOn = isOn;
+      if (wasOn) turn(false);
+      return wasOn;
+    },
+  };
+}
+
+/** Draws anew once tiles have been read. @param {MapLibreMap} map @param {() => void} draw */
+function drawOnceRead(map, draw) {
   let isDue = true;
-  map.on("sourcedata", () => (isDue = true));
+  map.on("sourcedata", () => {
+    isDue = true;
+  });
   map.on("idle", () => {
     if (isDue) draw();
     isDue = false;
   });
+}
+
+/** The legend with the reasons. @param {HTMLElement} frame @param {{ close: () => void, ask: () => void }} acts */
+function createCard(frame, { close, ask }) {
+  const card = h("section", { class: "reach-card float", "aria-label": t("What can be inspected"), hidden: true });
+  frame.append(card);
+  const closing = h(
+    "button",
+    { type: "button", class: "icon-button tight", "aria-label": t("Close"), title: t("Close"), onclick: close },
+    icon("x", "small"),
+  );
+  /** @param {Child} words */
+  const head = (words) => h("div", { class: "reach-head" }, h("p", { role: "status" }, words), closing);
+  /** @param {string} words @param {() => void} onclick */
+  const button = (words, onclick) => h("div", {}, h("button", { type: "button", class: "button", onclick }, words));
 
   return {
-    entry: { words: t("What can be inspected"), isOn: () => isOn, turn },
-    textOf: (id) => (isOn && answer ? reachText(answer, id, uavs) : ""),
-    verdict: (id) => (isOn && answer ? verdictOf(answer, id) : ""),
-    recolour: () => isOn && layer.recolour(map),
-    close: () => isOn && (turn(false), true),
+    /** @param {boolean} isShown */
+    show(isShown) {
+      card.hidden = !isShown;
+    },
+    showWorking() {
+      const words = t("Working out what can be inspected");
+      setChildren(
+        card,
+        head(words),
+        h("div", { class: "progress busy", role: "progressbar", "aria-label": words }, h("i", {})),
+        button(t("Cancel"), close),
+      );
+    },
+    /** @param {Answered} answered */
+    showAnswer({ answer, uavs }) {
+      setChildren(card, head(h("strong", {}, summaryOf(answer))), answerParts(answer, uavs));
+    },
+    /** @param {string} title @param {string} words @param {boolean} [again] */
+    showFault(title, words, again = true) {
+      setChildren(
+        card,
+        head(h("strong", {}, title)),
+        h("p", { role: "alert" }, words),
+        again && button(t("Ask again"), ask),
+      );
+    },
   };
+}
+
+/** @param {Reachability} answer */
+function summaryOf({ reachable, of }) {
+  if (!of) return t("There is no asset to inspect.");
+  const values = { reachable: numberText(reachable), all: numberText(of) };
+  return t("{reachable} of {all} assets can be inspected, each in a flight of its own.", values);
+}
+
+/** @param {Reachability} answer @param {PickedUav[]} uavs */
+function answerParts({ reasons, grounded }, uavs) {
+  return [
+    h(
+      "ul",
+      { class: "reach-legend", "aria-label": t("Legend") },
+      LEGEND.map(({ words, draw }) => h("li", {}, draw(), words)),
+    ),
+    reasons.length > 0 &&
+      h(
+        "ul",
+        { class: "reach-reasons", "aria-label": t("Reasons") },
+        [...reasons]
+          .sort((a, b) => b.count - a.count)
+          .map(({ message, count }) =>
+            h("li", {}, h("span", {}, message), h("span", { class: "count" }, numberText(count))),
+          ),
+      ),
+    grounded.length > 0 &&
+      h(
+        "ul",
+        { class: "reach-reasons", "aria-label": t("UAVs that cannot take off") },
+        grounded.map(({ uav, message }) => h("li", {}, `${uavs[uav]?.name ?? ""}: ${message}`)),
+      ),
+    h(
+      "p",
+      { class: "quiet-text" },
+      t("Point at an asset for its reason. Not all together: a plan says which ones fit."),
+    ),
+  ];
 }

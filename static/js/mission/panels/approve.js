@@ -4,7 +4,7 @@ import { byId } from "../../dom.js";
 import { t } from "../../text.js";
 import { isPlanCurrent, isUnsaved } from "../plan_view.js";
 
-/** @import { createFlying } from "../actions/flying_actions.js" */
+/** @import { createFlying } from "../flying/flying_actions.js" */
 /** @import { MissionPageState, MissionStore } from "../types.d.ts" */
 
 /** @typedef {ReturnType<typeof createFlying>} Flying */

@@ -1,118 +1,191 @@
 /** Starting, following and stopping rehearsals of the mission, and reading what came of them: store.rehearsal, which the panel and the map listen to. */
 
-import { ApiError, get, post } from "../../api.js";
+import { ApiError, get, isAbort, post } from "../../api.js";
 import { followLive } from "../../live/jobs.js";
 import { t } from "../../text.js";
 import { isRunning } from "./rehearsal.js";
 
+/** @import { Answer } from "../../api.js" */
+/** @import { Rehearsal, RehearsalDetail, RehearsalInputRequest, RehearsalPage, RehearsalRunWithVerdict, RehearsalTrack } from "../../api_types.d.ts" */
+/** @import { MissionStore, RehearsalState } from "../types.d.ts" */
+
+/** @type {RehearsalState} */
 export const NOTHING = { list: null, detail: null, run: 0, track: null, running: null, fault: "" };
 
-/** isStage: the page is about rehearsals alone, and its address names the one that is looked at. */
+const LEVELS = ["fail", "warnings", "pass"];
+
+/** The worst run that was flown comes first, then in order. @param {RehearsalRunWithVerdict[]} runs */
+function worstOf(runs) {
+  const flown = runs.filter(({ level }) => level);
+  flown.sort((a, b) => LEVELS.indexOf(a.level) - LEVELS.indexOf(b.level) || a.sequence - b.sequence);
+  return flown[0]?.sequence ?? 0;
+}
+
+/**
+ * isStage: the page is about rehearsals alone, and its address names the one that is looked at.
+ *
+ * @param {MissionStore} store
+ * @param {{ isStage?: boolean }} [options]
+ */
 export function createRehearsing(store, { isStage = false } = {}) {
-  const ofAddress = new URLSearchParams(isStage ? location.search : "");
-  let following = null; // the job that is listened to
+  const { change, address, told, missionId } = createChanging(store);
+  const { show, chooseRun, showNewest } = createShowing(store, isStage);
   let asked = 0; // the last reading wins
 
-  const change = (values) => store.update({ rehearsal: { ...store.state.rehearsal, ...values } });
-  const missionId = () => store.state.mission?.id ?? null;
-  const address = (rehearsal = "", rest = "") =>
-    `/missions/${missionId()}/rehearsals${rehearsal ? `/${rehearsal}` : ""}${rest}`;
-
-  async function told(act) {
-    try {
-      await act();
-    } catch (error) {
-      if (error.name === "AbortError") return;
-      if (!(error instanceof ApiError)) throw error;
-      change({ fault: error.message, running: null });
-    }
-  }
-
-  /** The rehearsals of the mission, and the newest of them; one that is being flown is followed. */
+  /** The rehearsals of the mission, and the newest of them; one that is being flown is followed. @param {string | null} [wanted] */
   const read = (wanted = null) =>
     told(async () => {
       const mission = missionId();
-      if (!mission) return change({ ...NOTHING });
-      const turn = ++asked;
-      const { data } = await get(address());
+      if (!mission) {
+        change({ ...NOTHING });
+        return;
+      }
+      asked += 1;
+      const turn = asked;
+      const { data } = /** @type {Answer<RehearsalPage>} */ (await get(address()));
       if (turn !== asked || mission !== missionId()) return;
       change({ list: data.results, fault: "" });
       const [newest] = data.results;
-      if (isRunning(newest)) void follow(newest);
-      const { detail, run } = store.state.rehearsal;
-      const named = wanted || detail ? null : ofAddress.get("rehearsal");
-      if (named) return await show(named, ofAddress.has("run") ? Number(ofAddress.get("run")) : null);
-      const shown =
-        data.results.find(({ id }) => id === (wanted ?? detail?.id)) ??
-        data.results.find(({ level, state }) => level || ["failed", "cancelled"].includes(state));
-      if (shown) await show(shown.id, detail?.id === shown.id ? run : null);
-      else change({ detail: null, track: null });
+      if (newest && isRunning(newest)) void follow(newest);
+      await showNewest(data.results, wanted);
     });
+  const follow = createFollowing(store, read);
 
-  /** run: null for the worst of its runs. */
+  // Another mission, or another revision of it: what was flown may be of another plan by now.
+  let known = "";
+  store.listen(["mission"], ({ mission }) => {
+    const now = mission ? `${mission.id} ${mission.revision}` : "";
+    if (now === known) return;
+    known = now;
+    void read();
+  });
+
+  return {
+    show,
+    chooseRun,
+    /** afresh: also what was flown alike lately. @param {RehearsalInputRequest["conditions"]} conditions @param {{ afresh?: boolean }} [how] */
+    start: (conditions, { afresh = false } = {}) =>
+      told(async () => {
+        change({ fault: "", running: { id: null, job: null, progress: null, message: t("Being sent") } });
+        const key = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
+        const { data } = /** @type {Answer<Rehearsal>} */ (
+          await post(address(), { conditions, afresh }, { headers: { "Idempotency-Key": key } })
+        );
+        await follow(data);
+      }),
+    cancel: () =>
+      told(async () => {
+        const { running } = store.state.rehearsal;
+        if (running?.id) await post(address(running.id, "/cancel"));
+      }),
+  };
+}
+
+/** @param {MissionStore} store */
+function createChanging(store) {
+  /** @param {Partial<RehearsalState>} values */
+  const change = (values) => store.update({ rehearsal: { ...store.state.rehearsal, ...values } });
+  const missionId = () => store.state.mission?.id ?? null;
+  return {
+    change,
+    missionId,
+    address: (rehearsal = "", rest = "") =>
+      `/missions/${missionId()}/rehearsals${rehearsal ? `/${rehearsal}` : ""}${rest}`,
+    /** What the server refuses is told on the panel. @param {() => Promise<void>} act */
+    async told(act) {
+      try {
+        await act();
+      } catch (error) {
+        if (isAbort(error)) return;
+        if (!(error instanceof ApiError)) throw error;
+        change({ fault: error.message, running: null });
+      }
+    },
+  };
+}
+
+/** Which rehearsal and which of its runs is looked at. @param {MissionStore} store @param {boolean} isStage */
+function createShowing(store, isStage) {
+  const { change, address, told } = createChanging(store);
+  const ofAddress = new URLSearchParams(isStage ? location.search : "");
+
+  /** What is looked at stands in the address: it can be loaded again, and passed on. */
+  function remember() {
+    const { detail, run } = store.state.rehearsal;
+    if (!isStage || !detail) return;
+    const query = new URLSearchParams({ rehearsal: detail.id, run: `${run}` });
+    history.replaceState(history.state, "", `${location.pathname}?${query}${location.hash}`);
+  }
+
+  /** @param {string} id @param {number} run */
+  async function showTrack(id, run) {
+    const { data: track } = /** @type {Answer<RehearsalTrack>} */ (await get(address(id, `/track?run=${run}`)));
+    if (store.state.rehearsal.detail?.id === id && store.state.rehearsal.run === run) change({ track });
+  }
+
+  /** run: null for the worst of its runs. @param {string} id @param {number | null} [run] */
   const show = (id, run = null) =>
     told(async () => {
-      const { data: detail } = await get(address(id));
-      const order = ["fail", "warnings", "pass"];
-      const flown = detail.runs
-        .filter(({ level }) => level)
-        .sort((a, b) => order.indexOf(a.level) - order.indexOf(b.level) || a.sequence - b.sequence);
-      const chosen = detail.runs[run] ? run : (flown[0]?.sequence ?? 0);
+      const { data: detail } = /** @type {Answer<RehearsalDetail>} */ (await get(address(id)));
+      const chosen = run !== null && detail.runs[run] ? run : worstOf(detail.runs);
       change({ detail, run: chosen, track: null });
       remember();
       if (detail.runs[chosen]?.level) await showTrack(id, chosen);
     });
 
-  /** What is looked at stands in the address: it can be loaded again, and passed on. */
-  function remember() {
-    if (!isStage) return;
-    const { detail, run } = store.state.rehearsal;
-    history.replaceState(
-      history.state,
-      "",
-      `${location.pathname}?${new URLSearchParams({ rehearsal: detail.id, run })}${location.hash}`,
-    );
-  }
+  return {
+    show,
+    /** @param {number} run */
+    chooseRun: (run) =>
+      told(async () => {
+        change({ run, track: null });
+        remember();
+        const { detail } = store.state.rehearsal;
+        if (detail?.runs[run]?.level) await showTrack(detail.id, run);
+      }),
+    /** The one that is wanted, shown or named by the address; else the newest that has ended. @param {Rehearsal[]} list @param {string | null} wanted */
+    async showNewest(list, wanted) {
+      const { detail, run } = store.state.rehearsal;
+      const named = wanted || detail ? null : ofAddress.get("rehearsal");
+      if (named) {
+        await show(named, ofAddress.has("run") ? Number(ofAddress.get("run")) : null);
+        return;
+      }
+      const shown =
+        list.find(({ id }) => id === (wanted ?? detail?.id)) ??
+        list.find(({ level, state }) => level || state === "failed" || state === "cancelled");
+      if (shown) await show(shown.id, detail?.id === shown.id ? run : null);
+      else change({ detail: null, track: null });
+    },
+  };
+}
 
-  async function showTrack(id, run) {
-    const { data: track } = await get(address(id, `/track?run=${run}`));
-    if (store.state.rehearsal.detail?.id === id && store.state.rehearsal.run === run) change({ track });
-  }
+/**
+ * Follows a rehearsal until it has been flown, then reads what came of it.
+ *
+ * @param {MissionStore} store
+ * @param {(wanted: string) => Promise<void>} read
+ */
+function createFollowing(store, read) {
+  const { change, missionId } = createChanging(store);
+  /** @type {string | null} */
+  let following = null; // the job that is listened to
 
-  const chooseRun = (run) =>
-    told(async () => {
-      change({ run, track: null });
-      remember();
-      const { detail } = store.state.rehearsal;
-      if (detail.runs[run]?.level) await showTrack(detail.id, run);
-    });
-
-  /** afresh: also what was flown alike lately. */
-  const start = (conditions, { afresh = false } = {}) =>
-    told(async () => {
-      change({ fault: "", running: { id: null, job: null, progress: null, message: t("Being sent") } });
-      const key = crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
-      const { data } = await post(address(), { conditions, afresh }, { headers: { "Idempotency-Key": key } });
-      await follow(data);
-    });
-
-  async function follow({ id, job, progress, message }) {
+  /** @param {Pick<Rehearsal, "id" | "job" | "progress" | "message">} rehearsal */
+  return async ({ id, job, progress, message }) => {
     if (following === job) return;
     following = job;
     const mission = missionId();
-    const onProgress = (at) =>
-      mission === missionId() &&
-      change({
-        running: {
-          id,
-          job,
-          progress: at.state === "queued" ? null : at.progress,
-          message: at.state === "queued" ? t("Waiting for a worker") : at.message,
-        },
-      });
     change({ running: { id, job, progress, message } });
     try {
-      await followLive(job, { onProgress });
+      await followLive(job, {
+        onProgress: (at) => {
+          if (mission !== missionId()) return;
+          const isQueued = at.state === "queued";
+          const said = isQueued ? t("Waiting for a worker") : at.message;
+          change({ running: { id, job, progress: isQueued ? null : at.progress, message: said } });
+        },
+      });
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       change({ fault: error.message });
@@ -124,22 +197,5 @@ export function createRehearsing(store, { isStage = false } = {}) {
     change({ running: null });
     await read(id);
     if (fault) change({ fault });
-  }
-
-  const cancel = () =>
-    told(async () => {
-      const { running } = store.state.rehearsal;
-      if (running?.id) await post(address(running.id, "/cancel"));
-    });
-
-  // Another mission, or another revision of it: what was flown may be of another plan by now.
-  let known = "";
-  store.listen(["mission"], ({ mission }) => {
-    const now = mission ? `${mission.id} ${mission.revision}` : "";
-    if (now === known) return;
-    known = now;
-    void read();
-  });
-
-  return { start, cancel, show, chooseRun };
+  };
 }

@@ -1,0 +1,111 @@
+/** What became of a mission that is approved: its commands, the connections of its UAVs and their paths home, read while the page is looked at. */
+
+import { ApiError, get } from "../../api.js";
+import { flyersOf, isOnItsWay, isOpen, KINDS } from "../../domain/flying.js";
+import { say, toast } from "../../page/toast.js";
+import { t } from "../../text.js";
+
+/** @import { Answer } from "../../api.js" */
+/** @import { Command, CommandPage, Mission, ReturnChecks, UavConnection } from "../../api_types.d.ts" */
+/** @import { MissionPageData, MissionStore } from "../types.d.ts" */
+
+const POLL_MS = 2000;
+const CONNECTIONS_EVERY_MS = 20_000;
+const RETURNS_EVERY_MS = 60_000; // they take the server longer, and seldom change
+
+/** @param {MissionStore} store @param {Pick<MissionPageData, "isFrozen">} page */
+export function createFlightReading(store, page) {
+  let isAsking = false;
+  let connectionsAt = 0;
+  let returnsAt = 0;
+
+  /** By UAV, what is known of it and of what is on board; null while that could not be read. @param {Mission} mission */
+  async function readConnections(mission) {
+    connectionsAt = Date.now();
+    const uavs = flyersOf(mission).flatMap(({ uav }) => uav ?? []);
+    const read = await Promise.all(
+      uavs.map((uav) =>
+        get(`/uavs/${uav}/connection`).then(
+          ({ data }) => /** @type {[number, UavConnection]} */ ([uav, data]),
+          () => /** @type {[number, null]} */ ([uav, null]),
+        ),
+      ),
+    );
+    store.update({ connections: new Map(read) });
+  }
+
+  /** What is in the way home, as it was last looked at; null until then. */
+  async function readReturns() {
+    const { mission } = store.state;
+    if (!mission) return;
+    returnsAt = Date.now();
+    try {
+      const { data } = /** @type {Answer<ReturnChecks>} */ (await get(`/missions/${mission.id}/returns`));
+      store.update({ returns: data.results });
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      store.update({ returns: null });
+    }
+  }
+
+  async function readCommands() {
+    const { mission } = store.state;
+    if (isAsking || !mission) return;
+    isAsking = true;
+    try {
+      const { data } = /** @type {Answer<CommandPage>} */ (await get(`/missions/${mission.id}/commands?limit=200`));
+      if (tellChanges(store.state.commands, data.results)) void readConnections(mission);
+      store.update({ commands: data.results });
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error; // else watchMission says that the server is away
+    } finally {
+      isAsking = false;
+    }
+  }
+
+  /** Often while something is under way, else now and then. */
+  function poll() {
+    const { mission, commands } = store.state;
+    if (document.hidden || !mission || !(isOnItsWay(mission) || commands?.some(isOpen))) return;
+    void readCommands();
+    if (Date.now() - connectionsAt >= CONNECTIONS_EVERY_MS) void readConnections(mission);
+    if (Date.now() - returnsAt >= RETURNS_EVERY_MS) void readReturns();
+  }
+
+  return {
+    readCommands,
+    readReturns,
+    /** While the page is looked at. */
+    watch() {
+      if (!page.isFrozen) return;
+      setInterval(poll, POLL_MS);
+      store.listen(["mission"], ({ mission }) => {
+        if (!mission || store.state.commands !== null) return;
+        void readCommands();
+        void readConnections(mission);
+        void readReturns();
+      });
+      document.addEventListener("visibilitychange", () => {
+        if (!document.hidden) void readCommands();
+      });
+    },
+  };
+}
+
+/**
+ * Said once to whoever listens: what was carried out, and what was not. Returns whether something was.
+ *
+ * @param {Command[] | null} before
+ * @param {Command[]} now
+ */
+function tellChanges(before, now) {
+  if (!before) return false;
+  const states = new Map(before.map(({ id, state }) => [id, state]));
+  const ended = now.filter(({ id, state }) => !isOpen({ state }) && states.has(id) && states.get(id) !== state);
+  for (const { uav, kind, state, outcome } of ended) {
+    const words = { name: uav.name, act: KINDS[kind], outcome };
+    if (state === "applied") say(t("{act}: {name} has done it.", words));
+    else if (state === "failed") toast(t("{act}: {name} has not done it. {outcome}", words));
+  }
+  return ended.length > 0;
+}

@@ -1,0 +1,234 @@
+/** What an operator does with a mission once it is planned: approve, send, steer, abort. Each asks first; the panels listen to the store. */
+
+import { ApiError, get, post, signInAddress } from "../../api.js";
+import { LATE, questionOf, WHY } from "../../domain/command_questions.js";
+import { flyersOf, isFrozen, isOnItsWay, KINDS } from "../../domain/flying.js";
+import { returnLines, returnOf } from "../../domain/own_return.js";
+import { confirmAct } from "../../page/confirm.js";
+import { say } from "../../page/toast.js";
+import { t, tn } from "../../text.js";
+import { lengthText } from "../../units.js";
+import { createFlightReading } from "./flight_reading.js";
+
+/** @import { Answer } from "../../api.js" */
+/** @import { Mission } from "../../api_types.d.ts" */
+/** @import { Flyer } from "../../domain/flying.js" */
+/** @import { MissionContext, MissionPageData, MissionPageState, MissionStore } from "../types.d.ts" */
+
+/** @typedef {{ store: MissionStore, failed: MissionContext["failed"], readCommands: () => Promise<void> }} Acting */
+
+/** @param {MissionStore} store @param {{ failed: MissionContext["failed"], page: Pick<MissionPageData, "isFrozen"> }} options */
+export function createFlying(store, { failed, page }) {
+  const { readCommands, readReturns, watch } = createFlightReading(store, page);
+  const acting = { store, failed, readCommands };
+
+  // What is approved is shown as to those who cannot change it, and the other way round: the page is made anew.
+  store.listen(["mission"], ({ mission }) => {
+    if (mission && isFrozen(mission) !== page.isFrozen) location.reload();
+  });
+
+  return {
+    async approve() {
+      await readReturns();
+      await approve(acting);
+    },
+    revoke: () => revoke(acting),
+    /** flyer: one UAV's flight; without: all that have nothing yet. @param {Flyer | null} [flyer] @param {number} [flight] */
+    send: (flyer = null, flight = 1) => send(acting, flyer, flight),
+    abort: () => abort(acting),
+    /** @param {Flyer} flyer @param {Parameters<typeof questionOf>[0]} kind */
+    command: (flyer, kind) => command(acting, flyer, kind),
+    watch,
+  };
+}
+
+const freshKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
+/** The act is of the revision on the page, and done once. @param {MissionStore} store */
+const asSeen = ({ state: { mission } }) => ({
+  headers: { "If-Match": `"${mission?.revision}"`, "Idempotency-Key": freshKey() },
+});
+/** @param {Flyer[]} flyers */
+const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
+
+/** Warnings only, each once. @param {MissionPageState["returns"]} returns @param {Flyer[]} flyers */
+function returnsOf(returns, flyers) {
+  const lines = flyers.flatMap(({ place }) => {
+    const check = returnOf(returns, place);
+    return check ? check.warnings : returnLines(check);
+  });
+  return [...new Set(lines)];
+}
+
+/**
+ * Tells what was refused, in the server's words.
+ *
+ * @param {Acting} acting
+ * @param {string} title
+ * @param {() => Promise<void>} act
+ */
+async function tried({ store, failed, readCommands }, title, act) {
+  store.update({ isDispatching: true });
+  try {
+    await act();
+    store.update({ problem: null });
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    if (error.isSignedOut) failed(title, error, [{ label: t("Sign in"), href: signInAddress }]);
+    else if (error.status === 412)
+      failed(title, new ApiError(t("Somebody else has changed the mission. Look at it again."), { status: 412 }), [
+        { label: t("Load again"), act: () => location.reload() },
+      ]);
+    else failed(title, error);
+  } finally {
+    store.update({ isDispatching: false });
+    void readCommands();
+  }
+}
+
+/** @param {MissionStore} store @param {string} id */
+async function readMission(store, id) {
+  const { data } = /** @type {Answer<Mission>} */ (await get(`/missions/${id}`));
+  store.update({ mission: data });
+}
+
+/** @param {Acting} acting */
+async function approve(acting) {
+  const { store } = acting;
+  const { mission } = store.state;
+  if (!mission) return;
+  const flyers = flyersOf(mission);
+  const simulated = flyers.filter(({ place }) => mission.uavs[place].is_simulated);
+  const asked = await confirmAct({
+    title: t("Approve “{name}”?", { name: mission.name }),
+    lines: [
+      tn(flyers.length, "{count} UAV flies {length} in all: {names}.", "{count} UAVs fly {length} in all: {names}.", {
+        length: lengthText(mission.plan?.total_length_m),
+        names: uavsWords(flyers),
+      }),
+      simulated.length > 0 && t("Simulated, no real aircraft: {names}.", { names: uavsWords(simulated) }),
+      t(
+        "From then on nothing of the mission can be changed, and only what is approved is sent to UAVs. The approval can be revoked.",
+      ),
+      ...returnsOf(store.state.returns, flyers),
+    ],
+    field: {
+      name: "longest_leg_m",
+      label: t("Put points in on legs longer than [m]; empty: as planned"),
+      type: "number",
+      min: 50,
+      max: 5000,
+      step: "any",
+    },
+    act: t("Approve"),
+    isBack: true,
+    image: "badge-check",
+  });
+  if (!asked) return;
+  const wishes = Number.isFinite(asked.longest_leg_m) ? asked : {};
+  await tried(acting, t("Not approved."), async () => {
+    const { data } = /** @type {Answer<Mission>} */ (
+      await post(`/missions/${mission.id}/approve`, wishes, asSeen(store))
+    );
+    store.update({ mission: data });
+  });
+}
+
+/** @param {Acting} acting */
+async function revoke(acting) {
+  const { store } = acting;
+  const { mission } = store.state;
+  if (!mission) return;
+  const asked = await confirmAct({
+    title: t("Revoke the approval of “{name}”?", { name: mission.name }),
+    lines: isOnItsWay(mission)
+      ? [
+          t(
+            "Every UAV that may have the mission is told to drop it. The approval ends once all of them were seen without it; then the mission can be changed again.",
+          ),
+          t("Until then it can be neither sent nor started."),
+        ]
+      : [t("The mission can be changed again, and has to be approved anew before it is sent.")],
+    field: { name: "reason", label: t("Why (kept in the history)"), isNeeded: true },
+    keep: t("Keep it approved"),
+    act: t("Revoke"),
+  });
+  if (!asked) return;
+  await tried(acting, t("Not revoked."), async () => {
+    const { data } = /** @type {Answer<Mission>} */ (
+      await post(`/missions/${mission.id}/revoke`, { reason: asked.reason }, asSeen(store))
+    );
+    store.update({ mission: data });
+  });
+}
+
+/** @param {Acting} acting @param {Flyer | null} flyer @param {number} flight */
+async function send(acting, flyer, flight) {
+  const { mission } = acting.store.state;
+  if (!mission) return;
+  const flyers = flyer ? [flyer] : flyersOf(mission);
+  const title = flyer
+    ? flight > 1
+      ? t("Send flight {flight} to {name}?", { flight, name: flyer.name })
+      : t("Send its route to {name}?", { name: flyer.name })
+    : tn(flyers.length, "Send the mission to {count} UAV?", "Send the mission to {count} UAVs?");
+  const asked = await confirmAct({
+    title,
+    lines: [
+      t(
+        "{names}: what each one then has on board is read back and compared with what was approved. Nothing takes off by this.",
+        { names: uavsWords(flyers) },
+      ),
+      t("A UAV that is not connected gets its route when it is, within the hour."),
+    ],
+    act: flyer ? t("Send to {name}", { name: flyer.name }) : t("Send to UAVs"),
+    isBack: true,
+    image: "send",
+  });
+  if (!asked) return;
+  await tried(acting, t("Not sent."), async () => {
+    const body = flyer ? { uav: flyer.place, flight } : {};
+    await post(`/missions/${mission.id}/dispatch`, body, asSeen(acting.store));
+    await readMission(acting.store, mission.id);
+  });
+}
+
+/** @param {Acting} acting */
+async function abort(acting) {
+  const { mission } = acting.store.state;
+  if (!mission) return;
+  const flyers = flyersOf(mission);
+  const asked = await confirmAct({
+    title: t("Abort “{name}”?", { name: mission.name }),
+    lines: [
+      t(
+        "{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.",
+        { names: uavsWords(flyers) },
+      ),
+      ...returnsOf(acting.store.state.returns, flyers),
+      LATE,
+    ],
+    field: WHY,
+    keep: mission.state === "active" ? t("Keep flying") : t("Keep it"),
+    act: t("Abort the mission"),
+    isDanger: true,
+    image: "octagon-alert",
+  });
+  if (!asked) return;
+  await tried(acting, t("Not aborted."), async () => {
+    await post(`/missions/${mission.id}/abort`, { why: asked.why }, asSeen(acting.store));
+    await readMission(acting.store, mission.id);
+  });
+}
+
+/** @param {Acting} acting @param {Flyer} flyer @param {Parameters<typeof questionOf>[0]} kind */
+async function command(acting, flyer, kind) {
+  const returns = returnOf(acting.store.state.returns, flyer.place);
+  const asked = await confirmAct(questionOf(kind, { ...flyer, returns }));
+  if (!asked) return;
+  const { why = "", ...parameters } = asked;
+  await tried(acting, t("{name} was not told: {act}.", { name: flyer.name, act: KINDS[kind] }), async () => {
+    const headers = { "Idempotency-Key": freshKey() };
+    await post(`/uavs/${flyer.uav}/commands`, { kind, why, parameters }, { headers });
+    say(t("{act}: {name} is being told.", { act: KINDS[kind], name: flyer.name }));
+  });
+}

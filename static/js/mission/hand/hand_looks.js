@@ -1,0 +1,77 @@
+/** What the server says of waypoints while they are changed: asked one request after the other, kept by what was asked. */
+
+import { post } from "../../api.js";
+import { t } from "../../text.js";
+import * as hand from "./hand_route.js";
+
+/** @import { Answer } from "../../api.js" */
+/** @import { HandLook } from "../../api_types.d.ts" */
+/** @import { HandEdit, HandFaults, HandPoint, MissionContext } from "../types.d.ts" */
+
+const MOST_KNOWN = 50; // routes as they were wished, with what the server said of them
+/** @type {HandFaults} */
+export const NO_FAULTS = hand.faultsOf(null);
+
+/** @param {HandPoint[]} points */
+const keyOf = (points) => JSON.stringify(hand.bodyOf(points));
+
+/** @param {Pick<MissionContext, "store" | "wordsOf">} context */
+export function createHandLooks({ store, wordsOf }) {
+  /** @type {Map<string, HandLook>} by what was asked */
+  const looks = new Map();
+  let isAsking = false;
+
+  /** @param {Partial<HandEdit>} change */
+  const put = (change) => {
+    const { hand: edit } = store.state;
+    if (edit) store.update({ hand: { ...edit, ...change } });
+  };
+
+  /**
+   * What is known of these points, exactly or from a moment ago.
+   *
+   * @param {HandEdit} edit
+   * @param {HandPoint[]} points
+   */
+  function knownOf({ look: last, dragged, original }, points) {
+    const exact = looks.get(keyOf(points)) ?? null;
+    const look = exact ?? (last?.waypoints.length === points.length ? last : null);
+    const isKnown = look !== null && (exact !== null || Boolean(dragged));
+    const faults = isKnown ? hand.faultsOf(look.faults) : NO_FAULTS;
+    const legs = new Map(
+      hand
+        .changedLegs(points, original)
+        .map((index) => [index, isKnown ? { is_clear: hand.isLegClear(faults, index) } : null]),
+    );
+    return { look: exact ?? last, isLookOld: exact === null, faults, legs, unknown: "" };
+  }
+
+  /** Asks about what is shown on the map at this moment, dragged or not. */
+  async function ask() {
+    const { hand: asked, mission } = store.state;
+    if (isAsking || !asked || !mission) return;
+    const points = asked.dragged ?? asked.points;
+    if (looks.has(keyOf(points))) return;
+    isAsking = true;
+    try {
+      const { data } = /** @type {Answer<HandLook>} */ (
+        await post(`/missions/${mission.id}/routes/${asked.sequence}/waypoints/look`, hand.bodyOf(points))
+      );
+      looks.set(keyOf(points), data);
+      const [oldest] = looks.keys();
+      if (looks.size > MOST_KNOWN) looks.delete(oldest);
+      if (store.state.hand?.sequence !== asked.sequence) return;
+      put({ look: data });
+      const now = store.state.hand;
+      if (now) put(knownOf(now, now.dragged ?? now.points));
+    } catch (error) {
+      put({ unknown: t("Not checked: {reason}", { reason: wordsOf(error) }) });
+      return;
+    } finally {
+      isAsking = false;
+    }
+    void ask();
+  }
+
+  return { ask, knownOf, put, forget: () => looks.clear() };
+}

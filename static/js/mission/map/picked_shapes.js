@@ -1,0 +1,85 @@
+/** Lines that are picked as a whole, drawn once their shape is loaded, and the ring round what is pointed at. */
+
+import { get } from "../../api.js";
+import { piecesOf } from "../../map/click_router.js";
+import * as selectionLayer from "../../map/layers/selection.js";
+import { partOfLine } from "../../map/line_part.js";
+import { isWhole } from "../selection.js";
+
+/** @import { Answer } from "../../api.js" */
+/** @import { AssetDetailFeature } from "../../api_types.d.ts" */
+/** @import { Geometry, MapLibreMap, MapThing } from "../../map/types.d.ts" */
+/** @import { MissionPageState, MissionStore, PickedTarget } from "../types.d.ts" */
+
+/** @param {number[]} coordinates @returns {Geometry} */
+const pointAt = (coordinates) => ({ type: "Point", coordinates });
+
+/** @param {MapLibreMap} map @param {MissionStore} store */
+export function createPickedShapes(map, store) {
+  /** Asset id → geometry of what is picked whole; null while it is loaded. @type {Map<number, Geometry | null>} */
+  const shapes = new Map();
+  /** @type {MapThing | null} what the pointer is at on the map */
+  let pointed = null;
+
+  /** @param {PickedTarget[]} targets */
+  async function fetchShapes(targets) {
+    const wanted = targets.flatMap((target) =>
+      target.asset !== null && isWhole(target) && !shapes.has(target.asset) ? target.asset : [],
+    );
+    await Promise.all(
+      wanted.map(async (asset) => {
+        shapes.set(asset, null);
+        try {
+          const { data } = /** @type {Answer<AssetDetailFeature>} */ (await get(`/assets/${asset}`));
+          shapes.set(asset, /** @type {Geometry} */ (data.geometry));
+        } catch {
+          shapes.delete(asset); // drawn with the next change
+        }
+      }),
+    );
+    if (wanted.length) drawShapes(store.state);
+  }
+
+  /** What of a line is picked, where its shape has been loaded. @param {PickedTarget} target */
+  function shapeOf(target) {
+    const shape = isWhole(target) ? (shapes.get(target.asset ?? -1) ?? null) : null;
+    return shape && target.stretch ? partOfLine(shape, target.stretch) : shape;
+  }
+
+  /** @param {Pick<MissionPageState, "selection">} state */
+  function drawShapes({ selection }) {
+    selectionLayer.update(
+      map,
+      selection.targets.flatMap((target) => shapeOf(target) ?? []),
+    );
+  }
+
+  /** The ring stands round what a list row or pill is at, else round what the pointer is at. @param {Readonly<MissionPageState>} state */
+  function ringHovered({ litTarget, selection, stretchFrom }) {
+    const target = selection.targets.find(({ key }) => key === litTarget);
+    const shape = target ? shapeOf(target) : null;
+    const begun = stretchFrom ? [pointAt(stretchFrom.centre)] : [];
+    if (shape) selectionLayer.showHovered(map, [shape]);
+    else if (target?.centre) selectionLayer.showHovered(map, [pointAt(target.centre)]);
+    else selectionLayer.showHovered(map, pointed ? [...begun, ...piecesOf(map, pointed)] : begun);
+  }
+
+  return {
+    shapeOf,
+    /** The ring goes to what the pointer is at; null: nothing. @param {MapThing | null} thing */
+    point(thing) {
+      if (thing !== null && thing.id === pointed?.id && thing.kind === pointed.kind) return;
+      if (thing === null && pointed === null) return;
+      pointed = thing;
+      ringHovered(store.state);
+    },
+    /** Once the map has its style. */
+    start() {
+      store.listen(["selection"], (state) => {
+        drawShapes(state);
+        void fetchShapes(state.selection.targets);
+      });
+      store.listen(["litTarget", "selection", "stretchFrom"], ringHovered);
+    },
+  };
+}
