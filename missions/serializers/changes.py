@@ -1,4 +1,4 @@
-"""What goes out: what has changed since a mission was planned."""
+"""What goes out: what has changed since a mission was planned, and who has changed the mission."""
 
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
@@ -60,3 +60,16 @@ class UavChangeSerializer(serializers.Serializer):
     )
     said = SaidFigureSerializer(many=True, help_text="own figures of which the fleet's have changed; the plan stands all the same")
     message = serializers.CharField()
+
+
+class HistoryEntrySerializer(serializers.Serializer):
+    action = serializers.CharField()
+    actor = serializers.CharField(allow_null=True, source="actor.username", default=None)
+    recorded_at = serializers.DateTimeField()
+    before = serializers.JSONField(allow_null=True)
+    after = serializers.JSONField(allow_null=True)
+
+
+class HistoryPageSerializer(serializers.Serializer):
+    results = HistoryEntrySerializer(many=True)
+    next = serializers.CharField(allow_null=True)

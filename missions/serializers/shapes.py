@@ -1,4 +1,4 @@
-"""What goes out: plans, missions, history."""
+"""What goes out: plans and missions."""
 
 from rest_framework import serializers
 
@@ -438,16 +438,3 @@ class PresenceSerializer(serializers.Serializer):
     others = PresentSerializer(many=True)
     ground_revision = serializers.IntegerField(help_text="of assets, zones and terrain: a plan of an older one is stale")
     uav_changes = UavChangeSerializer(many=True)
-
-
-class HistoryEntrySerializer(serializers.Serializer):
-    action = serializers.CharField()
-    actor = serializers.CharField(allow_null=True, source="actor.username", default=None)
-    recorded_at = serializers.DateTimeField()
-    before = serializers.JSONField(allow_null=True)
-    after = serializers.JSONField(allow_null=True)
-
-
-class HistoryPageSerializer(serializers.Serializer):
-    results = HistoryEntrySerializer(many=True)
-    next = serializers.CharField(allow_null=True)

@@ -17,6 +17,7 @@ from missions import selectors, services
 from missions.list_selectors import counts_by_state, mission_rows, missions_found, surroundings
 from missions.models import Mission
 from missions.serializers import inputs, shapes
+from missions.serializers.changes import HistoryEntrySerializer, HistoryPageSerializer
 from missions.serializers.representations import mission_json, mission_summary
 from missions.services import Charging, Departure, MissionChange
 from missions.stale_selectors import bases_landed_at
@@ -232,8 +233,8 @@ class MissionHistory(APIView):
         operation_id="list_mission_history",
         summary="Who changed what in a mission, the newest first",
         parameters=PAGE_PARAMETERS,
-        responses=shapes.HistoryPageSerializer,
+        responses=HistoryPageSerializer,
     )
     def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         page = page_of(request, selectors.history_of_mission(mission_or_404(request.user, mission_id)), order=("-recorded_at", "-pk"))
-        return Response({"results": shapes.HistoryEntrySerializer(page.rows, many=True).data, "next": page.next})
+        return Response({"results": HistoryEntrySerializer(page.rows, many=True).data, "next": page.next})
