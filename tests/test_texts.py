@@ -14,6 +14,10 @@ NOT_FOR_PEOPLE = re.compile(
 )
 ELEMENT = re.compile(r"<(script|style|code|kbd|svg)\b.*?</\1>|<[^<>]*>|\b[a-z-]+=\"[^\"]*\"", re.S)
 SPOKEN = re.compile(r'(?:aria-label|title|placeholder|alt)="([^"]*)"')
+SCRIPT_LITERAL = re.compile(r'(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<quoted>"(?:[^"\\\n]|\\.)*"|`(?:[^`\\]|\\.)*`)', re.S)
+SENTENCE = re.compile(r"^\W*[A-Z][a-z]* [a-z]{2,}|[a-z]{2,} [a-z]{2,} [a-z]+[.?!]$|^\W*[A-Z][a-z]+[.?!]$")
+FOR_DEVELOPERS = re.compile(r"(?:Error|RegExp)\(\s*$")
+SERVER_WORDS = {"${operator} railway", " It is locked to others: the run is left out as a whole."}  # compared with what the server says
 OWN_NAMES = {"Spanwise", "Spanwise administration", "English", "Deutsch", "UTC", "CSV", "GeoJSON", "GPX", "KML"}
 
 
@@ -61,6 +65,31 @@ def test_a_template_has_no_text_that_cannot_be_translated(template: Path) -> Non
     source = NOT_FOR_PEOPLE.sub("", template.read_text())
     words = [line.strip(" ·\n") for line in (*SPOKEN.findall(source), *ELEMENT.sub("\n", source).split("\n"))]
     assert [line for line in words if re.search(r"[A-Za-z]{2}", re.sub(r"&\w+;", "", line)) and line not in OWN_NAMES] == []
+
+
+def _untranslated(source: str) -> list[str]:
+    """Literals of a script that read like a sentence and are no text of t(), tn() or countText()."""
+    known = {form for text in texts.texts_of_script(source) for form in _forms(text)}
+    found = []
+    for match in SCRIPT_LITERAL.finditer(source):
+        literal = (match["quoted"] or "")[1:-1]
+        isolated = re.sub(r"\$\{(?:[^{}]|\{[^{}]*\})*\}", "X", literal)
+        if SENTENCE.search(isolated) and literal not in known | SERVER_WORDS and not FOR_DEVELOPERS.search(source[: match.start()]):
+            found.append(literal)
+    return found
+
+
+def _scripts() -> list[Path]:
+    return sorted(path for path in texts.SCRIPTS.rglob("*.js") if "locale" not in path.relative_to(texts.SCRIPTS).parts)
+
+
+def test_scripts_have_no_sentence_that_cannot_be_translated() -> None:
+    assert {str(path.relative_to(texts.SCRIPTS)): found for path in _scripts() if (found := _untranslated(path.read_text()))} == {}
+
+
+def test_untranslated_sentences_of_a_script_are_found() -> None:
+    source = 'toast("The name is taken."); // It is free.\nsay(t("Saved it.")); say(`Moved it ${n} m.`); new Error("It is not there.");'
+    assert _untranslated(source) == ["The name is taken.", "Moved it ${n} m."]
 
 
 def test_texts_are_found_in_scripts_templates_and_modules() -> None:
