@@ -1,6 +1,7 @@
 """What the house promises and an import contract cannot see: names, sizes, purity, and documents that are true."""
 
 import ast
+import functools
 import re
 import subprocess
 import tomllib
@@ -21,6 +22,7 @@ UNSEEDABLE = {"time", "secrets", "uuid"}
 SEEDED = {"Random", "default_rng", "Generator", "PCG64", "SeedSequence"}  # pure when a seed is passed in
 
 
+@functools.cache
 def own_files(*patterns: str) -> list[Path]:
     """Files that git knows or would add: what belongs to the project, without what was installed or generated."""
     command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", "--", *patterns]
@@ -197,6 +199,12 @@ DOCUMENTS = own_files("*.md")
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)|<(?:img|source)[^>]*\bsrc(?:set)?=\"([^\"]+)\"")
 
 
+@functools.cache
+def text_of(*patterns: str) -> str:
+    return "".join(path.read_text() for path in own_files(*patterns))
+
+
+@functools.cache
 def anchors_of(document: Path) -> set[str]:
     """What the headings of a Markdown file are called in a link."""
     headings = re.findall(r"^#+ (.+)$", document.read_text(), re.MULTILINE)
@@ -229,7 +237,7 @@ def test_commands_in_a_document_exist(document: Path) -> None:
 @pytest.mark.parametrize("document", DOCUMENTS, ids=relative)
 def test_options_of_run_and_check_in_a_document_exist(document: Path) -> None:
     for name, rest in re.findall(r"\./(run|check)((?: +[^\s`|;&)]+)*)", document.read_text()):
-        text = "".join(path.read_text() for path in own_files(name, "scripts/*"))
+        text = text_of(name, "scripts/*")
         missing = [option for option in re.findall(r"--[a-z-]+", rest) if option not in text]
         assert missing == [], f"./{name} has no such option"
 
@@ -237,7 +245,7 @@ def test_options_of_run_and_check_in_a_document_exist(document: Path) -> None:
 @pytest.mark.parametrize("document", DOCUMENTS, ids=relative)
 def test_settings_and_paths_in_a_document_exist(document: Path) -> None:
     text = document.read_text()
-    sources = "".join(path.read_text() for path in own_files("*.py", "run", "check", "scripts/*", "deploy/*", "*.conf", "*.sh", "*.yaml"))
+    sources = text_of("*.py", "run", "check", "scripts/*", "deploy/*", "*.conf", "*.sh", "*.yaml")
     names = set(re.findall(r"\bSPANWISE_[A-Z_]*[A-Z]\b", text))
     assert sorted(name for name in names if name not in sources) == []
     paths = re.findall(r"`((?:config|workspace|inspection|missions|tests|docs|scripts|templates|static|benchmarks)/[\w./-]*)`", text)
