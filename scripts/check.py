@@ -33,6 +33,7 @@ from scripts.test_run.reports import Report, allowed_skips, read_report, read_ta
 
 PROGRAMS = PROJECT_DIR / ".venv" / "bin"
 TEST_WORKERS = min(8, (os.cpu_count() or 2) + 1)  # some of their tests mostly wait
+TYPE_CHECKER = str(PROJECT_DIR / "node_modules" / "typescript-native" / "bin" / "tsc")
 BROWSER_WORKERS = 2  # each with a whole installation
 
 
@@ -86,6 +87,7 @@ def steps(arguments: list[str]) -> list[Step]:
         Step("check --deploy", _python("manage.py", "check", "--deploy", "--fail-level", "WARNING"), environment={"SPANWISE_HTTPS": "1"}),
         *_javascript_tests(),
         Step("JavaScript lint", [str(PROJECT_DIR / "node_modules" / ".bin" / "biome"), "check", "static/js", "tests/javascript"]),
+        Step("JavaScript types", [str(PROGRAMS / "node"), TYPE_CHECKER, "--project", "jsconfig.json"]),
         Step("API types", _python("-m", "scripts.api_types", "--check")),
     ]
 
