@@ -16,6 +16,7 @@ import {
   wishedOrders,
   wishedPlace,
 } from "../../static/js/mission/locks.js";
+import { withoutUavAt } from "../../static/js/mission/mission_uavs.js";
 import {
   EMPTY,
   requestOf,
@@ -23,7 +24,6 @@ import {
   targetOf,
   withoutLocks,
   withoutTargets,
-  withoutUavAt,
 } from "../../static/js/mission/selection.js";
 
 const tower = (id) => ({

@@ -5,15 +5,8 @@ import { planOf } from "../../static/js/mission/actions/plan_results.js";
 import { createRunningJob } from "../../static/js/mission/actions/running_job.js";
 import { changedParts } from "../../static/js/mission/actions/save_request.js";
 import { factsOfUav } from "../../static/js/mission/fleet.js";
-import {
-  bestWordsOf,
-  endingOf,
-  isPlanInSight,
-  placesOf,
-  qualityOf,
-  shownPlaces,
-  wishWordsOf,
-} from "../../static/js/mission/plan_view.js";
+import { bestWordsOf, qualityOf, wishWordsOf } from "../../static/js/mission/plan_quality.js";
+import { endingOf, isPlanInSight, placesOf, shownPlaces } from "../../static/js/mission/plan_view.js";
 import { EMPTY, requestOf, sensorsKnown, targetOf, wishesOf, withWishes } from "../../static/js/mission/selection.js";
 import { placePills } from "../../static/js/mission/strips/span_strip.js";
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-
+import { withUav, withUavAt } from "../../static/js/mission/mission_uavs.js";
 import {
   basisOf,
   detailOf,
@@ -12,8 +12,6 @@ import {
   targetOf,
   withoutTargets,
   withTargets,
-  withUav,
-  withUavAt,
 } from "../../static/js/mission/selection.js";
 
 const tower = targetOf({

@@ -75,7 +75,8 @@ const PRIORITIES = ["high", "normal", "low"];
 const AS_GOOD = 0.05; // metres or seconds, as they are rounded in a plan
 
 /**
- * Whether a plan does less of what was asked than another of the same selection on the same ground: less reached, then longer.
+ * Whether a plan does less of what was asked than another of the same selection on the same ground: less reached, then
+ * longer.
  *
  * @param {ShownPlan} plan
  * @param {ShownPlan} than
@@ -100,7 +101,8 @@ function meritOf({ result, targets }) {
 }
 
 /**
- * Nothing stands between the two but the search: the same network, zones, heights, and UAVs that can fly; bases may have moved.
+ * Nothing stands between the two but the search: the same network, zones, heights, and UAVs that can fly; bases may
+ * have moved.
  *
  * @param {Plan} a
  * @param {Plan} b
@@ -136,14 +138,17 @@ function placesIn(plan) {
 }
 
 /**
- * before and now are plans in short. [{ key, label, from, to }]: from and to are routes, null where it is not reached; undefined where it is not in that plan.
+ * before and now are plans in short. [{ key, label, from, to }]: from and to are routes, null where it is not reached;
+ * undefined where it is not in that plan.
  *
  * @param {ShortPlan} before
  * @param {ShortPlan} now
  */
 export function movesBetween(before, now) {
   const [old, fresh] = [placesIn(before), placesIn(now)];
-  /** @type {{ key: string, label: string, from: ShortRoute | null | undefined, to: ShortRoute | null | undefined }[]} */
+  /**
+   * @type {{ key: string, label: string, from: ShortRoute | null | undefined, to: ShortRoute | null | undefined }[]}
+   */
   const moves = [];
   for (const [key, { route, label }] of fresh) {
     const was = old.get(key);
@@ -166,7 +171,8 @@ export function counterpart(route, plan) {
 }
 
 /**
- * What differs of where a route begins and how it ends from the same UAV's in another plan: { moved_m, from, to }; from and to are
+ * What differs of where a route begins and how it ends from the same UAV's in another plan: { moved_m, from, to }; from
+ * and to are
  * { end_action, base }, null where they are the same. Of plans that are remembered without these, nothing differs.
  *
  * @param {ShortRoute | null | undefined} old

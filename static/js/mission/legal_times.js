@@ -1,4 +1,7 @@
-/** At which departures a mission would meet no zone: places on a bar of time, and the sentence over it. Values in, values out. */
+/**
+ * At which departures a mission would meet no zone: places on a bar of time, and the sentence over it. Values in,
+ * values out.
+ */
 
 import { language, localeOf, t, tn } from "../text.js";
 import { clockText, durationText, energyText, lengthText, typedMoment } from "../units.js";
@@ -144,7 +147,8 @@ function departureWords(times, moment) {
 }
 
 /**
- * "Heron, A1 to A2, after A4; Kite, start to B1": on which ways between targets routes meet a zone; the climb at the start is the take-off.
+ * "Heron, A1 to A2, after A4; Kite, start to B1": on which ways between targets routes meet a zone; the climb at the
+ * start is the take-off.
  * legs: [{ uav: its name, way: see wayOf }].
  *
  * @param {{ uav: string, way: string }[]} legs

@@ -9,7 +9,8 @@ const PER_REQUEST = 2000;
 export const MOST_REFS = 10_000;
 
 /**
- * Each reference once, in the order of the list: one a line, or parted by tabs, commas or semicolons; quotes are dropped.
+ * Each reference once, in the order of the list: one a line, or parted by tabs, commas or semicolons; quotes are
+ * dropped.
  *
  * @param {string} text
  */

@@ -1,10 +1,13 @@
-/** Locked parts of routes: runs of targets that one UAV flies in this order, with nothing between. Values in, values out.
+/** Locked parts of routes: runs of targets that one UAV flies in this order, with nothing between. Values in, values
+ * out.
  *
- * A lock is { uav: name, targets: [keys, in order], at_start, at_end }; a target is in at most one. Orders are what a plan flies:
+ * A lock is { uav: name, targets: [keys, in order], at_start, at_end }; a target is in at most one. Orders are what a
+ * plan flies:
  * [{ uav: name, targets: [keys] }].
  */
 
-import { uavsByName, wishesOf, withWishes } from "./selection.js";
+import { uavsByName } from "./mission_uavs.js";
+import { wishesOf, withWishes } from "./selection.js";
 
 /** @import { FlownOrder, Lock, MissionSelection, PickedTarget, ShownPlan } from "./types.d.ts" */
 
@@ -16,7 +19,8 @@ const isHeldAt = ({ at_start, at_end }) => at_start || at_end;
 const isWholeRoute = ({ at_start, at_end }) => Boolean(at_start && at_end);
 
 /**
- * Whether no plan can keep both: a target in each, or one end of a route wished for twice, or all of it and something more.
+ * Whether no plan can keep both: a target in each, or one end of a route wished for twice, or all of it and something
+ * more.
  *
  * @param {Lock} a
  * @param {Lock} b
@@ -50,7 +54,8 @@ export function ordersOf(plan) {
 export const lockOf = (selection, key) => locksOf(selection).find(({ targets }) => targets.includes(key)) ?? null;
 
 /**
- * What is left of a run; one target whose neighbours went is held no more, unless the run stands at an end of the route.
+ * What is left of a run; one target whose neighbours went is held no more, unless the run stands at an end of the
+ * route.
  *
  * @param {Lock} lock
  * @param {string[]} targets
@@ -181,7 +186,8 @@ export function wishedPlace(orders, selection, key) {
 }
 
 /**
- * Targets are locked to a UAV, at a place among the others that it flies: between its neighbours there, or at the begin or the end.
+ * Targets are locked to a UAV, at a place among the others that it flies: between its neighbours there, or at the begin
+ * or the end.
  *
  * The same selection where two UAVs have the name.
  *
@@ -309,9 +315,11 @@ export function tied(selection, keys, uav) {
 }
 
 /**
- * Where targets stand on the strip of a route whose order is another one as wished: [{ target, at, isMoved }], `at` in metres flown.
+ * Where targets stand on the strip of a route whose order is another one as wished: [{ target, at, isMoved }], `at` in
+ * metres flown.
  *
- * stops: [{ target, at }] as planned. What keeps its place among the others stays where it is; what moves stands between its neighbours.
+ * stops: [{ target, at }] as planned. What keeps its place among the others stays where it is; what moves stands
+ * between its neighbours.
  *
  * @param {{ target: string, at: number }[]} stops
  * @param {string[]} wished

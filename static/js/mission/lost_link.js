@@ -1,4 +1,7 @@
-/** What UAVs do when their link is lost, where they may land then, and what the server's check of it means. Values in, values out. */
+/**
+ * What UAVs do when their link is lost, where they may land then, and what the server's check of it means. Values in,
+ * values out.
+ */
 
 import { distance_m } from "../domain/geodesy.js";
 import { routeLetter } from "../domain/palette.js";
@@ -193,7 +196,8 @@ export const havenText = (haven) => (haven === 0 ? t("its start") : rallyName(ha
 const lackText = (missing_wh) => `${numberText(Math.max(0.1, Math.ceil(missing_wh * 10) / 10), 1)}\u00a0Wh`;
 
 /**
- * What a group of failures says: { where: "waypoints 3–9, back to R2", why: "up to 12.4 Wh are missing with the reserve kept" }.
+ * What a group of failures says: { where: "waypoints 3–9, back to R2", why: "up to 12.4 Wh are missing with the reserve
+ * kept" }.
  *
  * @param {Pick<FailureGroup, "waypoints" | "haven" | "trouble" | "zone" | "missing_wh" | "over_m">} group
  */
@@ -290,7 +294,8 @@ export function heightsText(plan) {
 const STAYS_DOWN = ["start", "base"];
 
 /**
- * For the map: [{ from, to }], the ways back that do not fail: from each waypoint in the air to the nearest of the start and the rally points.
+ * For the map: [{ from, to }], the ways back that do not fail: from each waypoint in the air to the nearest of the
+ * start and the rally points.
  *
  * @param {ShownPlan} plan
  */

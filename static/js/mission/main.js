@@ -15,6 +15,7 @@ import { standingUavs } from "./fleet.js";
 import { createFlying } from "./flying/flying_actions.js";
 import { lockOf } from "./locks.js";
 import { mountMap } from "./map/map_panel.js";
+import { uavOf } from "./mission_uavs.js";
 import { mountApprove } from "./panels/approve.js";
 import { mountFinder } from "./panels/finder.js";
 import { mountFlying } from "./panels/flying.js";
@@ -37,7 +38,7 @@ import { mountUavs } from "./panels/uavs/uavs.js";
 import { mountWhy } from "./panels/why/why.js";
 import { isUnsaved } from "./plan_view.js";
 import { createRehearsing, NOTHING as NO_REHEARSAL } from "./rehearsal/rehearsal_actions.js";
-import { EMPTY, uavOf } from "./selection.js";
+import { EMPTY } from "./selection.js";
 import { mountStages } from "./stages.js";
 import { createGrounds } from "./strips/profile.js";
 

@@ -3,14 +3,14 @@
 import { routeLetter } from "../domain/palette.js";
 import { positionAt, profileOf } from "../domain/route_profile.js";
 import { t, tn } from "../text.js";
-import { durationText, energyText, lengthText, numberText } from "../units.js";
+import { durationText, energyText, lengthText } from "../units.js";
 import { changesOf } from "./hand/hand_route.js";
 import { ordersOf, wishedOrders } from "./locks.js";
 import { inWords } from "./plan_words.js";
 import { basisOf, storedBasisOf, withoutWishes } from "./selection.js";
 
 /** @import { Plan, Unassigned } from "../api_types.d.ts" */
-/** @import { BestSoFar, HandEdit, Lock, MissionPageState, MissionSelection, PickedTarget, ShownPlan, ShownRoute } from "./types.d.ts" */
+/** @import { HandEdit, Lock, MissionPageState, MissionSelection, PickedTarget, ShownPlan, ShownRoute } from "./types.d.ts" */
 
 /** @typedef {{ sequence: number, letter: string, number: number }} Place of a target in the plan */
 
@@ -164,159 +164,6 @@ export function sentenceOf(plan) {
 const energyFacts = ({ total_energy_wh }) =>
   total_energy_wh === null || total_energy_wh === undefined ? [] : [energyText(total_energy_wh)];
 
-/** @param {number} share */
-const shareText = (share) => `${numberText(share * 100, 1)}\u00a0%`;
-const LEAST_SHARE = 0.0005; // less is not told from nothing
-
-const LEFT_TO_THE_SEARCH = ["beyond_range", "beyond_energy", "most_targets"]; // others no plan reaches
-
-/**
- * How good a plan is: { isProven, words, detail }; null where that is not known or says nothing, or nobody flies.
- *
- * A bound is of the plans that reach as many targets. Which ones can be reached together is not bounded: where the search has left some
- * out, a figure would be taken for more than it is.
- *
- * @param {Plan} result
- */
-export function qualityOf({
-  objective,
-  lower_bound_m,
-  lower_bound_s,
-  lower_bound_wh,
-  gap,
-  gap_of,
-  is_proven,
-  wish,
-  routes,
-  unassigned = [],
-}) {
-  const isKnown = is_proven || (gap !== null && gap !== undefined && gap < 1);
-  if (!isKnown || !routes.some((route) => route.geometry)) return null;
-  if (is_proven)
-    return { isProven: true, words: provenWords(objective, Boolean(wish), unassigned.length > 0), detail: "" };
-  if (gap === null || unassigned.some(({ reason }) => LEFT_TO_THE_SEARCH.includes(reason))) return null;
-  const above = gap / (1 - gap); // `gap` is a share of this plan
-  const bound = { total: lower_bound_m, energy: lower_bound_wh, makespan: lower_bound_s, time: lower_bound_s }[
-    objective
-  ];
-  const share = shareText(above);
-  if (gap_of === "without_timed_zones")
-    return { isProven: false, words: beyondTimedZones(above < LEAST_SHARE ? null : share, Boolean(wish)), detail: "" };
-  const words =
-    above < LEAST_SHARE
-      ? t("As good as is possible.")
-      : wish
-        ? t("At most {share} above what is possible with what is locked.", { share })
-        : t("At most {share} above what is possible.", { share });
-  return { isProven: false, words, detail: bound === null || bound === undefined ? "" : boundWords(objective, bound) };
-}
-
-/**
- * Against the best plan without the zones that come or go meanwhile: it may be that none is as good that keeps clear of them. share: null: nothing.
- *
- * @param {string | null} share
- * @param {boolean} isLocked
- */
-function beyondTimedZones(share, isLocked) {
-  if (share === null) return t("No worse than the best plan without the zones that come or go meanwhile.");
-  if (isLocked)
-    return t("At most {share} above the best plan with what is locked, without the zones that come or go meanwhile.", {
-      share,
-    });
-  return t("At most {share} above the best plan without the zones that come or go meanwhile.", { share });
-}
-
-/** @param {Plan["objective"]} objective @param {number} bound */
-function boundWords(objective, bound) {
-  if (objective === "total") return t("No plan can fly less than {length}.", { length: lengthText(bound) });
-  if (objective === "energy") return t("No plan can use less than {energy}.", { energy: energyText(bound) });
-  if (objective === "time") return t("No plan can be in the air for less than {time}.", { time: durationText(bound) });
-  return t("No plan can be done in less than {time}.", { time: durationText(bound) });
-}
-
-/**
- * By objective: as it is, with locks, where targets are left out, with both.
- *
- * @type {Record<Plan["objective"], string[]>}
- */
-const PROVEN = {
-  total: [
-    t("Proven shortest."),
-    t("Proven shortest with what is locked."),
-    t("Proven shortest of plans that reach as many targets."),
-    t("Proven shortest with what is locked, of plans that reach as many targets."),
-  ],
-  makespan: [
-    t("Proven soonest."),
-    t("Proven soonest with what is locked."),
-    t("Proven soonest of plans that reach as many targets."),
-    t("Proven soonest with what is locked, of plans that reach as many targets."),
-  ],
-  time: [
-    t("Proven least flying time."),
-    t("Proven least flying time with what is locked."),
-    t("Proven least flying time of plans that reach as many targets."),
-    t("Proven least flying time with what is locked, of plans that reach as many targets."),
-  ],
-  energy: [
-    t("Proven least energy."),
-    t("Proven least energy with what is locked."),
-    t("Proven least energy of plans that reach as many targets."),
-    t("Proven least energy with what is locked, of plans that reach as many targets."),
-  ],
-};
-
-/** @param {Plan["objective"]} objective @param {boolean} isLocked @param {boolean} leavesOut */
-const provenWords = (objective, isLocked, leavesOut) => PROVEN[objective][(isLocked ? 1 : 0) + (leavesOut ? 2 : 0)];
-
-/**
- * What the locked parts of a plan cost: "Your wish costs 2.3 km more (+4.0 %)." Empty where nothing is locked.
- *
- * @param {Pick<Plan, "objective" | "wish">} result
- */
-export function wishWordsOf({ objective, wish }) {
-  if (!wish) return "";
-  const isTotal = objective !== "makespan"; // what it costs in time in the air or in energy is not told: its metres are
-  const [cost, free] = isTotal ? [wish.cost_m, wish.free_total_m] : [wish.cost_s, wish.free_longest_s];
-  const leftOut =
-    wish.left_out > 0
-      ? tn(wish.left_out, "Your wish leaves out {count} target more.", "Your wish leaves out {count} targets more.")
-      : "";
-  if (cost === null || cost === undefined) return leftOut || t("What your wish costs is not known.");
-  const figure = (isTotal ? lengthText : durationText)(Math.abs(cost));
-  const share = free > 0 ? ` (${cost < 0 ? "−" : "+"}${shareText(Math.abs(cost) / free)})` : "";
-  const isNothing = Math.abs(cost) < (isTotal ? 1 : 0.5);
-  const words = isNothing
-    ? t("Your wish costs nothing.")
-    : cost > 0
-      ? t("Your wish costs {figure} more{share}.", { figure, share })
-      : t("Your wish saves {figure}{share}: the search had not found it.", { figure, share });
-  return [words, leftOut].filter(Boolean).join(" ");
-}
-
-/**
- * The best of a search until now: "51.2 km so far, at most 3.1 % above what is possible (49.7 km)".
- *
- * @param {BestSoFar | null} best
- */
-export function bestWordsOf(best) {
-  if (!best) return "";
-  const { unit, value, bound, left_out } = best;
-  const textOf = { m: lengthText, s: durationText, Wh: energyText }[unit];
-  const figure = textOf(value);
-  const words =
-    bound !== null && bound > 0 && !left_out
-      ? t("{figure} so far, at most {share} above what is possible ({least})", {
-          figure,
-          share: shareText(Math.max(0, value / bound - 1)),
-          least: textOf(bound),
-        })
-      : t("{figure} so far", { figure });
-  return [words, left_out > 0 && tn(left_out, "{count} target is not reached", "{count} targets are not reached")]
-    .filter(Boolean)
-    .join(", ");
-}
-
 /**
  * How a route's flight ends: "ends hovering at A2".
  *
@@ -390,7 +237,8 @@ function wishedRoute(route, { look, points, original }) {
 }
 
 /**
- * Whose profile and reasons are shown: the route that is changed by hand; where nobody has chosen one, the longest. Null where nobody flies.
+ * Whose profile and reasons are shown: the route that is changed by hand; where nobody has chosen one, the longest.
+ * Null where nobody flies.
  *
  * @param {Pick<MissionPageState, "plan" | "lookedAt" | "chosenRoute" | "hand">} state
  */
@@ -406,7 +254,8 @@ export function shownRoute({ plan, lookedAt, chosenRoute, hand }) {
 }
 
 /**
- * Where on the map the pointer on a strip or a profile is, lon lat. along: { sequence, at_m, isWished }: isWished where it is on the profile
+ * Where on the map the pointer on a strip or a profile is, lon lat. along: { sequence, at_m, isWished }: isWished where
+ * it is on the profile
  * of a route as it is changed by hand. Null where that is not shown any more.
  *
  * @param {Pick<MissionPageState, "along" | "plan" | "lookedAt" | "chosenRoute" | "hand">} state
@@ -452,7 +301,11 @@ export function shownPlaces(state) {
   return { places, missed: new Set(unreached.filter((key) => !places.has(key))) };
 }
 
-/** Whether leaving the page would lose something. @param {Pick<MissionPageState, "mission" | "selection" | "name" | "plan" | "planIsStored" | "savedBasis">} state */
+/**
+ * Whether leaving the page would lose something.
+ *
+ * @param {Pick<MissionPageState, "mission" | "selection" | "name" | "plan" | "planIsStored" | "savedBasis">} state
+ */
 export function isUnsaved(state) {
   if (!state.mission) return state.selection.targets.length > 0 || state.name.trim() !== "";
   const planUnsaved = isPlanCurrent(state) && !state.planIsStored;

@@ -1,4 +1,7 @@
-/** Sentences of a plan in the reader's language. A plan is stored in English: what was put into a sentence is put into the translated one. */
+/**
+ * Sentences of a plan in the reader's language. A plan is stored in English: what was put into a sentence is put into
+ * the translated one.
+ */
 
 import { language, t } from "../text.js";
 import { numberText } from "../units.js";

@@ -1,4 +1,7 @@
-/** When routes reach their targets, what is left of their batteries, and how they are kept apart: in words. Values in, values out. */
+/**
+ * When routes reach their targets, what is left of their batteries, and how they are kept apart: in words. Values in,
+ * values out.
+ */
 
 import { t, tn } from "../text.js";
 import { durationText, energyText, heightText, lengthText, numberText, percentText } from "../units.js";
@@ -51,7 +54,8 @@ export const landing_s = ({ arrival_s, departs_s, duration_s }) =>
   arrival_s?.length > 0 && arrival_s.at(-1) !== null ? departs_s + duration_s : null;
 
 /**
- * Where a route waits on the way: at a base between two flights, on a tower to charge. [{ index, kind: "base" | "charging", stay_s, charged_wh }]
+ * Where a route waits on the way: at a base between two flights, on a tower to charge. [{ index, kind: "base" |
+ * "charging", stay_s, charged_wh }]
  *
  * @param {Pick<Route, "waypoints" | "charging">} route
  * @returns {Stay[]}

@@ -1,15 +1,15 @@
 /** What is to be flown, as plain values: targets, UAVs, options; and its shape on the wire. */
 
 import { t } from "../text.js";
-import { OWN_FIGURES } from "../uav_figures.js";
 import { lengthText } from "../units.js";
 import { flightOptionsAsked, flightOptionsOf, UNSAID } from "./flight_options.js";
 
 /** @import { FleetUav, MissionSelection, PickableAsset, PickedTarget, PickedUav, Task, Wishes } from "./types.d.ts" */
-/** @import { Mission, MissionTarget, PickedAsset, PlanInputRequest, SelectionTarget, TargetInputRequest, TaskOutput, UavFeature, UavInputRequest } from "../api_types.d.ts" */
+/** @import { Mission, MissionTarget, PickedAsset, PlanInputRequest, SelectionTarget, TargetInputRequest, TaskOutput, UavInputRequest } from "../api_types.d.ts" */
 
 /**
- * Targets may be more or less urgent, tied to one UAV by its name, or need a sensor; locks: see locks.js, the last three: flight_options.js.
+ * Targets may be more or less urgent, tied to one UAV by its name, or need a sensor; locks: see locks.js, the last
+ * three: flight_options.js.
  *
  * @type {Readonly<MissionSelection>}
  */
@@ -60,7 +60,8 @@ export function targetOfRow({ id, kind, centre, ...properties }) {
 }
 
 /**
- * How much of a line or railway is picked. OpenStreetMap cuts railways into sections: one of them is not the whole track.
+ * How much of a line or railway is picked. OpenStreetMap cuts railways into sections: one of them is not the whole
+ * track.
  *
  * @param {string | null} kind
  * @param {number | null} [length_m]
@@ -75,7 +76,8 @@ export function extentOf(kind, length_m, position = null, stretch = null) {
 }
 
 /**
- * The second fact of a row, in secondary ink: how much of a line or railway is picked, then what the server says of the asset.
+ * The second fact of a row, in secondary ink: how much of a line or railway is picked, then what the server says of the
+ * asset.
  *
  * @param {string | null} kind
  * @param {{ detail?: string, length_m?: number | null }} properties
@@ -118,7 +120,8 @@ export const HOLD_S = { look: 5, photo: 10, hold: 30 };
 export const LONGEST_HOLD_S = 3600;
 
 /**
- * What is done at a target for which nobody says it: details of towers and bridges are photographed, lines filmed in passing.
+ * What is done at a target for which nobody says it: details of towers and bridges are photographed, lines filmed in
+ * passing.
  *
  * @param {Pick<PickedTarget, "asset" | "kind" | "position">} target
  * @returns {TaskOutput}
@@ -200,7 +203,8 @@ export function withWishes(selection, keys, wishes) {
 }
 
 /**
- * Every sensor that somebody may need: those of the UAVs, and those that are asked for already. Upper and lower case are one.
+ * Every sensor that somebody may need: those of the UAVs, and those that are asked for already. Upper and lower case
+ * are one.
  *
  * @param {MissionSelection} selection
  * @param {FleetUav[]} fleet
@@ -211,44 +215,6 @@ export function sensorsKnown(selection, fleet) {
     .concat(selection.targets.map((target) => wishesOf(target).sensor));
   const bySound = new Map(names.filter(Boolean).map((name) => [name.trim().toLowerCase(), name.trim()]));
   return [...bySound.values()].sort((a, b) => a.localeCompare(b));
-}
-
-/** @param {UavFeature} feature @returns {FleetUav} */
-export function uavOf(feature) {
-  const {
-    name,
-    base,
-    base_name,
-    max_range_m,
-    cruise_speed_mps,
-    end_action,
-    state,
-    type_name,
-    sensors,
-    battery_percent,
-    heading_deg,
-    is_simulated,
-  } = feature.properties;
-  const figures = OWN_FIGURES.map((figure) => [figure, feature.properties[figure] ?? null]);
-  /** @type {FleetUav["usual"]} */
-  const usual = Object.fromEntries(figures); // a mission may say otherwise
-  return {
-    id: feature.id,
-    name,
-    base: base ?? null,
-    base_name: base_name ?? "",
-    position: feature.geometry.coordinates.slice(0, 2),
-    max_range_m,
-    cruise_speed_mps,
-    end_action,
-    state: state ?? "active",
-    type_name: type_name ?? "",
-    sensors: sensors ?? [],
-    battery_percent: battery_percent ?? null,
-    heading_deg: heading_deg ?? null,
-    is_simulated: is_simulated ?? false,
-    usual,
-  };
 }
 
 /**
@@ -272,72 +238,6 @@ const UAV_VALUES = /** @type {const} */ ([
   "most_targets",
   ...PERFORMANCE,
 ]);
-
-const LONGEST_UAV_NAME = 100; // missions/serializers/limits.py
-
-/**
- * "Heron", or where one of the UAVs is called so "Heron 2": ties and locks name the one that they mean.
- *
- * @param {MissionSelection} selection
- * @param {string} name
- */
-function freeName({ uavs }, name) {
-  const taken = new Set(uavs.map((uav) => uav.name));
-  let free = name;
-  for (let number = 2; taken.has(free); number += 1)
-    free = `${name.slice(0, LONGEST_UAV_NAME - ` ${number}`.length)} ${number}`;
-  return free;
-}
-
-/**
- * One more UAV of the fleet; in this mission it has another name where its own is taken.
- *
- * @param {MissionSelection} selection
- * @param {PickedUav} uav
- * @returns {MissionSelection}
- */
-export function withUav(selection, uav) {
-  if (selection.uavs.some((chosen) => chosen.id === uav.id)) return selection;
-  return { ...selection, uavs: [...selection.uavs, { ...uav, name: freeName(selection, uav.name) }] };
-}
-
-/**
- * UAVs are told apart by name where a target is tied or locked to one: not where two have the same.
- *
- * @param {Pick<MissionSelection, "uavs">} selection
- */
-export function uavsByName({ uavs }) {
-  const count = new Map();
-  for (const { name } of uavs) count.set(name, (count.get(name) ?? 0) + 1);
-  return uavs.map((uav, sequence) => ({ ...uav, sequence })).filter(({ name }) => count.get(name) === 1);
-}
-
-/** @param {MissionSelection} selection @param {number} sequence @returns {MissionSelection} */
-export function withoutUavAt(selection, sequence) {
-  return { ...selection, uavs: selection.uavs.filter((_, index) => index !== sequence) };
-}
-
-/**
- * @param {MissionSelection} selection
- * @param {number} sequence
- * @param {number[]} position
- * @returns {MissionSelection}
- */
-export function withUavAt(selection, sequence, position) {
-  return { ...selection, uavs: selection.uavs.map((uav, index) => (index === sequence ? { ...uav, position } : uav)) };
-}
-
-/**
- * The same UAV with other values, in this mission.
- *
- * @param {MissionSelection} selection
- * @param {number} sequence
- * @param {Partial<PickedUav>} values
- * @returns {MissionSelection}
- */
-export function withUavAs(selection, sequence, values) {
-  return { ...selection, uavs: selection.uavs.map((uav, index) => (index === sequence ? { ...uav, ...values } : uav)) };
-}
 
 /**
  * Locks with indices into the targets, as the API takes them; nothing where none is locked.
@@ -372,7 +272,8 @@ export function withoutWishes(selection) {
 const MAY_BE_NONE = /** @type {const} */ (["battery_wh", "max_airspeed_mps", "hover_power_w"]);
 
 /**
- * What a mission keeps of a UAV of the fleet though the fleet says otherwise by now: figures that it has none of, sensors, and which are its own.
+ * What a mission keeps of a UAV of the fleet though the fleet says otherwise by now: figures that it has none of,
+ * sensors, and which are its own.
  *
  * @param {PickedUav} uav
  * @returns {Partial<UavInputRequest>}
@@ -434,7 +335,12 @@ export function storedBasisOf(selection) {
   return JSON.stringify(requestOf(selection));
 }
 
-/** A target as the server has stored it, in a mission or in a selection. @param {MissionTarget | SelectionTarget} target @returns {PickedTarget} */
+/**
+ * A target as the server has stored it, in a mission or in a selection.
+ *
+ * @param {MissionTarget | SelectionTarget} target
+ * @returns {PickedTarget}
+ */
 export function storedTarget(target) {
   const position = target.is_point || target.asset === null ? target.position : null;
   const stretch = target.stretch ?? null;

@@ -1,11 +1,15 @@
-/** What is done at targets, how urgent they are, and who flies them: words, and the menu that sets it for one, several or all. */
+/**
+ * What is done at targets, how urgent they are, and who flies them: words, and the menu that sets it for one, several
+ * or all.
+ */
 
 import { h, icon } from "../dom.js";
 import { closeMenu } from "../page/chrome.js";
 import { t, tn } from "../text.js";
 import { durationText } from "../units.js";
 import { lockOf, wishedPlace } from "./locks.js";
-import { LONGEST_HOLD_S, sensorsKnown, taskOf, uavsByName, wishesOf } from "./selection.js";
+import { uavsByName } from "./mission_uavs.js";
+import { LONGEST_HOLD_S, sensorsKnown, taskOf, wishesOf } from "./selection.js";
 
 /** @import { FlownOrder, MissionActions, MissionPageState, PickedTarget, Task, Wishes } from "./types.d.ts" */
 

@@ -1,4 +1,7 @@
-/** What has become of UAVs since a mission took their figures over, and which figures are the mission's own. Values in, values out. */
+/**
+ * What has become of UAVs since a mission took their figures over, and which figures are the mission's own. Values in,
+ * values out.
+ */
 
 import { t } from "../text.js";
 import { OWN_FIGURES } from "../uav_figures.js";
@@ -91,7 +94,8 @@ export function withFleetFigures(selection, changes) {
 const isOwn = (name) => OWN_FIGURES.some((own) => own === name);
 
 /**
- * Values typed for a UAV in a mission. `known` is the UAV of the fleet: what is left empty is as there, what is typed otherwise is the mission's own.
+ * Values typed for a UAV in a mission. `known` is the UAV of the fleet: what is left empty is as there, what is typed
+ * otherwise is the mission's own.
  *
  * @param {PickedUav} uav
  * @param {Partial<PickedUav>} values

@@ -1,4 +1,7 @@
-/** What the zones beside a route are to it: in its way, at another height, passed by, or not in force when the UAV comes by. */
+/**
+ * What the zones beside a route are to it: in its way, at another height, passed by, or not in force when the UAV comes
+ * by.
+ */
 
 import { isInForce } from "../domain/zones_in_force.js";
 import { t } from "../text.js";
@@ -12,7 +15,8 @@ const STEP_MS = 60_000;
 const NO_MARGINS = { time_s: 0, height_m: 0, terrain_m: 0 };
 
 /**
- * Each stretch of the ground's zones with `kind`: "met", "apart" (in height), "near" or "asleep". What is not known counts as met.
+ * Each stretch of the ground's zones with `kind`: "met", "apart" (in height), "near" or "asleep". What is not known
+ * counts as met.
  * route: of a plan; places: where its waypoints stand [m]; departs_at: of the plan, null for at any time.
  *
  * @param {{ zones: ZoneAlong[], zone_margins?: ZoneMargins }} ground
@@ -84,7 +88,11 @@ function isAsleep(zone, { time_s }, { arrival_s, waypoints }, places, departs_at
  */
 function isApart({ from_m, to_m, lower_limit, upper_limit }, { height_m, terrain_m }, { waypoints }, places) {
   const [first, last] = around({ from_m, to_m }, places);
-  /** Those of the flight there over what a limit counts from; null where they are not known. @param {ZoneAlong["lower_limit"]} limit */
+  /**
+   * Those of the flight there over what a limit counts from; null where they are not known.
+   *
+   * @param {ZoneAlong["lower_limit"]} limit
+   */
   const heightsOver = (limit) => {
     const name = limit?.reference === "AGL" ? "altitude_agl_m" : "altitude_amsl_m";
     if (limit?.reference !== "AGL" && limit?.reference !== "AMSL") return null;

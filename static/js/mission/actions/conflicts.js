@@ -1,4 +1,7 @@
-/** Somebody else has saved: what goes together comes together by itself, and where both changed the same the operator decides. */
+/**
+ * Somebody else has saved: what goes together comes together by itself, and where both changed the same the operator
+ * decides.
+ */
 
 import { get, post } from "../../api.js";
 import { isFrozen } from "../../domain/flying.js";
@@ -62,7 +65,8 @@ function createMeeting(context, saving) {
   const { storedOf, shownAs, keepOpen } = createStoredMission(context);
 
   /**
-   * A younger revision than the one on the page. `lost` is what this page had sent when no answer came: then it is this page's own.
+   * A younger revision than the one on the page. `lost` is what this page had sent when no answer came: then it is this
+   * page's own.
    *
    * @param {Mission} theirs
    * @param {Version | null} [lost]

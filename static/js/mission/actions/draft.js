@@ -15,7 +15,8 @@ import { EMPTY, storedBasisOf } from "../selection.js";
 export const keyOf = (user, mission) => `spanwise.draft.${user}.${mission ?? "new"}`;
 
 /**
- * Drafts of one user. `editor` names this page: what another window of the same user keeps is not dropped when this one saves.
+ * Drafts of one user. `editor` names this page: what another window of the same user keeps is not dropped when this one
+ * saves.
  *
  * @param {{ user: number, editor: string, storage?: () => Storage }} options
  */
@@ -76,7 +77,8 @@ export function isStarted({ name, selection }) {
 }
 
 /**
- * What to do with a draft of a stored mission: "none", "restore" it, or say that it is "behind" what somebody has saved since.
+ * What to do with a draft of a stored mission: "none", "restore" it, or say that it is "behind" what somebody has saved
+ * since.
  *
  * @param {Draft | null} draft
  * @param {Pick<Mission, "name" | "revision">} mission

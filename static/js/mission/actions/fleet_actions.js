@@ -3,7 +3,7 @@
 import { post } from "../../api.js";
 import { say, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
-import * as picks from "../selection.js";
+import { uavOf, withoutUavAt, withUav, withUavAs, withUavAt } from "../mission_uavs.js";
 import { openChanges, withFleetFigures, withPresentFigures } from "../uav_changes.js";
 
 /** @import { Answer } from "../../api.js" */
@@ -13,13 +13,14 @@ import { openChanges, withFleetFigures, withPresentFigures } from "../uav_change
 /** context: see actions.js. @param {MissionContext} context */
 export function createFleetActions({ store, selection, change }) {
   /**
-   * Takes UAVs along, in one step of the history; says where one has another name in this mission. Returns how many were added.
+   * Takes UAVs along, in one step of the history; says where one has another name in this mission. Returns how many
+   * were added.
    *
    * @param {FleetUav[]} uavs
    */
   function takeAlong(uavs) {
     const before = selection().uavs.length;
-    change(uavs.reduce(picks.withUav, selection()));
+    change(uavs.reduce(withUav, selection()));
     const added = selection().uavs.slice(before);
     const renamed = uavs
       .map(({ id, name }) => ({ name, other: added.find((uav) => uav.id === id)?.name ?? name }))
@@ -31,7 +32,7 @@ export function createFleetActions({ store, selection, change }) {
   /** @param {UavWriteRequest} body */
   async function addUav(body) {
     const { data } = /** @type {Answer<UavFeature>} */ (await post("/uavs", body));
-    const uav = picks.uavOf(data);
+    const uav = uavOf(data);
     store.update({ fleet: [...store.state.fleet, uav] });
     takeAlong([uav]);
     say(t("{name} is added and chosen.", { name: uav.name }));
@@ -68,10 +69,10 @@ export function createFleetActions({ store, selection, change }) {
     addUavOfFleet,
     addUavsOfFleet,
     /** @param {number} sequence */
-    removeUav: (sequence) => change(picks.withoutUavAt(selection(), sequence)),
+    removeUav: (sequence) => change(withoutUavAt(selection(), sequence)),
     /** @param {number} sequence @param {number[]} position */
-    moveUav: (sequence, position) => change(picks.withUavAt(selection(), sequence, position)),
+    moveUav: (sequence, position) => change(withUavAt(selection(), sequence, position)),
     /** @param {number} sequence @param {Partial<PickedUav>} values */
-    changeUav: (sequence, values) => change(picks.withUavAs(selection(), sequence, values)),
+    changeUav: (sequence, values) => change(withUavAs(selection(), sequence, values)),
   };
 }

@@ -105,7 +105,8 @@ const areSameLocks = (a, b) => locksOf(a).map(keyOfLock).join() === locksOf(b).m
 const isTiedElsewhere = (target, uav) => ![null, uav].includes(wishesOf(target).uav);
 
 /**
- * Locks and the merged targets: theirs, with what I locked and unlocked; where no plan can keep both a lock or tie of theirs and one of mine, mine stands.
+ * Locks and the merged targets: theirs, with what I locked and unlocked; where no plan can keep both a lock or tie of
+ * theirs and one of mine, mine stands.
  *
  * @param {MissionSelection} base
  * @param {MissionSelection} mine

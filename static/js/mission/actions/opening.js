@@ -14,7 +14,8 @@ import { createStoredMission } from "./stored_mission.js";
 /** @import { MissionContext, Version } from "../types.d.ts" */
 
 /**
- * Keeps what is unsaved, and drops this page's draft where there is nothing left to keep. Returns whether it could be kept.
+ * Keeps what is unsaved, and drops this page's draft where there is nothing left to keep. Returns whether it could be
+ * kept.
  *
  * @param {Pick<MissionContext, "store" | "selection" | "drafts">} context
  * @returns {boolean}

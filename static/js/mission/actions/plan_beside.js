@@ -1,4 +1,7 @@
-/** The same selection planned by another objective behind the page: its figures stand in the choice, and one click shows it. */
+/**
+ * The same selection planned by another objective behind the page: its figures stand in the choice, and one click shows
+ * it.
+ */
 
 import { follow, get, isAbort, post } from "../../api.js";
 import { say } from "../../page/toast.js";
@@ -74,7 +77,8 @@ function createSideSearch(store) {
 }
 
 /**
- * Plans by one other objective, or by all of them where somebody compares. A large one waits until the plan on the page is saved and
+ * Plans by one other objective, or by all of them where somebody compares. A large one waits until the plan on the page
+ * is saved and
  * nothing else of this person's runs, and gives way to what is asked for.
  *
  * @param {MissionStore} store

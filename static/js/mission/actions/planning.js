@@ -1,11 +1,15 @@
-/** Planning what is picked: by the chosen objective, then by the other to set beside it; following a large job, and stopping it. */
+/**
+ * Planning what is picked: by the chosen objective, then by the other to set beside it; following a large job, and
+ * stopping it.
+ */
 
 import { ApiError, get, isAbort, post } from "../../api.js";
 import { followLive } from "../../live/jobs.js";
 import { say, toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { isSamePlan, isWorse, summaryOfPlan } from "../compare.js";
-import { figuresOf, isPlanCurrent, qualityOf, sentenceOf, unreachedOf, wishWordsOf } from "../plan_view.js";
+import { qualityOf, wishWordsOf } from "../plan_quality.js";
+import { figuresOf, isPlanCurrent, sentenceOf, unreachedOf } from "../plan_view.js";
 import * as picks from "../selection.js";
 import { cancelJob, createPlanBeside, MOST_PLANNED_AT_ONCE } from "./plan_beside.js";
 import { planOf, withResult } from "./plan_results.js";
@@ -36,7 +40,12 @@ export function createPlanning(context) {
       if (store.state.plan && isPlanCurrent(store.state)) void aside.wantAll(selection());
     },
     stopAlternatives: aside.stop,
-    /** A line of which only parts can be flown becomes these parts. @param {PickedTarget} target @param {number[][][]} stretches */
+    /**
+     * A line of which only parts can be flown becomes these parts.
+     *
+     * @param {PickedTarget} target
+     * @param {number[][][]} stretches
+     */
     replaceByStretches(target, stretches) {
       const parts = stretches.map((stretch) => {
         const part = { ...target, position: null, stretch, centre: stretch[0] };
@@ -201,7 +210,12 @@ function createShowing({ store, selection, problem }, aside, planAgain) {
   };
 }
 
-/** What is missing for a plan, and what helps; null where nothing is. @param {MissionSelection} selection @returns {[string, string] | null} */
+/**
+ * What is missing for a plan, and what helps; null where nothing is.
+ *
+ * @param {MissionSelection} selection
+ * @returns {[string, string] | null}
+ */
 function lackingOf({ targets, uavs }) {
   if (!targets.length) return [t("Nothing picked yet."), t("Click a tower, bridge or track on the map, then plan.")];
   if (!uavs.length) return [t("No UAV is chosen."), t("Tick one in the list, or add the first one.")];
@@ -255,7 +269,8 @@ function createStopping({ store, failed, running }) {
 }
 
 /**
- * A selection that has been planned before, by undo or by the other objective, shows its plan again; so it does when the answer to an
+ * A selection that has been planned before, by undo or by the other objective, shows its plan again; so it does when
+ * the answer to an
  * earlier save brings back the plan of what was picked then.
  *
  * @param {MissionContext} context

@@ -1,7 +1,10 @@
-/** What the server refuses of a selection: in words without the places of its fields, and the changes that would help. */
+/**
+ * What the server refuses of a selection: in words without the places of its fields, and the changes that would help.
+ */
 
 import { t } from "../../text.js";
-import { withoutLocks, withUavAs, withWishes } from "../selection.js";
+import { withUavAs } from "../mission_uavs.js";
+import { withoutLocks, withWishes } from "../selection.js";
 
 /** @import { ApiError } from "../../api.js" */
 /** @import { Lock, MissionSelection, PickedTarget, PickedUav } from "../types.d.ts" */

@@ -1,4 +1,7 @@
-/** The large plan that is being made, remembered over a reload of the page: in this tab alone, for each user and mission. */
+/**
+ * The large plan that is being made, remembered over a reload of the page: in this tab alone, for each user and
+ * mission.
+ */
 
 /** @import { MissionSelection } from "../types.d.ts" */
 

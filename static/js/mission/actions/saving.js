@@ -229,7 +229,13 @@ function createRetry({ store, problem, failed, wordsOf }, conflicts, save, mayTr
 
   return {
     stop: () => clearTimeout(timer),
-    /** lost: what an earlier try may have stored after all. @param {unknown} error @param {boolean} asCopy @param {Version | null} lost */
+    /**
+     * lost: what an earlier try may have stored after all.
+     *
+     * @param {unknown} error
+     * @param {boolean} asCopy
+     * @param {Version | null} lost
+     */
     async afterFailure(error, asCopy, lost) {
       if (isAbort(error)) problem(t("Saved as a draft."), t("Planning was stopped before it was done."), [], how);
       else if (!(error instanceof ApiError)) tell(error, asCopy);

@@ -6,7 +6,11 @@ import { planOf, withResult } from "./plan_results.js";
 /** @import { Mission } from "../../api_types.d.ts" */
 /** @import { MissionContext, MissionSelection, Problem, ShownPlan, Version } from "../types.d.ts" */
 
-/** What is said of a plan stays over a save: it stands until something else is picked. @param {Problem | null} standing */
+/**
+ * What is said of a plan stays over a save: it stands until something else is picked.
+ *
+ * @param {Problem | null} standing
+ */
 export const unlessOfSaving = (standing) => (standing?.about && !standing.isOfSaving ? standing : null);
 
 /** @param {Pick<MissionContext, "store" | "history" | "selection">} context */

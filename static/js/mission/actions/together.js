@@ -1,4 +1,7 @@
-/** Who else has the mission open, what they save, and whether the server is there: asked every few seconds while the page is looked at. */
+/**
+ * Who else has the mission open, what they save, and whether the server is there: asked every few seconds while the
+ * page is looked at.
+ */
 
 import { ApiError, get, post } from "../../api.js";
 

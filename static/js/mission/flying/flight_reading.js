@@ -1,4 +1,7 @@
-/** What became of a mission that is approved: its commands, the connections of its UAVs and their paths home, read while the page is looked at. */
+/**
+ * What became of a mission that is approved: its commands, the connections of its UAVs and their paths home, read while
+ * the page is looked at.
+ */
 
 import { ApiError, get } from "../../api.js";
 import { flyersOf, isOnItsWay, isOpen, KINDS } from "../../domain/flying.js";
@@ -19,7 +22,11 @@ export function createFlightReading(store, page) {
   let connectionsAt = 0;
   let returnsAt = 0;
 
-  /** By UAV, what is known of it and of what is on board; null while that could not be read. @param {Mission} mission */
+  /**
+   * By UAV, what is known of it and of what is on board; null while that could not be read.
+   *
+   * @param {Mission} mission
+   */
   async function readConnections(mission) {
     connectionsAt = Date.now();
     const uavs = flyersOf(mission).flatMap(({ uav }) => uav ?? []);

@@ -1,4 +1,7 @@
-/** What an operator does with a mission once it is planned: approve, send, steer, abort. Each asks first; the panels listen to the store. */
+/**
+ * What an operator does with a mission once it is planned: approve, send, steer, abort. Each asks first; the panels
+ * listen to the store.
+ */
 
 import { ApiError, get, post, signInAddress } from "../../api.js";
 import { LATE, questionOf, WHY } from "../../domain/command_questions.js";
@@ -17,7 +20,10 @@ import { createFlightReading } from "./flight_reading.js";
 
 /** @typedef {{ store: MissionStore, failed: MissionContext["failed"], readCommands: () => Promise<void> }} Acting */
 
-/** @param {MissionStore} store @param {{ failed: MissionContext["failed"], page: Pick<MissionPageData, "isFrozen"> }} options */
+/**
+ * @param {MissionStore} store
+ * @param {{ failed: MissionContext["failed"], page: Pick<MissionPageData, "isFrozen"> }} options
+ */
 export function createFlying(store, { failed, page }) {
   const { readCommands, readReturns, watch } = createFlightReading(store, page);
   const acting = { store, failed, readCommands };
@@ -33,7 +39,12 @@ export function createFlying(store, { failed, page }) {
       await approve(acting);
     },
     revoke: () => revoke(acting),
-    /** flyer: one UAV's flight; without: all that have nothing yet. @param {Flyer | null} [flyer] @param {number} [flight] */
+    /**
+     * flyer: one UAV's flight; without: all that have nothing yet.
+     *
+     * @param {Flyer | null} [flyer]
+     * @param {number} [flight]
+     */
     send: (flyer = null, flight = 1) => send(acting, flyer, flight),
     abort: () => abort(acting),
     /** @param {Flyer} flyer @param {Parameters<typeof questionOf>[0]} kind */

@@ -1,4 +1,7 @@
-/** Changing one route by hand: its points with undo and redo, what flying them would take asked about at once, and keeping them. */
+/**
+ * Changing one route by hand: its points with undo and redo, what flying them would take asked about at once, and
+ * keeping them.
+ */
 
 import { ApiError, request } from "../../api.js";
 import { say, toast } from "../../page/toast.js";
@@ -31,7 +34,11 @@ const beginningOf = (original, sequence) => ({
   isSaving: false,
 });
 
-/** Who plans anew, picks something else or closes the panel is not changing this route any more. @param {Readonly<MissionPageState>} state */
+/**
+ * Who plans anew, picks something else or closes the panel is not changing this route any more.
+ *
+ * @param {Readonly<MissionPageState>} state
+ */
 function isStillOpen({ hand: edit, why, plan }) {
   if (!edit) return true;
   const route = plan?.result.routes[edit.sequence];
@@ -144,14 +151,24 @@ export function createHandEditing(context, saving) {
     ...createKeeping(context, saving, { put, end }),
     /** @param {number | null} chosen */
     chooseByHand: (chosen) => put({ chosen }),
-    /** While it is dragged: shown and asked about, no step of the history. @param {HandPoint[]} points @param {number} chosen */
+    /**
+     * While it is dragged: shown and asked about, no step of the history.
+     *
+     * @param {HandPoint[]} points
+     * @param {number} chosen
+     */
     dragByHand(points, chosen) {
       put({ dragged: points, chosen });
       const edit = state();
       if (edit) put(knownOf(edit, points));
       void ask();
     },
-    /** points: where it was let go; null: nothing is changed. @param {HandPoint[] | null} points @param {number | null} [chosen] */
+    /**
+     * points: where it was let go; null: nothing is changed.
+     *
+     * @param {HandPoint[] | null} points
+     * @param {number | null} [chosen]
+     */
     dropByHand(points, chosen = null) {
       put({ dragged: null });
       if (points && take(() => points, chosen)) return;
@@ -188,7 +205,11 @@ function createKeeping({ store, history, selection, problem, wordsOf }, { keepOp
     history.startFrom(selection()); // a step back from here would plan anew, and the change by hand would be gone
   }
 
-  /** The route as it was before it was changed by hand last; who has changed the mission since is told so. @param {number} sequence */
+  /**
+   * The route as it was before it was changed by hand last; who has changed the mission since is told so.
+   *
+   * @param {number} sequence
+   */
   async function takeBack(sequence) {
     const { mission, name } = store.state;
     if (!mission) return;

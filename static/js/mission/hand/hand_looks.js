@@ -1,4 +1,6 @@
-/** What the server says of waypoints while they are changed: asked one request after the other, kept by what was asked. */
+/**
+ * What the server says of waypoints while they are changed: asked one request after the other, kept by what was asked.
+ */
 
 import { post } from "../../api.js";
 import { t } from "../../text.js";

@@ -1,7 +1,10 @@
-/** A route that is changed by hand: waypoints moved, put in, taken out, flown higher or at another speed. Values in, values out.
+/** A route that is changed by hand: waypoints moved, put in, taken out, flown higher or at another speed. Values in,
+ * values out.
  *
- * A point is { position, altitude_agl_m, speed_mps, was, kind, target, isByHand }; `was` is its place in the route as stored,
- * null where it is put in; speed_mps is over ground on the leg that leads to it, null the UAV's own. Start, end and targets stay.
+ * A point is { position, altitude_agl_m, speed_mps, was, kind, target, isByHand }; `was` is its place in the route as
+ * stored,
+ * null where it is put in; speed_mps is over ground on the leg that leads to it, null the UAV's own. Start, end and
+ * targets stay.
  */
 
 /** @import { HandFaults, HandPoint } from "../types.d.ts" */
@@ -67,7 +70,8 @@ export const paced = (points, index, speed_mps) =>
     : points;
 
 /**
- * A new one after `index`, as high as the higher of its neighbours, the leg as fast as before; in the middle of the leg where no place is said.
+ * A new one after `index`, as high as the higher of its neighbours, the leg as fast as before; in the middle of the leg
+ * where no place is said.
  *
  * @param {HandPoint[]} points
  * @param {number} index

@@ -135,7 +135,11 @@ function easeTo(map, center, least_zoom) {
   map.easeTo({ center, zoom: Math.max(map.getZoom(), least_zoom), duration: isCalm ? 0 : 350 });
 }
 
-/** Routes, targets and rally points; UAVs only as long as nothing says which of them fly. @param {MissionPageState} state */
+/**
+ * Routes, targets and rally points; UAVs only as long as nothing says which of them fly.
+ *
+ * @param {MissionPageState} state
+ */
 function positionsOfMission({ plan, selection }) {
   const flown = routesOf(plan).flatMap((route) => route.geometry?.coordinates ?? []);
   const { lost_link } = selection;
@@ -183,10 +187,17 @@ function createLayers(view, frame, store, actions, page) {
     },
     onLook: (sequence) => store.update({ lookedAt: store.state.plan ? sequence : null }),
   });
-  /** @type {{ hand: ReturnType<typeof mountHandMap>, reach: ReturnType<typeof mountReachLayer>, lostLink: ReturnType<typeof mountLostLinkMap> } | null} */
+  /**
+   * @type {{ hand: ReturnType<typeof mountHandMap>, reach: ReturnType<typeof mountReachLayer>, lostLink: ReturnType<typeof mountLostLinkMap> } | null}
+   */
   let styled = null; // once the map has its style
 
-  /** One route forward; all of them back while they are no plan of what is picked, or a better one is being searched for. @param {Readonly<MissionPageState>} state */
+  /**
+   * One route forward; all of them back while they are no plan of what is picked, or a better one is being searched
+   * for.
+   *
+   * @param {Readonly<MissionPageState>} state
+   */
   function lookAt(state) {
     const sequence = state.lookedAt ?? state.chosenRoute;
     const isOutdated = (state.plan !== null && !isPlanCurrent(state)) || Boolean(state.planning?.best);
@@ -261,7 +272,13 @@ const markedUavs = (state, canMove) =>
     canMove,
   }));
 
-/** The best plan of a search so far; the first one is brought into view. @param {MapView} view @param {MissionStore} store @param {() => void} drawn */
+/**
+ * The best plan of a search so far; the first one is brought into view.
+ *
+ * @param {MapView} view
+ * @param {MissionStore} store
+ * @param {() => void} drawn
+ */
 function showSearch({ map, fit }, store, drawn) {
   /** @type {BestSoFar | null} */
   let shown = null;
@@ -277,7 +294,13 @@ function showSearch({ map, fit }, store, drawn) {
   });
 }
 
-/** A new plan is brought into view, and the tiles of another state of the map data are read. @param {MapView} view @param {MissionStore} store @param {Fitting} fitting */
+/**
+ * A new plan is brought into view, and the tiles of another state of the map data are read.
+ *
+ * @param {MapView} view
+ * @param {MissionStore} store
+ * @param {Fitting} fitting
+ */
 function watchPlans({ map, opensAtPlace }, store, fitting) {
   store.listen(["plan"], ({ plan }) => {
     // A plan that was just made is looked at. A stored one is what the map opened at, but the dock took room from it; after saving nothing moves.

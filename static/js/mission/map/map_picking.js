@@ -27,7 +27,13 @@ export function createMapPicking({ frame, store, actions, opened }) {
   const choice = createChoice(frame, opened);
   const pickStretch = stretchPicking(store, actions, choice);
 
-  /** A click with a tool that picks. place: of the click; point: where that is on the screen. @param {MapThing} thing @param {Position} place @param {ScreenPoint} point */
+  /**
+   * A click with a tool that picks. place: of the click; point: where that is on the screen.
+   *
+   * @param {MapThing} thing
+   * @param {Position} place
+   * @param {ScreenPoint} point
+   */
   function pick(thing, place, point) {
     const { tool } = store.state;
     if (thing.properties.flyable === false) {

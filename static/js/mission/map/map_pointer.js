@@ -40,7 +40,12 @@ export function mountMapPointer(context) {
   /** @param {MapThing} thing */
   const keyOf = (thing) => `${thing.kind} ${thing.id}`;
 
-  /** What the tooltip says, with the reason why the asset can be inspected or not while that layer is shown. @param {MapThing} thing @param {Position | null} place */
+  /**
+   * What the tooltip says, with the reason why the asset can be inspected or not while that layer is shown.
+   *
+   * @param {MapThing} thing
+   * @param {Position | null} place
+   */
   const saidOf = (thing, place) => /** @param {(content: (Node | string)[]) => void} refresh */ (refresh) => {
     const said = tipOf({ ...thing, place }, refresh);
     const words = thing.kind === "zone" ? "" : context.reach()?.textOf(thing.id);
@@ -63,7 +68,13 @@ export function mountMapPointer(context) {
     }
   }
 
-  /** With a finger there is no hovering: what cannot be picked or inspected is told. @param {MapThing} thing @param {Position} place @param {ScreenPoint} point */
+  /**
+   * With a finger there is no hovering: what cannot be picked or inspected is told.
+   *
+   * @param {MapThing} thing
+   * @param {Position} place
+   * @param {ScreenPoint} point
+   */
   function clickThing(thing, place, point) {
     const isPicked = canPlan && thing.kind !== "zone";
     if (isPicked) picking.pick(thing, place, point);

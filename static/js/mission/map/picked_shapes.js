@@ -54,7 +54,11 @@ export function createPickedShapes(map, store) {
     );
   }
 
-  /** The ring stands round what a list row or pill is at, else round what the pointer is at. @param {Readonly<MissionPageState>} state */
+  /**
+   * The ring stands round what a list row or pill is at, else round what the pointer is at.
+   *
+   * @param {Readonly<MissionPageState>} state
+   */
   function ringHovered({ litTarget, selection, stretchFrom }) {
     const target = selection.targets.find(({ key }) => key === litTarget);
     const shape = target ? shapeOf(target) : null;

@@ -1,4 +1,7 @@
-/** The layer of what can be inspected: asked for when it is switched on and when what decides over it changes, with a legend of reasons. */
+/**
+ * The layer of what can be inspected: asked for when it is switched on and when what decides over it changes, with a
+ * legend of reasons.
+ */
 
 import { isAbort, post } from "../../api.js";
 import { h, icon, setChildren, svg } from "../../dom.js";

@@ -3,7 +3,8 @@
 import { byId, find } from "../../dom.js";
 import { t } from "../../text.js";
 import { percentText } from "../../units.js";
-import { bestWordsOf, isUnsaved } from "../plan_view.js";
+import { bestWordsOf } from "../plan_quality.js";
+import { isUnsaved } from "../plan_view.js";
 
 /** @import { MissionActions, MissionPageState, MissionStore, Planning } from "../types.d.ts" */
 

@@ -129,7 +129,8 @@ export function nearestOther(verdict, uav) {
 }
 
 /**
- * Of one route of a track, by seconds after departure: { flown: { height, battery }, planned: { height, battery } }, lists of lines of
+ * Of one route of a track, by seconds after departure: { flown: { height, battery }, planned: { height, battery } },
+ * lists of lines of
  * { at_s, value }. Heights are above the first take-off, as the plan's are.
  *
  * @param {RouteTrack} route

@@ -1,4 +1,7 @@
-/** Starting, following and stopping rehearsals of the mission, and reading what came of them: store.rehearsal, which the panel and the map listen to. */
+/**
+ * Starting, following and stopping rehearsals of the mission, and reading what came of them: store.rehearsal, which the
+ * panel and the map listen to.
+ */
 
 import { ApiError, get, isAbort, post } from "../../api.js";
 import { followLive } from "../../live/jobs.js";
@@ -32,7 +35,11 @@ export function createRehearsing(store, { isStage = false } = {}) {
   const { show, chooseRun, showNewest } = createShowing(store, isStage);
   let asked = 0; // the last reading wins
 
-  /** The rehearsals of the mission, and the newest of them; one that is being flown is followed. @param {string | null} [wanted] */
+  /**
+   * The rehearsals of the mission, and the newest of them; one that is being flown is followed.
+   *
+   * @param {string | null} [wanted]
+   */
   const read = (wanted = null) =>
     told(async () => {
       const mission = missionId();
@@ -63,7 +70,12 @@ export function createRehearsing(store, { isStage = false } = {}) {
   return {
     show,
     chooseRun,
-    /** afresh: also what was flown alike lately. @param {RehearsalInputRequest["conditions"]} conditions @param {{ afresh?: boolean }} [how] */
+    /**
+     * afresh: also what was flown alike lately.
+     *
+     * @param {RehearsalInputRequest["conditions"]} conditions
+     * @param {{ afresh?: boolean }} [how]
+     */
     start: (conditions, { afresh = false } = {}) =>
       told(async () => {
         change({ fault: "", running: { id: null, job: null, progress: null, message: t("Being sent") } });
@@ -143,7 +155,12 @@ function createShowing(store, isStage) {
         const { detail } = store.state.rehearsal;
         if (detail?.runs[run]?.level) await showTrack(detail.id, run);
       }),
-    /** The one that is wanted, shown or named by the address; else the newest that has ended. @param {Rehearsal[]} list @param {string | null} wanted */
+    /**
+     * The one that is wanted, shown or named by the address; else the newest that has ended.
+     *
+     * @param {Rehearsal[]} list
+     * @param {string | null} wanted
+     */
     async showNewest(list, wanted) {
       const { detail, run } = store.state.rehearsal;
       const named = wanted || detail ? null : ofAddress.get("rehearsal");

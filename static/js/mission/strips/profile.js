@@ -1,4 +1,7 @@
-/** The flight of one UAV from the side: ground, zones beside it, flight height, task points and battery, on the axis of the strips. */
+/**
+ * The flight of one UAV from the side: ground, zones beside it, flight height, task points and battery, on the axis of
+ * the strips.
+ */
 
 import { post } from "../../api.js";
 import { profileOf } from "../../domain/route_profile.js";
@@ -79,7 +82,8 @@ export function groundOf(profile, length_m) {
 }
 
 /**
- * Heights of the flight over what they count from: sea level, or the take-off place where the ground is taken for flat; departs_at of
+ * Heights of the flight over what they count from: sea level, or the take-off place where the ground is taken for flat;
+ * departs_at of
  * the plan says which zones are in force.
  *
  * @param {ShownRoute} route
@@ -127,7 +131,8 @@ export function flightOf(route, ground, battery_wh = null, departs_at = null) {
 }
 
 /**
- * The same place when it goes on from there: later, and with a battery that is full after a base and fuller after charging.
+ * The same place when it goes on from there: later, and with a battery that is full after a base and fuller after
+ * charging.
  *
  * @param {PathPoint} point
  * @param {Pick<Stay, "stay_s"> & Partial<Stay>} stay
@@ -163,7 +168,8 @@ export function heightAt(points, at_m, name) {
 }
 
 /**
- * What is said at a distance: { at_m, height_m, ground_m, above_m, arrival_s, battery_percent, zones }; unknown is null.
+ * What is said at a distance: { at_m, height_m, ground_m, above_m, arrival_s, battery_percent, zones }; unknown is
+ * null.
  *
  * @param {Flight} flight
  * @param {number} at_m
@@ -198,7 +204,8 @@ export function spanOf({ path, under }) {
 }
 
 /**
- * From where to where a zone reaches at a place, in the heights of the drawing. What it does not state goes to the edge.
+ * From where to where a zone reaches at a place, in the heights of the drawing. What it does not state goes to the
+ * edge.
  *
  * @param {Pick<PassedZone, "from_m" | "to_m" | "lower_limit" | "upper_limit">} zone
  * @param {Pick<Flight, "under" | "isFlat">} flight

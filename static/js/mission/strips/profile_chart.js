@@ -99,7 +99,11 @@ function groundDrawing(piece, x, y) {
   ];
 }
 
-/** Hatched is what a flight must not enter: zones that are only passed by, or not in force then, are outlines. @param {PassedZone} zone */
+/**
+ * Hatched is what a flight must not enter: zones that are only passed by, or not in force then, are outlines.
+ *
+ * @param {PassedZone} zone
+ */
 const isHatched = ({ kind }) => kind === "met" || kind === "apart";
 
 /** @param {PassedZone} zone @param {Flight} flight @param {Span} span @param {Axis} x @param {Axis} y */
@@ -234,7 +238,8 @@ function knownPieces(samples) {
 }
 
 /**
- * The profile as a table: each task point with distance, ground and height, and where they are known arrival and battery.
+ * The profile as a table: each task point with distance, ground and height, and where they are known arrival and
+ * battery.
  *
  * @param {Pick<ShownRoute, "name">} route
  * @param {Flight} flight

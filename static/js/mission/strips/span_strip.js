@@ -1,4 +1,7 @@
-/** The span strip: a route pulled straight. Distance runs to the right, ticks are towers, circles are targets, pills several of them. */
+/**
+ * The span strip: a route pulled straight. Distance runs to the right, ticks are towers, circles are targets, pills
+ * several of them.
+ */
 
 import { h, svg } from "../../dom.js";
 import { profileOf } from "../../domain/route_profile.js";
@@ -87,7 +90,8 @@ export function scaleOf(longest_m, width_px) {
 }
 
 /**
- * Places in px: ticks thinned, targets pushed apart when they would touch, and merged into one pill where that would push them far.
+ * Places in px: ticks thinned, targets pushed apart when they would touch, and merged into one pill where that would
+ * push them far.
  *
  * @template Target
  * @param {StripProfile<Target>} profile
@@ -115,7 +119,8 @@ export function layOut(profile, longest_m, width_px) {
 const widthOf = (label) => Math.max(TARGET_SPACING_PX - 1, label.length * LETTER_PX + 10);
 
 /**
- * Pills of neighbouring targets, "3" or "3–9", that stay on the strip: [{ first, last, targets, label, x, width }], in order.
+ * Pills of neighbouring targets, "3" or "3–9", that stay on the strip: [{ first, last, targets, label, x, width }], in
+ * order.
  *
  * @template Target
  * @param {(Omit<Stop<Target>, "at"> & { x: number })[]} targets
@@ -205,11 +210,14 @@ export function axisTicks(longest_m, unit_m = LONG_UNIT.metres) {
 }
 
 /**
- * Draws the strip. onAlong(metres flown or null). `zones` are stretches beside zones: [{ from_m, to_m, name, kind }], `waits`
+ * Draws the strip. onAlong(metres flown or null). `zones` are stretches beside zones: [{ from_m, to_m, name, kind }],
+ * `waits`
  * stops at bases and on towers: [{ index of the waypoint, kind, words }].
  *
- * stopsOf(targets of the profile) are what is drawn as pills: [{ target, at, isLocked?, isMoved? }]; grab(event, targets, label): a pill is
- * pressed. Returns { element, point(metres or null), light(target or null), indexAt(clientX, without), showGap(index or null, without) }.
+ * stopsOf(targets of the profile) are what is drawn as pills: [{ target, at, isLocked?, isMoved? }]; grab(event,
+ * targets, label): a pill is
+ * pressed. Returns { element, point(metres or null), light(target or null), indexAt(clientX, without), showGap(index or
+ * null, without) }.
  *
  * @param {StripOptions} options
  */
@@ -333,7 +341,8 @@ function drawPill({ x: at, width, label, targets, members }, { onTarget, grab })
 }
 
 /**
- * A block on what is in the way, a bracket under what is passed by or lies at another height; what is not in force is left out.
+ * A block on what is in the way, a bracket under what is passed by or lies at another height; what is not in force is
+ * left out.
  *
  * @param {PassedZone} zone
  * @param {(distance_m: number) => number} x

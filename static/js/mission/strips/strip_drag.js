@@ -22,7 +22,8 @@ const LEAST_PX = 5; // less is a click
 /**
  * rows: the list of routes. strips: Map of sequence → what spanStrip gives. drop(keys, { sequence, index }).
  *
- * Returns grab(event, keys, label) for a pill that is pressed. Escape, or letting go beside the routes, changes nothing.
+ * Returns grab(event, keys, label) for a pill that is pressed. Escape, or letting go beside the routes, changes
+ * nothing.
  *
  * @param {HTMLElement} rows
  * @param {{ strips: Map<number, Strip>, drop: (keys: string[], place: { sequence: number, index: number }) => void }} options

@@ -3,7 +3,8 @@
 import { byId, h, icon, setChildren } from "../../../dom.js";
 import { t } from "../../../text.js";
 import { checkStateOf, checkText } from "../../lost_link.js";
-import { isPlanCurrent, qualityOf, wishWordsOf } from "../../plan_view.js";
+import { qualityOf, wishWordsOf } from "../../plan_quality.js";
+import { isPlanCurrent } from "../../plan_view.js";
 import { separationOf } from "../../route_times.js";
 
 /** @import { Child } from "../../../dom.js" */
