@@ -49,7 +49,7 @@ def test_the_way_back_is_chosen_rally_points_are_placed_dragged_and_undone_and_t
     visitor: Visitor, picture: Picture
 ) -> None:
     page = visitor.signs_in("opal")
-    opens_mission(page, "Link lost", targets=6)
+    opens_mission(page, "Link lost", targets=6, box=region.spread_towers)
     is_saved(page)
     routes = mission_of(page)["plan"]["routes"]
     panel(page).get_by_role("radio", name="Return", exact=True).check()

@@ -21,9 +21,11 @@ def sends(page: Page, path: str, body: dict[str, Any]) -> Any:
     return answer.json()
 
 
-def opens_mission(page: Page, name: str, *, targets: int = 8, more: list[dict[str, Any]] | None = None) -> None:
+def opens_mission(
+    page: Page, name: str, *, targets: int = 8, more: list[dict[str, Any]] | None = None, box: str = region.all_towers
+) -> None:
     """A planned mission with two UAVs that start apart, and towers around both."""
-    towers = asks(page, f"/assets?kind=tower&bbox={region.all_towers}&limit=200")["features"]
+    towers = asks(page, f"/assets?kind=tower&bbox={box}&limit=200")["features"]
     picked = towers[:: max(1, len(towers) // targets)][:targets]
     uavs = [{"name": "Heron", "position": region.west}, {"name": "Kite", "position": region.east}]
     wanted = [{"asset": tower["id"]} for tower in picked] + (more or [])
