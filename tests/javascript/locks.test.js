@@ -271,9 +271,10 @@ function contradictionIn({ targets, uavs, locks }) {
 
 test("whatever is wished one after the other, no lock contradicts another or a tie", () => {
   let seed = 5;
-  const below = (most) => (
-    (seed = (seed * 1_103_515_245 + 12_345) % 2_147_483_648), Math.floor((seed / 2_147_483_648) * most)
-  );
+  const below = (most) => {
+    seed = (seed * 1_103_515_245 + 12_345) % 2_147_483_648;
+    return Math.floor((seed / 2_147_483_648) * most);
+  };
   const name = () => ["Heron", "Kite"][below(2)];
   const key = () => `${1 + below(6)}`;
   const isPicked = (selection, one) => selection.targets.some((target) => target.key === one);

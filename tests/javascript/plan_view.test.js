@@ -161,10 +161,10 @@ test("the pointer's place is on the stored route, and on the changed one where i
     chosenRoute: null,
     hand: null,
   };
-  const near = (place, expected) =>
-    place.forEach((degrees, index) =>
-      assert.ok(Math.abs(degrees - expected[index]) < 1e-6, `${place} is not ${expected}`),
-    );
+  const near = (place, expected) => {
+    for (const [index, degrees] of place.entries())
+      assert.ok(Math.abs(degrees - expected[index]) < 1e-6, `${place} is not ${expected}`);
+  };
   near(pointAlong({ ...now, along: { sequence: 0, at_m: 1000, isWished: false } }), [10.01, 50]);
   const original = [{ position: [10, 50], altitude_agl_m: 60, speed_mps: null, was: 0, kind: "start" }];
   const look = {
