@@ -87,7 +87,12 @@ export function wrongWayRound(stated, usual) {
   return ORDERED.filter(([lower, upper]) => inForce(lower) > inForce(upper)).map(([lower, upper]) => [upper, lower]);
 }
 
-/** Bounds in a shown unit, to a tenth inwards: { min, max }. @param {readonly number[]} bounds @param {number} factor */
+/**
+ * Bounds in a shown unit, to a tenth inwards: { min, max }.
+ *
+ * @param {readonly number[]} bounds
+ * @param {number} factor
+ */
 export const boundsIn = ([least, most], factor) =>
   factor === 1
     ? { min: least, max: most }

@@ -6,7 +6,11 @@ import { USUAL_RESERVE_PERCENT } from "../uav_figures.js";
 
 /** @param {UavBody & Pick<Uav, "from_type">} uav @returns {UavBody} */
 function bodyOfUav(uav) {
-  /** What is its type's is not its own. @param {"max_range_m" | "cruise_speed_mps" | "battery_wh" | "mass_kg" | "reserve_percent" | "max_airspeed_mps"} name */
+  /**
+   * What is its type's is not its own.
+   *
+   * @param {"max_range_m" | "cruise_speed_mps" | "battery_wh" | "mass_kg" | "reserve_percent" | "max_airspeed_mps"} name
+   */
   const own = (name) => (uav.from_type.includes(name) ? null : uav[name]);
   return {
     name: uav.name,

@@ -40,7 +40,11 @@ const DOUBTS = {
   "other-length": t("not known since its list has another length"),
 };
 
-/** "flight 1 of an approved mission, read back 3 min ago". @param {Pick<UavConnection, "loaded_flight" | "loaded_read_at" | "loaded_doubt" | "server_time">} loaded */
+/**
+ * "flight 1 of an approved mission, read back 3 min ago".
+ *
+ * @param {Pick<UavConnection, "loaded_flight" | "loaded_read_at" | "loaded_doubt" | "server_time">} loaded
+ */
 export function loadedText({ loaded_flight, loaded_read_at, loaded_doubt, server_time }) {
   const what = t("flight {number} of an approved mission", { number: loaded_flight });
   if (!loaded_read_at) return what;
@@ -67,7 +71,12 @@ function drawing(connection) {
   ];
 }
 
-/** Draws itself into `place` until that is taken off the page. @param {HTMLElement} place @param {{ id: number }} uav */
+/**
+ * Draws itself into `place` until that is taken off the page.
+ *
+ * @param {HTMLElement} place
+ * @param {{ id: number }} uav
+ */
 export async function mountConnection(place, uav) {
   const draw = async () => {
     const { data } = /** @type {Answer<UavConnection>} */ (await get(`/uavs/${uav.id}/connection`));

@@ -54,7 +54,11 @@ export function mountFilters(store, { onTab, onChange }) {
     }
   });
 
-  /** @param {(typeof SELECTS)[number]} name @param {string} chosen @param {(readonly [string | number, string])[]} choices */
+  /**
+   * @param {(typeof SELECTS)[number]} name
+   * @param {string} chosen
+   * @param {(readonly [string | number, string])[]} choices
+   */
   function fillSelect(name, chosen, choices) {
     byId(`fleet-${name}`).replaceChildren(
       ...choices.map(([value, words]) => h("option", { value: `${value}`, selected: `${value}` === chosen }, words)),

@@ -134,7 +134,13 @@ const uavMarker = ({ name, state }, isChosen, choose) =>
     h("span", { class: "dart-name", "aria-hidden": "true" }, name),
   ]);
 
-/** @param {string} title @param {string} label @param {string} kind @param {() => unknown} choose @param {Element[]} content */
+/**
+ * @param {string} title
+ * @param {string} label
+ * @param {string} kind
+ * @param {() => unknown} choose
+ * @param {Element[]} content
+ */
 function markerButton(title, label, kind, choose, content) {
   const button = h("button", { type: "button", tabindex: "-1", title, "aria-label": label, class: kind }, content);
   button.addEventListener("click", (event) => {

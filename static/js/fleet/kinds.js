@@ -28,7 +28,12 @@ const term = (name, value) =>
     ? []
     : [h("dt", {}, name), h("dd", {}, value)];
 
-/** What it is charged to, and what a full one holds; the latter alone where nobody knows the former. @param {Uav} uav @returns {Child} */
+/**
+ * What it is charged to, and what a full one holds; the latter alone where nobody knows the former.
+ *
+ * @param {Uav} uav
+ * @returns {Child}
+ */
 function batteryCell({ battery_percent, battery_wh }) {
   const holds = battery_wh !== null && caption(wattHours(battery_wh));
   return battery_percent === null && holds ? holds : [batteryMark(battery_percent), holds];

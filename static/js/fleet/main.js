@@ -159,7 +159,12 @@ async function loadMore() {
   }
 }
 
-/** UAVs are filtered by the server; types and bases are few and all here. @param {FleetState} state @returns {Row[] | null} */
+/**
+ * UAVs are filtered by the server; types and bases are few and all here.
+ *
+ * @param {FleetState} state
+ * @returns {Row[] | null}
+ */
 function shownRows({ tab, text, uavs, types, bases }) {
   if (tab === "uavs") return uavs;
   const wanted = text.toLocaleLowerCase();

@@ -121,7 +121,14 @@ const actsOf = (row, uav, acts) =>
     ),
   );
 
-/** The way to the UAVs of a type or a base. @param {Tab} tab @param {number} id @param {number} count @param {PanelActs} acts */
+/**
+ * The way to the UAVs of a type or a base.
+ *
+ * @param {Tab} tab
+ * @param {number} id
+ * @param {number} count
+ * @param {PanelActs} acts
+ */
 const uavsLink = (tab, id, count, acts) =>
   h(
     "p",

@@ -79,7 +79,12 @@ export function placeFields(position, onMove) {
   };
 }
 
-/** By which door a UAV is told what to do, and what is taken for its word. @param {UavBody} uav @param {boolean} isAdministrator */
+/**
+ * By which door a UAV is told what to do, and what is taken for its word.
+ *
+ * @param {UavBody} uav
+ * @param {boolean} isAdministrator
+ */
 function linkFields(uav, isAdministrator) {
   /** @param {"is_simulated" | "allows_unsigned"} name @param {string} label @param {string} hint */
   const waiver = (name, label, hint) =>

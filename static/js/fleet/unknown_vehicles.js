@@ -13,7 +13,10 @@ const ASKED_EVERY_MS = 15_000;
 const NEW = "";
 const NONE = t("None. A vehicle that speaks to a gateway with a system id of no UAV is listed here.");
 
-/** @param {Pick<UnknownVehicle, "heard_at" | "autopilot" | "vehicle_type" | "address" | "is_signed">} vehicle @param {number} [now] */
+/**
+ * @param {Pick<UnknownVehicle, "heard_at" | "autopilot" | "vehicle_type" | "address" | "is_signed">} vehicle
+ * @param {number} [now]
+ */
 export function aboutVehicle(vehicle, now = Date.now()) {
   const seconds = (now - Date.parse(vehicle.heard_at)) / 1_000;
   const facts = [

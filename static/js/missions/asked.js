@@ -47,7 +47,12 @@ const startOf = (day, plusDays = 0) => {
   return new Date(year, month - 1, date + plusDays).toISOString();
 };
 
-/** The path and query of the API. Days are the reader's: the last one counts whole. @param {Asked} asked @param {Date} [now] */
+/**
+ * The path and query of the API. Days are the reader's: the last one counts whole.
+ *
+ * @param {Asked} asked
+ * @param {Date} [now]
+ */
 export function requestOf(asked, now = new Date()) {
   const parameters = new URLSearchParams({ limit: String(PAGE_SIZE), order: asked.order });
   for (const name of /** @type {const} */ (["state", "author", "uav"]))

@@ -68,7 +68,11 @@ export function mountFlying(store, flying, { canFly, saveCopy }) {
   byId("revoke").addEventListener("click", () => void flying.revoke());
   byId("abort").addEventListener("click", () => void flying.abort());
 
-  /** For the route that is chosen, or the only one: the question opens, nothing is done at once. @param {AskedKind} kind */
+  /**
+   * For the route that is chosen, or the only one: the question opens, nothing is done at once.
+   *
+   * @param {AskedKind} kind
+   */
   function ask(kind) {
     const { mission, chosenRoute } = store.state;
     if (!mission || !isOnItsWay(mission)) return false;
@@ -219,7 +223,14 @@ function actsOf(flyer, mission, commands, { store, flying }) {
   ];
 }
 
-/** The menu of the commands that are seldom given. @param {FlyerHere} flyer @param {Mission} mission @param {Command[]} commands @param {Flying} flying */
+/**
+ * The menu of the commands that are seldom given.
+ *
+ * @param {FlyerHere} flyer
+ * @param {Mission} mission
+ * @param {Command[]} commands
+ * @param {Flying} flying
+ */
 function moreButton(flyer, mission, commands, flying) {
   const { name } = flyer;
   const more = h(

@@ -236,7 +236,12 @@ const conflictNotice = ({ whose, at }, actions) =>
     ],
   );
 
-/** What the plan warns of, and which targets it does not reach. @param {MissionPageState} state @param {NoticeContext} context */
+/**
+ * What the plan warns of, and which targets it does not reach.
+ *
+ * @param {MissionPageState} state
+ * @param {NoticeContext} context
+ */
 function planNotices({ plan }, { actions, canPlan, askWhy }) {
   const unreached = unreachedOf(plan);
   const more = unreached.length - MOST_UNREACHED;

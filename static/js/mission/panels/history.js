@@ -111,7 +111,12 @@ export function wordsOfEntry(entry) {
   return wordsOfMaking(entry) ?? wordsOfFlying(entry) ?? { title: t("Changed"), detail: changeWords(entry) };
 }
 
-/** What was done to the mission itself; null for the rest. @param {Pick<Entry, "action" | "before" | "after">} entry @returns {EntryWords | null} */
+/**
+ * What was done to the mission itself; null for the rest.
+ *
+ * @param {Pick<Entry, "action" | "before" | "after">} entry
+ * @returns {EntryWords | null}
+ */
 function wordsOfMaking({ action, before, after }) {
   if (action === "create")
     return {
@@ -148,7 +153,12 @@ function wordsOfMaking({ action, before, after }) {
   return null;
 }
 
-/** What was done to fly it; null for the rest. @param {Pick<Entry, "action" | "after">} entry @returns {EntryWords | null} */
+/**
+ * What was done to fly it; null for the rest.
+ *
+ * @param {Pick<Entry, "action" | "after">} entry
+ * @returns {EntryWords | null}
+ */
 function wordsOfFlying({ action, after }) {
   if (action === "approve")
     return { title: t("Approved"), detail: t("as {hash}", { hash: (after?.sha256 ?? "").slice(0, 12) }) };
@@ -166,7 +176,11 @@ function wordsOfFlying({ action, after }) {
   return null;
 }
 
-/** Changes of one person within ten minutes are one line, the newest first: [[entry, …], …]. @param {Entry[]} entries */
+/**
+ * Changes of one person within ten minutes are one line, the newest first: [[entry, …], …].
+ *
+ * @param {Entry[]} entries
+ */
 export function grouped(entries) {
   /** @type {Entry[][]} */
   const groups = [];

@@ -142,7 +142,13 @@ function fileInput(words, wrong) {
   return input;
 }
 
-/** How many were found, mean several things, are not known. @param {number} found @param {number} several @param {number} none */
+/**
+ * How many were found, mean several things, are not known.
+ *
+ * @param {number} found
+ * @param {number} several
+ * @param {number} none
+ */
 const sentenceOf = (found, several, none) =>
   [
     found > 0 && tn(found, "{count} found", "{count} found"),

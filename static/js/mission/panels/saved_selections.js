@@ -78,7 +78,13 @@ function selectionRow(row, canKeep, acts) {
   );
 }
 
-/** The form of another name in the place of the name. @param {HTMLElement} place @param {string} name @param {{ give: (name: string) => unknown, end: () => void }} acts */
+/**
+ * The form of another name in the place of the name.
+ *
+ * @param {HTMLElement} place
+ * @param {string} name
+ * @param {{ give: (name: string) => unknown, end: () => void }} acts
+ */
 function showRenaming(place, name, { give, end }) {
   const input = h("input", {
     class: "input",
@@ -176,7 +182,12 @@ class SelectionsDialog {
     return this.#store.state.selection.targets;
   }
 
-  /** Shown in the dialog: what lies behind it cannot be reached. @param {string} words @param {(() => unknown) | null} [undo] */
+  /**
+   * Shown in the dialog: what lies behind it cannot be reached.
+   *
+   * @param {string} words
+   * @param {(() => unknown) | null} [undo]
+   */
   #tell(words, undo = null) {
     setChildren(
       this.#done,

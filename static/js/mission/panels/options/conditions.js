@@ -24,7 +24,12 @@ const FIRST_LAYER = { altitude_agl_m: 100, speed_mps: 5, from_deg: 270 };
 const [HIGHEST_M, STRONGEST_MPS] = [1000, 60]; // missions/serializers/limits.py
 const [COLDEST_C, HOTTEST_C] = [-60, 60];
 
-/** Typed in the reader's unit, read in SI; one that nobody touched is what it was. @param {number} value @param {FigureHow} how */
+/**
+ * Typed in the reader's unit, read in SI; one that nobody touched is what it was.
+ *
+ * @param {number} value
+ * @param {FigureHow} how
+ */
 function figure(value, { label, min, max, unit, typed = (si) => si, si = (shown) => shown }) {
   const shown = Number(typed(value).toPrecision(5));
   const input = h("input", {
@@ -162,7 +167,12 @@ function createWind(wind) {
   };
 }
 
-/** Asks for the air. @param {Conditions | null} conditions @param {(conditions: Conditions | null) => unknown} use null: calm and mild */
+/**
+ * Asks for the air.
+ *
+ * @param {Conditions | null} conditions
+ * @param {(conditions: Conditions | null) => unknown} use null: calm and mild
+ */
 export function askForConditions(conditions, use) {
   const known = conditionsOf(conditions) ?? { wind: [], temperature_c: MILD_C };
   const wind = createWind(known.wind);

@@ -66,7 +66,12 @@ function axis(times) {
   );
 }
 
-/** Free spans are buttons: a click takes the moment that was pointed at, Enter the begin of the span. @param {LegalTimes} times @param {ChartActs} acts */
+/**
+ * Free spans are buttons: a click takes the moment that was pointed at, Enter the begin of the span.
+ *
+ * @param {LegalTimes} times
+ * @param {ChartActs} acts
+ */
 function unionTrack(times, { depart }) {
   const track = h("div", { class: "legal-track", role: "group", "aria-label": t("Legal times to depart") });
   times.windows.forEach((free, index) => {
@@ -157,7 +162,13 @@ function departureSlider(times, moment, acts) {
   return slider;
 }
 
-/** The slider follows the pointer until that is lifted. @param {HTMLElement} slider @param {LegalTimes} times @param {ChartActs} acts */
+/**
+ * The slider follows the pointer until that is lifted.
+ *
+ * @param {HTMLElement} slider
+ * @param {LegalTimes} times
+ * @param {ChartActs} acts
+ */
 function drag(slider, times, { depart, redraw }) {
   const over = /** @type {HTMLElement} */ (slider.parentElement);
   /** @type {number | null} */
@@ -184,7 +195,12 @@ function drag(slider, times, { depart, redraw }) {
   addEventListener("pointercancel", end);
 }
 
-/** @param {HTMLElement} chart is filled @param {LegalTimes} times @param {string | null} departs_at @param {ChartActs} acts */
+/**
+ * @param {HTMLElement} chart is filled
+ * @param {LegalTimes} times
+ * @param {string | null} departs_at
+ * @param {ChartActs} acts
+ */
 export function drawLegalChart(chart, times, departs_at, acts) {
   const { activeElement } = document;
   const focused =

@@ -13,7 +13,12 @@ const SHOWN_FIRST = 6; // groups of waypoints that fail
 /** @type {Record<string, string>} */
 const ICONS = { home: "circle-check", lost: "triangle-alert" };
 
-/** Returns its element; it follows the store. @param {MissionStore} store @param {(positions: number[][]) => void} showPlaces */
+/**
+ * Returns its element; it follows the store.
+ *
+ * @param {MissionStore} store
+ * @param {(positions: number[][]) => void} showPlaces
+ */
 export function createLinkCheck(store, showPlaces) {
   const said = h("p", { class: "link-said", role: "status" });
   const heights = h("p", { class: "caption" });
@@ -60,7 +65,12 @@ export function createLinkCheck(store, showPlaces) {
   return element;
 }
 
-/** Returns what makes the row of a group of failures. @param {MissionStore} store @param {(positions: number[][]) => void} showPlaces */
+/**
+ * Returns what makes the row of a group of failures.
+ *
+ * @param {MissionStore} store
+ * @param {(positions: number[][]) => void} showPlaces
+ */
 function createRow(store, showPlaces) {
   /** @type {FailureGroup | null} */
   let held = null; // the group that was clicked stays lit while its row has focus

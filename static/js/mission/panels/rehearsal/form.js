@@ -15,7 +15,11 @@ const FIGURES = [
   { name: "battery_percent", label: t("Battery holds"), unit: "%", min: 10, max: 100 },
 ];
 
-/** Fills the form. `onStart` and `onChange` are called as it is sent and changed. @param {{ onStart: () => void, onChange: () => void }} acts */
+/**
+ * Fills the form. `onStart` and `onChange` are called as it is sent and changed.
+ *
+ * @param {{ onStart: () => void, onChange: () => void }} acts
+ */
 export function mountForm({ onStart, onChange }) {
   const form = byId("rehearsal-form", HTMLFormElement);
   const own = h("input", { type: "checkbox", name: "own" });

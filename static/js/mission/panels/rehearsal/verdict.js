@@ -50,7 +50,12 @@ export function createVerdict(store, rehearsing, { canRehearse, seeInSpace }) {
     ),
   ];
 
-  /** @param {RehearsalDetail} detail @param {number} number of the run @param {RehearsalTrack | null} track @returns {Child} */
+  /**
+   * @param {RehearsalDetail} detail
+   * @param {number} number of the run
+   * @param {RehearsalTrack | null} track
+   * @returns {Child}
+   */
   function content(detail, number, track) {
     const run = detail.runs[number];
     return [

@@ -14,7 +14,11 @@ import { separationOf } from "../../route_times.js";
 const bound = (image, isFault, ...words) =>
   h("span", { class: `plan-bound${isFault ? " fault" : ""}` }, icon(image, "small"), h("span", {}, words));
 
-/** @param {MissionPageState} state @param {ShownPlan} plan @param {{ canPlan: boolean, actions: MissionActions }} how */
+/**
+ * @param {MissionPageState} state
+ * @param {ShownPlan} plan
+ * @param {{ canPlan: boolean, actions: MissionActions }} how
+ */
 export function drawQuality(state, plan, { canPlan, actions }) {
   const isCurrent = isPlanCurrent(state);
   const quality = isCurrent ? qualityOf(plan.result) : null;

@@ -18,7 +18,11 @@ const roomBesideAll = (dock) =>
 /** Whether length and battery have to give way. @param {HTMLElement} dock */
 export const isTight = (dock) => roomBesideAll(dock) < LEAST_STRIP_PX;
 
-/** Room for a strip: on a phone all there is, where the dock is narrow without length and battery. @param {HTMLElement} dock */
+/**
+ * Room for a strip: on a phone all there is, where the dock is narrow without length and battery.
+ *
+ * @param {HTMLElement} dock
+ */
 export function stripRoom(dock) {
   const width = mainOf(dock).clientWidth;
   if (matchMedia("(max-width: 720px)").matches) return Math.max(LEAST_PX, width - 32);

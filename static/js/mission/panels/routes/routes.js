@@ -47,7 +47,12 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
     mark(state);
   }
 
-  /** @param {MissionPageState} state @param {ShownPlan} plan @param {ShortPlan | null} before @param {boolean} showsBattery */
+  /**
+   * @param {MissionPageState} state
+   * @param {ShownPlan} plan
+   * @param {ShortPlan | null} before
+   * @param {boolean} showsBattery
+   */
   function drawRows(state, plan, before, showsBattery) {
     const buttons = () => [...list.querySelectorAll("button")];
     const focused = buttons().indexOf(/** @type {HTMLButtonElement} */ (document.activeElement));
@@ -110,7 +115,13 @@ export function mountRoutes(store, actions, { canPlan, grounds, showPoint }) {
   }).observe(mainOf(dock));
 }
 
-/** The buttons for the ways to plan and for the plan before. @param {MissionStore} store @param {MissionActions} actions @param {boolean} canPlan */
+/**
+ * The buttons for the ways to plan and for the plan before.
+ *
+ * @param {MissionStore} store
+ * @param {MissionActions} actions
+ * @param {boolean} canPlan
+ */
 function listenToComparing(store, actions, canPlan) {
   byId("compare-ways").addEventListener("click", () => {
     const isOpen = Boolean(store.state.why?.alternatives);

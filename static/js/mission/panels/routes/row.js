@@ -43,7 +43,12 @@ export function moreOrLess(difference, least, textOf) {
   return `${difference > 0 ? "+" : "−"}${textOf(Math.abs(difference))}`;
 }
 
-/** One that cannot take off; the notice and the row of the UAV say which. @param {PlanResult} result @param {ShownRoute} route */
+/**
+ * One that cannot take off; the notice and the row of the UAV say which.
+ *
+ * @param {PlanResult} result
+ * @param {ShownRoute} route
+ */
 const isGrounded = ({ warnings }, { sequence }) =>
   (warnings ?? []).some(({ code, uav }) => GROUNDING.includes(code) && uav === sequence);
 
@@ -96,7 +101,12 @@ export function routeRow(route, context) {
   );
 }
 
-/** Length, time and battery; beside a plan before also the differences. @param {ShownRoute} route @param {RowContext} context */
+/**
+ * Length, time and battery; beside a plan before also the differences.
+ *
+ * @param {ShownRoute} route
+ * @param {RowContext} context
+ */
 function figuresOf(route, { result, before, showsBattery }) {
   const isUsed = Boolean(route.geometry);
   const landing = isUsed && result.departs_at && !before ? landing_s(route) : null;

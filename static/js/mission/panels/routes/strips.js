@@ -24,7 +24,12 @@ import { passedZones } from "../../zones_passed.js";
 
 const MOST_LOOKED_AT = 12; // routes beside which zones are looked for at once
 
-/** Keys by the place of each route; what is locked to a UAV without a route is not drawn. @param {MissionPageState} state @param {ShownPlan} plan */
+/**
+ * Keys by the place of each route; what is locked to a UAV without a route is not drawn.
+ *
+ * @param {MissionPageState} state
+ * @param {ShownPlan} plan
+ */
 function wishesOf({ selection }, plan) {
   const known = new Set([...selection.targets, ...plan.targets].map(({ key }) => key));
   const wished = wishedOrders(ordersOf(plan), selection.locks ?? []);
@@ -63,7 +68,12 @@ export function createStrips(list, store, actions, { canPlan, grounds }) {
     },
   });
 
-  /** What keys mean on this page: targets of the plan, and those picked since. @param {MissionPageState} state @param {string} key */
+  /**
+   * What keys mean on this page: targets of the plan, and those picked since.
+   *
+   * @param {MissionPageState} state
+   * @param {string} key
+   */
   const targetOf = ({ plan, selection }, key) =>
     [...(plan?.targets ?? []), ...selection.targets].find((target) => target.key === key);
 
@@ -115,7 +125,13 @@ export function createStrips(list, store, actions, { canPlan, grounds }) {
       strips.clear();
       wishes = wishesOf(state, plan);
     },
-    /** @param {ShownRoute} route @param {ShortRoute | null} before @param {MissionPageState} state @param {Drawn} drawn @returns {Child} */
+    /**
+     * @param {ShownRoute} route
+     * @param {ShortRoute | null} before
+     * @param {MissionPageState} state
+     * @param {Drawn} drawn
+     * @returns {Child}
+     */
     draw(route, before, state, drawn) {
       const isShown = Boolean(route.geometry) || wishes[route.sequence].length > 0;
       return [isShown && stripOf(route, state, drawn), before && before.length_m > 0 && oldStrip(before, drawn)];
@@ -129,7 +145,12 @@ export function createStrips(list, store, actions, { canPlan, grounds }) {
       for (const [sequence, strip] of strips)
         strip.point(along?.sequence === sequence && !along.isWished ? along.at_m : null);
     },
-    /** Asks where routes go round zones; onFound() once the server has said so. @param {ShownPlan} plan @param {() => void} onFound */
+    /**
+     * Asks where routes go round zones; onFound() once the server has said so.
+     *
+     * @param {ShownPlan} plan
+     * @param {() => void} onFound
+     */
     lookForZones(plan, onFound) {
       const flown = routesOf(plan).filter(({ geometry }) => geometry);
       for (const route of flown.slice(0, MOST_LOOKED_AT)) {

@@ -4,7 +4,10 @@
 
 /** @typedef {ReturnType<typeof createChoosing>} Choosing */
 
-/** @param {MissionStore} store @param {{ canPlan: boolean, order: () => string[] }} how the keys as they stand in the list */
+/**
+ * @param {MissionStore} store
+ * @param {{ canPlan: boolean, order: () => string[] }} how the keys as they stand in the list
+ */
 export function createChoosing(store, { canPlan, order }) {
   let isOn = false; // several are chosen with check boxes
   /** @type {string | null} */
@@ -39,7 +42,12 @@ export function createChoosing(store, { canPlan, order }) {
       const { chosenTargets } = store.state;
       choose(isChosen(target) ? chosenTargets.filter((key) => key !== target.key) : [...chosenTargets, target.key]);
     },
-    /** All from where the range begins, at `from` where none has begun yet. @param {PickedTarget} target @param {PickedTarget} [from] */
+    /**
+     * All from where the range begins, at `from` where none has begun yet.
+     *
+     * @param {PickedTarget} target
+     * @param {PickedTarget} [from]
+     */
     upTo(target, from) {
       if (from) anchor ??= from.key;
       const keys = order();

@@ -7,7 +7,11 @@ import { targetMenu } from "../../target_menu.js";
 
 /** @import { MissionActions, MissionStore } from "../../types.d.ts" */
 
-/** @param {MissionStore} store @param {MissionActions} actions @param {{ chooseAll: () => void, done: () => void }} acts */
+/**
+ * @param {MissionStore} store
+ * @param {MissionActions} actions
+ * @param {{ chooseAll: () => void, done: () => void }} acts
+ */
 export function mountChosenBar(store, actions, { chooseAll, done }) {
   const bar = byId("chosen-bar");
   const chosen = () => {

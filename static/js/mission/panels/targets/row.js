@@ -114,7 +114,13 @@ export function refreshRow(row, target, { place, isMissed, index, arrival, isCho
   refreshTask(find(row, ".task", HTMLElement), target);
 }
 
-/** What is not as usual, without a word where everything is. @param {HTMLElement} place @param {PickedTarget} target @param {MissionSelection} selection */
+/**
+ * What is not as usual, without a word where everything is.
+ *
+ * @param {HTMLElement} place
+ * @param {PickedTarget} target
+ * @param {MissionSelection} selection
+ */
 function refreshMarks(place, target, selection) {
   const { mark, said } = priorityOf(target);
   const lock = lockOf(selection, target.key);

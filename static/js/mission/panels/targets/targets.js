@@ -202,7 +202,11 @@ function pressKey(event, row, target, { store, actions, canPlan, choosing, keyAt
   if (event.shiftKey && canPlan && reached) choosing.upTo(reached, target);
 }
 
-/** What is chosen elsewhere, such as by a pill on the map, is chosen alone; what is no longer picked is not chosen. @param {MissionStore} store */
+/**
+ * What is chosen elsewhere, such as by a pill on the map, is chosen alone; what is no longer picked is not chosen.
+ *
+ * @param {MissionStore} store
+ */
 function keepChosenKnown(store) {
   store.listen(["chosenTarget", "selection"], ({ chosenTarget, chosenTargets, selection }) => {
     const known = new Set(selection.targets.map((target) => target.key));

@@ -12,7 +12,12 @@ import { changeWords, openChanges } from "../../uav_changes.js";
 const CHANGEABLE = ["draft", "planned"];
 const MOST_TOLD = 4;
 
-/** What of the changes concerns the page as it stands: figures that are still those of before, and states that the plan on it does not know of. @param {State} state */
+/**
+ * What of the changes concerns the page as it stands: figures that are still those of before, and states that the plan on it does not know
+ * of.
+ *
+ * @param {State} state
+ */
 export function toldChanges({ mission, selection, plan, planIsStored }) {
   if (!mission) return [];
   const isOfPlan = planIsStored && isPlanCurrent({ plan, selection });

@@ -154,7 +154,13 @@ const ownFigures = ({ battery_wh, reserve_percent, mass_kg, max_airspeed_mps }, 
     h("p", { class: "caption own-values" }, hint),
   );
 
-/** Beside the fields that it is about, else below them all. @param {unknown} error @param {Map<string, Input>} inputs @param {HTMLElement} wrong */
+/**
+ * Beside the fields that it is about, else below them all.
+ *
+ * @param {unknown} error
+ * @param {Map<string, Input>} inputs
+ * @param {HTMLElement} wrong
+ */
 function showRefusal(error, inputs, wrong) {
   /** @type {Record<string, string | string[]>} */
   const details = (error instanceof ApiError && error.details) || {};

@@ -58,7 +58,12 @@ export function field(label, input, unit = "") {
   );
 }
 
-/** Shows beside a field what is wrong with it; empty words take that away. @param {Input} input @param {string} words */
+/**
+ * Shows beside a field what is wrong with it; empty words take that away.
+ *
+ * @param {Input} input
+ * @param {string} words
+ */
 export function showFault(input, words) {
   const fault = find(/** @type {HTMLElement} */ (input.closest(".field")), ".field-error", HTMLElement);
   fault.hidden = !words;
@@ -76,7 +81,13 @@ const inUnits = (value, unit) => Number((value / unit).toPrecision(6));
 /** @param {number | null | undefined} value @param {number} unit */
 const shownIn = (value, unit) => (value === null || value === undefined ? "" : inUnits(value, unit));
 
-/** A value of its own, in units of so many of the stored ones; empty it is what stands in grey. @param {OwnFigure} name @param {number | null | undefined} value @param {number} [unit] */
+/**
+ * A value of its own, in units of so many of the stored ones; empty it is what stands in grey.
+ *
+ * @param {OwnFigure} name
+ * @param {number | null | undefined} value
+ * @param {number} [unit]
+ */
 function own(name, value, unit = 1) {
   const { min, max } = boundsIn(name, unit);
   return number(shownIn(value, unit), min, max, false);

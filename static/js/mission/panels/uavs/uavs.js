@@ -17,7 +17,11 @@ import { refreshRow, uavRow } from "./row.js";
 const LEAST_TO_NARROW = 4; // a fleet of fewer is seen at a glance
 const SHOWN_FIRST = 30;
 
-/** One that is not of the fleet, as a program may put it into a mission, is known by its place alone. @param {StandingUav} uav */
+/**
+ * One that is not of the fleet, as a program may put it into a mission, is known by its place alone.
+ *
+ * @param {StandingUav} uav
+ */
 const keyOf = ({ id, sequence }) => (id === null ? `at ${sequence}` : `${id}`);
 
 /** Its place in the mission now, −1 where it does not fly. @param {MissionPageState} state @param {StandingUav} uav */
@@ -56,7 +60,12 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
     (row, uav) => refreshRow(row, uav, { canPlan, returnsToStart: store.state.selection.return_to_start }),
   );
 
-  /** Those to choose from, as narrowed; who flies already stays in sight. @param {MissionPageState} state @returns {ShownUav[]} */
+  /**
+   * Those to choose from, as narrowed; who flies already stays in sight.
+   *
+   * @param {MissionPageState} state
+   * @returns {ShownUav[]}
+   */
   function shownOf(state) {
     const fleet = inFleetOrder(state).map((uav) => ({ ...uav, grounded: groundedWords(state, uav) }));
     if (state.mission && !canPlan) return fleet.filter((uav) => uav.sequence !== null); // who does not fly is of use only to who plans

@@ -34,7 +34,11 @@ const COLUMNS = [
   { words: t("Not reached"), figureOf: missed, textOf: (count) => numberText(count), least: 0.5 },
 ];
 
-/** Of all UAVs together, without what they stand at a base between two flights or on a tower to charge. @param {PlanResult} result */
+/**
+ * Of all UAVs together, without what they stand at a base between two flights or on a tower to charge.
+ *
+ * @param {PlanResult} result
+ */
 export function flying_s({ routes }) {
   const used = routes.filter(({ waypoints }) => waypoints?.length);
   return used.reduce((sum, route) => sum + route.duration_s - standing_s(route), 0);
@@ -63,7 +67,11 @@ export function waysOf({ selection, figures, planningBeside, refusedBeside, plan
   });
 }
 
-/** For each column whether a way is as good as the best there, and not all are. Who reaches fewer targets than another wins nothing. @param {Pick<Way, "result">[]} ways */
+/**
+ * For each column whether a way is as good as the best there, and not all are. Who reaches fewer targets than another wins nothing.
+ *
+ * @param {Pick<Way, "result">[]} ways
+ */
 export function isBestIn(ways) {
   const made = ways.map(({ result }) => result);
   const fewest = Math.min(...made.filter((result) => result !== null).map(missed));

@@ -41,7 +41,13 @@ function faultsOf({ faults: { legs, points: ofPoints, other }, points, unknown }
   ];
 }
 
-/** What is changed, and whether it can be flown. @param {HandEdit} hand @param {number} changes @param {string[]} faults */
+/**
+ * What is changed, and whether it can be flown.
+ *
+ * @param {HandEdit} hand
+ * @param {number} changes
+ * @param {string[]} faults
+ */
 function sentenceOf(hand, changes, faults) {
   const parts = [
     changes
@@ -116,7 +122,12 @@ function createWalk(store, actions) {
   };
 }
 
-/** The chosen waypoint: its fields, one more after it, away with it. @param {MissionStore} store @param {MissionActions} actions */
+/**
+ * The chosen waypoint: its fields, one more after it, away with it.
+ *
+ * @param {MissionStore} store
+ * @param {MissionActions} actions
+ */
 function createChosenPoint(store, actions) {
   const chosen = () => store.state.hand?.chosen ?? 0; // there is one while its fields are shown
   const fields = createHandFields(actions, chosen);

@@ -95,7 +95,11 @@ const END_WORDS = {
   base: t("at the nearest base"),
 };
 
-/** "starts 1.2 km from before", "ends at its start instead of hovering at its last target". @param {ReturnType<typeof endsBetween>} ends */
+/**
+ * "starts 1.2 km from before", "ends at its start instead of hovering at its last target".
+ *
+ * @param {ReturnType<typeof endsBetween>} ends
+ */
 function endWords({ moved_m, from, to }) {
   /** @param {Pick<ShortRoute, "end_action" | "base">} end */
   const place = ({ end_action, base }) => base ?? (end_action ? END_WORDS[end_action] : "");

@@ -25,7 +25,12 @@ const field = (label, input, unit) =>
     h("div", { class: "with-unit" }, input, h("span", { class: "unit" }, unit)),
   );
 
-/** Of the leg to a point as the server flies it; null while that is not known. @param {HandEdit} hand @param {number} index */
+/**
+ * Of the leg to a point as the server flies it; null while that is not known.
+ *
+ * @param {HandEdit} hand
+ * @param {number} index
+ */
 const flownSpeed = ({ look, points }, index) =>
   look?.waypoints.length === points.length ? (look.waypoints[index]?.speed_mps ?? null) : null;
 
@@ -53,7 +58,13 @@ export function createHandFields(actions, chosen) {
 
   /** @type {number | null} */
   let shownPoint = null;
-  /** What somebody is typing stays, whatever the server answers meanwhile. @param {HTMLInputElement} input @param {number | ""} value @param {number} index */
+  /**
+   * What somebody is typing stays, whatever the server answers meanwhile.
+   *
+   * @param {HTMLInputElement} input
+   * @param {number | ""} value
+   * @param {number} index
+   */
   function write(input, value, index) {
     if (input !== document.activeElement || index !== shownPoint) input.value = `${value}`;
   }
@@ -68,7 +79,12 @@ export function createHandFields(actions, chosen) {
       field(t("Latitude"), latitude, "°"),
       field(t("Longitude"), longitude, "°"),
     ),
-    /** @param {HandEdit} hand @param {HandPoint} point @param {number} index @param {number | null} own_mps the UAV's own speed */
+    /**
+     * @param {HandEdit} hand
+     * @param {HandPoint} point
+     * @param {number} index
+     * @param {number | null} own_mps the UAV's own speed
+     */
     refresh(hand, point, index, own_mps) {
       write(height, typed(point.altitude_agl_m), index);
       write(longitude, Number(point.position[0].toFixed(6)), index);

@@ -83,7 +83,11 @@ function parts(said) {
   return h("dl", { class: "why-parts" }, rows);
 }
 
-/** Each zone that forces a detour, how much, and what makes it one: heights and times, once they are read. @param {RouteExplanation} said */
+/**
+ * Each zone that forces a detour, how much, and what makes it one: heights and times, once they are read.
+ *
+ * @param {RouteExplanation} said
+ */
 function zonesInTheWay({ zones }) {
   const found = zones.filter(({ extra_m }) => extra_m >= LEAST_M);
   if (!found.length) return null;

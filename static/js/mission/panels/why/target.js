@@ -64,7 +64,12 @@ function sharedWords(said, full) {
     : `${words} ${t("No other UAV has the range left after its other targets.")}`;
 }
 
-/** What the range lacks of the UAV that comes nearest; sentences of batteries have it in themselves. @param {Pick<Said, "reason">} said @param {Pick<Unassigned, "missing_m" | "missing_s">} entry */
+/**
+ * What the range lacks of the UAV that comes nearest; sentences of batteries have it in themselves.
+ *
+ * @param {Pick<Said, "reason">} said
+ * @param {Pick<Unassigned, "missing_m" | "missing_s">} entry
+ */
 export function lackWords({ reason }, { missing_m, missing_s }) {
   if (reason !== "beyond_range" || !missing_m) return "";
   return t("The one that comes nearest lacks {length}, {minutes} min of flight.", {

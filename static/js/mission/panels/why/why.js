@@ -80,7 +80,12 @@ function put(title, ...content) {
   setChildren(byId("why-body"), ...content);
 }
 
-/** The letter and colour of the route that it is about. @param {HTMLElement} panel @param {number | undefined} sequence */
+/**
+ * The letter and colour of the route that it is about.
+ *
+ * @param {HTMLElement} panel
+ * @param {number | undefined} sequence
+ */
 function markRoute(panel, sequence) {
   panel.className = sequence === undefined ? "why" : `why route-${routeNumber(sequence)}`;
   byId("why-letter").hidden = sequence === undefined;
