@@ -256,6 +256,7 @@ SPECTACULAR_SETTINGS = {
         "GapKind": "inspection.models.GapKind",
         "WaypointKind": "missions.models.WaypointKind",
         "TaskKind": ["look", "photo", "hold"],
+        "DaylightEvent": "inspection.zones.schedule.EVENTS",
         "JobState": "workspace.models.JobState",
         "Role": "workspace.models.Role",
         "Theme": "workspace.models.Theme",

@@ -773,6 +773,14 @@ export interface components {
          */
         DayEnum: "MON" | "TUE" | "WED" | "THU" | "FRI" | "SAT" | "SUN" | "ANY";
         /**
+         * @description * `BMCT` - BMCT
+         *     * `SR` - SR
+         *     * `SS` - SS
+         *     * `EECT` - EECT
+         * @enum {string}
+         */
+        DaylightEvent: "BMCT" | "SR" | "SS" | "EECT";
+        /**
          * @description * `tag` - tag
          *     * `layer` - layer
          * @enum {string}
@@ -808,14 +816,6 @@ export interface components {
          * @enum {string}
          */
         EndActionEnum: "hover" | "return" | "land" | "base";
-        /**
-         * @description * `BMCT` - BMCT
-         *     * `SR` - SR
-         *     * `SS` - SS
-         *     * `EECT` - EECT
-         * @enum {string}
-         */
-        EndEventEnum: "BMCT" | "SR" | "SS" | "EECT";
         /**
          * @description * `flown` - flown
          *     * `failed` - failed
@@ -4646,9 +4646,9 @@ export interface components {
             day: components["schemas"]["DayEnum"][];
             /** @description 08:00:00Z */
             startTime: string | null;
-            startEvent: (components["schemas"]["StartEventEnum"] | components["schemas"]["NullEnum"]) | null;
+            startEvent: (components["schemas"]["DaylightEvent"] | components["schemas"]["NullEnum"]) | null;
             endTime: string | null;
-            endEvent: (components["schemas"]["EndEventEnum"] | components["schemas"]["NullEnum"]) | null;
+            endEvent: (components["schemas"]["DaylightEvent"] | components["schemas"]["NullEnum"]) | null;
         };
         SchedulePeriod: {
             /** Format: date-time */
@@ -5031,14 +5031,6 @@ export interface components {
          * @enum {string}
          */
         StaleCauseWhatEnum: "zone" | "uav" | "base" | "asset" | "terrain" | "elsewhere";
-        /**
-         * @description * `BMCT` - BMCT
-         *     * `SR` - SR
-         *     * `SS` - SS
-         *     * `EECT` - EECT
-         * @enum {string}
-         */
-        StartEventEnum: "BMCT" | "SR" | "SS" | "EECT";
         /** @description Every record of the batch is stored, known or refused: none of them needs to be sent again as it is. */
         StoredReports: {
             /** @description new ones */
@@ -6621,13 +6613,13 @@ export type CredentialInputRequest = components['schemas']['CredentialInputReque
 export type CredentialKind = components['schemas']['CredentialKind'];
 export type CredentialPage = components['schemas']['CredentialPage'];
 export type DayEnum = components['schemas']['DayEnum'];
+export type DaylightEvent = components['schemas']['DaylightEvent'];
 export type DeckSourceEnum = components['schemas']['DeckSourceEnum'];
 export type DismissRequest = components['schemas']['DismissRequest'];
 export type DispatchInputRequest = components['schemas']['DispatchInputRequest'];
 export type DrawnAreaRequest = components['schemas']['DrawnAreaRequest'];
 export type DrawnAreaTypeEnum = components['schemas']['DrawnAreaTypeEnum'];
 export type EndActionEnum = components['schemas']['EndActionEnum'];
-export type EndEventEnum = components['schemas']['EndEventEnum'];
 export type EndedFlightOutcomeEnum = components['schemas']['EndedFlightOutcomeEnum'];
 export type EndedFlightRequest = components['schemas']['EndedFlightRequest'];
 export type Error = components['schemas']['Error'];
@@ -6923,7 +6915,6 @@ export type Span = components['schemas']['Span'];
 export type SpeedEnum = components['schemas']['SpeedEnum'];
 export type StaleCause = components['schemas']['StaleCause'];
 export type StaleCauseWhatEnum = components['schemas']['StaleCauseWhatEnum'];
-export type StartEventEnum = components['schemas']['StartEventEnum'];
 export type StoredReports = components['schemas']['StoredReports'];
 export type StoredResults = components['schemas']['StoredResults'];
 export type Straight = components['schemas']['Straight'];
