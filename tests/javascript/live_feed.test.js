@@ -80,7 +80,10 @@ function page(context, { answers = [new Error("away")], ...options } = {}) {
     onChange: (touched) => told.push(touched),
     ...options,
   });
-  const pass = async (ms) => (context.mock.timers.tick(ms), await settle());
+  const pass = async (ms) => {
+    context.mock.timers.tick(ms);
+    await settle();
+  };
   return { feed, asked, states, told, pass };
 }
 

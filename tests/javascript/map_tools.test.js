@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 import { readPalette } from "../../static/js/domain/palette.js";
-import { bearing_deg, measured, measureWords } from "../../static/js/map/measure_tool.js";
 import { filterOf } from "../../static/js/map/look/shown.js";
 import { mapStyle } from "../../static/js/map/look/style.js";
 import { BANDS, bandOf, GROUPS, voltageBand } from "../../static/js/map/look/voltages.js";
+import { bearing_deg, measured, measureWords } from "../../static/js/map/measure_tool.js";
 
 const palette = readPalette((token) => (token === "--font" ? "Inter, sans-serif" : "#808080"));
 const style = mapStyle(palette, {

@@ -16,7 +16,10 @@ function watched(endsIn_s, answers) {
     if (next instanceof Error) throw next;
     return next;
   };
-  const setTimer = (act, ms) => ((fire = act), waits_s.push(ms / 1_000), waits_s.length);
+  const setTimer = (act, ms) => {
+    fire = act;
+    return waits_s.push(ms / 1_000);
+  };
   const watch = createSessionWatch({
     endsIn_s,
     ask: answer,
@@ -26,7 +29,11 @@ function watched(endsIn_s, answers) {
     clearTimer: () => {},
     now_ms: () => 1_000_000,
   });
-  return { shown, waits_s, keep: watch.keep, time: async () => (fire(), settled()) };
+  const time = () => {
+    fire();
+    return settled();
+  };
+  return { shown, waits_s, keep: watch.keep, time };
 }
 
 test("nothing is asked or shown until five minutes before the end", async () => {

@@ -74,7 +74,7 @@ const minutesOf = (time) => Number(time.slice(0, 2)) * 60 + Number(time.slice(3,
 /** @param {number} minutes */
 function timeText(minutes) {
   const within = ((minutes % DAY_MIN) + DAY_MIN) % DAY_MIN || (minutes ? DAY_MIN : 0);
-  return `${Math.floor(within / 60)}`.padStart(2, "0") + ":" + `${within % 60}`.padStart(2, "0");
+  return `${`${Math.floor(within / 60)}`.padStart(2, "0")}:${`${within % 60}`.padStart(2, "0")}`;
 }
 
 /**
