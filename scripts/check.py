@@ -41,6 +41,11 @@ def _python(*arguments: str) -> list[str]:
     return [sys.executable, *arguments]
 
 
+def _node(script: str, *arguments: str) -> list[str]:
+    """A program of node_modules, on the Node.js that set-up has installed."""
+    return [str(PROGRAMS / "node"), str(PROJECT_DIR / "node_modules" / script), *arguments]
+
+
 def _pytest(name: str, expression: str, arguments: list[str], *, lane: str = "tests", workers: int = 0, dist: str = "worksteal") -> Step:
     """A step of pytest, which reports and has a second try of what waits."""
     folder = state_directory() / "check" / "steps" / name.replace(" ", "-")
@@ -86,7 +91,7 @@ def steps(arguments: list[str]) -> list[Step]:
         Step("migrations complete", _python("manage.py", "makemigrations", "--check", "--dry-run")),
         Step("check --deploy", _python("manage.py", "check", "--deploy", "--fail-level", "WARNING"), environment={"SPANWISE_HTTPS": "1"}),
         *_javascript_tests(),
-        Step("JavaScript lint", [str(PROJECT_DIR / "node_modules" / ".bin" / "biome"), "check", "static/js", "tests/javascript"]),
+        Step("JavaScript lint", _node("@biomejs/biome/bin/biome", "check", "static/js", "tests/javascript")),
         Step("JavaScript types", [str(PROGRAMS / "node"), TYPE_CHECKER, "--project", "jsconfig.json"]),
         Step("API types", _python("-m", "scripts.api_types", "--check")),
     ]
