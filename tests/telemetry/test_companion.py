@@ -66,7 +66,7 @@ def test_a_whole_mission_is_flown_over_the_link(flight: Flight) -> None:
     assert {later - before for before, later in pairwise(polls)} == {5.0}
 
 
-@pytest.mark.parametrize("down_s", [5, 60, 600])
+@pytest.mark.parametrize("down_s", [5, 60, pytest.param(600, marks=pytest.mark.long)])
 @pytest.mark.parametrize("answers_only", [False, True], ids=["no request arrives", "no answer arrives"])
 def test_a_uav_without_a_link_flies_on_asks_again_at_once_and_loses_nothing(flight: Flight, down_s: int, answers_only: bool) -> None:
     flight.take_off()
@@ -110,7 +110,7 @@ def test_a_link_that_comes_and_goes_loses_nothing(flight: Flight) -> None:
     assert UavCommand.objects.exclude(state=CommandState.APPLIED).count() == 0
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in range(1, 5))])
 def test_a_companion_that_crashes_at_any_request_loses_nothing(flight: Flight, seed: int) -> None:
     """Killed before the request arrives, or after it was stored and before that was noted; then started anew from its file."""
     chance = random.Random(seed)

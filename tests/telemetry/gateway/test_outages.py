@@ -178,7 +178,7 @@ REPORTS_HZ = 5.0
 
 
 @pytest.mark.parametrize("order", ["kept first", pytest.param("mixed", marks=pytest.mark.long)])
-@pytest.mark.parametrize("lost_s", [5, 60, 600])
+@pytest.mark.parametrize("lost_s", [5, 60, pytest.param(600, marks=pytest.mark.long)])
 def test_a_buffering_vehicle_loses_and_doubles_nothing(lost_s, order, tmp_path):
     """Its time runs 120 times as fast. While the link is lost it flies on and keeps its reports; then it sends them, some twice."""
     unsigned_uav()
