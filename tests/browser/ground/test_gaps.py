@@ -22,7 +22,7 @@ def opens_gaps(
         page.route("**/gaps/summary", just_searched)
     page.goto("/assets/gaps")
     wait_for_map(page)
-    expect(page.locator("#page-facts")).to_contain_text("open · search", timeout=30_000)  # beat looks every 10 s
+    expect(page.locator("#page-facts")).to_contain_text("open · search", timeout=90_000)  # the first search waits for workers that start
     if kind:
         page.locator(".kind-chip", has_text=kind).click()
         expect(page.locator("#gap-list")).to_have_attribute("aria-busy", "false")  # or the first row were still one of all kinds
