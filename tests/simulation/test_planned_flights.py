@@ -35,9 +35,15 @@ def test_climbs_are_planned_by_the_rules_speed() -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("air", [CALM, WINDY, ROUGH])
-def test_20_missions_along_real_lines_take_what_was_planned(shared_data, air: str) -> None:
-    files = [f"osm/{name}" for name in ("columbus-ohio.osm.pbf", "nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf")]
-    lines = [line for path in files for line in lines_of(shared_data(path))]
+@pytest.mark.parametrize(
+    "names",
+    [
+        pytest.param(["elme-valley.osm.pbf", "quillmoor.osm.pbf"], id="generated"),
+        pytest.param(["columbus-ohio.osm.pbf", "nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf"], id="real"),
+    ],
+)
+def test_20_missions_along_lines_of_a_region_take_what_was_planned(names: list[str], region_file, air: str) -> None:
+    lines = [line for name in names for line in lines_of(region_file(name))]
     found = []
     for seed in range(20):
         route, code = mission(seed, lines)

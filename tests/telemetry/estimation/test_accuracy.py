@@ -29,9 +29,15 @@ def keeps_bars(every_s: float, score: Score) -> None:
 
 
 @pytest.mark.long
-def test_200_flights_keep_the_bars(shared_data, record_property):
-    files = [shared_data(f"osm/{name}") for name in ("nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf")]
-    lines = [line for path in files for line in lines_of(path)]
+@pytest.mark.parametrize(
+    "names",
+    [
+        pytest.param(["elme-valley.osm.pbf", "quillmoor.osm.pbf"], id="generated"),
+        pytest.param(["nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf"], id="real"),
+    ],
+)
+def test_200_flights_keep_the_bars(names, region_file, record_property):
+    lines = [line for name in names for line in lines_of(region_file(name))]
     for every_s, score in score_flights(range(200), lines).items():
         record_property("figure", f"a report in {every_s:g} s: inside {share(score.inside):.1%}")
         keeps_bars(every_s, score)

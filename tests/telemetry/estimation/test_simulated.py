@@ -30,9 +30,15 @@ def test_a_few_simulated_flights_are_estimated_well() -> None:
 
 
 @pytest.mark.long
-def test_100_simulated_flights_keep_the_bars(shared_data) -> None:
-    files = [f"osm/{name}" for name in ("columbus-ohio.osm.pbf", "nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf")]
-    lines = [line for path in files for line in lines_of(shared_data(path))]
+@pytest.mark.parametrize(
+    "names",
+    [
+        pytest.param(["elme-valley.osm.pbf", "quillmoor.osm.pbf"], id="generated"),
+        pytest.param(["columbus-ohio.osm.pbf", "nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf"], id="real"),
+    ],
+)
+def test_100_simulated_flights_keep_the_bars(names, region_file) -> None:
+    lines = [line for name in names for line in lines_of(region_file(name))]
     scores = score_simulated(range(100), lines)
     assert all(is_better_than_both(score) for score in scores.values())
     assert 0.90 <= share(scores[10.0].inside) <= 0.98, share(scores[10.0].inside)
