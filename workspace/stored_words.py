@@ -59,6 +59,14 @@ TEMPLATES = (
     gettext_noop("The file could not be read."),
     gettext_noop("polygon is not closed"),
     gettext_noop("the border crosses itself"),
+    gettext_noop(
+        "%(voids)s of %(posts)s posts are void (%(percent)s %%), %(undeclared)s of them without being declared. "
+        "An older model fills them where it reaches; elsewhere the ground stays unknown. Nothing is made up."
+    ),
+    gettext_noop(
+        "%(voids)s of %(posts)s posts are void (%(percent)s %%). "
+        "An older model fills them where it reaches; elsewhere the ground stays unknown. Nothing is made up."
+    ),
     # of rehearsals in simulation
     gettext_noop("Waiting for a worker"),
     gettext_noop("Flying %(number)s of %(all)s"),

@@ -124,6 +124,8 @@ def proposal_json(proposal: ImportProposal, *, is_brief: bool = False) -> dict[s
     """In a list without what only the open one needs, such as the samples and the preview of an asset file."""
     job = proposal.job
     summary = {name: value for name, value in proposal.summary.items() if not (is_brief and isinstance(value, dict | list))}
+    if "notes" in summary:
+        summary["notes"] = [in_words(note) for note in summary["notes"]]
     return {
         "id": str(proposal.pk),
         "kind": proposal.kind,
