@@ -18,6 +18,7 @@ from workspace.models import Job, User
 from workspace.serializers import JobSerializer
 from workspace.sockets import CHECK_PERSON_EVERY_S, ENDED, NOTHING_TO_SAY, SIGNED_OUT, STILL_THERE_EVERY_S, SignedInSocket
 from workspace.spoken import language_of_socket
+from workspace.timed_waits import wait_for_event
 
 LOOK_EVERY_S = 1.0  # at the row, whether a word has come or not
 WORD_PAUSE_S = 0.1  # words that come close together are one look
@@ -77,8 +78,7 @@ class JobConsumer(SignedInSocket):
             if loop.time() - spoken_s >= STILL_THERE_EVERY_S:
                 await self.send('{"type":"still-there"}')
                 spoken_s = loop.time()
-            with suppress(TimeoutError):
-                await asyncio.wait_for(self._word.wait(), LOOK_EVERY_S)
+            if await wait_for_event(self._word, LOOK_EVERY_S):
                 await asyncio.sleep(WORD_PAUSE_S)
             self._word.clear()
 

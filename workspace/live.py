@@ -61,7 +61,8 @@ def _unless_redis_is_away(say: Callable[[], object]) -> bool:
 
 
 async def _send(group: str) -> None:
-    await asyncio.wait_for(get_channel_layer().group_send(group, {"type": "job.changed"}), DEADLINE_S)
+    async with asyncio.timeout(DEADLINE_S):
+        await get_channel_layer().group_send(group, {"type": "job.changed"})
 
 
 @lru_cache(maxsize=4)

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 from missions.mavlink.frames import Message
 from telemetry.gateway.session import Session
+from workspace.timed_waits import wait_for_event
 
 LONGEST_NAP_S = 0.5
 
@@ -62,8 +63,5 @@ class Conversation:
     async def _wait(self) -> None:
         wake_at_s = self.keeper.wake_at_s
         nap_s = LONGEST_NAP_S if wake_at_s is None else min(max(wake_at_s - time.monotonic(), 0.0), LONGEST_NAP_S)
-        try:
-            await asyncio.wait_for(self._heard.wait(), nap_s)
-        except TimeoutError:
-            return
-        self._heard.clear()
+        if await wait_for_event(self._heard, nap_s):
+            self._heard.clear()

@@ -21,6 +21,7 @@ from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import LOADING
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
 from workspace.lease_times import held_until_s
+from workspace.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)
 
@@ -51,11 +52,8 @@ class Desk:
                 await self.look()
             except DatabaseAway:
                 await asyncio.sleep(RETRY_S)
-            try:
-                await asyncio.wait_for(self._hint.wait(), LOOK_EVERY_S)
-            except TimeoutError:
-                continue
-            self._hint.clear()
+            if await wait_for_event(self._hint, LOOK_EVERY_S):
+                self._hint.clear()
 
     async def look(self) -> None:
         """Drops what is not ours any more, takes what waits, begins what can begin."""

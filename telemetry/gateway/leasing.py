@@ -14,6 +14,7 @@ from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.session import Session
 from telemetry.services.links import renew_leases, take_leases
+from workspace.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)
 
@@ -44,10 +45,7 @@ class Leasing:
                 await asyncio.sleep(RETRY_S)
             self.wanted.clear()
             await asyncio.sleep(GATHERED_S)
-            try:
-                await asyncio.wait_for(self.wanted.wait(), LEASES_EVERY_S)
-            except TimeoutError:
-                continue
+            await wait_for_event(self.wanted, LEASES_EVERY_S)
 
     async def _hold(self) -> None:
         now_s, asked_s = time.time(), time.monotonic()

@@ -125,7 +125,7 @@ class Listeners:
         host, port = writer.get_extra_info("peername")[:2]
         peer, parser = TcpPeer(writer, f"tcp:{host}:{port}"), StreamParser(self.damages)
         try:
-            while piece := await asyncio.wait_for(reader.read(PIECE), SILENT_CONNECTION_S):
+            while piece := await _read(reader):
                 frames = parser.receive(piece)
                 if frames:
                     self._connections[writer] = time.monotonic()
@@ -139,6 +139,12 @@ class Listeners:
         """At once: one that takes nothing would never be done with what waits for it."""
         self._connections.pop(writer, None)
         writer.transport.abort()
+
+
+async def _read(reader: asyncio.StreamReader) -> bytes:
+    """Return what has come, empty at the end of the stream. Raises TimeoutError, OSError."""
+    async with asyncio.timeout(SILENT_CONNECTION_S):
+        return await reader.read(PIECE)
 
 
 def _enlarge(listener: socket.socket) -> None:

@@ -8,7 +8,7 @@ import signal
 import threading
 import time
 from collections import Counter, deque
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Collection, Coroutine, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
@@ -42,6 +42,7 @@ RETRY_S = 0.5
 COUNTS_EVERY_S = 60.0
 DESK_WITHIN_S = 5.0
 STOP_WITHIN_S = 4.0
+CANCEL_AGAIN_S = 0.5
 LOOP, HANGS_AFTER_S = "the gateway", 30.0
 
 
@@ -186,9 +187,7 @@ class Gateway:
 
     async def _end(self, loops: list[asyncio.Task[None]]) -> None:
         pulse.rest(LOOP)
-        for loop in loops:
-            loop.cancel()
-        await asyncio.gather(*loops, return_exceptions=True)
+        await _cancel(loops)
         await self._close_desk()
         self.listeners.close()
         self.flights.end_all(time.time())
@@ -270,6 +269,14 @@ class Gateway:
         if counts := self.dropped():
             told = ", ".join(f"{cause} {number}" for cause, number in sorted(counts.items()))
             logger.info("received since the start and dropped: %s", told)
+
+
+async def _cancel(tasks: Collection[asyncio.Task[None]]) -> None:
+    """Cancel until all have ended: libraries that they wait in may drop a cancellation."""
+    while pending := [task for task in tasks if not task.done()]:
+        for task in pending:
+            task.cancel()
+        await asyncio.wait(pending, timeout=CANCEL_AGAIN_S)
 
 
 def _type_name(number: int) -> str:

@@ -11,6 +11,7 @@ from telemetry.live.look import Look, changed_between
 from telemetry.live.messages import changes, everything, message
 from telemetry.live.reader import Reader
 from telemetry.selectors.live import Key
+from workspace.timed_waits import wait_for_event
 
 logger = logging.getLogger(__name__)
 
@@ -59,10 +60,7 @@ class Feed:
             self._word.clear()
             await self._look_once()
             await asyncio.sleep(LOOK_PAUSE_S)
-            try:
-                await asyncio.wait_for(self._word.wait(), LOOK_EVERY_S - LOOK_PAUSE_S)
-            except TimeoutError:
-                continue
+            await wait_for_event(self._word, LOOK_EVERY_S - LOOK_PAUSE_S)
 
     async def _look_once(self) -> None:
         newcomers, self._waiting = self._waiting, set()

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from uuid import UUID
 
 from telemetry.selectors.live import Key
+from workspace.timed_waits import wait_for_event
 
 MOST_UNCONFIRMED = 2  # messages
 AGAIN_EVERY_S = 1.0  # a page is given everything, at most
@@ -83,10 +84,7 @@ class Reader:
             if left_s <= 0:
                 return False
             self._changed.clear()
-            try:
-                await asyncio.wait_for(self._changed.wait(), min(left_s, self.waits_s) if self.waits_s > 0 else left_s)
-            except TimeoutError:
-                continue
+            await wait_for_event(self._changed, min(left_s, self.waits_s) if self.waits_s > 0 else left_s)
         return True
 
     def take(self) -> tuple[int, frozenset[Key] | None]:

@@ -55,7 +55,8 @@ def pages() -> str:
         layer = get_channel_layer()
         channel = await layer.new_channel()
         await layer.send(channel, {"type": "there"})
-        return str((await asyncio.wait_for(layer.receive(channel), PATIENCE_S))["type"])
+        async with asyncio.timeout(PATIENCE_S):
+            return str((await layer.receive(channel))["type"])
 
     end_s = time.monotonic() + PATIENCE_S
     while True:

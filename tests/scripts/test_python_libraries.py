@@ -186,11 +186,6 @@ def test_a_file_that_cannot_be_read_is_left_out(tmp_path):
 # --- the Python it is made with ---------------------------------------------------------------------------------------------------
 
 
-def python_of_speed(path: Path, microseconds: str) -> None:
-    """Answers the question how long a loop takes, and suits."""
-    program(path, microseconds)
-
-
 def found_python(tmp_path: Path, **environment: str) -> str:
     """What a checkout without .venv finds."""
     script = tmp_path / "checkout" / "scripts" / "find-python"
@@ -205,24 +200,22 @@ def found_python(tmp_path: Path, **environment: str) -> str:
     ).stdout.strip()
 
 
-def test_the_fastest_python_is_found(tmp_path):
-    python_of_speed(tmp_path / "path" / "python3", "9000")
-    python_of_speed(tmp_path / "path" / "python3.14", "6000")
-    python_of_speed(tmp_path / "path" / "python3.13", "5000")
-    python_of_speed(tmp_path / "path" / "python3.12", "unusable")
-    python_of_speed(tmp_path / "path" / "python3.11", "7000")
+def test_an_optimised_python_is_preferred(tmp_path):
+    program(tmp_path / "path" / "python3", "plain")
+    program(tmp_path / "path" / "python3.14", "unusable")
+    program(tmp_path / "path" / "python3.13", "optimised")
+    program(tmp_path / "path" / "python3.12", "optimised")
     assert found_python(tmp_path) == f"{tmp_path}/path/python3.13"
 
 
-def test_the_first_one_is_left_only_for_one_that_is_faster_by_a_tenth(tmp_path):
-    python_of_speed(tmp_path / "path" / "python3", "5000")
-    for version in ("3.14", "3.13", "3.12", "3.11"):
-        python_of_speed(tmp_path / "path" / f"python{version}", "4600")
+def test_the_first_python_is_used_where_none_is_optimised(tmp_path):
+    for version in ("3", "3.14", "3.13", "3.12", "3.11"):
+        program(tmp_path / "path" / f"python{version}", "plain")
     assert found_python(tmp_path) == f"{tmp_path}/path/python3"
 
 
 def test_that_of_the_venv_and_the_one_that_is_asked_for_are_not_left(tmp_path):
-    python_of_speed(tmp_path / "path" / "python3", "1")
+    program(tmp_path / "path" / "python3", "optimised")
     own = program(tmp_path / "checkout" / ".venv" / "bin" / "python", "9000")
     assert found_python(tmp_path) == str(own)
     asked = program(tmp_path / "asked" / "python", "9000")

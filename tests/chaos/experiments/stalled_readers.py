@@ -101,7 +101,8 @@ async def _watch(course: Course, day: Day) -> None:
         door, trust = asyncio.Semaphore(AT_ONCE), installation.trust()
         listening = [asyncio.create_task(reader.listen(installation.port, trust, door)) for reader in readers]
         all_open = asyncio.gather(*(reader.is_open.wait() for reader in readers))
-        await asyncio.wait_for(all_open, OPEN_WITHIN_S)
+        async with asyncio.timeout(OPEN_WITHIN_S):
+            await all_open
         await asyncio.sleep(settles_s)
         before = await asyncio.to_thread(lambda: installation.usage()["live"].resident_bytes)
         heard_before = sum(reader.messages for reader in readers)

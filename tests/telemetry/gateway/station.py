@@ -70,7 +70,7 @@ def gateway_at_work(log_dir: Path, *, name: str = "test", **options: Any) -> Ite
             made[1].call_soon_threadsafe(made[0].stop)
         thread.join(PATIENCE_S)
         connections.close_all()
-        assert not thread.is_alive(), "the gateway does not end"
+        assert not thread.is_alive(), f"the gateway does not end: {asyncio.all_tasks(made[1])}"
 
 
 def port_of(gateway: Gateway, transport: str = "udp") -> int:

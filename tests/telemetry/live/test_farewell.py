@@ -25,6 +25,7 @@ from tests.telemetry.records import record
 from tests.workspace.front_door import Door, front_door, redis_at, running, wait_until
 from tests.workspace.people import somebody
 from workspace.farewell import RESTARTS, Farewell
+from workspace.timed_waits import wait_for_event
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
@@ -113,7 +114,7 @@ def test_pages_are_not_all_told_at_once_and_newcomers_are_told_as_well() -> None
         farewell.begin()
         farewell.begin()
         sockets.append(Told(farewell))
-        await asyncio.wait_for(left.wait(), PATIENCE_S)
+        assert await wait_for_event(left, PATIENCE_S)
         loop.remove_signal_handler(signal.SIGINT)
         return sockets, len(farewell._sockets)
 

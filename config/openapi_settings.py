@@ -1,0 +1,52 @@
+"""Settings of drf-spectacular: the OpenAPI document, and one name for each list of choices that several serializers use."""
+
+from typing import Any
+
+
+def openapi_settings() -> dict[str, Any]:
+    return {
+        "TITLE": "Spanwise",
+        "DESCRIPTION": "Planning, rehearsing, flying and reviewing UAV inspections of power lines, bridges and railways.",
+        "VERSION": "1",
+        "SERVE_INCLUDE_SCHEMA": False,
+        "SWAGGER_UI_DIST": "SIDECAR",
+        "SWAGGER_UI_FAVICON_HREF": "SIDECAR",
+        "SCHEMA_PATH_PREFIX": r"/api/v1",
+        "COMPONENT_SPLIT_REQUEST": True,
+        "ENUM_NAME_OVERRIDES": {
+            "AssetKind": "inspection.models.AssetKind",
+            "ImportKind": "inspection.models.ImportKind",
+            "GapKind": "inspection.models.GapKind",
+            "WaypointKind": "missions.models.WaypointKind",
+            "TaskKind": ["look", "photo", "hold"],
+            "DaylightEvent": "inspection.zones.schedule.EVENTS",
+            "JobState": "workspace.models.JobState",
+            "Role": "workspace.models.Role",
+            "Theme": "workspace.models.Theme",
+            "Units": "workspace.models.Units",
+            "Language": "workspace.models.Language",
+            "SignInOutcome": "workspace.models.SignInOutcome",
+            "InvitationState": "workspace.people_serializers.InvitationState",
+            "ProposalState": "inspection.models.ProposalState",
+            "GapState": "inspection.models.GapState",
+            "MissionState": "missions.models.MissionState",
+            "OfferState": "missions.models.OfferState",
+            "VerdictLevel": "simulation.models.VerdictLevel",
+            "SimulationState": "simulation.models.SimulationState",
+            "VehicleFlavour": "simulation.models.VehicleFlavour",
+            "AlertLevel": "telemetry.models.AlertLevel",
+            "TargetState": "missions.models.TargetState",
+            "UavState": "missions.models.UavState",
+            "UavFigure": "missions.fleet_selectors.FIGURES",
+            "CredentialKind": "missions.models.CredentialKind",
+            "CommandKind": "missions.models.CommandKind",
+            "CommandState": "missions.models.CommandState",
+            "CommandPriority": ["safety", "pause", "mission", "parameter"],
+            "TargetPriority": "missions.models.TargetPriority",
+            "LinkKind": "missions.models.LinkKind",
+            "HeightReference": "inspection.models.HeightReference",
+            "FeatureType": ["Feature"],
+            "FeatureCollectionType": ["FeatureCollection"],
+            "GeometryType": ["Point", "MultiPoint", "LineString", "MultiLineString", "Polygon", "MultiPolygon"],
+        },
+    }
