@@ -135,6 +135,12 @@ def site(shared_data: Callable[[str], Path], tmp_path_factory: pytest.TempPathFa
         shutil.rmtree(Places(state).data, ignore_errors=True)  # as root the database may stand outside the state folder
 
 
+@pytest.fixture(scope="module")
+def without_leftovers(site: Site) -> None:
+    """Delete the missions, UAVs, flights and simulations of other files' tests."""
+    site.does(NO_LEFTOVERS)
+
+
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Browser]:
     program = next(filter(None, map(shutil.which, BROWSERS)), None)

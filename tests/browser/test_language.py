@@ -13,7 +13,7 @@ from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.page_lists import FOR_OPERATORS, FOR_STRANGERS
 from tests.browser.regions import region
 
-pytestmark = pytest.mark.browser
+pytestmark = [pytest.mark.browser, pytest.mark.usefixtures("without_leftovers")]
 
 SAID = """() => {
     const said = new Set();
@@ -32,7 +32,8 @@ SAID = """() => {
     add(document.title);
     return [...said].filter((words) => /[A-Za-z]{2}/.test(words));
 }"""
-# Two of these in one text, and it is a sentence in English. What people and files have named is not looked at so closely.
+# Two of these in one text, and it is a sentence in English. What people and files have named is not looked at so closely: missions and
+# UAVs that other tests have named in English are deleted first.
 ENGLISH = re.compile(
     r"\b(?:the|of|and|is|are|not|with|this|that|which|has|have|been|from|nothing|each|where|what|you|your)\b", re.IGNORECASE
 )

@@ -4,10 +4,11 @@ import re
 from collections.abc import Callable
 
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Locator, Page, Route, expect
 
+from missions.models import MissionState
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import stores_mission
+from tests.browser.operator_map import TOO_WIDE, stores_mission
 
 pytestmark = pytest.mark.browser
 
@@ -153,6 +154,19 @@ def test_the_list_pages_forth_and_back(visitor: Visitor) -> None:
     page.get_by_role("button", name="Back").click()
     expect(page.locator("#how-many")).to_have_text("1 to 25 of 26")
     expect(page.locator("#rows .name a").first).to_have_text("Page 00")
+
+
+def test_a_phone_scrolls_through_the_states_and_the_page_stays_as_wide_as_the_window(visitor: Visitor) -> None:
+    page = visitor.signs_in("opal", size=(390, 844), touch=True)
+
+    def with_every_state(route: Route) -> None:
+        answer = route.fetch()
+        route.fulfill(response=answer, json=answer.json() | {"by_state": dict.fromkeys(MissionState.values, 12)})
+
+    page.route("**/api/v1/missions?*", with_every_state)
+    opens_list(page)
+    expect(page.locator("#states label")).to_have_count(len(MissionState.values) + 1)
+    assert page.evaluate(TOO_WIDE) == []
 
 
 def test_viewers_open_missions_and_change_none(visitor: Visitor) -> None:

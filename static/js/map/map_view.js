@@ -123,8 +123,10 @@ function keepFitted(map, container) {
   }
 
   function fitAgain() {
-    if (map.isMoving()) map.once("moveend", fitAgain);
-    else if (fitted && (size !== sizeOf(container) || footOf(container) > footOfFit)) {
+    if (map.isMoving()) return void map.once("moveend", fitAgain);
+    if (container.querySelector(".maplibregl-marker:hover"))
+      return container.addEventListener("pointerout", fitAgain, { once: true }); // a marker stays under the pointer, which may drag it
+    if (fitted && (size !== sizeOf(container) || footOf(container) > footOfFit)) {
       const box = fitted; // a resize counts as a move
       map.resize();
       fitTo(box, 0);

@@ -90,7 +90,7 @@ export function mountProfile(store, { grounds }) {
         h("div", {}, profileTable(route, flight, now.targets, departsAt())),
       ),
     );
-    showZoneKeys(flight);
+    showZoneKeys(flight, state.lookedAt !== null);
     follow(store.state);
     light(store.state);
   }
@@ -148,13 +148,22 @@ const chartOf = (route, flight, { uavs, targets }, size, store) =>
     onTask: (target) => store.update({ litTarget: target === null ? null : (targets[target]?.key ?? null) }),
   });
 
-/** What the drawn zones mean, and by how much they count beyond their times and heights. @param {RouteFlight} flight */
-function showZoneKeys({ zones, margins }) {
+/**
+ * What the drawn zones mean, and by how much they count beyond their times and heights. While the pointer glances at a route the row keeps
+ * its room: the map above must not move under the pointer.
+ *
+ * @param {RouteFlight} flight
+ * @param {boolean} isGlance
+ */
+function showZoneKeys({ zones, margins }, isGlance) {
   const keys = zoneLegend(zones).map(({ kind, words }) =>
     h("span", { class: "zone-key" }, h("i", { class: `zone-swatch ${kind}`, "aria-hidden": "true" }), words),
   );
-  byId("zone-keys").hidden = keys.length === 0;
-  byId("zone-keys").replaceChildren(...keys, h("span", {}, marginWords(margins)));
+  const row = byId("zone-keys");
+  const isEmpty = keys.length === 0;
+  row.classList.toggle("blank", isEmpty && isGlance && !row.hidden);
+  row.hidden = isEmpty && !row.classList.contains("blank");
+  row.replaceChildren(...keys, h("span", {}, marginWords(margins)));
 }
 
 /** @param {string} words @param {boolean} [isStrong] */
