@@ -1,19 +1,19 @@
 """Fixtures for every test: generated regions, real data beside the checkout, and a database that is copied from a migrated one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from hashlib import sha256
 from pathlib import Path
 
 import pytest
-from django.apps import AppConfig, apps
 from django.core.management import call_command
-from django.db import connection
+from django.db import connection, transaction
 from django.db.backends.utils import CursorWrapper
-from django.db.models.signals import post_migrate
+from django.test import TransactionTestCase
 from hypothesis import settings
 from pytest_django import DjangoDbBlocker
 
 from inspection.demo_region import make_quillmoor, make_region, write_osm_file
+from workspace.models import Organisation
 
 settings.register_profile("spanwise", deadline=None)  # tests do not time
 settings.register_profile("check", deadline=None, derandomize=True)
@@ -22,6 +22,7 @@ settings.load_profile("spanwise")
 GENERATED_REGIONS = {"elme-valley.osm.pbf": lambda: make_region().osm, "quillmoor.osm.pbf": make_quillmoor}
 PROJECT_DIR = Path(__file__).resolve().parents[1]
 SHARED_DATA = PROJECT_DIR.parent / "shared" / "data"
+MADE_BY_MIGRATIONS = {"django_migrations", "django_content_type", "auth_permission"}
 TEMPLATE_PREFIX = "spanwise_migrated_"
 TEMPLATE_LOCK = 5_372_029  # any number that nothing else locks
 
@@ -62,14 +63,26 @@ def region_file(shared_data: Callable[[str], Path], tmp_path_factory: pytest.Tem
 
 
 @pytest.fixture(scope="session", autouse=True)
-def default_organisation_comes_back() -> None:
-    """Tests with real commits end with an emptied database, and what the migrations had put there is gone: Django then says "migrated"."""
+def rows_are_deleted_after_commits() -> Iterator[None]:
+    """After a test with real commits, delete the rows that it has left.
 
-    def make(sender: AppConfig, **_: object) -> None:
-        if sender.label == "workspace":
-            apps.get_model("workspace", "Organisation").objects.get_or_create(pk=1, defaults={"name": "Default"})
+    Django's `flush` truncates each table, which makes new files of all tables and indexes, and then makes all permissions again. The
+    content types, the permissions and the default organisation stay as the migrations have made them.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(TransactionTestCase, "_fixture_teardown", lambda test_case: delete_rows())
+        yield
 
-    post_migrate.connect(make, weak=False)
+
+def delete_rows() -> None:
+    tables = sorted(set(connection.introspection.django_table_names(only_existing=True, include_views=False)) - MADE_BY_MIGRATIONS)
+    names = {table: connection.ops.quote_name(table) for table in tables}
+    with transaction.atomic(), connection.cursor() as cursor:
+        holding = (f"SELECT '{table}' WHERE EXISTS (SELECT FROM {name})" for table, name in names.items())  # noqa: S608 - own names
+        cursor.execute(" UNION ALL ".join(holding))
+        for (table,) in cursor.fetchall():
+            cursor.execute(f"DELETE FROM {names[table]}")  # noqa: S608 - foreign keys are checked at the end of the transaction
+        Organisation.objects.create(pk=1, name="Default")
 
 
 @pytest.fixture(scope="session")
