@@ -38,7 +38,7 @@ PARTS = (
     Part("search", ("missions.routing.rehearsal:rehearse_search",)),
     Part("graph", ("inspection.graph.rehearsal:rehearse",)),
     Part("ways and energy", ("missions.routing.rehearsal:rehearse_ways", "missions.flight_plan.rehearsal:rehearse"), after=("graph",)),
-    Part("proofs", ("missions.routing.rehearsal:rehearse_proof", "missions.routing.file_plans:rehearse")),
+    Part("proofs", ("missions.routing.rehearsal:rehearse_proof", "missions.routing.file_plans:rehearse"), after=("search",)),
 )
 ALL = Part("whole", tuple(name for part in PARTS for name in part.warm_up))  # also compiles what two parts disagreed about
 
