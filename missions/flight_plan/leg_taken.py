@@ -69,11 +69,10 @@ def leg_taken(
     own: Speeds,
     table: FloatArray,
 ) -> tuple[float, float]:
-    """Seconds and joules of a leg between two heights above ground: flown level, and then straight up or down to its end.
+    """Seconds and joules of a leg between two heights above ground: flown straight, as slowly as its length and its rise ask for.
 
-    Both in the wind of its middle height. Endless where the wind leaves no headway at any height that the leg comes through, so that a
-    part of an open leg is open. (east, north) is the leg's direction, of length 1; rise_m counts the ground's rise, too. A UAV that flies
-    and climbs at once is sooner there: this errs on the long side.
+    In the wind of its middle height. Endless where the wind leaves no headway at any height that the leg comes through, so that a part of
+    an open leg is open. (east, north) is the leg's direction, of length 1; rise_m counts the ground's rise, too.
     """
     if start_agl_m != end_agl_m and is_closed(length_m > 0.0, east, north, start_agl_m, end_agl_m, wind, own):
         return np.inf, np.inf
@@ -109,9 +108,13 @@ def taken_in_wind(
             joules = seconds * watts(table, LEVEL, air_mps, density)
     if rise_m != 0.0:
         vertical_s = rise_m / own.climb_mps if rise_m > 0.0 else -rise_m / own.descent_mps
-        seconds += vertical_s
+        longer_s = max(vertical_s - seconds, 0.0)
+        seconds += longer_s
         if has_battery:
-            joules += vertical_s * watts(table, CLIMBING if rise_m > 0.0 else LEVEL, math.sqrt(air_2), density)
+            hover_w = watts(table, LEVEL, math.sqrt(air_2), density)
+            joules += longer_s * hover_w
+            if rise_m > 0.0:  # what lifts the weight is paid beside the level flight
+                joules += vertical_s * (watts(table, CLIMBING, math.sqrt(air_2), density) - hover_w)
     return seconds, joules
 
 
