@@ -83,6 +83,12 @@ class RouteLine:
         nearest = min(found, key=lambda place: place.across_m + (0.0 if expected is None else LEG_OFF_M * abs(place.leg - expected)))
         return replace(nearest, across_m=min(place.across_m for place in found))
 
+    def place_from(self, position: LonLat, before: Place) -> Place:
+        """The nearest point of all legs from where it was before; of equals the first."""
+        east, north = self.east_north(position)
+        last = max(len(self.vertices) - 2, 0)
+        return min((self._beside(leg, east, north) for leg in range(min(before.leg, last), last + 1)), key=lambda place: place.across_m)
+
     def _beside(self, leg: int, east: float, north: float) -> Place:
         (east_1, north_1), (east_2, north_2) = self.vertices[leg], self.vertices[min(leg + 1, len(self.vertices) - 1)]
         de, dn = east_2 - east_1, north_2 - north_1
