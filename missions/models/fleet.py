@@ -111,6 +111,7 @@ class Uav(models.Model):
         default=False, db_default=False, help_text="MAVLink without a signature is taken for this UAV's: only on a closed network"
     )
     is_simulated = models.BooleanField(default=False, db_default=False, help_text="no real aircraft; may fly without terrain data")
+    is_demo = models.BooleanField(default=False, db_default=False, help_text="made with the demo data, and goes with them")
     location = models.PointField(srid=4326)
     located_at = models.DateTimeField(null=True, blank=True, help_text="when the location was set or reported")
     max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = its type's, else not limited")

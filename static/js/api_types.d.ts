@@ -786,6 +786,17 @@ export interface components {
          * @enum {string}
          */
         DeckSourceEnum: "tag" | "layer";
+        DemoData: {
+            /** @description the demo region and its UAVs are there, and its missions are not */
+            can_be_made: boolean;
+            /**
+             * Format: uuid
+             * @description that makes the missions now
+             */
+            job: string | null;
+            missions: number;
+            uavs: number;
+        };
         DismissRequest: {
             /** @default  */
             note: string;
@@ -1135,6 +1146,18 @@ export interface components {
             /** @description a flight of it failed: it is not set in motion again in this mission */
             has_failed: boolean;
         };
+        /** @description A time in the air without reports for over 60 s. No other figure speaks of it. */
+        FlownGap: {
+            /** Format: date-time */
+            began_at: string;
+            /** Format: date-time */
+            ended_at: string;
+            /**
+             * Format: double
+             * @description of the route between its ends
+             */
+            length_m: number;
+        };
         FlownLeg: {
             /** @description in the air, with a position */
             reports: number;
@@ -1173,9 +1196,10 @@ export interface components {
             height_max_m: number | null;
             /**
              * Format: double
-             * @description length of the track as it was reported
+             * @description length of the track as it was reported, without gaps
              */
             flown_m: number;
+            gaps: components["schemas"]["FlownGap"][];
             /** Format: double */
             battery_lowest_percent: number | null;
             /**
@@ -1211,6 +1235,30 @@ export interface components {
             flight: number;
             /** @description its place in the mission; null: the way back, or down */
             target: number | null;
+        };
+        FlownTotals: {
+            /** Format: double */
+            length_m: number;
+            /**
+             * Format: double
+             * @description from the first take-off to the last landing
+             */
+            duration_s: number | null;
+            /**
+             * Format: double
+             * @description null where a battery is not known
+             */
+            energy_wh: number | null;
+            /**
+             * Format: double
+             * @description in the air without reports, of all UAVs together
+             */
+            unreported_s: number;
+            /**
+             * Format: double
+             * @description of the routes, flown then: not in length_m
+             */
+            unreported_m: number;
         };
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         FollowUpRequest: {
@@ -2458,6 +2506,8 @@ export interface components {
             uav_count: number;
             /** @description one of its UAVs is no real aircraft */
             is_simulated: boolean;
+            /** @description made with the demo data, and goes with them */
+            is_demo: boolean;
             /** Format: double */
             total_length_m: number | null;
             /** Format: double */
@@ -3719,7 +3769,7 @@ export interface components {
             targets: components["schemas"]["RecordTargetCounts"];
             alerts: components["schemas"]["AlertCounts"];
             planned: components["schemas"]["Totals"];
-            flown: components["schemas"]["Totals"];
+            flown: components["schemas"]["FlownTotals"];
             /**
              * Format: double
              * @description off the route, sideways
@@ -6615,6 +6665,7 @@ export type CredentialPage = components['schemas']['CredentialPage'];
 export type DayEnum = components['schemas']['DayEnum'];
 export type DaylightEvent = components['schemas']['DaylightEvent'];
 export type DeckSourceEnum = components['schemas']['DeckSourceEnum'];
+export type DemoData = components['schemas']['DemoData'];
 export type DismissRequest = components['schemas']['DismissRequest'];
 export type DispatchInputRequest = components['schemas']['DispatchInputRequest'];
 export type DrawnAreaRequest = components['schemas']['DrawnAreaRequest'];
@@ -6646,9 +6697,11 @@ export type FlightEnergy = components['schemas']['FlightEnergy'];
 export type FlightLog = components['schemas']['FlightLog'];
 export type FlightLogPage = components['schemas']['FlightLogPage'];
 export type Flights = components['schemas']['Flights'];
+export type FlownGap = components['schemas']['FlownGap'];
 export type FlownLeg = components['schemas']['FlownLeg'];
 export type FlownRoute = components['schemas']['FlownRoute'];
 export type FlownStage = components['schemas']['FlownStage'];
+export type FlownTotals = components['schemas']['FlownTotals'];
 export type FollowUpRequest = components['schemas']['FollowUpRequest'];
 export type FormEnum = components['schemas']['FormEnum'];
 export type GapAsset = components['schemas']['GapAsset'];

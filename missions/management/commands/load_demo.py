@@ -13,6 +13,8 @@ from inspection.demo_region import Base as PlannedBase
 from missions.models import Base, Uav, UavType
 from workspace.models import DEFAULT_ORGANISATION_ID, Role, User
 
+TYPE_FIGURES = ("max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "max_airspeed_mps", "rotor_disk_m2", "hover_power_w")
+
 
 class Command(BaseCommand):
     help = "Create the demo region's UAVs; with --user and --password-file also an administrator, if nobody has an account yet."
@@ -45,8 +47,8 @@ def _base(planned: PlannedBase) -> Base:
 
 
 def _create_uav(uav: BasedUav, base: Base) -> bool:
-    """Range, speed and sensors are its type's: the UAV's name without its number."""
-    facts = {"max_range_m": uav.max_range_m, "cruise_speed_mps": uav.cruise_speed_mps, "sensors": list(uav.sensors)}
+    """Range, speed, sensors and performance are its type's: the UAV's name without its number."""
+    facts = {name: getattr(uav, name) for name in TYPE_FIGURES} | {"sensors": list(uav.sensors)}
     uav_type, _ = UavType.objects.get_or_create(organisation_id=DEFAULT_ORGANISATION_ID, name=uav.type_name, defaults=facts)
     _, is_new = Uav.objects.get_or_create(
         organisation_id=DEFAULT_ORGANISATION_ID,
@@ -58,6 +60,8 @@ def _create_uav(uav: BasedUav, base: Base) -> bool:
             "location": base.location,
             "located_at": timezone.now(),
             "battery_percent": 100.0,
+            "is_simulated": True,
+            "is_demo": True,
         },
     )
     return is_new
