@@ -11,7 +11,7 @@ from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKin
 from inspection.graph.rules import LinkingRules
 from tests.inspection.graph.drawn_ground import ground, lonlat, places, square, ways, zone
 
-RULES = LinkingRules()
+RULES = LinkingRules(zone_clearance_m=5.0)
 ROW = [(0, 0), (200, 0), (400, 0)]
 
 
@@ -218,15 +218,15 @@ def test_an_edge_that_crosses_a_zone_is_out_though_its_ends_are_free():
     assert (result.excluded_nodes, result.excluded_edges) == (0, 1)
 
 
-@pytest.mark.parametrize(("gap_m", "edges_left"), [(-0.01, 1), (0.0, 1), (11.9, 1), (12.1, 2)])
-def test_an_edge_is_out_when_a_corner_overlaps_it_touches_it_or_comes_within_12_m(gap_m, edges_left):
+@pytest.mark.parametrize(("gap_m", "edges_left"), [(-0.01, 1), (0.0, 1), (4.9, 1), (5.1, 2)])
+def test_an_edge_is_out_when_a_corner_overlaps_it_touches_it_or_comes_within_5_m(gap_m, edges_left):
     """The corner of a triangle points at the middle of the first span from the south."""
     corner = zone((100, -gap_m), (60, -200), (140, -200))
     assert len(edges(built(lines=ways(ROW, first_asset=200, osm=[[1, 2, 3]]), zones=[corner]), EdgeKind.LINE)) == edges_left
 
 
 def test_an_edge_between_two_zones_stays():
-    beside = [square((100, 45), 30), square((100, -45), 30)]
+    beside = [square((100, 40), 30), square((100, -40), 30)]
     assert built(lines=ways(ROW, first_asset=200, osm=[[1, 2, 3]]), zones=beside).edge_count == 2
 
 
