@@ -32,7 +32,7 @@ def fly_demo_missions(job_id: str) -> None:
     except JobCancelled:
         confirm_cancelled(job=job)
     except (NotThere, Mission.DoesNotExist):
-        fail_job(job=job, code="no_demo_region", message="The demo region or its UAVs were removed.")
+        fail_job(job=job, code="no_demo_region", message="The demo region was removed.")
     except Refused as refused:
         fail_job(job=job, code=refused.reasons[0].code, message=refused.reasons[0].message)
     except (TimeoutError, SoftTimeLimitExceeded):

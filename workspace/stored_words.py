@@ -77,7 +77,7 @@ TEMPLATES = (
     gettext_noop("Starting “%(mission)s”"),
     gettext_noop("Flying “%(mission)s”"),
     gettext_noop("Demo missions made"),
-    gettext_noop("The demo region or its UAVs were removed."),
+    gettext_noop("The demo region was removed."),
     gettext_noop("The demo missions were not flown in time."),
     gettext_noop("The demo missions could not be made; the error is in the log."),
     gettext_noop("The mission was changed while it was being rehearsed. Rehearse it again."),

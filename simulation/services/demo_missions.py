@@ -25,6 +25,7 @@ from missions.routing.problem import Objective, Task, TaskKind
 from missions.selectors import mission_of_organisation
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
 from missions.services.approval import approve_mission
+from missions.services.demo_uavs import create_demo_uavs
 from missions.services.dispatch import dispatch_mission
 from missions.services.refused import refuse
 from missions.services.steering import command_uav
@@ -78,13 +79,15 @@ DEMO_MISSIONS = (
 
 
 class NotThere(Exception):
-    """The demo region or its UAVs have been removed."""
+    """The demo region has been removed."""
 
 
 def has_demo_region(organisation: Organisation) -> bool:
-    """Whether every UAV that the demo missions name is in the fleet."""
-    names = {name for demo in DEMO_MISSIONS for name in demo.uavs}
-    return Uav.objects.filter(organisation=organisation, is_demo=True, name__in=names).count() == len(names)
+    """Whether its towers are there, and no UAV of the organisation's own has the name of one of its UAVs."""
+    names = {uav.name for base in BASES for uav in base.uavs}
+    if Uav.objects.filter(organisation=organisation, is_demo=False, name__in=names).exists():
+        return False
+    return Asset.objects.filter(kind=AssetKind.TOWER, vanished_at=None, data_import__is_synthetic=True).exists()
 
 
 def open_demo_job(organisation: Organisation) -> Job | None:
@@ -101,12 +104,14 @@ def want_demo_missions(*, organisation: Organisation, actor: User) -> Job:
 
 
 def make_demo_missions(*, organisation: Organisation, actor: User, progress: OnProgress) -> list[UUID]:
-    """Plan all of them, then fly; return when the fast flight is over. What is there already is left as it is.
+    """Put the demo UAVs that are missing into the fleet, plan all missions, then fly; return when the fast flight is over.
 
+    What is there already is left as it is.
     Raises NotThere, Refused, TimeoutError, and what `progress` raises.
     """
     if not has_demo_region(organisation):
         raise NotThere
+    create_demo_uavs(organisation=organisation)
     made = []
     for number, demo in enumerate(DEMO_MISSIONS):
         if not _of(demo, organisation).exists():

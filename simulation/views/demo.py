@@ -18,7 +18,7 @@ from workspace.tasks import send_job_on_commit
 
 
 class DemoDataSerializer(serializers.Serializer):
-    can_be_made = serializers.BooleanField(help_text="the demo region and its UAVs are there, and its missions are not")
+    can_be_made = serializers.BooleanField(help_text="the demo region is there, and its missions are not")
     job = serializers.UUIDField(allow_null=True, help_text="that makes the missions now")
     missions = serializers.IntegerField()
     uavs = serializers.IntegerField()
@@ -41,12 +41,12 @@ class DemoData(APIView):
         summary="Make the demo missions: one flown, one in flight, one planned",
         description="By the planner and by simulated UAVs of the demo region. A job makes them; those that are there are left as they are.",
         request=None,
-        responses={202: DemoDataSerializer, 409: OpenApiResponse(description="The demo region's UAVs were removed.")},
+        responses={202: DemoDataSerializer, 409: OpenApiResponse(description="The demo region was removed.")},
     )
     @idempotent
     def post(self, request: SignedInRequest) -> Response:
         if not has_demo_region(request.user.organisation):
-            raise ApiProblem(409, "no_demo_region", _("The UAVs of the demo region were removed."))
+            raise ApiProblem(409, "no_demo_region", _("The demo region was removed."))
         with transaction.atomic():
             send_job_on_commit(want_demo_missions(organisation=request.user.organisation, actor=request.user))
         return Response(_found(request.user.organisation), status=202)

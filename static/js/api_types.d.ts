@@ -787,7 +787,7 @@ export interface components {
          */
         DeckSourceEnum: "tag" | "layer";
         DemoData: {
-            /** @description the demo region and its UAVs are there, and its missions are not */
+            /** @description the demo region is there, and its missions are not */
             can_be_made: boolean;
             /**
              * Format: uuid

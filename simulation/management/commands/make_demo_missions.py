@@ -15,7 +15,7 @@ class Command(BaseCommand):
         organisation = Organisation.objects.order_by("pk").first()
         actor = User.objects.filter(organisation=organisation, role=Role.ADMINISTRATOR, is_active=True).order_by("pk").first()
         if organisation is None or actor is None or not has_demo_region(organisation):
-            self.stdout.write("No demo missions: there is no administrator, or the demo UAVs are missing.")
+            self.stdout.write("No demo missions: there is no administrator, or the demo region is missing.")
             return
         job = want_demo_missions(organisation=organisation, actor=actor)
         self.stdout.write(f"Job {job.pk} makes them.")
