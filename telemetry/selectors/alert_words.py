@@ -46,6 +46,9 @@ TEMPLATES = (
         " Send it its mission again and start it, or tell it to return."
     ),
     gettext_noop("Two senders say that they are %(uav)s: %(believed)s, which is believed, and %(other)s."),
+    gettext_noop(
+        "The signed frames of %(uav)s come from two addresses, %(believed)s and %(other)s. Both are answered; one may belong to a listener."
+    ),
 )
 
 

@@ -15,6 +15,9 @@ from workspace.services import record_change
 
 SECOND_SENDER = "second-sender"
 SENDERS = "Two senders say that they are %(uav)s: %(believed)s, which is believed, and %(other)s."
+COPIES = (
+    "The signed frames of %(uav)s come from two addresses, %(believed)s and %(other)s. Both are answered; one may belong to a listener."
+)
 OPENED, ROSE, ACKNOWLEDGED, CLOSED = "opened", "rose", "acknowledged", "closed"
 
 
@@ -101,14 +104,14 @@ def note_alert(*, alert: Alert, actor: User, text: str) -> AlertNote:
     return note
 
 
-def tell_of_second_sender(*, uav_id: int, believed: str = "", other: str = "") -> None:
+def tell_of_second_sender(*, uav_id: int, believed: str = "", other: str = "", is_signed: bool = False) -> None:
     """Without another one it is over."""
     uav = Uav.objects.filter(pk=uav_id).first()
     if uav is None:
         return
     if other:
         values = {"uav": uav.name, "believed": believed, "other": other}
-        open_alert(uav=uav, level=AlertLevel.WARNING, code=SECOND_SENDER, message=SENDERS, values=values)
+        open_alert(uav=uav, level=AlertLevel.WARNING, code=SECOND_SENDER, message=COPIES if is_signed else SENDERS, values=values)
     else:
         close_alert(uav=uav, code=SECOND_SENDER)
 
