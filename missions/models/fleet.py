@@ -184,13 +184,16 @@ class UavCredential(models.Model):
     created_by = models.ForeignKey(User, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     last_used_at = models.DateTimeField(null=True, blank=True)
+    replaced_at = models.DateTimeField(null=True, blank=True, help_text="a newer one was made; this one counts until that was used")
     revoked_at = models.DateTimeField(null=True, blank=True)
 
     class Meta:
         ordering = ["-created_at"]
         verbose_name = "UAV credential"
         constraints = [
-            models.UniqueConstraint(fields=["uav", "kind"], condition=Q(revoked_at=None), name="uav_credential_one_in_force"),
+            models.UniqueConstraint(
+                fields=["uav", "kind"], condition=Q(revoked_at=None, replaced_at=None), name="uav_credential_one_newest"
+            ),
             models.CheckConstraint(condition=Q(kind__in=CredentialKind.values), name="uav_credential_kind_known"),
         ]
 

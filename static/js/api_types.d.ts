@@ -743,11 +743,18 @@ export interface components {
             created_by: string | null;
             /** Format: date-time */
             last_used_at: string | null;
+            /**
+             * Format: date-time
+             * @description a newer one was made; it counts until that was used
+             */
+            replaced_at: string | null;
             /** Format: date-time */
             revoked_at: string | null;
         };
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         CredentialInputRequest: {
+            /** @description administrators alone: why it is done although the UAV flies or something is on its way to it */
+            insist_reason?: string;
             kind: components["schemas"]["CredentialKind"];
         };
         /**
@@ -2676,6 +2683,11 @@ export interface components {
             created_by: string | null;
             /** Format: date-time */
             last_used_at: string | null;
+            /**
+             * Format: date-time
+             * @description a newer one was made; it counts until that was used
+             */
+            replaced_at: string | null;
             /** Format: date-time */
             revoked_at: string | null;
             /** @description the token, or the 32 bytes of the key in hexadecimal; it cannot be read again */
