@@ -222,6 +222,8 @@ LARGEST_FILE_BYTES = {
     "zones": _mebibytes("SPANWISE_LARGEST_ZONES_MIB", 16),
 }
 
+UPLOADS_BYTES = _mebibytes("SPANWISE_UPLOADS_MIB", 4096)  # announced files of one organisation that are kept
+
 REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_AUTHENTICATION_CLASSES": [
         "workspace.authentication.BearerTokenAuthentication",
@@ -377,6 +379,9 @@ VEHICLE_COMMAND_RULES = VehicleCommandRules(
     retries=int(_float("SPANWISE_VEHICLE_COMMAND_RETRIES", VehicleCommandRules.retries)),
 )
 TELEMETRY_DAYS = _float("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept; 0 for ever
+MAX_SYSTEM_IDS = int(_float("SPANWISE_MAX_SYSTEM_IDS", 100))  # of MAVLink's 254, for one of several organisations
+DATA_WORKERS = int(_float("SPANWISE_DATA_WORKERS", 2))  # processes; imports of one organisation leave one of them free
+READ_PROCESSOR_S, READ_PROCESSOR_S_PER_MIB = 60.0, 3.0  # that reading a file may use, by its size
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 MOST_OPEN_REHEARSALS = int(_float("SPANWISE_MOST_OPEN_REHEARSALS", 4))  # of one user, waiting and running
 # Simulated UAVs in real time: who flies how many, where those of the pool listen, and where those of missions connect.

@@ -6,8 +6,10 @@ from typing import Any
 import pytest
 from django.test import Client
 
-from missions.models import Base, Mission, Uav, UavCredential, UavState, UavType
+from missions.models import Base, CommandKind, Mission, Uav, UavCredential, UavState, UavType
 from missions.services import mavlink_signing_key
+from missions.services.commands import queue_command
+from missions.services.credentials import note_link_token_use, note_mavlink_key_use
 from tests.missions.api import mission_body, patch, post
 from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Organisation, Role
@@ -281,6 +283,36 @@ def test_a_uav_that_was_deleted_before_there_were_types_and_bases_comes_back(cli
     assert (properties["name"], properties["base_name"], properties["base"], properties["state"]) == ("Tern", "West", None, "active")
 
 
+def test_of_several_organisations_none_takes_all_system_ids(client: Client, settings: Any) -> None:
+    settings.MAX_SYSTEM_IDS = 2
+    for number in (7, 8, 9):
+        uav_of(client, f"Alone {number}", mavlink_system_id=number)
+    other = client_of(somebody(organisation=Organisation.objects.create(name="Other")))
+    ids = [uav_of(other, f"Other {number}", mavlink_system_id=number)["id"] for number in (17, 18)]
+    refused = post(other, "uavs", {"name": "Third", "position": [10, 56], "mavlink_system_id": 19})
+    assert (refused.status_code, refused.json()["error"]["code"]) == (409, "system_id_quota")
+    third = uav_of(other, "Third")["id"]
+    assert patch(other, f"uavs/{third}", {"mavlink_system_id": 19}, **ANY).json()["error"]["code"] == "system_id_quota"
+    assert patch(other, f"uavs/{ids[0]}", {"mavlink_system_id": 20}, **ANY).status_code == 200
+    assert patch(other, f"uavs/{ids[0]}", {"state": "retired"}, **ANY).status_code == 200
+    assert patch(other, f"uavs/{third}", {"mavlink_system_id": 19}, **ANY).status_code == 200
+
+
+def test_a_retired_uav_gives_its_system_id_back(client: Client) -> None:
+    uav = uav_of(client, mavlink_system_id=7)["id"]
+    retired = patch(client, f"uavs/{uav}", {"state": "retired"}, **ANY).json()["properties"]
+    assert (retired["state"], retired["mavlink_system_id"]) == ("retired", None)
+    assert uav_of(client, "Kite", mavlink_system_id=7)
+    assert patch(client, f"uavs/{uav}", {"state": "active"}, **ANY).json()["properties"]["mavlink_system_id"] is None
+
+
+def test_a_uav_with_a_command_on_its_way_is_not_retired(client: Client) -> None:
+    uav = uav_of(client, mavlink_system_id=7)["id"]
+    queue_command(uav=Uav.objects.get(pk=uav), kind=CommandKind.HOLD, actor=None)
+    refused = patch(client, f"uavs/{uav}", {"state": "retired"}, **ANY)
+    assert (refused.status_code, refused.json()["error"]["code"]) == (409, "commands_waiting")
+
+
 def test_a_retired_uav_keeps_its_missions_and_can_come_back(client: Client) -> None:
     uav = uav_of(client)["id"]
     made(client, "missions", mission_body() | {"uavs": [{"id": uav}]})
@@ -327,13 +359,44 @@ def test_a_key_has_32_bytes_and_can_be_made_again_from_what_is_kept(client: Clie
     assert mavlink_signing_key(credential=row).hex() != secret
 
 
-def test_a_new_credential_takes_the_place_of_the_one_before(client: Client) -> None:
+@pytest.mark.parametrize("kind", ["mavlink-key", "link-token"])
+def test_a_new_credential_counts_beside_the_one_before_until_it_was_used(client: Client, kind: str) -> None:
+    uav = uav_of(client)["id"]
+    first = made(client, f"uavs/{uav}/credentials", {"kind": kind})
+    note_mavlink_key_use(credential_ids=[first["id"]])
+    second = made(client, f"uavs/{uav}/credentials", {"kind": kind})
+    assert first["secret"] != second["secret"]
+
+    def in_force() -> list[int]:
+        rows = client.get(f"/api/v1/uavs/{uav}/credentials").json()["results"]
+        return [row["id"] for row in rows if row["revoked_at"] is None]
+
+    assert in_force() == [second["id"], first["id"]]
+    assert client.get(f"/api/v1/uavs/{uav}").json()["properties"]["credentials"] == [kind]
+    note_mavlink_key_use(credential_ids=[first["id"]])
+    assert in_force() == [second["id"], first["id"]]
+    if kind == "mavlink-key":
+        note_mavlink_key_use(credential_ids=[second["id"]])
+    else:
+        note_link_token_use(credential_id=second["id"], last_used_at=None)
+    assert in_force() == [second["id"]]
+    assert [entry.action for entry in AuditEntry.objects.filter(subject_type="uav_credential").order_by("pk")] == ["create", "rotate"]
+
+
+def test_a_credential_that_nobody_used_counts_no_more_once_there_is_another(client: Client) -> None:
     uav = uav_of(client)["id"]
     first, second = (made(client, f"uavs/{uav}/credentials", {"kind": "mavlink-key"}) for _ in range(2))
-    assert first["secret"] != second["secret"]
     listed = client.get(f"/api/v1/uavs/{uav}/credentials").json()["results"]
     assert [(row["id"], row["revoked_at"] is None) for row in listed] == [(second["id"], True), (first["id"], False)]
-    assert [entry.action for entry in AuditEntry.objects.filter(subject_type="uav_credential").order_by("pk")] == ["create", "rotate"]
+
+
+def test_revoking_the_newest_credential_cuts_off_the_one_that_it_replaced(client: Client) -> None:
+    uav = uav_of(client)["id"]
+    first = made(client, f"uavs/{uav}/credentials", {"kind": "mavlink-key"})
+    note_mavlink_key_use(credential_ids=[first["id"]])
+    second = made(client, f"uavs/{uav}/credentials", {"kind": "mavlink-key"})
+    assert client.delete(f"/api/v1/uavs/{uav}/credentials/{second['id']}").status_code == 204
+    assert not UavCredential.objects.filter(revoked_at=None).exists()
 
 
 def test_a_revoked_credential_stays_in_the_list_and_counts_no_more(client: Client) -> None:
