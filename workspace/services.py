@@ -8,6 +8,8 @@ from functools import partial
 from typing import Any
 from uuid import UUID
 
+from celery import current_app
+from django.conf import settings
 from django.db import connection, transaction
 from django.db.models import Q
 from django.utils import timezone
@@ -137,7 +139,7 @@ def start_job(*, job_id: UUID | str) -> Job | None:
         if job.cancel_requested_at is not None:
             confirm_cancelled(job=job)
             return None
-        if job.state == JobState.RUNNING and job.attempts >= MAX_ATTEMPTS:
+        if job.state == JobState.RUNNING and (job.attempts >= MAX_ATTEMPTS or _has_used_its_time(job)):
             _give_up(job)
             return None
         job.state = JobState.RUNNING
@@ -192,7 +194,19 @@ def _end(job: Job, **values: Any) -> bool:
     return ended
 
 
+def _has_used_its_time(job: Job) -> bool:
+    """Whether its worker was stopped at the time limit: the same again would end the same way, and hold a worker as long."""
+    if job.started_at is None or job.lease_expires_at is None:
+        return False
+    heard_s = (job.lease_expires_at - job.started_at).total_seconds() - LEASE_S
+    limit_s = getattr(current_app.tasks.get(job.task), "soft_time_limit", None) or settings.CELERY_TASK_SOFT_TIME_LIMIT
+    return heard_s >= limit_s
+
+
 def _give_up(job: Job) -> None:
+    if _has_used_its_time(job):
+        fail_job(job=job, code="took_too_long", message="Not done within the time limit; it is not tried again.")
+        return
     fail_job(job=job, code="worker_lost", message=f"The worker was lost {MAX_ATTEMPTS} times; the job is given up.")
 
 
@@ -230,7 +244,7 @@ def requeue_lost_jobs() -> list[Job]:
         for job in Job.objects.select_for_update(skip_locked=True).filter(state=JobState.RUNNING, lease_expires_at__lt=now):
             if job.cancel_requested_at is not None:
                 confirm_cancelled(job=job)
-            elif job.attempts >= MAX_ATTEMPTS:
+            elif job.attempts >= MAX_ATTEMPTS or _has_used_its_time(job):
                 _give_up(job)
             else:
                 Job.objects.filter(pk=job.pk).update(state=JobState.QUEUED, lease_expires_at=now)

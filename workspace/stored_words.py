@@ -48,6 +48,8 @@ TEMPLATES = (
     gettext_noop("No plan within %(minutes)s min. Split the mission."),
     gettext_noop("The planner failed; the error is in the log."),
     gettext_noop("The worker was lost %(times)s times; the job is given up."),
+    gettext_noop("Not done within the time limit; it is not tried again."),
+    gettext_noop("Reading the file takes more processor time than a file of its size may need."),
     gettext_noop("The file is empty."),
     gettext_noop("The file cannot be read: %(error)s"),
     gettext_noop("This is neither OSM XML, OSM PBF nor Overpass JSON."),

@@ -104,6 +104,12 @@ def discard_proposal(*, proposal: ImportProposal, actor: User | None) -> ImportP
     return held
 
 
+def size_mib_of(*, job: Job) -> float:
+    """Of the file that the job's proposal is about; 0 where there is none yet."""
+    proposal = ImportProposal.objects.select_related("upload").filter(pk=job.parameters["proposal"]).first()
+    return 0.0 if proposal is None or proposal.upload is None else proposal.upload.size_bytes / 1024**2
+
+
 def read_proposal(*, job: Job, progress: Progress) -> None:
     """Look at the file and store what it would change. A file with faults is a refused proposal, not a failed job."""
     proposal = ImportProposal.objects.select_related("upload").get(pk=job.parameters["proposal"])
