@@ -12,7 +12,16 @@ from rest_framework.views import APIView
 from inspection.models import Upload
 from inspection.selectors.imports import upload_of_id
 from inspection.serializers.imports import UploadInputSerializer, UploadSerializer, upload_json
-from inspection.services.uploads import UploadGap, UploadInUse, UploadRefused, UploadTooLarge, begin_upload, delete_upload, receive_part
+from inspection.services.uploads import (
+    TooManyUploads,
+    UploadGap,
+    UploadInUse,
+    UploadRefused,
+    UploadTooLarge,
+    begin_upload,
+    delete_upload,
+    receive_part,
+)
 from workspace.errors import ApiProblem
 from workspace.parsers import OctetParser
 from workspace.permissions import CURATORS, RolePermission
@@ -37,7 +46,13 @@ def _upload(upload_id: UUID) -> Upload:
 class UploadList(APIView):
     permission_classes = [CuratorsAlone]
 
-    @extend_schema(operation_id="begin_upload", summary="Announce a file", request=UploadInputSerializer, responses={201: UploadSerializer})
+    @extend_schema(
+        operation_id="begin_upload",
+        summary="Announce a file",
+        description="409 `too_many_uploads` where the organisation's files that are kept leave no room for it.",
+        request=UploadInputSerializer,
+        responses={201: UploadSerializer, 409: OpenApiResponse(description="The organisation's files that are kept leave no room.")},
+    )
     def post(self, request: SignedInRequest) -> Response:
         body = UploadInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
@@ -45,6 +60,8 @@ class UploadList(APIView):
             upload = begin_upload(**body.validated_data, created_by=request.user)
         except UploadTooLarge as error:
             raise ApiProblem(413, "too_large", str(error)) from error
+        except TooManyUploads as error:
+            raise ApiProblem(409, "too_many_uploads", str(error)) from error
         return Response(upload_json(upload), status=201)
 
 
