@@ -5,7 +5,7 @@ from django.db.models import Q
 
 
 class Migration(migrations.Migration):
-    dependencies = [("missions", "0026_what_is_missing_of_a_refused_target")]
+    dependencies = [("missions", "0027_demo_data")]
 
     operations = [
         migrations.AddField(

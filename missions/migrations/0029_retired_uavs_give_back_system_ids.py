@@ -4,7 +4,7 @@ from django.db import migrations
 
 
 class Migration(migrations.Migration):
-    dependencies = [("missions", "0027_credentials_overlap")]
+    dependencies = [("missions", "0028_credentials_overlap")]
 
     operations = [
         migrations.RunSQL("UPDATE missions_uav SET mavlink_system_id = NULL WHERE state = 'retired'", migrations.RunSQL.noop),
