@@ -6,6 +6,7 @@ from dataclasses import replace
 from django.conf import settings
 
 from missions.mavlink.content import FlightLoad
+from missions.mavlink.own_return import fence_off_by
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.preparation import CannotCarry
 from telemetry.gateway.session import Session
@@ -19,6 +20,7 @@ ADVICE = {
     "far-first-waypoint": f"Bring the UAV to where its flight begins, or raise {FIRST_LEG} on it.",
     "long-leg": "Revoke, and approve it again with points put in on longer legs.",
 }
+FENCE_OFF = "The fence on the UAV does nothing: {parameter}."
 UNTOLD = "The UAV has not told how far apart waypoints may be."
 
 
@@ -42,6 +44,9 @@ def warnings_of(load: FlightLoad, session: Session) -> str:
     words = [warning.words for warning in count_warnings(load, session.flavour)]
     if session.flavour is Flavour.PX4 and not session.limits:
         words.append(UNTOLD)
+    off_by = fence_off_by(session.flavour, session.state.parameters) if load.fence else ""
+    if off_by:
+        words.append(FENCE_OFF.format(parameter=off_by))
     return " ".join(words)
 
 
