@@ -63,8 +63,9 @@ def _reasons(mission: Mission, route: Route, link: UavLink) -> Iterator[Reason]:
         loads = flight_loads(frozen_route(route, mission))
     except (CannotBeFlown, NotARoute):
         return  # which approving refuses by itself
-    unknown = {one.item.command: one.item.waypoint for load in loads for one in reversed(unknown_items(load.mission, flavour, firmware))}
-    for command, waypoint in unknown.items():
+    unknown = [one.item for load in loads for one in unknown_items(load.mission, flavour, firmware)]
+    first_of = {item.command: item.waypoint for item in reversed(unknown)}
+    for command, waypoint in first_of.items():
         values = {
             "autopilot": firmware_words(flavour, firmware), "uav": name, "command": command_words(command),
             "waypoint": 0 if waypoint is None else waypoint + 1,
