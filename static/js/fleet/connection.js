@@ -59,7 +59,7 @@ function drawing(connection) {
   const { mode, autopilot, firmware, vehicle_type, warnings, battery_percent, loaded_approval } = connection;
   return [
     h("p", { class: isHeard ? "" : "quiet-text" }, words),
-    warnings.map((warning) => h("p", { class: "notice warning" }, warning)),
+    ...warnings.map((warning) => h("p", { class: "notice warning" }, warning)),
     h(
       "dl",
       { class: "facts" },
