@@ -1,4 +1,4 @@
-"""Registers the app with Django, and with the missions what it knows of UAVs."""
+"""Registers the app with Django, and with the missions: what it knows of UAVs, and what it asks before a mission is approved."""
 
 from django.apps import AppConfig
 
@@ -7,6 +7,8 @@ class TelemetryConfig(AppConfig):
     name = "telemetry"
 
     def ready(self) -> None:
-        from missions.flight_hooks import register_flight_teller  # noqa: PLC0415 (models are there by then)
+        from missions.approval_hooks import register_check  # noqa: PLC0415 (models are there by then)
+        from missions.flight_hooks import register_flight_teller  # noqa: PLC0415
 
         register_flight_teller("telemetry.selectors.in_flight.is_in_flight")
+        register_check("telemetry.services.approved_vehicles.reasons_of_vehicles")

@@ -4364,6 +4364,8 @@ export interface components {
             safe_height_m: number | null;
             /** Format: date-time */
             read_at: string | null;
+            /** @description that its autopilot ignores the fence of the mission; empty: it does not, or is not known to */
+            fence_warning: string;
         };
         /**
          * @description * `clear` - clear
@@ -5541,6 +5543,10 @@ export interface components {
             address: string;
             autopilot: string;
             firmware: string;
+            /** @description as its autopilot says: quadrotor, fixed wing, … */
+            vehicle_type: string;
+            /** @description what keeps it from missions or from a fence */
+            warnings: string[];
             mode: string;
             is_armed: boolean | null;
             is_in_air: boolean | null;

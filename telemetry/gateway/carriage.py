@@ -119,7 +119,7 @@ class Carriage:
         if reason.is_for_good or self.command.attempts >= MOST_ATTEMPTS:
             await self._end(note_failed, reason.code, reason.words)
         else:
-            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reason.words)
+            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reason.words, code=reason.code)
 
     async def _reason_against(self, task: Task) -> CannotCarry | None:
         if task.aboard is not None:
@@ -182,7 +182,7 @@ class Carriage:
                 return True
             await self._end(note_released)
         elif reading.code in UNHEARD:
-            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reading.words)
+            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reading.words, code=reading.code)
         else:
             await self._end_with(fail_loading, None, reading.code, reading.words)
         return False

@@ -31,6 +31,7 @@ from telemetry.gateway.session import RADIO, Session
 from telemetry.gateway.store import Store
 from telemetry.gateway.telling import Telling
 from telemetry.ground_station.flavour import flavour_of
+from telemetry.ground_station.vehicle_class import type_name
 from telemetry.services.heard_by_gateway import HeardText
 from telemetry.services.links import LinkState, release_leases
 from telemetry.services.sightings import Sighting
@@ -121,7 +122,7 @@ class Gateway:
             self.store.sightings[frame.system] = Sighting(
                 system=frame.system,
                 autopilot=flavour_of(message.autopilot),
-                vehicle_type=_type_name(message.type),
+                vehicle_type=type_name(message.type),
                 address=peer.name[:100],
                 is_signed=frame.is_signed,
                 heard_at=datetime.fromtimestamp(now_s, UTC),
@@ -277,11 +278,6 @@ async def _cancel(tasks: Collection[asyncio.Task[None]]) -> None:
         for task in pending:
             task.cancel()
         await asyncio.wait(pending, timeout=CANCEL_AGAIN_S)
-
-
-def _type_name(number: int) -> str:
-    entry = mavlink.enums["MAV_TYPE"].get(number)
-    return entry.name.removeprefix("MAV_TYPE_").replace("_", " ").lower() if entry else f"type {number}"
 
 
 def _link_id(name: str) -> int:

@@ -26,7 +26,7 @@ from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.questions import Questions
 from telemetry.ground_station.ends import AUTOPILOT
-from telemetry.ground_station.flavour import COMMANDED, MISSION_MODES, Flavour
+from telemetry.ground_station.flavour import MISSION_MODES, Flavour
 from telemetry.ground_station.flown import FlightWatch
 from telemetry.ground_station.flown import Flown as FlownItem
 from telemetry.ground_station.limits import PARAMETERS
@@ -124,7 +124,7 @@ class Session:
         waiting, self.waiting = self.waiting, deque(maxlen=self.waiting.maxlen)
         self.lease, self.held_until_s = lease, held_until_s
         self.losses = Counter(lease.losses)
-        self._flight.has_flown_list |= lease.mode_in_air in MISSION_MODES  # and may be down by now
+        self._flight.take_up(was_in_mission=lease.mode_in_air in MISSION_MODES, mission_item=lease.mission_item)
         if not self.time.boots:
             self.time = VehicleTime.from_json(lease.boots)
         self.belief.take_up(lease.signing, waiting[0][2] if waiting else time.time())
@@ -159,7 +159,7 @@ class Session:
 
     def may_hear(self, now_s: float) -> bool:
         """Whether it is ours and can be spoken to, though perhaps nothing is heard of it: it was believed from an address not long ago."""
-        return self.is_held and self._has_address(now_s) and self.state.flavour in COMMANDED
+        return self.is_held and self._has_address(now_s) and self.state.can_be_stopped
 
     def _has_address(self, now_s: float) -> bool:
         return self.peer is not None and is_within(self.heard_s, now_s, ADDRESS_GOOD_S)
@@ -216,6 +216,7 @@ class Session:
             address=self.peer.name[:100] if self.peer else "",
             autopilot=state.flavour or "",
             firmware=".".join(map(str, state.firmware)) if state.firmware else "",
+            vehicle_type=state.vehicle_type,
             mode=state.mode[:30],
             is_armed=state.is_armed,
             is_in_air=state.is_in_air,

@@ -4,12 +4,11 @@ from collections.abc import Mapping
 
 from telemetry.ground_station.command import CommandEnd, CommandMachine, CommandOutcome
 from telemetry.ground_station.ends import Ends, Message, Messages
-from telemetry.ground_station.orders import CannotOrder, Order, OrderPlan, plan_of
+from telemetry.ground_station.orders import STOPS, CannotOrder, Order, OrderPlan, plan_of
 from telemetry.ground_station.rules import CommandRules
 from telemetry.ground_station.steps import Course, NextHeartbeat, Pause, Steps
 from telemetry.ground_station.vehicle_state import VehicleState
 
-STOPS = frozenset({Order.ABORT, Order.LAND, Order.RETURN, Order.HOLD, Order.PAUSE})
 UNDONE_ROUNDS = 3
 
 

@@ -8,8 +8,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from telemetry.ground_station.ends import AUTOPILOT, Message
-from telemetry.ground_station.flavour import COPTER_HOLDING, Flavour, Mode, flavour_of, is_in_mode, mode_name
+from telemetry.ground_station.flavour import COMMANDED, COPTER_HOLDING, Flavour, Mode, flavour_of, is_in_mode, mode_name
 from telemetry.ground_station.rules import CommandRules
+from telemetry.ground_station.vehicle_class import VehicleClass, class_of
 
 TEXTS_KEPT = 10
 MOST_PARAMETERS = 4_000  # more than any autopilot has
@@ -69,10 +70,23 @@ class VehicleState:
     @property
     def mode(self) -> str:
         """In the autopilot's own words; empty before the first heartbeat."""
-        return "" if self.flavour is None or self.custom_mode is None else mode_name(self.flavour, self.custom_mode)
+        return "" if self.flavour is None or self.custom_mode is None else mode_name(self.flavour, self.custom_mode, self.vehicle_class)
+
+    @property
+    def vehicle_class(self) -> VehicleClass:
+        return class_of(self.vehicle_type)
+
+    @property
+    def can_be_stopped(self) -> bool:
+        """Whether the modes that hold it, bring it back and land it are known."""
+        if self.flavour is Flavour.ARDUPILOT:
+            return self.vehicle_class is VehicleClass.COPTER
+        return self.flavour in COMMANDED
 
     def is_in(self, mode: Mode) -> bool:
-        return self.flavour is not None and self.custom_mode is not None and is_in_mode(self.flavour, self.custom_mode, mode)
+        if self.flavour is None or self.custom_mode is None:
+            return False
+        return is_in_mode(self.flavour, self.custom_mode, mode, self.vehicle_class)
 
     @property
     def is_in_air(self) -> bool | None:

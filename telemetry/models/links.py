@@ -19,6 +19,7 @@ class UavLink(models.Model):
     address = models.CharField(max_length=100, blank=True, help_text="whence it was received: transport, host and port")
     autopilot = models.CharField(max_length=20, blank=True, help_text="px4, ardupilot or other")
     firmware = models.CharField(max_length=50, blank=True)
+    vehicle_type = models.PositiveSmallIntegerField(null=True, blank=True, help_text="MAV_TYPE of its heartbeat")
     mode = models.CharField(max_length=30, blank=True)
     is_armed = models.BooleanField(null=True, blank=True)
     is_in_air = models.BooleanField(null=True, blank=True)

@@ -8,7 +8,9 @@ from rest_framework import serializers
 from missions.fields import PositionField
 from missions.models import LinkKind, Uav
 from missions.serializers.known_fields import KnownFieldsSerializer
+from telemetry.ground_station.vehicle_class import type_name
 from telemetry.models import UavLink, UnknownVehicle, UnknownVehicleState
+from telemetry.services.approved_vehicles import connection_warnings
 from telemetry.services.loads import Doubt
 
 
@@ -75,6 +77,8 @@ class UavConnectionSerializer(serializers.Serializer):
     address = serializers.CharField(allow_blank=True)
     autopilot = serializers.CharField(allow_blank=True)
     firmware = serializers.CharField(allow_blank=True)
+    vehicle_type = serializers.CharField(allow_blank=True, help_text="as its autopilot says: quadrotor, fixed wing, …")
+    warnings = serializers.ListField(child=serializers.CharField(), help_text="what keeps it from missions or from a fence")
     mode = serializers.CharField(allow_blank=True)
     is_armed = serializers.BooleanField(allow_null=True)
     is_in_air = serializers.BooleanField(allow_null=True)
@@ -98,6 +102,8 @@ def connection_json(uav: Uav, link: UavLink, now: datetime) -> dict[str, Any]:
         "address": link.address,
         "autopilot": link.autopilot,
         "firmware": link.firmware,
+        "vehicle_type": "" if link.vehicle_type is None else type_name(link.vehicle_type),
+        "warnings": connection_warnings(uav, link),
         "mode": link.mode,
         "is_armed": link.is_armed,
         "is_in_air": link.is_in_air,

@@ -117,7 +117,7 @@ def test_a_mission_is_flown_by_what_the_vehicle_tells(flavour, uav, mission, tmp
         wait_for(lambda: mission.records.filter(**last).exists(), "a record at the last waypoint")
         wait_for(lambda: UavLink.objects.filter(uav=uav, **last).exists(), "the link at the last waypoint")
         assert mission.routes.get().flights_flown == 0
-        vehicle.is_in_air = vehicle.is_armed = False
+        vehicle.touch_down()
         wait_for(lambda: mission.routes.get().flights_flown == 1, "the flight's end")
     mission.refresh_from_db()
     assert mission.state == MissionState.COMPLETED

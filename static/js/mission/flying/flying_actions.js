@@ -65,7 +65,7 @@ const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
 function returnsOf(returns, flyers) {
   const lines = flyers.flatMap(({ place }) => {
     const check = returnOf(returns, place);
-    return check ? check.warnings : returnLines(check);
+    return check ? [...check.warnings, check.fence_warning].filter(Boolean) : returnLines(check);
   });
   return [...new Set(lines)];
 }
@@ -190,6 +190,7 @@ async function send(acting, flyer, flight) {
         { names: uavsWords(flyers) },
       ),
       t("A UAV that is not connected gets its route when it is, within the hour."),
+      ...flyers.map(({ place }) => returnOf(acting.store.state.returns, place)?.fence_warning),
     ],
     act: flyer ? t("Send to {name}", { name: flyer.name }) : t("Send to UAVs"),
     isBack: true,
