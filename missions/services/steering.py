@@ -28,7 +28,6 @@ from missions.services.approval_checks import Look, look_at, look_that_counts
 from missions.services.flying import ON_ITS_WAY
 from missions.services.outbox import queue_command
 from missions.services.refused import Reason, refuse, refuse_for
-from missions.services.start_slots import reasons_to_wait
 from workspace.models import User
 
 SLOWEST_MPS = 0.5
@@ -121,13 +120,12 @@ def _flight_to_start(uav: Uav, mission: Mission, approval: Approval, look: Look 
     if last is None or last.approval_id != approval.pk or last.kind != CommandKind.UPLOAD_MISSION or last.state != CommandState.APPLIED:
         raise refuse("not_loaded", _("%(uav)s does not have its mission yet.") % values)
     flight = int(last.parameters.get("flight", 1))
-    route = MissionUav.objects.select_related("route__mission_uav", "route__mission").get(mission=mission, uav=uav).route
+    route = MissionUav.objects.select_related("route__mission_uav").get(mission=mission, uav=uav).route
     if flight <= route.flights_flown:
         raise refuse("flown_already", _("%(uav)s has flown this flight.") % values)
     if flight == 1 and mission.departs_at is not None:
         _refuse_untimely(mission.departs_at + timedelta(seconds=route.departs_s), now, values)
     refuse_for(_reasons_for(route.mission_uav.sequence, look_that_counts(look, mission, now=now)))
-    refuse_for(reasons_to_wait(uav=uav, route=route, flight=flight, now=now))
     return flight
 
 
