@@ -357,6 +357,7 @@ GATEWAY_UDP = os.environ.get("SPANWISE_GATEWAY_UDP", "127.0.0.1:14550")
 GATEWAY_TCP = os.environ.get("SPANWISE_GATEWAY_TCP", "127.0.0.1:5760")
 GATEWAY_NAME = os.environ.get("SPANWISE_GATEWAY_NAME", "")
 GATEWAY_MOST_COMMANDS = int(_float("SPANWISE_GATEWAY_MOST_COMMANDS", 200))  # carried at once, above which speeds wait
+LINK_BUDGET_BYTES_S = _float("SPANWISE_LINK_BUDGET_BYTES_S", 0.0)  # of telemetry by MAVLink of each UAV; 0: no limit
 GATEWAY_ALONE_S = _float("SPANWISE_GATEWAY_ALONE_S", 30.0)  # without its database, after which UAVs get no heartbeats
 GATEWAY_MOST_RECORDS = int(_float("SPANWISE_GATEWAY_MOST_RECORDS", 100_000))  # kept in memory while the database is away
 FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_LOG_DIR") or STATE_DIR / "flight-logs")

@@ -139,7 +139,7 @@ export interface components {
             opened_at: string;
             /** Format: date-time */
             closed_at: string | null;
-            /** @description cleared, landed or mission-ended */
+            /** @description cleared, landed, mission-ended or by-person */
             close_reason: string;
             /** Format: date-time */
             acknowledged_at: string | null;
@@ -174,7 +174,7 @@ export interface components {
             opened_at: string;
             /** Format: date-time */
             closed_at: string | null;
-            /** @description cleared, landed or mission-ended */
+            /** @description cleared, landed, mission-ended or by-person */
             close_reason: string;
             /** Format: date-time */
             acknowledged_at: string | null;
@@ -566,6 +566,11 @@ export interface components {
             centre: number[];
             /** Format: double */
             radius_m: number;
+        };
+        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        ClosingInputRequest: {
+            /** @description what became of the UAV; kept as a note */
+            reason: string;
         };
         Command: {
             /** Format: uuid */
@@ -5552,6 +5557,15 @@ export interface components {
             is_in_air: boolean | null;
             /** Format: double */
             battery_percent: number | null;
+            /** @description as the vehicle itself has it: ok, low, critical, … */
+            battery_state: string;
+            /**
+             * Format: double
+             * @description of its frames, by MAVLink only
+             */
+            received_bytes_s: number | null;
+            /** Format: double */
+            received_messages_s: number | null;
             /** @description of its approved route that it flies to, or is at */
             waypoint_sequence: number | null;
             /**
@@ -6663,6 +6677,7 @@ export type ChangeFeature = components['schemas']['ChangeFeature'];
 export type ChangeProperties = components['schemas']['ChangeProperties'];
 export type Charging = components['schemas']['Charging'];
 export type Circle = components['schemas']['Circle'];
+export type ClosingInputRequest = components['schemas']['ClosingInputRequest'];
 export type Command = components['schemas']['Command'];
 export type CommandDetail = components['schemas']['CommandDetail'];
 export type CommandEvent = components['schemas']['CommandEvent'];

@@ -21,6 +21,7 @@ from telemetry.gateway import greeting
 from telemetry.gateway.addresses import MAX_ADDRESSES
 from telemetry.gateway.belief import SENDER_SILENT_S, Belief, is_within
 from telemetry.gateway.fleet import KnownUav
+from telemetry.gateway.link_rate import LinkRate
 from telemetry.gateway.list_watch import ListWatch
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
@@ -68,6 +69,7 @@ class Session:
     is_unsaved: bool = False
     questions: Questions = field(default_factory=Questions)
     lists: ListWatch = field(default_factory=ListWatch)
+    rate: LinkRate = field(default_factory=LinkRate)
     commanded_s: float | None = None  # monotonic: when a command was last under way
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
     _writer: FrameWriter = field(init=False, repr=False)
@@ -99,6 +101,7 @@ class Session:
             return
         self.is_unsaved = True
         self._quality.count(frame.component, frame.sequence)
+        self.rate.count(len(frame.raw), now_s)
         if self.log is not None:
             self.log(frame.raw, frame.message_id, now_s)
         message = message_of(frame)
@@ -209,7 +212,7 @@ class Session:
 
     def link_state(self) -> LinkState:
         state, clock = self.state, self.time.clock
-        home = state.home
+        home, rate = state.home, self.rate.at(time.time())
         return LinkState(
             uav_id=self.uav.uav_id,
             heard_ago_s=max(time.time() - self.heard_s, 0.0),
@@ -230,6 +233,9 @@ class Session:
             signing=self._signing(),
             losses=dict(self.losses),
             limits=(self.lease.limits if self.lease else {}) | self.limits,
+            battery_state=state.battery_state,
+            received_bytes_s=rate.bytes_s,
+            received_messages_s=rate.messages_s,
         )
 
     def _signing(self) -> dict[str, Any]:
@@ -251,6 +257,7 @@ class Session:
         stamp = self._stamp(message, now_s) if kind in TELL_TIME else None
         self._reporter.receive(message, now_s)
         monotonic_s = time.monotonic()
+        self.questions.receive(message, monotonic_s)
         if not _tells_no_place(message):
             self.state.receive(message, monotonic_s)
             self._note_flown(self._flight.look(self.state, kind))

@@ -18,6 +18,7 @@ WHOLE_TYPES = frozenset({
     mavlink.MAV_PARAM_TYPE_INT8, mavlink.MAV_PARAM_TYPE_UINT8, mavlink.MAV_PARAM_TYPE_INT16, mavlink.MAV_PARAM_TYPE_UINT16,
     mavlink.MAV_PARAM_TYPE_INT32, mavlink.MAV_PARAM_TYPE_UINT32,
 })  # fmt: skip
+BATTERY_STATES = {1: "ok", 2: "low", 3: "critical", 4: "emergency", 5: "failed", 6: "unhealthy", 7: "charging"}  # MAV_BATTERY_CHARGE_STATE
 IN_AIR = frozenset({mavlink.MAV_LANDED_STATE_IN_AIR, mavlink.MAV_LANDED_STATE_TAKEOFF, mavlink.MAV_LANDED_STATE_LANDING})
 
 
@@ -35,6 +36,7 @@ class VehicleState:
     vehicle_type: int | None = None
     custom_mode: int | None = None
     system_status: int | None = None
+    battery_state: str = ""
     is_armed: bool | None = None
     landed_state: int | None = None
     position: LonLat | None = None
@@ -170,6 +172,12 @@ def _health(state: VehicleState, message: Message, now_s: float) -> None:
         state.is_ready_to_arm = bool(message.onboard_control_sensors_health & check)
 
 
+def _battery(state: VehicleState, message: Message, now_s: float) -> None:
+    """Of the first battery; empty: not told."""
+    if message.id == 0:
+        state.battery_state = BATTERY_STATES.get(getattr(message, "charge_state", 0), "")
+
+
 def _parameter(state: VehicleState, message: Message, now_s: float) -> None:
     """PX4 sends the bits of a whole number in place of the figure (MAVLink's "bytewise" encoding)."""
     value = float(message.param_value)
@@ -194,6 +202,7 @@ _TAKES = {
     "MISSION_ITEM_REACHED": _reached,
     "AUTOPILOT_VERSION": _version,
     "SYS_STATUS": _health,
+    "BATTERY_STATUS": _battery,
     "PARAM_VALUE": _parameter,
     "STATUSTEXT": _text,
 }

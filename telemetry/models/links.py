@@ -57,6 +57,12 @@ class UavLink(models.Model):
         help_text="what it would not fly, by its parameters' names [m]; see ground_station/limits.py",
     )
 
+    battery_state = models.CharField(
+        max_length=20, default="", db_default="", blank=True, help_text="as the vehicle itself has it: ok, low, critical, …"
+    )
+    received_bytes_s = models.FloatField(null=True, blank=True, help_text="bytes a second of its frames, of late")
+    received_messages_s = models.FloatField(null=True, blank=True)
+
     class Meta:
         verbose_name = "UAV's link"
 

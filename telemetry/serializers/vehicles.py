@@ -83,6 +83,9 @@ class UavConnectionSerializer(serializers.Serializer):
     is_armed = serializers.BooleanField(allow_null=True)
     is_in_air = serializers.BooleanField(allow_null=True)
     battery_percent = serializers.FloatField(allow_null=True)
+    battery_state = serializers.CharField(allow_blank=True, help_text="as the vehicle itself has it: ok, low, critical, …")
+    received_bytes_s = serializers.FloatField(allow_null=True, help_text="of its frames, by MAVLink only")
+    received_messages_s = serializers.FloatField(allow_null=True)
     waypoint_sequence = serializers.IntegerField(allow_null=True, help_text="of its approved route that it flies to, or is at")
     loaded_approval = serializers.UUIDField(allow_null=True, help_text="of the mission that is on it, as it was seen")
     loaded_flight = serializers.IntegerField(allow_null=True)
@@ -108,6 +111,9 @@ def connection_json(uav: Uav, link: UavLink, now: datetime) -> dict[str, Any]:
         "is_armed": link.is_armed,
         "is_in_air": link.is_in_air,
         "battery_percent": uav.battery_percent,
+        "battery_state": link.battery_state,
+        "received_bytes_s": link.received_bytes_s,
+        "received_messages_s": link.received_messages_s,
         "waypoint_sequence": link.waypoint_sequence,
         "loaded_approval": link.loaded_approval,
         "loaded_flight": link.loaded_flight,

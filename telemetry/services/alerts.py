@@ -35,6 +35,7 @@ def open_alert(
     values: dict[str, Any] | None = None,
     mission: Mission | None = None,
     details: dict[str, Any] | None = None,
+    subject: str = "",
 ) -> Alert:
     """Of one cause there is one open alert: opened again, it says the newer words. `message` is a template for the values.
 
@@ -42,12 +43,12 @@ def open_alert(
     """
     now = timezone.now()
     alert = Alert(
-        organisation_id=uav.organisation_id, uav=uav, mission=mission, level=level, code=code, message=message[:500], values=values or {},
-        details=details or {}, opened_at=now, written_at=now, course=[step(OPENED, now, level=str(level))],
+        organisation_id=uav.organisation_id, uav=uav, mission=mission, level=level, code=code, subject=subject, message=message[:500],
+        values=values or {}, details=details or {}, opened_at=now, written_at=now, course=[step(OPENED, now, level=str(level))],
     )  # fmt: skip
     with transaction.atomic():
         inserted = Alert.objects.bulk_create([alert], ignore_conflicts=True)
-        open_one = Alert.objects.select_for_update().filter(uav=uav, code=code, subject="", closed_at=None).first()
+        open_one = Alert.objects.select_for_update().filter(uav=uav, code=code, subject=subject, closed_at=None).first()
         if open_one is None:  # closed in this moment
             return inserted[0]
         said = (alert.message, alert.values, alert.details, alert.level)
@@ -102,6 +103,11 @@ def note_alert(*, alert: Alert, actor: User, text: str) -> AlertNote:
         _record(alert, actor, "note", {"note": note.pk, "text": text})
         _tell(alert.organisation_id)
     return note
+
+
+def alert_was_closed(alert: Alert, actor: User, reason: str) -> None:
+    """Written to the audit log, for an alert that a person closes."""
+    _record(alert, actor, "close", {"code": alert.code, "level": alert.level, "uav": alert.uav_id, "reason": reason})
 
 
 def tell_of_second_sender(*, uav_id: int, believed: str = "", other: str = "", is_signed: bool = False) -> None:

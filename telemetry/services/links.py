@@ -64,6 +64,9 @@ class LinkState:
     limits: dict[str, float] = field(default_factory=dict)
     waypoint_sequence: int | None = None
     vehicle_type: int | None = None
+    battery_state: str = ""
+    received_bytes_s: float | None = None
+    received_messages_s: float | None = None
 
 
 TAKE = """
@@ -115,7 +118,7 @@ def release_leases(*, holder: str) -> None:
 _TYPES = {
     "uav_id": "int8", "is_armed": "bool", "is_in_air": "bool", "mission_item": "int4", "waypoint_sequence": "int4", "vehicle_type": "int2",
     "boots": "jsonb", "signing": "jsonb", "losses": "jsonb", "limits": "jsonb",
-    "address": "text", "autopilot": "text", "firmware": "text", "mode": "text",
+    "address": "text", "autopilot": "text", "firmware": "text", "mode": "text", "battery_state": "text",
 }  # fmt: skip
 _COLUMNS = {column.name: _TYPES.get(column.name, "float8") for column in fields(LinkState)}
 _MADE = ("uav_id", "heard_ago_s", "home_longitude_deg", "home_latitude_deg")

@@ -131,6 +131,14 @@ const SENTENCES = [
       t("{name} states no top airspeed: it is taken to fly no faster than its speed, through the air.", { name }),
   ],
   [
+    /^(.+) is reported to be in the air: the plan begins with a take-off from the ground at the place where it was last seen\.$/,
+    (name) =>
+      t(
+        "{name} is reported to be in the air: the plan begins with a take-off from the ground at the place where it was last seen.",
+        { name },
+      ),
+  ],
+  [
     /^The wind is too strong on every way to it, or back\.$/,
     () => t("The wind is too strong on every way to it, or back."),
   ],

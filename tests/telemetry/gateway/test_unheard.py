@@ -110,7 +110,9 @@ def test_a_uav_that_was_never_heard_here_is_not_addressed(uav, tmp_path):
         other.send(heartbeat(is_armed=True))
         command = queue_command(uav=uav, kind=CommandKind.ABORT, actor=None)
         time.sleep(2.5)
-        assert (other.received(), unasked.received()) == ([], [])
+        asked = [(message.command, message.param1) for message in other.received()]
+        assert asked == [(mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT)], "where it is, and nothing else"
+        assert unasked.received() == []
     command.refresh_from_db()
     assert (command.state, command.attempts) == (CommandState.QUEUED, 0)
 

@@ -144,6 +144,8 @@ export default {
   "Mode": "Modus",
   "Autopilot": "Autopilot",
   "On it": "Geladen",
+  "Received": "Empfangen",
+  "{bytes} bytes/s in {messages} messages/s": "{bytes} Byte/s in {messages} Nachrichten/s",
   "flight {number} of an approved mission": "Flug {number} einer freigegebenen Mission",
   "Only an administrator changes this.": "Das ändern nur Administratoren.",
   "Told what to do by": "Wird angewiesen über",

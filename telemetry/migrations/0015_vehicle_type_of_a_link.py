@@ -4,7 +4,7 @@ from django.db import migrations, models
 
 
 class Migration(migrations.Migration):
-    dependencies = [("telemetry", "0013_room_for_what_changes_each_second")]
+    dependencies = [("telemetry", "0014_battery_state_and_rate_of_a_link")]
 
     operations = [
         migrations.AddField(
