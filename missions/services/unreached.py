@@ -115,7 +115,7 @@ def _nobody_may(target: TargetRequest, request: PlanRequest, grounded: Mapping[i
         tied = next((number for number, uav in enumerate(request.uavs) if uav.name == target.uav), None)
         if tied is not None and not has_sensor(request.uavs[tied], target.sensor):
             return f"It is tied to {target.uav}, which does not have the sensor {target.sensor}."
-        if tied in grounded:
+        if tied is not None and tied in grounded:
             return f"It is tied to {target.uav}. {grounded[tied].message}"
         return f"It is tied to {target.uav}, which cannot fly to it."
     able = [number for number, uav in enumerate(request.uavs) if may_do(uav, target)]
