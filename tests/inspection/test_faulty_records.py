@@ -11,7 +11,7 @@ from inspection.services.proposals import pipeline
 from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
 from tests.inspection.zone_sets import zone_file
-from tests.workspace.people import somebody
+from tests.workspace.people import client_of, somebody
 from workspace.models import Role, User
 
 pytestmark = pytest.mark.django_db
@@ -100,3 +100,14 @@ def test_a_faulty_zone_of_a_json_file_is_left_out_with_its_box(tmp_path: Path, c
     assert (proposal.state, proposal.difference["new"], proposal.difference["not_read"]) == ("ready", 1, 1)
     assert proposal.changes.get(action="not_read").geometry is not None
     assert proposal.summary["not_read"][0]["name"] == "East"
+
+
+def test_the_api_names_the_records_that_nobody_has_seen(tmp_path: Path, curator: User) -> None:
+    proposal = proposed(openair(tmp_path, ("West", SQUARE.format(7)), ("East", broken(SQUARE.format(8)))), curator, leave_out_faulty=True)
+    address, client = f"/api/v1/imports/{proposal.pk}/apply", client_of(curator)
+    refused = client.post(address, {"parameters": {"seen": ["line 4"]}}, content_type="application/json")
+    assert (refused.status_code, refused.json()["error"]["code"]) == (409, "not_seen")
+    assert refused.json()["error"]["details"]["places"] == ["line 10"]
+    accepted = client.post(address, {"parameters": {"seen": ["line 10"]}}, content_type="application/json")
+    assert (accepted.status_code, accepted.json()["state"]) == (202, "applying")
+    assert client.get(f"/api/v1/imports/{proposal.pk}/changes?action=not_read").json()["features"][0]["geometry"]["type"] == "Polygon"
