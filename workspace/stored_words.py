@@ -61,6 +61,7 @@ TEMPLATES = (
     gettext_noop("The file could not be read."),
     gettext_noop("polygon is not closed"),
     gettext_noop("the border crosses itself"),
+    gettext_noop("Minutes or seconds of 60 were read as the next degree or minute: %(places)s."),
     gettext_noop(
         "%(voids)s of %(posts)s posts are void (%(percent)s %%), %(undeclared)s of them without being declared. "
         "An older model fills them where it reaches; elsewhere the ground stays unknown. Nothing is made up."

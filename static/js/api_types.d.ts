@@ -76,9 +76,10 @@ export interface components {
          *     * `changed` - Changed
          *     * `vanished` - Vanished
          *     * `kept` - Kept as edited by hand
+         *     * `not_read` - Not read
          * @enum {string}
          */
-        ActionEnum: "new" | "changed" | "vanished" | "kept";
+        ActionEnum: "new" | "changed" | "vanished" | "kept" | "not_read";
         /** @description Either `uav`, which gets the system id, or what a new UAV is made from. */
         AdoptionRequest: {
             /** Format: int64 */
