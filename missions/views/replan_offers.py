@@ -11,7 +11,7 @@ from rest_framework.views import APIView
 from missions.models import ReplanOffer
 from missions.serializers import replan_offers as shapes
 from missions.services.replanning import accept_offer, ask_for_offer, decline_offer
-from missions.views.missions import IF_MATCH, expected_revision, mission_or_404
+from missions.views.missions import IF_MATCH, IF_MATCH_OPTIONAL, expected_revision, mission_or_404, stated_revision
 from missions.views.plans import job_answer
 from missions.views.problems import api_problems, refusals
 from workspace.errors import ApiProblem
@@ -28,6 +28,7 @@ REFUSED = {
     412: OpenApiResponse(description="The offer is no longer as it was seen."),
 }
 
+REFUSED_UNSEEN = REFUSED | {428: OpenApiResponse(description="If-Match is missing.")}
 
 class MissionReplanOffers(APIView):
     @extend_schema(
@@ -71,24 +72,24 @@ class ReplanOfferAccept(APIView):
         " hover, and started; what they leave of the mission that flies is taken over. Where a step fails a UAV stays held.",
         parameters=[IF_MATCH],
         request=None,
-        responses={200: shapes.ReplanOfferSerializer, **REFUSED},
+        responses={200: shapes.ReplanOfferSerializer, **REFUSED_UNSEEN},
     )
     @idempotent
     def post(self, request: SignedInRequest, offer_id: UUID) -> Response:
-        return _decided(request, offer_id, accept_offer)
+        return _decided(request, offer_id, accept_offer, expected_revision(request))
 
 
 class ReplanOfferDecline(APIView):
     @extend_schema(
         operation_id="decline_replan_offer",
         summary="Leave the mission as it is",
-        parameters=[IF_MATCH],
+        parameters=[IF_MATCH_OPTIONAL],
         request=None,
-        responses={200: shapes.ReplanOfferSerializer, **REFUSED},
+        responses={200: shapes.ReplanOfferSerializer, **REFUSED_UNSEEN},
     )
     @idempotent
     def post(self, request: SignedInRequest, offer_id: UUID) -> Response:
-        return _decided(request, offer_id, decline_offer)
+        return _decided(request, offer_id, decline_offer, stated_revision(request))
 
 
 def offer_or_404(user: User, offer_id: UUID) -> ReplanOffer:
@@ -99,8 +100,7 @@ def offer_or_404(user: User, offer_id: UUID) -> ReplanOffer:
     return offer
 
 
-def _decided(request: SignedInRequest, offer_id: UUID, decide: Callable[..., ReplanOffer]) -> Response:
-    expected = expected_revision(request)
+def _decided(request: SignedInRequest, offer_id: UUID, decide: Callable[..., ReplanOffer], expected: int | None) -> Response:
     offer = offer_or_404(request.user, offer_id)
     if expected is not None and shapes.offer_json(offer)["revision"] != expected:
         raise ApiProblem(412, "offer_changed", "The offer is no longer as it was seen. Load it again.")

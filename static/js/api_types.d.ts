@@ -2086,6 +2086,8 @@ export interface components {
             mission: string;
             code: string;
             state: components["schemas"]["OfferState"];
+            /** @description its ETag, for If-Match */
+            revision: number;
             cause: unknown;
             difference: unknown;
             /** Format: uuid */
