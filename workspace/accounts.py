@@ -81,7 +81,7 @@ def revision_of_person(user: User) -> int:
 
 
 def change_person(*, user_id: int, actor: User, seen_revision: int | None, **values: Any) -> User:
-    """Raises User.DoesNotExist (another organisation's), ChangedMeanwhile, NoAdministratorLeft."""
+    """Raises User.DoesNotExist (another organisation's), ChangedMeanwhile, NoAdministratorLeft, OperatorsAlone."""
     with transaction.atomic():
         user = User.objects.select_for_update().get(pk=user_id, organisation_id=actor.organisation_id)
         if seen_revision is not None and seen_revision != revision_of_person(user):

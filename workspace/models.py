@@ -66,7 +66,7 @@ class UserManager(DjangoUserManager["User"]):
         return user
 
     def create_superuser(self, username: str, email: str | None = None, password: str | None = None, **fields: Any) -> "User":
-        return self.create_user(username, email, password, **{"role": Role.ADMINISTRATOR, **fields})
+        return self.create_user(username, email, password, **{"role": Role.ADMINISTRATOR, "is_installation_operator": True, **fields})
 
 
 class User(AbstractUser):
@@ -77,6 +77,9 @@ class User(AbstractUser):
     organisation = models.ForeignKey(Organisation, on_delete=models.PROTECT, default=DEFAULT_ORGANISATION_ID, related_name="users")
     role = models.CharField(max_length=20, choices=Role.choices, default=Role.VIEWER)
     theme = models.CharField(max_length=10, choices=Theme.choices, default=Theme.SYSTEM)
+    is_installation_operator = models.BooleanField(
+        default=False, db_default=False, editable=False, help_text="as administrator: of all organisations, in the admin"
+    )
     units = models.CharField(
         max_length=10, choices=Units.choices, default=Units.METRIC, help_text="what is shown; what is stored is metric"
     )
@@ -106,6 +109,11 @@ class User(AbstractUser):
         return self.role == Role.ADMINISTRATOR
 
     @property
+    @property
+    def operates_installation(self) -> bool:
+        """Sees and changes the rows of all organisations in the admin. Given on the machine alone."""
+        return self.is_installation_operator and self.role == Role.ADMINISTRATOR
+
     def can_plan(self) -> bool:
         return self.role in {Role.OPERATOR, Role.ADMINISTRATOR}
 

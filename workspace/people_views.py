@@ -35,7 +35,7 @@ from workspace.people_serializers import (
 from workspace.permissions import ADMINISTRATORS, AdministratorsAlone, AdministratorsInTheBrowser, InTheBrowserAlone
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
-from workspace.services import NoAdministratorLeft
+from workspace.services import NoAdministratorLeft, OperatorsAlone, may_change
 from workspace.signed_in import SignedInRequest
 
 HERE_WITHIN = timedelta(minutes=5)
@@ -132,6 +132,8 @@ class PersonDetail(APIView):
         except NoAdministratorLeft as error:
             raise ApiProblem(409, "no_administrator_left", str(error)) from error
         return self._answer(request, user_id)
+        except OperatorsAlone as error:
+            raise ApiProblem(403, "operators_alone", str(error)) from error
 
     @staticmethod
     def _answer(request: SignedInRequest, user_id: int) -> Response:
@@ -181,6 +183,8 @@ class PersonSecondFactor(APIView):
         person = _person(request, user_id)
         if person.pk == request.user.pk:
             raise ApiProblem(409, "own_second_factor", _("Your own is on the page of your account, where a code is asked for."))
+        if not may_change(request.user, person):
+            raise ApiProblem(403, "operators_alone", str(OperatorsAlone()))
         second_factors.take_away(user=person, actor=request.user)
         return Response(status=204)
 
@@ -247,8 +251,8 @@ class InvitationList(APIView):
     def post(self, request: SignedInRequest) -> Response:
         body = InvitationInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
-        invitation, token = invitations.invite(actor=request.user, **body.validated_data)
-        link = request.build_absolute_uri(reverse("invitation", args=[token]))
+        invitation, token = invitations.invite(organisation=request.user.organisation, actor=request.user, **body.validated_data)
+        link = public_address(request) + reverse("invitation", args=[token])
         was_mailed = invitations.send_invitation(invitation=invitation, link=link)
         return Response(with_secret(NewInvitationSerializer, invitation, link=link, was_mailed=was_mailed), status=201)
 

@@ -60,6 +60,18 @@ class NoAdministratorLeft(ValueError):
 
 
 def hash_token(token: str) -> str:
+class OperatorsAlone(PermissionError):
+    """Whoever could change an installation operator's account could become one."""
+
+    def __init__(self) -> None:
+        super().__init__(_("Only installation operators change the account of one."))
+
+
+def may_change(actor: User, user: User) -> bool:
+    """Whether the actor may change this account: that of an installation operator is for operators and its owner."""
+    return actor.operates_installation or actor.pk == user.pk or not user.operates_installation
+
+
     return hashlib.sha256(token.encode()).hexdigest()
 
 
@@ -247,11 +259,13 @@ def forget_old_idempotency_keys() -> int:
 
 
 def save_person(*, user: User, actor: User) -> User:
-    """Store a new or changed account. Raises NoAdministratorLeft."""
+    """Store a new or changed account. Raises NoAdministratorLeft, OperatorsAlone."""
     with transaction.atomic():
         before = User.objects.filter(pk=user.pk).first()
         user.save()
         _refuse_without_administrator(before)
+        if before and not may_change(actor, before):
+            raise OperatorsAlone
         if before and _administrates(before) and not (_administrates(user) and before.organisation_id == user.organisation_id):
             _withdraw_invitations(user, actor)
         _record_person(actor, user.pk, person_facts(before) if before else None, person_facts(user))
@@ -272,7 +286,9 @@ def change_people(*, users: Iterable[User], actor: User, role: Role | None = Non
 
 
 def delete_person(*, user: User, actor: User) -> None:
-    """What they did stays in the history, without their name. Raises NoAdministratorLeft."""
+    """What they did stays in the history, without their name. Raises NoAdministratorLeft, OperatorsAlone."""
+    if not may_change(actor, User.objects.get(pk=user.pk)):
+        raise OperatorsAlone
     with transaction.atomic():
         before, key = person_facts(user), user.pk
         held = User(role=user.role, is_active=user.is_active, organisation_id=user.organisation_id)
@@ -284,7 +300,19 @@ def delete_person(*, user: User, actor: User) -> None:
 
 def person_facts(user: User) -> dict[str, Any]:
     """What the history says of an account; never its password."""
-    names = ("username", "first_name", "last_name", "email", "role", "is_active")
+def set_installation_operator(*, user: User, is_operator: bool) -> None:
+    """On the machine, by whoever has it; no page and no address of the API gives this."""
+    with transaction.atomic():
+        before = person_facts(user)
+        user.is_installation_operator = is_operator
+        user.save(update_fields=["is_installation_operator"])
+        record_change(
+            organisation=user.organisation, actor=None, action="changed", subject_type="user", subject_id=user.pk,
+            before=before, after=person_facts(user),
+        )  # fmt: skip
+
+
+    names = ("username", "first_name", "last_name", "email", "role", "is_active", "is_installation_operator")
     return {name: getattr(user, name) for name in names} | {"organisation": user.organisation.name}
 
 
