@@ -12,6 +12,8 @@ from django.utils import translation
 from django.utils.translation import gettext as _
 
 from workspace.known_browsers import remember
+from workspace.accounts import revoke_tokens
+from workspace.invitations import mail_leaves_here
 from workspace.sign_in_attempts import PASSWORD_CHANGES, HeldBack, address_of, network_of, take_turn
 
 
@@ -79,6 +81,7 @@ class ChangePasswordForm(PasswordChangeForm):
             take_turn(PASSWORD_CHANGES, str(self.user.pk))
         except HeldBack as error:
             raise ValidationError(_("Too many tries. Wait 15 min, then try again."), code="locked") from error
+        revoke_tokens(user=form.user, actor=form.user)  # whoever knew the old password may have made some
         return str(super().clean_old_password())
 
 

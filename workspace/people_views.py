@@ -17,7 +17,7 @@ from rest_framework.views import APIView
 from workspace import accounts, invitations, second_factors
 from workspace.errors import ApiProblem
 from workspace.invitations import InvitationState
-from workspace.models import ApiToken, Invitation, Role, SecondFactor, SignInEntry, SignInOutcome, User
+from workspace.models import Invitation, Role, SecondFactor, SignInEntry, SignInOutcome, User
 from workspace.paging import page_of
 from workspace.people_serializers import (
     InvitationInputSerializer,
@@ -142,12 +142,12 @@ class PersonDetail(APIView):
 
 
 class PersonSessions(APIView):
-    permission_classes = [AdministratorsAlone]
+    permission_classes = [AdministratorsInTheBrowser]
 
     @extend_schema(
         operation_id="sign_person_out",
         summary="End all sessions of somebody",
-        description="Their tokens stay.",
+        description="Their tokens stay. Not with a token.",
         request=None,
         responses={204: OpenApiResponse(description="Ended.")},
     )
@@ -157,7 +157,7 @@ class PersonSessions(APIView):
 
 
 class PersonTokens(APIView):
-    permission_classes = [AdministratorsAlone]
+    permission_classes = [AdministratorsInTheBrowser]
 
     @extend_schema(
         operation_id="revoke_tokens_of_person",
@@ -165,8 +165,7 @@ class PersonTokens(APIView):
         responses={204: OpenApiResponse(description="Revoked.")},
     )
     def delete(self, request: SignedInRequest, user_id: int) -> Response:
-        for token in ApiToken.objects.filter(user=_person(request, user_id), revoked_at=None):
-            accounts.revoke_token(token=token, actor=request.user)
+        accounts.revoke_tokens(user=_person(request, user_id), actor=request.user)
         return Response(status=204)
 
 
@@ -258,7 +257,7 @@ class InvitationList(APIView):
 
 
 class InvitationDetail(APIView):
-    permission_classes = [AdministratorsAlone]
+    permission_classes = [AdministratorsInTheBrowser]
 
     @extend_schema(
         operation_id="revoke_invitation", summary="Make an invitation's link stop working", responses={200: InvitationSerializer}

@@ -20,14 +20,15 @@ from missions.views.missions import IF_MATCH, IF_MATCH_OPTIONAL, answer_mission,
 from missions.views.problems import api_problems, refusals
 from workspace.idempotency import idempotent
 from workspace.models import User
+from workspace.permissions import FLYING
 from workspace.signed_in import SignedInRequest
 
 REFUSED = {
     409: OpenApiResponse(description="It cannot be done: `details.reasons` has each reason; or somebody else was faster."),
     412: OpenApiResponse(description="The mission has changed since."),
 }
-
 REFUSED_UNSEEN = REFUSED | {428: OpenApiResponse(description="If-Match is missing.")}
+
 
 def _body(serializer: type, request: Request) -> dict[str, Any]:
     body = serializer(data=request.data)
@@ -61,6 +62,8 @@ class MissionApproval(APIView):
 
 
 class MissionApprove(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="approve_mission",
         summary="Approve a planned mission: from now on it is frozen",
@@ -79,6 +82,8 @@ class MissionApprove(APIView):
 
 
 class MissionRevoke(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="revoke_mission",
         summary="Take an approval back: the mission can be changed again",
@@ -98,6 +103,8 @@ class MissionRevoke(APIView):
 
 
 class MissionDispatch(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="dispatch_mission",
         summary="Send an approved mission to its UAVs",
@@ -124,6 +131,8 @@ class MissionDispatch(APIView):
 
 
 class MissionAbort(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="abort_mission",
         summary="Abort a mission that is on its way",

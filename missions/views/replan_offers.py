@@ -18,6 +18,7 @@ from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import User
 from workspace.paging import page_of
+from workspace.permissions import FLYING
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 from workspace.tasks import send_job_on_commit
@@ -27,10 +28,12 @@ REFUSED = {
     409: OpenApiResponse(description="It cannot be done: `details.reasons` has each reason. An outdated offer can be worked out again."),
     412: OpenApiResponse(description="The offer is no longer as it was seen."),
 }
-
 REFUSED_UNSEEN = REFUSED | {428: OpenApiResponse(description="If-Match is missing.")}
 
+
 class MissionReplanOffers(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="list_replan_offers",
         summary="Other ways offered to do what is left of a mission, the newest first",
@@ -65,6 +68,8 @@ class ReplanOfferDetail(APIView):
 
 
 class ReplanOfferAccept(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="accept_replan_offer",
         summary="Fly the offered plan",
@@ -80,6 +85,8 @@ class ReplanOfferAccept(APIView):
 
 
 class ReplanOfferDecline(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="decline_replan_offer",
         summary="Leave the mission as it is",

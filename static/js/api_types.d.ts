@@ -2711,6 +2711,7 @@ export interface components {
         NewToken: {
             readonly id: number;
             readonly name: string;
+            readonly scopes: components["schemas"]["TokenScope"][];
             /** Format: date-time */
             readonly created_at: string;
             /** Format: date-time */
@@ -2806,6 +2807,11 @@ export interface components {
         PasswordChangeRequest: {
             old_password: string;
             new_password: string;
+            /**
+             * @description revoke all own tokens as well
+             * @default false
+             */
+            end_tokens: boolean;
         };
         /** @description Only what is to change. */
         PatchedAccountChangeRequest: {
@@ -5382,6 +5388,7 @@ export interface components {
         Token: {
             readonly id: number;
             readonly name: string;
+            readonly scopes: components["schemas"]["TokenScope"][];
             /** Format: date-time */
             readonly created_at: string;
             /** Format: date-time */
@@ -5399,10 +5406,21 @@ export interface components {
             name: string;
             /** @default 90 */
             days: number;
+            /** @description what it may be used for, within one's role; all that the role has unless told */
+            scopes?: components["schemas"]["TokenScope"][];
         };
         TokenList: {
             results: components["schemas"]["Token"][];
         };
+        /**
+         * @description * `read` - Read
+         *     * `plan` - Plan
+         *     * `fly` - Fly
+         *     * `curate` - Curate
+         *     * `administer` - Administer
+         * @enum {string}
+         */
+        TokenScope: "read" | "plan" | "fly" | "curate" | "administer";
         Told: {
             /** Format: date-time */
             at: string;
@@ -6998,6 +7016,7 @@ export type TimedWaypointRequest = components['schemas']['TimedWaypointRequest']
 export type Token = components['schemas']['Token'];
 export type TokenInputRequest = components['schemas']['TokenInputRequest'];
 export type TokenList = components['schemas']['TokenList'];
+export type TokenScope = components['schemas']['TokenScope'];
 export type Told = components['schemas']['Told'];
 export type Totals = components['schemas']['Totals'];
 export type TrackFlight = components['schemas']['TrackFlight'];
