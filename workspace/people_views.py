@@ -34,6 +34,7 @@ from workspace.people_serializers import (
 )
 from workspace.permissions import ADMINISTRATORS, AdministratorsAlone, AdministratorsInTheBrowser, InTheBrowserAlone
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
+from workspace.public_address import public_address
 from workspace.schema import PAGE_PARAMETERS
 from workspace.services import NoAdministratorLeft, OperatorsAlone, may_change
 from workspace.signed_in import SignedInRequest
@@ -131,9 +132,9 @@ class PersonDetail(APIView):
             raise ApiProblem(412, "changed", words, details={"current": current}) from error
         except NoAdministratorLeft as error:
             raise ApiProblem(409, "no_administrator_left", str(error)) from error
-        return self._answer(request, user_id)
         except OperatorsAlone as error:
             raise ApiProblem(403, "operators_alone", str(error)) from error
+        return self._answer(request, user_id)
 
     @staticmethod
     def _answer(request: SignedInRequest, user_id: int) -> Response:
