@@ -19,6 +19,12 @@ REFUSED = [
     "h4velnetz!!x",
     "BridgeTower#1",
     "operator operator 12",
+    "Stromleitung2026!",
+    "Freileitung-123",
+    "Drohne2026",
+    "Geheim-1234",
+    "Willkommen1",
+    "Br\u00fccke-2026",
 ]
 
 
