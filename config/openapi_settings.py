@@ -22,6 +22,7 @@ def openapi_settings() -> dict[str, Any]:
             "DaylightEvent": "inspection.zones.schedule.EVENTS",
             "JobState": "workspace.models.JobState",
             "Role": "workspace.models.Role",
+            "TokenScope": "workspace.models.TokenScope",
             "Theme": "workspace.models.Theme",
             "Units": "workspace.models.Units",
             "Language": "workspace.models.Language",

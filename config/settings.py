@@ -63,6 +63,7 @@ SECRET_KEY_FALLBACKS = secret("SPANWISE_OLD_SECRET_KEYS").split()  # sessions an
 DEBUG = _flag("SPANWISE_DEBUG", default=False)
 ALLOWED_HOSTS = _list("SPANWISE_ALLOWED_HOSTS", "127.0.0.1,localhost,[::1]")
 CSRF_TRUSTED_ORIGINS = _list("SPANWISE_TRUSTED_ORIGINS", "")
+PUBLIC_ADDRESS = os.environ.get("SPANWISE_PUBLIC_ADDRESS", "").rstrip("/")  # https://host: where links in mails lead
 
 # Plain HTTP is for one machine: SPANWISE_HTTPS=1 switches on what a public host needs.
 HTTPS = _flag("SPANWISE_HTTPS", default=False)

@@ -120,6 +120,7 @@ def main() -> None:
 
     if options.static_files:
         collect_static_files(places)
+        call_command("make_api_document")
         return
     with static_files_meanwhile():
         migrate()

@@ -24,7 +24,7 @@ from inspection.services.uploads import (
 )
 from workspace.errors import ApiProblem
 from workspace.parsers import OctetParser
-from workspace.permissions import CURATORS, RolePermission
+from workspace.permissions import CURATING, CURATORS, RolePermission
 from workspace.signed_in import SignedInRequest
 
 
@@ -33,7 +33,9 @@ class CuratorsAlone(RolePermission):
 
     def has_permission(self, request: Request, view: object) -> bool:
         self.message = "Only curators bring data in. Ask an administrator for the curator role."
-        return request.user.is_authenticated and request.user.role in CURATORS
+        if not (request.user.is_authenticated and request.user.role in CURATORS):
+            return False
+        return self.token_reaches(request, CURATING)
 
 
 def _upload(upload_id: UUID) -> Upload:

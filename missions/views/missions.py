@@ -29,12 +29,18 @@ from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import Job, User
 from workspace.paging import page_of
+from workspace.preconditions import need_if_match
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 from workspace.throttling import ScopedRate
 
 IF_MATCH = OpenApiParameter(
-    "If-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen; 412 if it has changed"
+    "If-Match", str, OpenApiParameter.HEADER, required=True,
+    description="the ETag of the mission as last seen, or * for whatever is there; 412 if it has changed",
+)  # fmt: skip
+# What stops UAVs, or takes from them what they would fly, is never held up by a header that is missing.
+IF_MATCH_OPTIONAL = OpenApiParameter(
+    "If-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen: 412 if it has changed; without it any"
 )
 IF_NONE_MATCH = OpenApiParameter(
     "If-None-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen; 304 while it is the same"
@@ -42,6 +48,7 @@ IF_NONE_MATCH = OpenApiParameter(
 CHANGED = {
     409: OpenApiResponse(description="The mission cannot be changed, or somebody else was faster."),
     412: OpenApiResponse(description="The mission has changed since."),
+    428: OpenApiResponse(description="If-Match is missing."),
 }
 PLANNED_LATER = {202: OpenApiResponse(shapes.JobLinkSerializer, description="Stored; a job plans it, see Location.")}
 
@@ -63,6 +70,12 @@ def answer_mission(user: User, mission_id: UUID, *, status: int = 200) -> Respon
 
 
 def expected_revision(request: Request) -> int | None:
+    """The revision that If-Match names; None for any (*). Raises ApiProblem 428 without the header."""
+    need_if_match(request)
+    return stated_revision(request)
+
+
+def stated_revision(request: Request) -> int | None:
     """The revision that If-Match names; None without the header or for any (*)."""
     text = request.headers.get("If-Match", "*").strip().removeprefix("W/").strip('"')
     if text == "*":

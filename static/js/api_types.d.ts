@@ -2099,6 +2099,8 @@ export interface components {
             mission: string;
             code: string;
             state: components["schemas"]["OfferState"];
+            /** @description its ETag, for If-Match */
+            revision: number;
             cause: unknown;
             difference: unknown;
             /** Format: uuid */
@@ -2727,6 +2729,7 @@ export interface components {
         NewToken: {
             readonly id: number;
             readonly name: string;
+            readonly scopes: components["schemas"]["TokenScope"][];
             /** Format: date-time */
             readonly created_at: string;
             /** Format: date-time */
@@ -2822,6 +2825,11 @@ export interface components {
         PasswordChangeRequest: {
             old_password: string;
             new_password: string;
+            /**
+             * @description revoke all own tokens as well
+             * @default false
+             */
+            end_tokens: boolean;
         };
         /** @description Only what is to change. */
         PatchedAccountChangeRequest: {
@@ -5400,6 +5408,7 @@ export interface components {
         Token: {
             readonly id: number;
             readonly name: string;
+            readonly scopes: components["schemas"]["TokenScope"][];
             /** Format: date-time */
             readonly created_at: string;
             /** Format: date-time */
@@ -5417,10 +5426,21 @@ export interface components {
             name: string;
             /** @default 90 */
             days: number;
+            /** @description what it may be used for, within one's role; all that the role has unless told */
+            scopes?: components["schemas"]["TokenScope"][];
         };
         TokenList: {
             results: components["schemas"]["Token"][];
         };
+        /**
+         * @description * `read` - Read
+         *     * `plan` - Plan
+         *     * `fly` - Fly
+         *     * `curate` - Curate
+         *     * `administer` - Administer
+         * @enum {string}
+         */
+        TokenScope: "read" | "plan" | "fly" | "curate" | "administer";
         Told: {
             /** Format: date-time */
             at: string;
@@ -7030,6 +7050,7 @@ export type TimedWaypointRequest = components['schemas']['TimedWaypointRequest']
 export type Token = components['schemas']['Token'];
 export type TokenInputRequest = components['schemas']['TokenInputRequest'];
 export type TokenList = components['schemas']['TokenList'];
+export type TokenScope = components['schemas']['TokenScope'];
 export type Told = components['schemas']['Told'];
 export type Totals = components['schemas']['Totals'];
 export type TrackFlight = components['schemas']['TrackFlight'];

@@ -17,6 +17,7 @@ from telemetry.views.log_filters import mission_of, time_of, uav_of
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.paging import page_of
+from workspace.permissions import FLYING
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
@@ -52,6 +53,8 @@ class AlertDetail(APIView):
 
 
 class AlertAcknowledgement(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="acknowledge_alert",
         summary="Say that somebody knows: it goes on, and is silent",
@@ -69,6 +72,8 @@ class AlertAcknowledgement(APIView):
 
 
 class AlertNotes(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="note_alert", summary="Write a note to an alert; it is never changed", request=shapes.AlertNoteInputSerializer,
         responses={201: shapes.AlertNoteSerializer},

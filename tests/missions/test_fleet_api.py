@@ -208,7 +208,7 @@ def test_names_and_system_ids_are_given_once(client: Client) -> None:
 def test_who_is_second_overwrites_nothing(client: Client, path: str, body: dict[str, Any]) -> None:
     address = f"{path}/{made(client, path, body)['id']}"
     seen = client.get(f"/api/v1/{address}")["ETag"]
-    assert patch(client, address, {"name": "First"}).status_code == 428
+    assert client.patch(f"/api/v1/{address}", {"name": "First"}, content_type="application/json").status_code == 428
     assert patch(client, address, {"name": "First"}, **{"If-Match": seen}).status_code == 200
     response = patch(client, address, {"name": "Second"}, **{"If-Match": seen})
     assert response.status_code == 412

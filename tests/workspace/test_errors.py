@@ -64,6 +64,15 @@ def test_what_is_not_strict_json_is_refused(client: Client, body: bytes | str) -
     assert code(send(client, body), 400) == "parse_error"
 
 
+@pytest.mark.parametrize("character", ["\\u0007", "\\b", "\\u001b", "\x7f", "\x85", "\\u202e", "\u2066"])
+def test_control_characters_and_turned_writing_are_refused_in_any_text(client: Client, character: str) -> None:
+    assert code(send(client, f'{{"name": "Tern{character}x"}}'), 400) == "parse_error"
+
+
+def test_lines_tabs_and_all_scripts_are_texts(client: Client) -> None:
+    assert send(client, '{"why": "Zürich\\n\\tΑθήνα שלום 東京 \\\\u0007"}').status_code == 200
+
+
 def test_32_levels_are_not_too_deep(client: Client) -> None:
     assert send(client, "[" * 32 + "]" * 32).status_code == 200
 

@@ -121,6 +121,24 @@ def test_what_a_uav_says_is_no_formula_in_a_spreadsheet(mode: str) -> None:
     assert row["heading_deg"] == "-0.5"
 
 
+@pytest.mark.parametrize(
+    ("mode", "shown"),
+    [
+        (" =1+1", "' =1+1"),
+        ("\u00a0=1", "'\u00a0=1"),
+        ("\uff1d1+1", "'\uff1d1+1"),
+        ("\uff20SUM", "'\uff20SUM"),
+        ("Hold;=1+1", "Hold;'=1+1"),
+        ("Hold; +1", "Hold;' +1"),
+        ("Hold; then 1+1", "Hold; then 1+1"),
+        ("a=b", "a=b"),
+    ],
+)
+def test_a_formula_behind_blanks_semicolons_or_in_full_width_is_none_either(mode: str, shown: str) -> None:
+    (row,) = csv.DictReader(StringIO(text("csv", logged(mode=mode))))
+    assert row["mode"] == shown
+
+
 def test_geojson_has_every_record_also_those_without_a_place() -> None:
     read = json.loads(text("geojson", logged(0, **FULL), logged(1, position=None)))
     assert read["type"] == "FeatureCollection"

@@ -58,6 +58,8 @@ const freshKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`
 const asSeen = ({ state: { mission } }) => ({
   headers: { "If-Match": `"${mission?.revision}"`, "Idempotency-Key": freshKey() },
 });
+/** What stops UAVs is not held up by what somebody else has changed meanwhile. */
+const whateverChanged = () => ({ headers: { "If-Match": "*", "Idempotency-Key": freshKey() } });
 /** @param {Flyer[]} flyers */
 const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
 
@@ -227,7 +229,7 @@ async function abort(acting) {
   });
   if (!asked) return;
   await tried(acting, t("Not aborted."), async () => {
-    await post(`/missions/${mission.id}/abort`, { why: asked.why }, asSeen(acting.store));
+    await post(`/missions/${mission.id}/abort`, { why: asked.why }, whateverChanged());
     await readMission(acting.store, mission.id);
   });
 }
