@@ -1729,8 +1729,11 @@ export interface components {
         };
         InvitationInputRequest: {
             role: components["schemas"]["Role"];
-            /** @description where the link is sent, if mail leaves here */
-            email?: string;
+            /**
+             * @description where the link is sent, if mail leaves here
+             * @default
+             */
+            email: string;
             /** @default 7 */
             days: number;
         };
