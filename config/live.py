@@ -12,13 +12,14 @@ from django.http.request import split_domain_port, validate_host
 
 from operation.readiness import Readiness
 from workspace.authentication import bearer_token
+from workspace.errors import error_body
 from workspace.farewell import farewell_here
 
 _readiness = Readiness()
 
-BODY = json.dumps({"error": {"code": "upgrade_required", "message": "This address is for websockets.", "details": None}}).encode()
+BODY = json.dumps(error_body(426, "upgrade_required", "This address is for websockets.")).encode()
 
-STOPS = json.dumps({"error": {"code": "unavailable", "message": "This program is being stopped; try again.", "details": None}}).encode()
+STOPS = json.dumps(error_body(503, "unavailable", "This program is being stopped; try again.")).encode()
 
 Receive = Callable[[], Awaitable[dict[str, Any]]]
 Send = Callable[[dict[str, Any]], Awaitable[None]]

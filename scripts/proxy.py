@@ -8,7 +8,7 @@ from pathlib import Path
 from operation.json_lines import is_asked_for
 from scripts import page_headers
 from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
-from scripts.proxy_site import ALIVE, Site, came_over_http, certificates, entrances, plain_server, quoted, spoken, upstreams
+from scripts.proxy_site import ALIVE, Site, came_over_http, certificates, entrances, error_json, plain_server, quoted, spoken, upstreams
 
 MOST_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
@@ -186,8 +186,8 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
         "api",
         "application/json",
         headers,
-        unavailable='{"error": {"code": "unavailable", "message": "Spanwise is not answering; try again.", "details": {}}}',
-        too_large='{"error": {"code": "too_large", "message": "The body is too large.", "details": {}}}',
+        unavailable=error_json(503, "unavailable", "Spanwise is not answering; try again."),
+        too_large=error_json(413, "too_large", "The body is too large."),
     )
     failures_for_people = _failures(
         "page",

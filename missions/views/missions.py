@@ -28,9 +28,9 @@ from missions.views.problems import api_problems
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import Job, User
-from workspace.paging import page_of
+from workspace.paging import changed_since, page_of
 from workspace.preconditions import need_if_match
-from workspace.schema import PAGE_PARAMETERS
+from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 from workspace.throttling import ScopedRate
 
@@ -121,14 +121,14 @@ class MissionList(_PlansWhenAsked):
     @extend_schema(
         operation_id="list_missions",
         summary="Missions, the last changed first",
-        parameters=[*FILTER_PARAMETERS, *PAGE_PARAMETERS],
+        parameters=[*FILTER_PARAMETERS, CHANGED_SINCE, *PAGE_PARAMETERS],
         responses=shapes.MissionPageSerializer,
     )
     def get(self, request: SignedInRequest) -> Response:
         organisation, asked = request.user.organisation, asked_filter(request)
-        rows = mission_rows(missions_found(organisation, asked))
+        rows = mission_rows(changed_since(request, missions_found(organisation, asked)))
         page = page_of(request, rows, order=asked_order(request), default_limit=50, max_limit=200)
-        by_state = counts_by_state(missions_found(organisation, replace(asked, states=())))
+        by_state = counts_by_state(changed_since(request, missions_found(organisation, replace(asked, states=()))))
         drawings, ground = surroundings(page.rows), ground_revision()
         bases, others = bases_landed_at(page.rows, organisation.pk), missions_with_other_uavs(page.rows)
         return Response({

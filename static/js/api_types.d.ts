@@ -853,9 +853,19 @@ export interface components {
             flight: number;
             outcome: components["schemas"]["EndedFlightOutcomeEnum"];
         };
-        /** @description Every error of the API has this shape. */
+        /** @description Every error of the API has this shape: `error`, and beside it a problem of RFC 9457. */
         Error: {
             error: components["schemas"]["ErrorDetail"];
+            /** @description `urn:problem-type:spanwise:` and the error's code */
+            type: string;
+            /** @description the status in words */
+            title: string;
+            /** @description the HTTP status */
+            status: number;
+            /** @description as `error.message` */
+            detail: string;
+            /** @description path of the request, where it is known */
+            instance?: string;
         };
         ErrorDetail: {
             /** @description for programs: stays the same */
@@ -1732,8 +1742,11 @@ export interface components {
         };
         InvitationInputRequest: {
             role: components["schemas"]["Role"];
-            /** @description where the link is sent, if mail leaves here */
-            email?: string;
+            /**
+             * @description where the link is sent, if mail leaves here
+             * @default
+             */
+            email: string;
             /** @default 7 */
             days: number;
         };
@@ -6080,6 +6093,7 @@ export interface components {
         UndoRepairRequest: {
             entries: number[];
         };
+        UndoneFeature: components["schemas"]["AssetDetailFeature"] | components["schemas"]["ZoneDetailFeature"];
         /**
          * @description * `metric` - Metres, kilometres, metres per second
          *     * `imperial` - Feet, miles, miles per hour
@@ -7078,6 +7092,7 @@ export type UavWriteRequest = components['schemas']['UavWriteRequest'];
 export type Unassigned = components['schemas']['Unassigned'];
 export type UnassignedReasonEnum = components['schemas']['UnassignedReasonEnum'];
 export type UndoRepairRequest = components['schemas']['UndoRepairRequest'];
+export type UndoneFeature = components['schemas']['UndoneFeature'];
 export type Units = components['schemas']['Units'];
 export type UnknownVehicle = components['schemas']['UnknownVehicle'];
 export type UnknownVehiclePage = components['schemas']['UnknownVehiclePage'];
