@@ -130,7 +130,7 @@ def _height_m(tower: Asset | None) -> float:
 
 
 def clock_of(request: PlanRequest, uav: Any, route: dict[str, Any]) -> Clock:
-    """Seconds after take-off at each waypoint and in all, and watt-hours: each leg level first, then straight up or down; and each stop."""
+    """Seconds after take-off at each waypoint and in all, and watt-hours: each leg straight; and each stop."""
     points = route["waypoints"]
     stops = [place for place, point in enumerate(points) if point["kind"] == "base"]
     charging = {stop["waypoint"]: stop for stop in route["charging"]}
@@ -167,14 +167,25 @@ def _fly(
         now_s += seconds
         joules += seconds * watts(performance, air_mps, climb_mps, air_density)
 
+    def slope(level_s: float, rise_m: float, hover_mps: float, air_density: float) -> None:
+        """What a rise takes beside its level flight: the time by which it is the longer of both, hovering, and the lift of the weight."""
+        nonlocal joules
+        vertical_s = abs(rise_m) / CLIMB_MPS
+        spend(max(vertical_s - level_s, 0.0), hover_mps, 0.0, air_density)
+        if rise_m > 0.0:
+            climbing_w, hover_w = (watts(performance, hover_mps, climb_mps, air_density) for climb_mps in (CLIMB_MPS, 0.0))
+            joules += vertical_s * (climbing_w - hover_w)
+
     for number, (length_m, way, middle_m, rise_m, point) in enumerate(steps):
         wind = wind_mps(request, middle_m)
         air = density(point["altitude_amsl_m"] or 0.0, request.conditions.temperature_c)
+        level_s = 0.0
         if length_m > 0.01:
             flown = speeds_mps(uav, way, wind, point.get("speed_mps"))
             ground_mps, air_mps = flown or (1e-6, 0.0)  # no headway: it takes for ever, and the clock is seen to be wrong
-            spend(length_m / ground_mps, air_mps, 0.0, air)
-        spend(abs(rise_m) / CLIMB_MPS, math.hypot(*wind), CLIMB_MPS if rise_m > 0 else 0.0, air)
+            level_s = length_m / ground_mps
+            spend(level_s, air_mps, 0.0, air)
+        slope(level_s, rise_m, math.hypot(*wind), air)
         hold_s, here_mps = (point["task"] or {}).get("hold_s", 0.0), math.hypot(*wind_mps(request, point["altitude_agl_m"]))
         if number == 0:
             spend(LIFTS_S + brakes_s(uav.cruise_speed_mps), math.hypot(*wind), 0.0, air)
