@@ -167,25 +167,20 @@ def _fly(
         now_s += seconds
         joules += seconds * watts(performance, air_mps, climb_mps, air_density)
 
-    def slope(level_s: float, rise_m: float, hover_mps: float, air_density: float) -> None:
-        """What a rise takes beside its level flight: the time by which it is the longer of both, hovering, and the lift of the weight."""
-        nonlocal joules
-        vertical_s = abs(rise_m) / CLIMB_MPS
-        spend(max(vertical_s - level_s, 0.0), hover_mps, 0.0, air_density)
-        if rise_m > 0.0:
-            climbing_w, hover_w = (watts(performance, hover_mps, climb_mps, air_density) for climb_mps in (CLIMB_MPS, 0.0))
-            joules += vertical_s * (climbing_w - hover_w)
-
     for number, (length_m, way, middle_m, rise_m, point) in enumerate(steps):
         wind = wind_mps(request, middle_m)
         air = density(point["altitude_amsl_m"] or 0.0, request.conditions.temperature_c)
-        level_s = 0.0
+        # A leg is straight. As far as the level flight takes, it rises in flight; what the rise takes longer is flown up or down in place.
+        left_s, lift_mps = abs(rise_m) / CLIMB_MPS, CLIMB_MPS if rise_m > 0.0 else 0.0
         if length_m > 0.01:
             flown = speeds_mps(uav, way, wind, point.get("speed_mps"))
             ground_mps, air_mps = flown or (1e-6, 0.0)  # no headway: it takes for ever, and the clock is seen to be wrong
             level_s = length_m / ground_mps
-            spend(level_s, air_mps, 0.0, air)
-        slope(level_s, rise_m, math.hypot(*wind), air)
+            sloped_s = min(left_s, level_s)
+            spend(sloped_s, air_mps, lift_mps, air)
+            spend(level_s - sloped_s, air_mps, 0.0, air)
+            left_s -= sloped_s
+        spend(left_s, math.hypot(*wind), lift_mps, air)
         hold_s, here_mps = (point["task"] or {}).get("hold_s", 0.0), math.hypot(*wind_mps(request, point["altitude_agl_m"]))
         if number == 0:
             spend(LIFTS_S + brakes_s(uav.cruise_speed_mps), math.hypot(*wind), 0.0, air)
