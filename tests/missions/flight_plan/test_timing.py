@@ -116,6 +116,25 @@ def test_a_hover_in_wind_is_flight_through_the_air() -> None:
     )
 
 
+def test_a_slope_takes_the_longer_of_its_way_and_its_rise() -> None:
+    """At 10 m/s and 2.5 m/s: 100 m up over 1,000 m and over 100 m, and down again."""
+    gentle, steep = (np.diff(flown(route((0, 0, 20, 0), (far_m, 0, 120, 0), (0, 0, 20, 0))).arrival_s) for far_m in (1000, 100))
+    assert gentle == pytest.approx([100, 100], abs=0.01)
+    assert steep == pytest.approx([40, 40], abs=0.01)
+
+
+@given(st.floats(20, 3000), st.floats(5, 100), st.floats(4, 11))
+def test_a_slope_takes_no_less_than_the_power_of_its_flight(far_m: float, rise_m: float, speed_mps: float) -> None:
+    """Worked out for steady flight along the slope, as fast as its way and its rise allow. It is up to a tenth more."""
+    found = flown(route((0, 0, 10, 0), (far_m, 0, 10 + rise_m, 0), (2 * far_m, 0, 10, 0)), speed_mps=speed_mps)
+    assert found.used_wh is not None
+    leg_s = max(far_m / speed_mps, rise_m / 2.5)
+    least_wh = [leg_s * power_w(IRIS, airspeed_mps=far_m / leg_s, climb_mps=climb_mps) / 3600 for climb_mps in (rise_m / leg_s, 0.0)]
+    up_wh, down_wh = np.diff(found.used_wh)
+    assert 0.99 * least_wh[0] <= up_wh <= 1.1 * least_wh[0]
+    assert 0.99 * least_wh[1] <= down_wh <= 1.1 * least_wh[1]
+
+
 def test_thin_air_takes_more_of_the_battery() -> None:
     stops = (0, 0, 50, 300), (1000, 0, 50, 300)
     low, high = flown(route(*stops, amsl_m=0)), flown(route(*stops, amsl_m=2000))
