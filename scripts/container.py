@@ -37,8 +37,7 @@ def _listening(port: int) -> tuple[str, ...]:
 
 
 def _worker(queue: str) -> list[str]:
-    usual = commands.data_processes() if queue == "data" else 1
-    return commands.worker(queue, int(os.environ.get("SPANWISE_WORKER_PROCESSES", usual)))
+    return commands.worker(queue, int(os.environ.get("SPANWISE_WORKER_PROCESSES", "1")))
 
 
 PROGRAMS: dict[str, Callable[[], list[str]]] = {

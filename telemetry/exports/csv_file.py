@@ -1,7 +1,6 @@
 """Records as comma-separated values (RFC 4180), one line each, units in the names of the columns."""
 
 import csv
-import re
 from collections.abc import Iterable, Iterator
 from io import StringIO
 
@@ -12,8 +11,7 @@ COLUMNS = (
     *REPORTED, *FLAGS,
 )  # fmt: skip
 LINES_A_PIECE = 500
-# Spreadsheets read a cell as a formula that begins so, behind blanks and full-width as well; a semicolon begins one where it separates.
-_FORMULA = re.compile(r"^(?=[\t\r])|(?:^|(?<=[;\t\r\n]))(?=[\s\u200b\ufeff]*[=+\-@\uff1d\uff0b\uff0d\uff20])")
+READ_AS_FORMULAS = ("=", "+", "-", "@", "\t", "\r")  # by spreadsheets, at the start of a cell
 
 
 def csv_pieces(records: Iterable[LoggedRecord]) -> Iterator[str]:
@@ -39,4 +37,4 @@ def _cell(value: Value) -> Value:
 
 
 def _text(value: str) -> str:
-    return _FORMULA.sub("'", value)
+    return f"'{value}" if value.startswith(READ_AS_FORMULAS) else value

@@ -3,6 +3,7 @@
 import asyncio
 import logging
 import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -73,5 +74,7 @@ class Leasing:
         for lease in leases:
             session = wanted[lease.uav_id]
             logger.info("serves %s", session.uav.name, extra={"uav": session.uav.uav_id})
-            for frame, peer, at_s in session.serve(lease, served_until_s(asked_s, self.options.lease_s)):
+            waiting, session.waiting = session.waiting, deque(maxlen=session.waiting.maxlen)
+            session.serve(lease, served_until_s(asked_s, self.options.lease_s))
+            for frame, peer, at_s in waiting:
                 self.receive(session, frame, peer, at_s)

@@ -12,8 +12,7 @@ from django.db.models import Count, QuerySet
 from telemetry.models import Alert
 from workspace.models import Organisation
 
-MIXED, OTHER_LIST = "mission-mixed", "other-list-on-board"  # codes
-BY_PERSON = "by-person"  # why an alert is closed
+MIXED = "mission-mixed"  # a code
 
 
 @dataclass(frozen=True, slots=True)

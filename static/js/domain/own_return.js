@@ -26,13 +26,11 @@ export function returnLines(check) {
  */
 export function returnSaid(check) {
   if (!check) return null;
-  const { state, warnings, fence_warning } = check;
-  const isGood = state === "clear" && !fence_warning;
-  const isWarning = state === "in_the_way" || Boolean(fence_warning);
+  if (check.state === "clear") return { words: clearText(check), image: "rotate-ccw", level: null };
   return {
-    words: [...(state === "clear" ? [clearText(check)] : warnings), fence_warning].filter(Boolean).join(" "),
-    image: isGood ? "rotate-ccw" : isWarning ? "triangle-alert" : "info",
-    level: isWarning ? "warning" : null,
+    words: check.warnings.join(" "),
+    image: check.state === "in_the_way" ? "triangle-alert" : "info",
+    level: check.state === "in_the_way" ? "warning" : null,
   };
 }
 

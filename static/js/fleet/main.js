@@ -63,7 +63,6 @@ const table = mountTable({
 });
 const panel = mountPanel({
   canPlan: page.canPlan,
-  isAdministrator: page.role === "administrator",
   acts: {
     back: close,
     edit: () => editing.start(chosenRow()),

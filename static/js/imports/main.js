@@ -270,9 +270,9 @@ const acts = {
       throw error;
     }
   },
-  apply: (overwrites, seen) =>
+  apply: (overwrites) =>
     decide("apply", t("Not applied."), (id) =>
-      post(`/imports/${id}/apply`, { parameters: { replace_edited: overwrites, ...(seen.length ? { seen } : {}) } }),
+      post(`/imports/${id}/apply`, { parameters: { replace_edited: overwrites } }),
     ),
   async discard() {
     const { current } = store.state;

@@ -78,9 +78,6 @@ function editName(cell, mission, rename) {
   field.select();
 }
 
-const demoMark = () =>
-  h("span", { class: "simulated-mark", title: t("Demo data, flown by simulated UAVs") }, t("Demo"));
-
 /** @param {MissionSummary} mission */
 function staleMark({ has_other_uavs }) {
   const [words, title] = has_other_uavs
@@ -139,7 +136,7 @@ function nameCell(mission, address) {
       "span",
       { class: "caption" },
       mission.author ?? "",
-      mission.is_demo ? demoMark() : mission.is_simulated && simulatedMark(),
+      mission.is_simulated && simulatedMark(),
       mission.is_stale && staleMark(mission),
     ),
   );

@@ -16,7 +16,7 @@ import { causeWords, differenceOf, isUndecided, overWords, sentenceOf, targetLin
 /** @param {LiveOffer} offer @param {"accept" | "decline"} act @param {string} words once it is done */
 async function decide(offer, act, words) {
   try {
-    await post(`/replan-offers/${offer.id}/${act}`, {}, { headers: { "If-Match": `"${offer.revision}"` } });
+    await post(`/replan-offers/${offer.id}/${act}`, {});
     say(words);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
