@@ -94,7 +94,7 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
 
     row = page.get_by_role("row").filter(has_text="South belt, autumn")
     row.get_by_role("button", name="More for South belt, autumn").click()
-    page.get_by_role("button", name="Delete").click()
+    page.get_by_role("button", name="Delete", exact=True).click()
     expect(page.get_by_text("“South belt, autumn” is deleted.")).to_be_visible()
     expect(page.get_by_role("row").filter(has_text="South belt, autumn")).to_have_count(0)
     page.get_by_role("button", name="Undo", exact=True).click()
