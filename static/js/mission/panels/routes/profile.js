@@ -161,8 +161,9 @@ function showZoneKeys({ zones, margins }, isGlance) {
   );
   const row = byId("zone-keys");
   const isEmpty = keys.length === 0;
-  row.classList.toggle("blank", isEmpty && isGlance && !row.hidden);
-  row.hidden = isEmpty && !row.classList.contains("blank");
+  const keepsRoom = isEmpty && isGlance && !row.hidden;
+  row.classList.toggle("blank", keepsRoom);
+  row.hidden = isEmpty && !keepsRoom;
   row.replaceChildren(...keys, h("span", {}, marginWords(margins)));
 }
 
