@@ -67,7 +67,7 @@ def rows_are_deleted_after_commits() -> Iterator[None]:
     """After a test with real commits, delete the rows that it has left.
 
     Django's `flush` truncates each table, which makes new files of all tables and indexes, and then makes all permissions again. The
-    content types, the permissions and the default organisation stay as the migrations have made them.
+    content types and the permissions stay as the migrations have made them.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(TransactionTestCase, "_fixture_teardown", lambda test_case: delete_rows())
@@ -75,6 +75,7 @@ def rows_are_deleted_after_commits() -> Iterator[None]:
 
 
 def delete_rows() -> None:
+    """Delete all rows but those of MADE_BY_MIGRATIONS, and make the default organisation again."""
     tables = sorted(set(connection.introspection.django_table_names(only_existing=True, include_views=False)) - MADE_BY_MIGRATIONS)
     names = {table: connection.ops.quote_name(table) for table in tables}
     with transaction.atomic(), connection.cursor() as cursor:
