@@ -9,7 +9,7 @@ from django.http import HttpRequest, HttpResponse, JsonResponse
 from django.template import TemplateDoesNotExist
 from django.template.loader import render_to_string
 
-from workspace.errors import DATABASE_AWAY, RETRY_AFTER_S, error_body
+from workspace.errors import DATABASE_AWAY, RETRY_AFTER_S, error_body, error_content_type
 
 API_MESSAGES = {
     400: ("bad_request", "The request cannot be read."),
@@ -43,7 +43,9 @@ def server_error(request: HttpRequest) -> HttpResponse:
 
 def _answer(request: HttpRequest, status: int) -> HttpResponse:
     if request.path.startswith("/api/"):
-        response: HttpResponse = JsonResponse(error_body(*API_MESSAGES[status]), status=status)
+        response: HttpResponse = JsonResponse(
+            error_body(status, *API_MESSAGES[status], instance=request.path), status=status, content_type=error_content_type(request)
+        )
     else:
         response = HttpResponse(_page(status), status=status)
     if status == 503:

@@ -5,18 +5,21 @@ import json
 from collections.abc import Awaitable, Callable
 from typing import Any
 
-from channels.security.websocket import AllowedHostsOriginValidator
+from channels.security.websocket import WebsocketDenier
+from django.conf import settings
 from django.db import connections
+from django.http.request import split_domain_port, validate_host
 
 from operation.readiness import Readiness
 from workspace.authentication import bearer_token
+from workspace.errors import error_body
 from workspace.farewell import farewell_here
 
 _readiness = Readiness()
 
-BODY = json.dumps({"error": {"code": "upgrade_required", "message": "This address is for websockets.", "details": None}}).encode()
+BODY = json.dumps(error_body(426, "upgrade_required", "This address is for websockets.")).encode()
 
-STOPS = json.dumps({"error": {"code": "unavailable", "message": "This program is being stopped; try again.", "details": None}}).encode()
+STOPS = json.dumps(error_body(503, "unavailable", "This program is being stopped; try again.")).encode()
 
 Receive = Callable[[], Awaitable[dict[str, Any]]]
 Send = Callable[[dict[str, Any]], Awaitable[None]]
@@ -24,16 +27,30 @@ Application = Callable[[dict[str, Any], Receive, Send], Awaitable[None]]
 
 
 class OriginCheck:
-    """Lets through who comes from this host, and programs with a token that name no origin at all. A cookie alone is never enough."""
+    """Lets through who comes from a page of this site, and programs with a token that name no origin at all.
+
+    A page of this site has the scheme, the host and the port that the socket is asked for at, or is one of CSRF_TRUSTED_ORIGINS. A cookie
+    alone is never enough.
+    """
 
     def __init__(self, application: Application) -> None:
         self.application = application
-        self.checked: Application = AllowedHostsOriginValidator(application)
+        self.denied: Application = WebsocketDenier()
 
     async def __call__(self, scope: dict[str, Any], receive: Receive, send: Send) -> None:
-        names_none = all(name != b"origin" for name, _ in scope["headers"])
-        through = self.application if names_none and bearer_token(scope) is not None else self.checked
-        await through(scope, receive, send)
+        origins = [value for name, value in scope["headers"] if name == b"origin"]
+        may = is_own_origin(origins[0], scope) if len(origins) == 1 else not origins and bearer_token(scope) is not None
+        await (self.application if may else self.denied)(scope, receive, send)
+
+
+def is_own_origin(origin: bytes, scope: dict[str, Any]) -> bool:
+    """Whether a page of this origin is one of this site's."""
+    host = dict(scope["headers"]).get(b"host", b"").decode("latin-1").lower()
+    named = origin.decode("latin-1").lower()
+    if named in settings.CSRF_TRUSTED_ORIGINS:
+        return True
+    is_allowed = validate_host(split_domain_port(host)[0], settings.ALLOWED_HOSTS)
+    return is_allowed and named == f"{'https' if settings.HTTPS else 'http'}://{host}"
 
 
 class SaysGoodbye:

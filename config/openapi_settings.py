@@ -1,6 +1,15 @@
 """Settings of drf-spectacular: the OpenAPI document, and one name for each list of choices that several serializers use."""
 
+import os
 from typing import Any
+
+from workspace.api_headers import HEADERS
+
+
+def _contact() -> dict[str, str]:
+    """Return whom integrators ask: those who run this installation."""
+    email = os.environ.get("SPANWISE_CONTACT_EMAIL", "")
+    return {"name": "Administrators of this installation"} | ({"email": email} if email else {})
 
 
 def openapi_settings() -> dict[str, Any]:
@@ -8,6 +17,10 @@ def openapi_settings() -> dict[str, Any]:
         "TITLE": "Spanwise",
         "DESCRIPTION": "Planning, rehearsing, flying and reviewing UAV inspections of power lines, bridges and railways.",
         "VERSION": "1",
+        "LICENSE": {"name": "Apache-2.0", "url": "https://www.apache.org/licenses/LICENSE-2.0"},
+        "CONTACT": _contact(),
+        "POSTPROCESSING_HOOKS": ["drf_spectacular.hooks.postprocess_schema_enums", "workspace.schema.name_etags"],
+        "APPEND_COMPONENTS": {"headers": HEADERS},
         "SERVE_INCLUDE_SCHEMA": False,
         "SWAGGER_UI_DIST": "SIDECAR",
         "SWAGGER_UI_FAVICON_HREF": "SIDECAR",
@@ -22,6 +35,7 @@ def openapi_settings() -> dict[str, Any]:
             "DaylightEvent": "inspection.zones.schedule.EVENTS",
             "JobState": "workspace.models.JobState",
             "Role": "workspace.models.Role",
+            "TokenScope": "workspace.models.TokenScope",
             "Theme": "workspace.models.Theme",
             "Units": "workspace.models.Units",
             "Language": "workspace.models.Language",

@@ -63,6 +63,7 @@ SECRET_KEY_FALLBACKS = secret("SPANWISE_OLD_SECRET_KEYS").split()  # sessions an
 DEBUG = _flag("SPANWISE_DEBUG", default=False)
 ALLOWED_HOSTS = _list("SPANWISE_ALLOWED_HOSTS", "127.0.0.1,localhost,[::1]")
 CSRF_TRUSTED_ORIGINS = _list("SPANWISE_TRUSTED_ORIGINS", "")
+PUBLIC_ADDRESS = os.environ.get("SPANWISE_PUBLIC_ADDRESS", "").rstrip("/")  # https://host: where links in mails lead
 
 # Plain HTTP is for one machine: SPANWISE_HTTPS=1 switches on what a public host needs.
 HTTPS = _flag("SPANWISE_HTTPS", default=False)
@@ -222,6 +223,8 @@ LARGEST_FILE_BYTES = {
     "zones": _mebibytes("SPANWISE_LARGEST_ZONES_MIB", 16),
 }
 
+UPLOADS_BYTES = _mebibytes("SPANWISE_UPLOADS_MIB", 4096)  # announced files of one organisation that are kept
+
 REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_AUTHENTICATION_CLASSES": [
         "workspace.authentication.BearerTokenAuthentication",
@@ -230,6 +233,7 @@ REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_PERMISSION_CLASSES": ["workspace.permissions.RolePermission"],
     "DEFAULT_RENDERER_CLASSES": ["rest_framework.renderers.JSONRenderer"],
     "DEFAULT_PARSER_CLASSES": ["workspace.parsers.StrictJSONParser"],
+    "DEFAULT_CONTENT_NEGOTIATION_CLASS": "workspace.negotiation.ProblemNegotiation",
     "DEFAULT_THROTTLE_CLASSES": ["workspace.throttling.ScopedRate"],
     "DEFAULT_METADATA_CLASS": None,
     "URL_FORMAT_OVERRIDE": None,
@@ -355,6 +359,7 @@ GATEWAY_UDP = os.environ.get("SPANWISE_GATEWAY_UDP", "127.0.0.1:14550")
 GATEWAY_TCP = os.environ.get("SPANWISE_GATEWAY_TCP", "127.0.0.1:5760")
 GATEWAY_NAME = os.environ.get("SPANWISE_GATEWAY_NAME", "")
 GATEWAY_MOST_COMMANDS = int(_float("SPANWISE_GATEWAY_MOST_COMMANDS", 200))  # carried at once, above which speeds wait
+LINK_BUDGET_BYTES_S = _float("SPANWISE_LINK_BUDGET_BYTES_S", 0.0)  # of telemetry by MAVLink of each UAV; 0: no limit
 GATEWAY_ALONE_S = _float("SPANWISE_GATEWAY_ALONE_S", 30.0)  # without its database, after which UAVs get no heartbeats
 GATEWAY_MOST_RECORDS = int(_float("SPANWISE_GATEWAY_MOST_RECORDS", 100_000))  # kept in memory while the database is away
 FLIGHT_LOG_DIR = Path(os.environ.get("SPANWISE_LOG_DIR") or STATE_DIR / "flight-logs")
@@ -377,6 +382,9 @@ VEHICLE_COMMAND_RULES = VehicleCommandRules(
     retries=int(_float("SPANWISE_VEHICLE_COMMAND_RETRIES", VehicleCommandRules.retries)),
 )
 TELEMETRY_DAYS = _float("SPANWISE_TELEMETRY_DAYS", 365)  # that records are kept; 0 for ever
+MAX_SYSTEM_IDS = int(_float("SPANWISE_MAX_SYSTEM_IDS", 100))  # of MAVLink's 254, for one of several organisations
+DATA_WORKERS = int(_float("SPANWISE_DATA_WORKERS", 2))  # processes; imports of one organisation leave one of them free
+READ_PROCESSOR_S, READ_PROCESSOR_S_PER_MIB = 60.0, 3.0  # that reading a file may use, by its size
 MOST_OPEN_PLANS = int(_float("SPANWISE_MOST_OPEN_PLANS", 4))  # large plans of one user, waiting and running
 MOST_OPEN_REHEARSALS = int(_float("SPANWISE_MOST_OPEN_REHEARSALS", 4))  # of one user, waiting and running
 # Simulated UAVs in real time: who flies how many, where those of the pool listen, and where those of missions connect.

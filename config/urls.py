@@ -2,12 +2,14 @@
 
 from django.contrib import admin
 from django.urls import URLPattern, URLResolver, include, path
-from drf_spectacular.views import SpectacularAPIView, SpectacularSwaggerSplitView
+from drf_spectacular.views import SpectacularSwaggerSplitView
+
+from workspace.api_document import api_document
 
 admin.autodiscover()
 urlpatterns: list[URLPattern | URLResolver] = [
     path("api/v1/", include("missions.urls")),  # first, with what is asked for most: addresses are tried one after the other
-    path("api/schema", SpectacularAPIView.as_view(), name="schema"),
+    path("api/schema", api_document, name="schema"),
     path("api/docs", SpectacularSwaggerSplitView.as_view(template_name="api_docs.html"), name="api-docs"),
     path("api/v1/", include("workspace.urls")),
     path("api/v1/", include("inspection.urls")),

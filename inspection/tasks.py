@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from celery import shared_task
 from celery.exceptions import SoftTimeLimitExceeded
+from django.conf import settings
 
 from inspection import services
 from inspection.models import ImportProposal
@@ -12,10 +13,12 @@ from inspection.services.proposals import pipeline
 from inspection.services.proposals.reading import Progress
 from inspection.services.uploads import forget_old_uploads as forget_uploads
 from workspace.errors import DATABASE_AWAY
+from workspace.fair_queue import next_waiting, start_fair_job
 from workspace.job_watch import JobWatch
 from workspace.models import Job
-from workspace.services import JobCancelled, confirm_cancelled, fail_job, start_job
-from workspace.tasks import send_job_on_commit
+from workspace.processor_time import ProcessorTimeExceeded, processor_limit
+from workspace.services import JobCancelled, confirm_cancelled, fail_job
+from workspace.tasks import send_job, send_job_on_commit
 
 SOFT_LIMIT_S = 870
 HARD_LIMIT_S = 900
@@ -36,7 +39,7 @@ def find_gaps() -> None:
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def read_proposal(job_id: str) -> None:
     """Read a file that came in and store what it would change. Safe to run twice: a job is held by one worker, and finished once."""
-    _work(job_id, pipeline.read_proposal)
+    _work(job_id, _read_within_bounds)
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
@@ -66,6 +69,11 @@ def fetch_subscription(job_id: str) -> None:
     _work(job_id, _fetch)
 
 
+def _read_within_bounds(*, job: Job, progress: Progress) -> None:
+    with processor_limit(settings.READ_PROCESSOR_S + settings.READ_PROCESSOR_S_PER_MIB * pipeline.size_mib_of(job=job)):
+        pipeline.read_proposal(job=job, progress=progress)
+
+
 def _fetch(*, job: Job, progress: Progress) -> None:
     proposal = subscriptions.fetch_subscription(job=job, progress=progress)
     if proposal is not None:
@@ -84,9 +92,17 @@ def forget_old_uploads() -> None:
 
 
 def _work(job_id: str, do: Callable[..., None]) -> None:
-    job = start_job(job_id=job_id)
+    job = start_fair_job(job_id=job_id, max_running=max(settings.DATA_WORKERS - 1, 1))
     if job is None:
         return
+    try:
+        _do(job, do)
+    finally:
+        if (waiting := next_waiting(task=job.task)) is not None:
+            send_job(waiting)
+
+
+def _do(job: Job, do: Callable[..., None]) -> None:
     try:
         with JobWatch(job) as watch:
             progress: Progress = watch.progress
@@ -98,6 +114,8 @@ def _work(job_id: str, do: Callable[..., None]) -> None:
         return
     except SoftTimeLimitExceeded:
         _fail(job, "took_too_long", f"Not done within {SOFT_LIMIT_S // 60} min. Cut the file into parts.")
+    except ProcessorTimeExceeded:
+        _fail(job, "took_too_long", "Reading the file takes more processor time than a file of its size may need.")
     except MemoryError:
         _fail(job, "too_large", "The file needs more memory than there is. Cut it into parts.")
     except DATABASE_AWAY:

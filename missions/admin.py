@@ -77,6 +77,7 @@ class BaseAdmin(_FleetAdmin):
 class UavCredentialAdmin(ReadOnlyAdmin):
     """Made and revoked on the page of the fleet, where the secret can be shown once."""
 
+    organisation_path = "uav__organisation"
     list_display = ["uav", "kind", "created_by", "created_at", "last_used_at", "revoked_at"]
     list_filter = ["kind", ("revoked_at", admin.EmptyFieldListFilter)]
     list_select_related = ["uav", "created_by"]
@@ -124,6 +125,7 @@ class MissionAdmin(ReadOnlyAdmin):
 
 @admin.register(MissionUav)
 class MissionUavAdmin(ReadOnlyAdmin):
+    organisation_path = "mission__organisation"
     list_display = ["name", "mission", "sequence", "max_range_m", "cruise_speed_mps", "end_action", "most_targets"]
     list_select_related = ["mission"]
     search_fields = ["name", "mission__name"]
@@ -131,6 +133,7 @@ class MissionUavAdmin(ReadOnlyAdmin):
 
 @admin.register(InspectionTarget)
 class InspectionTargetAdmin(ReadOnlyAdmin):
+    organisation_path = "mission__organisation"
     list_display = ["label", "mission", "sequence", "priority", "uav_name", "sensor", "state", "unassigned_reason"]
     list_filter = ["state", "priority", "unassigned_reason"]
     list_select_related = ["mission"]
@@ -139,6 +142,7 @@ class InspectionTargetAdmin(ReadOnlyAdmin):
 
 @admin.register(Route)
 class RouteAdmin(ReadOnlyAdmin):
+    organisation_path = "mission__organisation"
     list_display = ["mission", "mission_uav", "length_m", "duration_s", "graph_version"]
     list_select_related = ["mission", "mission_uav"]
     search_fields = ["mission__name", "mission_uav__name"]
@@ -147,6 +151,7 @@ class RouteAdmin(ReadOnlyAdmin):
 
 @admin.register(Waypoint)
 class WaypointAdmin(ReadOnlyAdmin):
+    organisation_path = "route__mission__organisation"
     list_display = ["route", "sequence", "kind", "altitude_agl_m", "altitude_amsl_m", "altitude_relative_m"]
     list_filter = ["kind"]
     search_fields = ["route__mission__name"]
@@ -160,6 +165,7 @@ class WaypointAdmin(ReadOnlyAdmin):
 class ApprovalAdmin(ReadOnlyAdmin):
     """The document itself is long: the API has it, and its hash names it."""
 
+    organisation_path = "mission__organisation"
     list_display = ["mission", "approved_by", "approved_at", "revoke_requested_at", "revoked_at", "content_sha256"]
     list_filter = ["mission__organisation", ("revoked_at", admin.EmptyFieldListFilter)]
     list_select_related = ["mission", "approved_by"]

@@ -65,7 +65,7 @@ else:
 def with_use(uavs: QuerySet[Uav]) -> QuerySet[UavWithUse]:
     """With the number of missions that use each, and what it can prove itself with."""
     of_today = Q(mission_uavs__mission__deleted_at=None)
-    in_force = UavCredential.objects.filter(revoked_at=None).order_by("kind")
+    in_force = UavCredential.objects.filter(revoked_at=None).order_by("uav_id", "kind", "-pk").distinct("uav_id", "kind")
     return uavs.annotate(mission_count=Count("mission_uavs__mission", filter=of_today, distinct=True)).prefetch_related(
         Prefetch("credentials", in_force, to_attr="credentials_in_force")
     )

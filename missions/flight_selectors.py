@@ -80,15 +80,13 @@ def _routes_without_departure(organisation_id: int, but: UUID | str | None) -> l
 def routes_of_mission_in_time(mission: Mission) -> list[TimedRoute | None]:
     """Its routes that are flown, in their order, in seconds after its departure; None for one of whose times nothing is known."""
     routes = mission.routes.select_related("mission", "mission_uav").filter(geometry__isnull=False)
-    return [
-        _timed_route(
-            route,
-            list(route.waypoints.values_list(*COLUMNS)),
-            0.0,
-            lands_s=route.departs_s + route.duration_s if _lands(route) else None,
-        )
-        for route in routes
-    ]
+    return [route_in_time(route) for route in routes]
+
+
+def route_in_time(route: Route) -> TimedRoute | None:
+    """In seconds after its mission's departure; None where the time of a waypoint is not known. Loaded with its mission and its UAV."""
+    lands_s = route.departs_s + route.duration_s if _lands(route) else None
+    return _timed_route(route, list(route.waypoints.values_list(*COLUMNS)), 0.0, lands_s=lands_s)
 
 
 def _departure_s(route: Route) -> float:

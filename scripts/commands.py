@@ -45,6 +45,11 @@ def celery(*arguments: str) -> list[str]:
     return _python("celery", "--app", "config.celery", "--quiet", *arguments)
 
 
+def data_processes() -> int:
+    """Two: imports of one organisation leave one to the others (config/settings.py has the same)."""
+    return int(os.environ.get("SPANWISE_DATA_WORKERS", "2"))
+
+
 def worker(queue: str, processes: int) -> list[str]:
     """Of one queue. Workers need not know of each other, and start sooner without it."""
     arguments = ["--loglevel", os.environ.get("SPANWISE_LOG_LEVEL", "WARNING"), "--queues", queue, "--hostname", f"{queue}@%h"]

@@ -37,7 +37,8 @@ def _listening(port: int) -> tuple[str, ...]:
 
 
 def _worker(queue: str) -> list[str]:
-    return commands.worker(queue, int(os.environ.get("SPANWISE_WORKER_PROCESSES", "1")))
+    usual = commands.data_processes() if queue == "data" else 1
+    return commands.worker(queue, int(os.environ.get("SPANWISE_WORKER_PROCESSES", usual)))
 
 
 PROGRAMS: dict[str, Callable[[], list[str]]] = {

@@ -7,25 +7,26 @@ STRICT_TRANSPORT = "max-age=31536000; includeSubDomains; preload"  # as config/s
 
 
 def origins(addresses: Iterable[str]) -> list[str]:
-    """Scheme and host of tile addresses, for those that `https:` does not cover."""
-    found = []
+    """Scheme and host of tile addresses; servers that are told apart by `{s}.` are any in front of the rest."""
+    found = set()
     for address in addresses:
         parts = urlsplit(address)
-        if parts.scheme == "http" and parts.netloc and not set(parts.netloc) & set(" ;,'\"{}"):
-            found.append(f"http://{parts.netloc}")
-    return sorted(set(found))
+        host = f"*.{parts.netloc[4:]}" if parts.netloc.startswith("{s}.") else parts.netloc
+        if parts.scheme in {"http", "https"} and host.removeprefix("*.") and not set(host.removeprefix("*.")) & set(" ;,'\"{}*@"):
+            found.add(f"{parts.scheme}://{host}")
+    return sorted(found)
 
 
 def content_security_policy(tile_addresses: Iterable[str] = ()) -> str:
-    """What a page may load: everything from here, raster tiles from any https host (and from plain hosts the settings name)."""
-    tiles = " ".join(["https:", *origins(tile_addresses)])
+    """What a page may load: everything from here, and raster tiles from the hosts that the settings name."""
+    tiles = "".join(f" {origin}" for origin in origins(tile_addresses))
     rules = [
         "default-src 'self'",
         "script-src 'self'",
         "worker-src 'self' blob:",
         "style-src 'self' 'unsafe-inline'",  # MapLibre and Django's admin set style attributes
-        f"img-src 'self' data: blob: {tiles}",
-        f"connect-src 'self' {tiles}",  # MapLibre fetches tiles
+        f"img-src 'self' data: blob:{tiles}",
+        f"connect-src 'self'{tiles}",  # MapLibre fetches tiles
         "font-src 'self'",
         "object-src 'none'",
         "base-uri 'none'",

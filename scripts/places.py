@@ -117,6 +117,7 @@ def prepare_state(state: Path) -> Places:
             folder.mkdir(parents=True, exist_ok=True)
         for folder in (places.redis, places.logs):
             folder.chmod(0o700)
+        state.chmod(0o711 if os.geteuid() == 0 else 0o700)  # as root, the database's and the proxy's users pass through it
         places.lock.touch()
     except OSError as error:
         raise CannotStart(f"this user cannot write in {state} ({error.strerror}); choose another folder with --var") from None

@@ -120,6 +120,7 @@ def main() -> None:
 
     if options.static_files:
         collect_static_files(places)
+        call_command("make_api_document")
         return
     with static_files_meanwhile():
         migrate()
@@ -128,6 +129,7 @@ def main() -> None:
 
 def load_data(places: Places, osm_files: list[Path], zone_files: list[Path]) -> None:
     """Load the demo region into a database that is new or empty, or the operator's files, and build the graph."""
+    is_demo = False
     if places.first_load.exists() or is_without_ground():
         # Noted until all is done: a load that is interrupted is taken up again. ./run notes it before it makes a database.
         if not places.first_load.exists():
@@ -136,9 +138,12 @@ def load_data(places: Places, osm_files: list[Path], zone_files: list[Path]) -> 
             make_demo_user(password_file(places))
         if not (osm_files or zone_files):
             load_demo_region(places.state / "demo")
+        is_demo = not (osm_files or zone_files)
     load_own_data(osm_files, zone_files)
     with step("Inspection graph"):
         call_command("build_graph", stdout=StringIO())
+    if is_demo:
+        call_command("make_demo_missions", stdout=StringIO())
     places.first_load.unlink(missing_ok=True)
 
 

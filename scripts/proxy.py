@@ -8,11 +8,12 @@ from pathlib import Path
 from operation.json_lines import is_asked_for
 from scripts import page_headers
 from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
-from scripts.proxy_site import ALIVE, Site, came_over_http, certificates, entrances, plain_server, quoted, spoken, upstreams
+from scripts.proxy_site import ALIVE, Site, came_over_http, certificates, entrances, error_json, plain_server, quoted, spoken, upstreams
 
 MOST_FILES = 65_536
 FILES_BESIDE = 256  # what nginx has open beside connections
 CONNECT_S = 1  # to a program in the same house; its backlog is long
+BASE_MAP_TILES = "https://tile.openstreetmap.org/{z}/{x}/{y}.png"  # as config/settings.py has it
 LARGEST_BODY = "8m"  # above the application's own limit, so that it answers in its own words
 
 # A machine's mime.types may be missing, or old: a module that is not sent as JavaScript is not run.
@@ -168,7 +169,7 @@ def configuration(places: Places, sockets: Path, port: int) -> str:
 def site_configuration(site: Site, *, beside: str = "") -> str:
     """The text of nginx.conf; `beside` are more servers in it."""
     folder = site.folder
-    tiles = (os.environ.get(name, "") for name in ("SPANWISE_BASE_MAP_TILES", "SPANWISE_SATELLITE_TILES"))
+    tiles = (os.environ.get("SPANWISE_BASE_MAP_TILES", BASE_MAP_TILES), os.environ.get("SPANWISE_SATELLITE_TILES", ""))
     headers = page_headers.headers(tiles, is_https=site.is_https)
     is_behind_https = site.is_behind_https and site.certificate is None
     scheme = "$http_x_forwarded_proto" if is_behind_https else "$scheme"
@@ -185,8 +186,8 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
         "api",
         "application/json",
         headers,
-        unavailable='{"error": {"code": "unavailable", "message": "Spanwise is not answering; try again.", "details": {}}}',
-        too_large='{"error": {"code": "too_large", "message": "The body is too large.", "details": {}}}',
+        unavailable=error_json(503, "unavailable", "Spanwise is not answering; try again."),
+        too_large=error_json(413, "too_large", "The body is too large."),
     )
     failures_for_people = _failures(
         "page",

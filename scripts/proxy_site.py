@@ -1,7 +1,9 @@
 """Where one nginx listens, and which programs it stands in front of: on one machine sockets, in containers names."""
 
+import json
 from collections.abc import Iterable
 from dataclasses import dataclass
+from http import HTTPStatus
 from pathlib import Path
 
 from scripts.places import CannotStart
@@ -12,9 +14,18 @@ TLS_1_2_CIPHERS = (
     "ECDHE-ECDSA-CHACHA20-POLY1305:ECDHE-RSA-CHACHA20-POLY1305"
 )
 FOR_PROGRAMS = "~^/(api/v[0-9]+|ws)/"  # they are not led from http to https: nobody would notice what they send before
-REFUSAL = (
-    '{"error": {"code": "https_required", "message": "Programs are answered over https alone. What was sent here could be read on its way: '
-    'a token that was in it is to be revoked.", "details": {}}}'
+
+
+def error_json(status: int, code: str, message: str) -> str:
+    """Return an error that nginx answers itself, in the shape of workspace.errors.error_body."""
+    problem = {"type": f"urn:problem-type:spanwise:{code}", "title": HTTPStatus(status).phrase, "status": status, "detail": message}
+    return json.dumps({"error": {"code": code, "message": message, "details": None}, **problem})
+
+
+REFUSAL = error_json(
+    403,
+    "https_required",
+    "Programs are answered over https alone. What was sent here could be read on its way: a token that was in it is to be revoked.",
 )
 KEPT = 1_024  # connections to web that wait for their next request: as many as may be under way at once when much is asked
 BACKLOG = 4_096  # connections that wait to be accepted; Linux allows so many unless told (net.core.somaxconn)

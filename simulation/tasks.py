@@ -7,15 +7,41 @@ from inspection.selectors import NoGraph
 from missions.models import Mission
 from missions.services.refused import Refused
 from simulation.models import Rehearsal
+from simulation.services.demo_missions import NotThere, make_demo_missions
 from simulation.services.rehearsals import GroundChanged, PlanChanged, rehearse_for_job
 from workspace.errors import DATABASE_AWAY
 from workspace.job_watch import JobWatch
-from workspace.services import JobCancelled, confirm_cancelled, fail_job, start_job
+from workspace.services import JobCancelled, confirm_cancelled, fail_job, finish_job, start_job
 
 SOFT_LIMIT_S = 840
 HARD_LIMIT_S = 900
 CHANGED = "The mission was changed while it was being rehearsed. Rehearse it again."
 ON_OTHER_GROUND = "Zones, terrain, towers or wires about the routes were changed while the mission was being rehearsed. Rehearse it again."
+
+
+@shared_task(name="simulation.tasks.make_demo_missions", soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
+def fly_demo_missions(job_id: str) -> None:
+    """Make the demo missions. Safe to run twice: missions that are there are left as they are."""
+    job = start_job(job_id=job_id)
+    if job is None or job.created_by is None:
+        return
+    try:
+        with JobWatch(job) as watch:
+            made = make_demo_missions(organisation=job.organisation, actor=job.created_by, progress=watch.progress)
+        finish_job(job=job, result={"missions": [str(key) for key in made]}, message="Demo missions made")
+    except JobCancelled:
+        confirm_cancelled(job=job)
+    except (NotThere, Mission.DoesNotExist):
+        fail_job(job=job, code="no_demo_region", message="The demo region was removed.")
+    except Refused as refused:
+        fail_job(job=job, code=refused.reasons[0].code, message=refused.reasons[0].message)
+    except (TimeoutError, SoftTimeLimitExceeded):
+        fail_job(job=job, code="took_too_long", message="The demo missions were not flown in time.")
+    except DATABASE_AWAY:
+        raise  # the lease runs out, and the job is taken up again
+    except Exception:
+        fail_job(job=job, code="internal", message="The demo missions could not be made; the error is in the log.")
+        raise
 
 
 @shared_task(soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)

@@ -3,6 +3,7 @@
 from django.urls import path
 
 from simulation.views.airframes import Airframes, RehearsalRuleView, UavTypeAirframe
+from simulation.views.demo import DemoData
 from simulation.views.rehearsals import MissionRehearsals, RehearsalCancel, RehearsalDetail, RehearsalTrackOfRun
 from simulation.views.simulations import MissionSimulatedFlights, SimulatedVehicleDetail, SimulationDetail, Simulations
 
@@ -17,5 +18,6 @@ urlpatterns = [
     path("simulated-vehicles/<uuid:vehicle_id>", SimulatedVehicleDetail.as_view(), name="api-simulated-vehicle"),
     path("airframes", Airframes.as_view(), name="api-airframes"),
     path("uav-types/<int:type_id>/airframe", UavTypeAirframe.as_view(), name="api-uav-type-airframe"),
+    path("demo-data", DemoData.as_view(), name="api-demo-data"),
     path("rehearsal-rule", RehearsalRuleView.as_view(), name="api-rehearsal-rule"),
 ]

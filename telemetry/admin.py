@@ -1,6 +1,7 @@
 """The admin's pages for what came over the links: to be looked at only."""
 
 from django.contrib import admin
+from django.db.models import Q
 
 from telemetry.models import UnknownVehicle
 from workspace.admin import ReadOnlyAdmin
@@ -8,10 +9,16 @@ from workspace.admin import ReadOnlyAdmin
 
 @admin.register(UnknownVehicle)
 class UnknownVehicleAdmin(ReadOnlyAdmin):
-    """They belong to no organisation: administrators adopt or ignore them on the page of the fleet."""
+    """They belong to no organisation until one adopts them: administrators adopt or ignore them on the page of the fleet."""
+
+    organisation_path = "uav__organisation"
 
     list_display = ["mavlink_system_id", "autopilot", "vehicle_type", "address", "is_signed", "state", "heard_at", "uav", "settled_by"]
     list_filter = ["state", "autopilot", "is_signed"]
     list_select_related = ["uav", "settled_by"]
     search_fields = ["mavlink_system_id", "address", "uav__name"]
     date_hierarchy = "heard_at"
+
+    def own_rows(self, organisation_id: int) -> Q:
+        is_unsettled = Q(uav=None) & (Q(settled_by=None) | Q(settled_by__organisation=organisation_id))
+        return super().own_rows(organisation_id) | is_unsettled

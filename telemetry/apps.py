@@ -1,7 +1,16 @@
-"""Registers the app with Django."""
+"""Registers the app with Django, and with the missions: what it knows of UAVs, and what it asks before a mission is approved."""
 
 from django.apps import AppConfig
 
 
 class TelemetryConfig(AppConfig):
     name = "telemetry"
+
+    def ready(self) -> None:
+        from missions.approval_hooks import register_check  # noqa: PLC0415 (models are there by then)
+        from missions.flight_hooks import register_flight_teller  # noqa: PLC0415
+        from missions.in_air_hooks import register_source  # noqa: PLC0415
+
+        register_flight_teller("telemetry.selectors.in_flight.is_in_flight")
+        register_source("telemetry.selectors.in_the_air.reported_in_the_air")
+        register_check("telemetry.services.approved_vehicles.reasons_of_vehicles")

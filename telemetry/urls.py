@@ -3,7 +3,7 @@
 from django.urls import path, register_converter
 
 from telemetry.views.alert_limits import MissionAlertLimits, UavTypeAlertLimits
-from telemetry.views.alerts import AlertAcknowledgement, AlertDetail, AlertNotes, Alerts
+from telemetry.views.alerts import AlertAcknowledgement, AlertClosing, AlertDetail, AlertNotes, Alerts
 from telemetry.views.estimates import MissionEstimates
 from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFile
 from telemetry.views.live import Live
@@ -39,6 +39,7 @@ urlpatterns = [
     path("alerts", Alerts.as_view(), name="api-alerts"),
     path("alerts/<int:alert_id>", AlertDetail.as_view(), name="api-alert"),
     path("alerts/<int:alert_id>/acknowledge", AlertAcknowledgement.as_view(), name="api-alert-acknowledgement"),
+    path("alerts/<int:alert_id>/close", AlertClosing.as_view(), name="api-alert-closing"),
     path("alerts/<int:alert_id>/notes", AlertNotes.as_view(), name="api-alert-notes"),
     path("uav-types/<int:type_id>/alert-limits", UavTypeAlertLimits.as_view(), name="api-uav-type-alert-limits"),
     path("missions/<uuid:mission_id>/alert-limits", MissionAlertLimits.as_view(), name="api-mission-alert-limits"),

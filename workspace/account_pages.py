@@ -1,5 +1,6 @@
 """Pages of somebody's own account: a new password, by mail for whoever has lost it."""
 
+import logging
 from threading import Thread
 from typing import Any
 
@@ -11,8 +12,13 @@ from django.urls import reverse_lazy
 from django.utils import translation
 from django.utils.translation import gettext as _
 
+from workspace.accounts import revoke_tokens
+from workspace.invitations import mail_leaves_here
 from workspace.known_browsers import remember
+from workspace.public_address import public_address
 from workspace.sign_in_attempts import PASSWORD_CHANGES, HeldBack, address_of, network_of, take_turn
+
+logger = logging.getLogger(__name__)
 
 
 class LostPasswordForm(PasswordResetForm):
@@ -32,7 +38,13 @@ class LostPasswordForm(PasswordResetForm):
         return email
 
     def send_mail(self, *args: Any, **options: Any) -> None:
-        """Beside the answer: how long a mail server takes would tell who has an account. In the language of the page that asked."""
+        """Beside the answer: how long a mail server takes would tell who has an account. In the language of the page that asked.
+
+        On the console the link would stand in a log, for whoever reads it to set the password: there nothing is sent.
+        """
+        if not mail_leaves_here():
+            logger.warning("a link to a new password was asked for, and SPANWISE_EMAIL_URL names no way for mail")
+            return
         in_its_language = translation.override(translation.get_language())(super().send_mail)
         Thread(target=in_its_language, args=args, kwargs=options, name="mail with a link", daemon=True).start()
 
@@ -47,6 +59,8 @@ class LostPasswordPage(views.PasswordResetView):
     success_url = reverse_lazy("lost-password-sent")
 
     def get_form_kwargs(self) -> dict[str, Any]:
+        scheme, _separator, host = public_address(self.request).partition("://")
+        self.extra_email_context = {"protocol": scheme, "domain": host}
         return super().get_form_kwargs() | {"address": address_of(self.request)}
 
 
@@ -63,6 +77,7 @@ class NewPasswordPage(views.PasswordResetConfirmView):
     def form_valid(self, form: SetPasswordForm) -> HttpResponse:
         """Whoever reads the account's mail is its owner: limits that strangers cause do not hold them back in this browser."""
         response = super().form_valid(form)
+        revoke_tokens(user=form.user, actor=form.user)  # whoever knew the old password may have made some
         remember(self.request, response, form.user.get_username())
         return response
 

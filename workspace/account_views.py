@@ -45,6 +45,7 @@ def check_password(request: SignedInRequest, name: str, password: str) -> None:
 
 class Account(APIView):
     write_roles = EVERYBODY
+    permission_classes = [InTheBrowserAlone]
 
     @extend_schema(operation_id="get_account", summary="Who is signed in, and what they prefer", responses=AccountSerializer)
     def get(self, request: SignedInRequest) -> Response:
@@ -53,6 +54,7 @@ class Account(APIView):
     @extend_schema(
         operation_id="change_account",
         summary="Change one's own name and preferences",
+        description="Not with a token.",
         request=AccountChangeSerializer,
         responses=AccountSerializer,
     )
@@ -69,7 +71,8 @@ class AccountPassword(APIView):
     @extend_schema(
         operation_id="change_password",
         summary="Change one's own password",
-        description="All other sessions end. Not with a token. Five wrong tries in a quarter of an hour.",
+        description="All other sessions end, with `end_tokens` all tokens, too. Not with a token."
+        " Five wrong tries in a quarter of an hour.",
         request=PasswordChangeSerializer,
         responses={204: OpenApiResponse(description="Changed.")},
     )
@@ -77,7 +80,9 @@ class AccountPassword(APIView):
         body = PasswordChangeSerializer(data=request.data, context={"user": request.user})
         body.is_valid(raise_exception=True)
         check_password(request, "old_password", body.validated_data["old_password"])
-        accounts.change_password(user=request.user, password=body.validated_data["new_password"])
+        accounts.change_password(
+            user=request.user, password=body.validated_data["new_password"], ends_tokens=body.validated_data["end_tokens"]
+        )
         update_session_auth_hash(request, request.user)
         return Response(status=204)
 
@@ -104,7 +109,7 @@ class AccountTokens(APIView):
     )
     def post(self, request: SignedInRequest) -> Response:
         require_proof(request)
-        body = TokenInputSerializer(data=request.data)
+        body = TokenInputSerializer(data=request.data, context={"user": request.user})
         body.is_valid(raise_exception=True)
         try:
             row, token = accounts.make_token(user=request.user, **body.validated_data)

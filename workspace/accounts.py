@@ -2,6 +2,7 @@
 
 import json
 import zlib
+from collections.abc import Iterable
 from datetime import datetime, timedelta
 from typing import Any
 
@@ -36,12 +37,21 @@ def change_account(*, user: User, **values: Any) -> User:
     return user
 
 
-def change_password(*, user: User, password: str) -> None:
-    """All sessions end; the caller keeps the one it works for."""
+def change_password(*, user: User, password: str, ends_tokens: bool = False) -> None:
+    """All sessions end, and tokens if that is wanted; the caller keeps the session it works for."""
     with transaction.atomic():
         user.set_password(password)
         user.save(update_fields=["password"])
         _record(user, user, "password changed")
+        if ends_tokens:
+            revoke_tokens(user=user, actor=user)
+
+
+def revoke_tokens(*, user: User, actor: User) -> None:
+    """All that work: from now on no program gets in with one."""
+    with transaction.atomic():
+        for token in user.api_tokens.filter(revoked_at=None):
+            revoke_token(token=token, actor=actor)
 
 
 def end_sessions(*, user: User, actor: User | None) -> None:
@@ -52,16 +62,16 @@ def end_sessions(*, user: User, actor: User | None) -> None:
         _record(user, actor, "signed out everywhere")
 
 
-def make_token(*, user: User, name: str, days: int) -> tuple[ApiToken, str]:
+def make_token(*, user: User, name: str, days: int, scopes: Iterable[str] | None = None) -> tuple[ApiToken, str]:
     """The row and the token itself, which cannot be shown again. Raises TooManyTokens."""
     expires_at = timezone.now() + timedelta(days=days)
     with transaction.atomic():
         User.objects.select_for_update().get(pk=user.pk)
         if user.api_tokens.filter(revoked_at=None, expires_at__gt=timezone.now()).count() >= MOST_TOKENS:
             raise TooManyTokens
-        token = create_api_token(user=user, name=name, expires_at=expires_at)
+        token = create_api_token(user=user, name=name, expires_at=expires_at, scopes=scopes)
         row = user.api_tokens.latest("pk")
-        _record_token(row, user, "created", {"name": name, "expires_at": _seconds(expires_at)})
+        _record_token(row, user, "created", {"name": name, "expires_at": _seconds(expires_at), "scopes": row.scopes})
     return row, token
 
 
@@ -81,7 +91,7 @@ def revision_of_person(user: User) -> int:
 
 
 def change_person(*, user_id: int, actor: User, seen_revision: int | None, **values: Any) -> User:
-    """Raises User.DoesNotExist (another organisation's), ChangedMeanwhile, NoAdministratorLeft."""
+    """Raises User.DoesNotExist (another organisation's), ChangedMeanwhile, NoAdministratorLeft, OperatorsAlone."""
     with transaction.atomic():
         user = User.objects.select_for_update().get(pk=user_id, organisation_id=actor.organisation_id)
         if seen_revision is not None and seen_revision != revision_of_person(user):

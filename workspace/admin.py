@@ -3,7 +3,6 @@
 from typing import Any
 
 from django.contrib import admin, messages
-from django.contrib.auth.admin import UserAdmin as DjangoUserAdmin
 from django.contrib.auth.models import Group
 from django.db import transaction
 from django.db.models import Count, QuerySet
@@ -12,15 +11,16 @@ from django.utils import timezone
 from django.utils.safestring import SafeString
 
 from workspace.admin_history import HistoryAdmin, as_table, what_changed
+from workspace.admin_scope import OrganisationScopedAdmin
 from workspace.invitations import InvitationState, in_state, revoke_invitation
 from workspace.models import DEFAULT_ORGANISATION_ID, ApiToken, AuditEntry, Invitation, Job, Organisation, Role, SignInEntry, User
-from workspace.services import NoAdministratorLeft, change_people, delete_person, save_person
+from workspace.services import NoAdministratorLeft, OperatorsAlone, change_people, delete_person, may_change, save_person
 from workspace.signed_in import user_of
 
 admin.site.unregister(Group)  # what somebody may do follows from the role
 
 
-class ReadOnlyAdmin(admin.ModelAdmin):
+class ReadOnlyAdmin(OrganisationScopedAdmin):
     """Rows that the program writes: they can be looked at."""
 
     def has_add_permission(self, request: HttpRequest) -> bool:
@@ -34,8 +34,11 @@ class ReadOnlyAdmin(admin.ModelAdmin):
 
 
 @admin.register(Organisation)
-class OrganisationAdmin(admin.ModelAdmin):
-    """One that has anything is renamed, not deleted: its missions and its history hang on it."""
+class OrganisationAdmin(OrganisationScopedAdmin):
+    """For installation operators. One that has anything is renamed, not deleted: its missions and its history hang on it."""
+
+    organisation_path = "pk"
+    is_for_operators_alone = True
 
     list_display = ["name", "people", "created_at"]
     search_fields = ["name"]
@@ -56,8 +59,8 @@ class OrganisationAdmin(admin.ModelAdmin):
 
 
 @admin.register(User)
-class UserAdmin(HistoryAdmin, DjangoUserAdmin):
-    """Accounts, their roles and organisations. One administrator who can sign in is always left."""
+class UserAdmin(HistoryAdmin):
+    """Accounts and their roles. One administrator who can sign in is always left. New ones are invited; each sets their own password."""
 
     history_subject = "user"
     list_display = ["username", "first_name", "last_name", "email", "role", "organisation", "is_active", "last_login"]
@@ -65,15 +68,26 @@ class UserAdmin(HistoryAdmin, DjangoUserAdmin):
     list_select_related = ["organisation"]
     search_fields = ["username", "first_name", "last_name", "email", "organisation__name"]
     filter_horizontal = []
-    readonly_fields = ["last_login", "last_seen_at", "date_joined"]
+    readonly_fields = ["organisation", "last_login", "last_seen_at", "date_joined"]
     fieldsets = [
-        (None, {"fields": ["username", "password", "role", "organisation", "is_active"]}),
+        (None, {"fields": ["username", "role", "organisation", "is_active"]}),
         ("Person", {"fields": ["first_name", "last_name", "email"]}),
         ("Preferences", {"fields": ["theme", "units", "time_zone", "language", "single_keys"]}),
         ("Times", {"fields": ["last_login", "last_seen_at", "date_joined"]}),
     ]
-    add_fieldsets = [(None, {"fields": ["username", "email", "usable_password", "password1", "password2", "role", "organisation"]})]
     actions = ["let_in", "keep_out", "make_viewers", "make_operators", "make_curators", "make_administrators"]
+
+    def lookup_allowed(self, lookup: str, value: str, request: HttpRequest) -> bool:
+        return not lookup.startswith("password") and super().lookup_allowed(lookup, value, request)
+
+    def has_add_permission(self, request: HttpRequest) -> bool:
+        return False
+
+    def has_change_permission(self, request: HttpRequest, obj: Any = None) -> bool:
+        return (obj is None or may_change(user_of(request), obj)) and super().has_change_permission(request, obj)
+
+    def has_delete_permission(self, request: HttpRequest, obj: Any = None) -> bool:
+        return (obj is None or may_change(user_of(request), obj)) and super().has_delete_permission(request, obj)
 
     def changeform_view(self, request: HttpRequest, *args: Any, **options: Any) -> HttpResponse:
         return self._unless_last(request, super().changeform_view, *args, **options)
@@ -126,14 +140,16 @@ class UserAdmin(HistoryAdmin, DjangoUserAdmin):
     def _unless_last(self, request: HttpRequest, view: Any, *args: Any, **options: Any) -> HttpResponse:
         try:
             return view(request, *args, **options)
-        except NoAdministratorLeft as error:
+        except (NoAdministratorLeft, OperatorsAlone) as error:
             messages.error(request, f"{error} Nothing was changed.")
             return HttpResponseRedirect(request.get_full_path())
 
 
 @admin.register(ApiToken)
-class ApiTokenAdmin(admin.ModelAdmin):
+class ApiTokenAdmin(OrganisationScopedAdmin):
     """Tokens are made by their owner, or by `manage.py api_token`, and shown once; here they are revoked."""
+
+    organisation_path = "user__organisation"
 
     list_display = ["name", "user", "created_at", "expires_at", "revoked_at", "last_used_at"]
     list_filter = ["expires_at", "revoked_at"]
@@ -172,6 +188,9 @@ class InvitationAdmin(ReadOnlyAdmin):
 
 @admin.register(SignInEntry)
 class SignInEntryAdmin(ReadOnlyAdmin):
+    """Tries with names that nobody has belong to no organisation: installation operators see them here."""
+
+    organisation_path = "user__organisation"
     list_display = ["recorded_at", "outcome", "user", "address", "user_agent"]
     list_filter = ["outcome", "recorded_at"]
     list_select_related = ["user"]

@@ -4,7 +4,6 @@ import json
 from collections.abc import Iterable
 from typing import Any
 
-from django.contrib import admin
 from django.core.exceptions import PermissionDenied
 from django.core.paginator import Paginator
 from django.http import HttpRequest, HttpResponse
@@ -12,6 +11,7 @@ from django.template.response import TemplateResponse
 from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString
 
+from workspace.admin_scope import OrganisationScopedAdmin
 from workspace.models import AuditEntry
 
 PAGE = 50
@@ -43,7 +43,7 @@ def as_table(rows: Iterable[tuple[str, str, str]]) -> SafeString:
     )
 
 
-class HistoryAdmin(admin.ModelAdmin):
+class HistoryAdmin(OrganisationScopedAdmin):
     """Shows the row's history under its own name instead of what was done in the admin alone."""
 
     history_subject = ""

@@ -55,6 +55,7 @@ class Holder(NamedTuple):
 
     key: int
     role: Role
+    scopes: list[str] | None = None  # of the token; None: all of the role
 
 
 def holder_of(authorization: str) -> Holder | None:
@@ -63,9 +64,9 @@ def holder_of(authorization: str) -> Holder | None:
     rows = _rows_of(_HOLDER, b"".join(rest).strip()) if scheme.lower() == b"bearer" else []
     if not rows:
         return None
-    token_key, last_used_at, holder, role = rows[0]
+    token_key, last_used_at, holder, role, scopes = rows[0]
     note_use(token=token_key, last_used_at=last_used_at)
-    return Holder(holder, Role(role))
+    return Holder(holder, Role(role), scopes)
 
 
 def holder_of_session(request: HttpRequest) -> Holder | None:
@@ -108,7 +109,7 @@ _VALID = "token.token_sha256 = %s AND token.revoked_at IS NULL AND token.expires
 _VALID_TOKEN = f"""
     SELECT {_columns(ApiToken, "token")}, {_columns(User, "holder")}, {_columns(Organisation, "organisation")}
     FROM {_HELD} JOIN workspace_organisation AS organisation ON organisation.id = holder.organisation_id WHERE {_VALID}"""  # noqa: S608
-_HOLDER = f"SELECT token.id, token.last_used_at, holder.id, holder.role FROM {_HELD} WHERE {_VALID}"  # noqa: S608
+_HOLDER = f"SELECT token.id, token.last_used_at, holder.id, holder.role, token.scopes FROM {_HELD} WHERE {_VALID}"  # noqa: S608
 
 
 class BearerTokenScheme(OpenApiAuthenticationExtension):

@@ -1,21 +1,30 @@
-"""One shape for every error of the API: {"error": {"code", "message", "details"}}."""
+"""One shape for every error of the API: {"error": {"code", "message", "details"}}, with the members of RFC 9457 beside it.
+
+The content type is `application/problem+json` for whoever names it in Accept, and `application/json` else.
+"""
 
 import logging
+from http import HTTPStatus
 from math import ceil
 from typing import Any
 
 from django.core.exceptions import PermissionDenied, RequestDataTooBig, SuspiciousOperation
 from django.core.exceptions import ValidationError as DjangoValidationError
 from django.db import DataError, InterfaceError, OperationalError
-from django.http import Http404
+from django.http import Http404, HttpRequest
 from django.utils.translation import gettext as _
 from rest_framework import exceptions
+from rest_framework.request import Request
 from rest_framework.response import Response
+
+from workspace.throttling import rate_limit_headers
 
 logger = logging.getLogger(__name__)
 
 DATABASE_AWAY = (OperationalError, InterfaceError)  # also a statement that was cancelled or lost a deadlock: worth another try
 RETRY_AFTER_S = 2
+PROBLEM_TYPE = "urn:problem-type:spanwise:"  # and the error's code
+PROBLEM_JSON = "application/problem+json"
 
 
 class ApiProblem(exceptions.APIException):
@@ -30,8 +39,17 @@ class ApiProblem(exceptions.APIException):
         self.retry_after_s = retry_after_s
 
 
-def error_body(code: str, message: str, details: Any = None) -> dict[str, Any]:
-    return {"error": {"code": code, "message": message, "details": details}}
+def error_body(status: int, code: str, message: str, details: Any = None, *, instance: str | None = None) -> dict[str, Any]:
+    """Return the body of an error. `instance` is the path of the request, where it is known (RFC 9457, section 3.1.5)."""
+    problem = {"type": PROBLEM_TYPE + code, "title": HTTPStatus(status).phrase, "status": status, "detail": message}
+    return {"error": {"code": code, "message": message, "details": details}, **problem} | ({"instance": instance} if instance else {})
+
+
+def error_content_type(request: HttpRequest | Request | None) -> str:
+    """Return `application/problem+json` where the request's Accept names it, else `application/json`."""
+    accepted = "" if request is None else request.META.get("HTTP_ACCEPT", "")
+    names = {entry.partition(";")[0].strip().lower() for entry in accepted.split(",")}
+    return PROBLEM_JSON if PROBLEM_JSON in names else "application/json"
 
 
 def database_away_problem() -> ApiProblem:
@@ -49,17 +67,24 @@ def error_response(error: Exception, context: dict[str, Any]) -> Response | None
     retry_after_s = getattr(error, "retry_after_s", None) or getattr(error, "wait", None)
     if retry_after_s:
         headers["Retry-After"] = str(ceil(retry_after_s))
-    return Response(_body_of(error), status=error.status_code, headers=headers)
+    if isinstance(error, exceptions.Throttled) and (scope := getattr(context.get("view"), "throttle_scope", None)):
+        headers |= rate_limit_headers(scope, retry_after_s or 0)
+    request = context.get("request")
+    instance = None if request is None else request.path
+    code, message, details = _facts_of(error)
+    body = error_body(error.status_code, code, message, details, instance=instance)
+    return Response(body, status=error.status_code, headers=headers, content_type=error_content_type(request))
 
 
-def _body_of(error: exceptions.APIException) -> dict[str, Any]:
+def _facts_of(error: exceptions.APIException) -> tuple[str, str, Any]:
+    """Return code, message and details."""
     if isinstance(error, ApiProblem):
-        return error_body(error.code, error.message, error.details)
+        return error.code, error.message, error.details
     if isinstance(error, exceptions.ValidationError):
         faults = _faults(error.detail)
         place, messages = next(iter(faults.items()), ("", ["The input is not valid."]))
-        return error_body("invalid", f"{place}: {messages[0]}" if place else messages[0], faults)
-    return error_body(_code(error), str(error.detail))
+        return "invalid", f"{place}: {messages[0]}" if place else messages[0], faults
+    return _code(error), str(error.detail), None
 
 
 def _as_api_exception(error: Exception) -> Exception:

@@ -20,6 +20,7 @@ from workspace.models import IdempotencyKey
 from workspace.signed_in import SignedInRequest
 
 LONGEST_KEY = 200
+TAKES_KEY = "takes_idempotency_key"
 KEPT_HEADERS = ("Location", "ETag")
 
 Handler = Callable[..., Response]
@@ -50,6 +51,7 @@ def idempotent(handler: Handler) -> Handler:
             raise ApiProblem(422, "idempotency_conflict", _("This Idempotency-Key was used for another request."))
         return Response(kept.body, status=kept.status, headers={**kept.headers, "Idempotency-Replayed": "true"})
 
+    setattr(answer_once, TAKES_KEY, True)  # read by workspace/schema.py
     return answer_once
 
 

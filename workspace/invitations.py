@@ -12,7 +12,7 @@ from django.template.loader import render_to_string
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
-from workspace.models import Invitation, Role, User
+from workspace.models import Invitation, Organisation, Role, User
 from workspace.services import hash_token, record_change, save_person
 
 LONGEST_DAYS = 30
@@ -54,12 +54,12 @@ def invitations_of(actor: User) -> QuerySet[Invitation]:
     return Invitation.objects.filter(organisation_id=actor.organisation_id)
 
 
-def invite(*, actor: User, role: Role, email: str, days: int) -> tuple[Invitation, str]:
-    """The row and the link's secret, which cannot be shown again."""
+def invite(*, organisation: Organisation, actor: User | None, role: Role, email: str, days: int) -> tuple[Invitation, str]:
+    """The row and the link's secret, which cannot be shown again. Nobody is the actor of what is done on the machine."""
     token = secrets.token_urlsafe(32)
     with transaction.atomic():
         invitation = Invitation.objects.create(
-            organisation_id=actor.organisation_id,
+            organisation=organisation,
             email=email,
             role=role,
             token_sha256=hash_token(token),
@@ -119,7 +119,7 @@ def accept_invitation(*, token: str, user: User) -> User:
     return user
 
 
-def _record(invitation: Invitation, actor: User, action: str) -> None:
+def _record(invitation: Invitation, actor: User | None, action: str) -> None:
     facts = {"role": str(invitation.role), "email": invitation.email, "expires_at": invitation.expires_at.isoformat(timespec="seconds")}
     before, after = (None, facts) if action == "created" else (facts, None)
     record_change(

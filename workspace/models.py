@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 from django.contrib.auth.models import AbstractUser
 from django.contrib.auth.models import UserManager as DjangoUserManager
+from django.contrib.postgres.fields import ArrayField
 from django.db import models
 from django.db.models.functions import Now
 from django.utils.crypto import salted_hmac
@@ -66,7 +67,7 @@ class UserManager(DjangoUserManager["User"]):
         return user
 
     def create_superuser(self, username: str, email: str | None = None, password: str | None = None, **fields: Any) -> "User":
-        return self.create_user(username, email, password, **{"role": Role.ADMINISTRATOR, **fields})
+        return self.create_user(username, email, password, **{"role": Role.ADMINISTRATOR, "is_installation_operator": True, **fields})
 
 
 class User(AbstractUser):
@@ -76,6 +77,9 @@ class User(AbstractUser):
     user_permissions = None  # type: ignore[assignment]
     organisation = models.ForeignKey(Organisation, on_delete=models.PROTECT, default=DEFAULT_ORGANISATION_ID, related_name="users")
     role = models.CharField(max_length=20, choices=Role.choices, default=Role.VIEWER)
+    is_installation_operator = models.BooleanField(
+        default=False, db_default=False, editable=False, help_text="as administrator: of all organisations, in the admin"
+    )
     theme = models.CharField(max_length=10, choices=Theme.choices, default=Theme.SYSTEM)
     units = models.CharField(
         max_length=10, choices=Units.choices, default=Units.METRIC, help_text="what is shown; what is stored is metric"
@@ -106,6 +110,11 @@ class User(AbstractUser):
         return self.role == Role.ADMINISTRATOR
 
     @property
+    def operates_installation(self) -> bool:
+        """Sees and changes the rows of all organisations in the admin. Given on the machine alone."""
+        return self.is_installation_operator and self.role == Role.ADMINISTRATOR
+
+    @property
     def can_plan(self) -> bool:
         return self.role in {Role.OPERATOR, Role.ADMINISTRATOR}
 
@@ -114,12 +123,33 @@ class User(AbstractUser):
         return self.role in {Role.CURATOR, Role.ADMINISTRATOR}
 
 
+class TokenScope(models.TextChoices):
+    """What a token may be used for, within what its owner's role allows."""
+
+    READ = "read", _("Read")
+    PLAN = "plan", _("Plan")
+    FLY = "fly", _("Fly")
+    CURATE = "curate", _("Curate")
+    ADMINISTER = "administer", _("Administer")
+
+
+SCOPES_OF_ROLE: dict[str, tuple[TokenScope, ...]] = {
+    Role.VIEWER: (TokenScope.READ,),
+    Role.OPERATOR: (TokenScope.READ, TokenScope.PLAN, TokenScope.FLY),
+    Role.CURATOR: (TokenScope.READ, TokenScope.CURATE),
+    Role.ADMINISTRATOR: tuple(TokenScope),
+}
+
+
 class ApiToken(models.Model):
     """A bearer token. Only its SHA-256 is kept; the token itself is shown once."""
 
     user = models.ForeignKey(User, on_delete=models.CASCADE, related_name="api_tokens")
     name = models.CharField(max_length=100, default="api")
     token_sha256 = models.CharField(max_length=64, unique=True, editable=False)
+    scopes = ArrayField(
+        models.CharField(max_length=20, choices=TokenScope.choices), null=True, blank=True, help_text="empty: all that the role has"
+    )
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     expires_at = models.DateTimeField()
     revoked_at = models.DateTimeField(null=True, blank=True)

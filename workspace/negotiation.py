@@ -2,8 +2,18 @@
 
 from typing import Any
 
-from rest_framework.negotiation import BaseContentNegotiation
+from rest_framework.negotiation import BaseContentNegotiation, DefaultContentNegotiation
 from rest_framework.request import Request
+
+from workspace.errors import PROBLEM_JSON
+
+
+class ProblemNegotiation(DefaultContentNegotiation):
+    """Accept's `application/problem+json` is for errors alone (workspace/errors.py): a client that names only it takes any answer."""
+
+    def get_accept_list(self, request: Request) -> list[str]:
+        accepted = super().get_accept_list(request)
+        return [entry for entry in accepted if entry.partition(";")[0].strip().lower() != PROBLEM_JSON] or ["*/*"]
 
 
 class OneAnswer(BaseContentNegotiation):

@@ -230,14 +230,22 @@ def _target(address: str) -> _Target:
 
 def _check_reachable(target: _Target, addresses: list[str]) -> None:
     """One address that is not public refuses the name: which one a connection takes is up to whoever answers for the name."""
-    shown = f"[{target.host}]" if ":" in target.host else target.host
-    if f"{shown}:{target.port}" in settings.OUTGOING_ALLOWED_HOSTS:
+    if f"{_shown(target)}:{target.port}" in settings.OUTGOING_ALLOWED_HOSTS:
         return
     if not addresses or not all(is_global(address) for address in addresses):
-        raise OutgoingRefused(
-            _("%(host)s is not a host of the public internet, so it is not fetched. An administrator can allow it with %(setting)s.")
-            % {"host": shown, "setting": f"SPANWISE_OUTGOING_ALLOWED_HOSTS={shown}:{target.port}"}
-        )
+        raise OutgoingRefused(_no_public_host(target))
+
+
+def _no_public_host(target: _Target) -> str:
+    """The same for a name that is not known: else anybody could ask which names this machine's network has."""
+    return _(
+        "%(host)s is not a host of the public internet, or not known, so it is not fetched. "
+        "An administrator can allow one with %(setting)s."
+    ) % {"host": _shown(target), "setting": f"SPANWISE_OUTGOING_ALLOWED_HOSTS={_shown(target)}:{target.port}"}
+
+
+def _shown(target: _Target) -> str:
+    return f"[{target.host}]" if ":" in target.host else target.host
 
 
 def _ask(
@@ -323,7 +331,7 @@ def _sentence(target: _Target, error: Exception) -> str:
     if isinstance(error, ssl.SSLError):
         return f"No secure connection to {host} came about."
     if isinstance(error, socket.gaierror):
-        return f"There is no host {host}, or the name service is away."
+        return _no_public_host(target)
     if isinstance(error, TimeoutError):
         return f"{host} did not answer in time."
     if isinstance(error, ConnectionRefusedError):

@@ -4,10 +4,12 @@ import base64
 import binascii
 import json
 from dataclasses import dataclass
+from datetime import UTC, datetime, time
 from typing import Any, Generic, TypeVar
 
 from django.core.exceptions import ValidationError as DjangoValidationError
 from django.db.models import Model, Q, QuerySet
+from django.utils.dateparse import parse_date, parse_datetime
 from django.utils.translation import gettext as _
 from rest_framework.request import Request
 
@@ -39,6 +41,28 @@ def page_of(
     query = request.query_params.copy()
     query["cursor"] = _cursor_of(queryset, rows[-1], order)
     return Page(rows, f"{request.path}?{query.urlencode()}")
+
+
+def changed_since(request: Request, queryset: QuerySet[Any, Row]) -> QuerySet[Any, Row]:
+    """Return the rows with an `updated_at` not before `?changed_since=`. Raises ApiProblem 400."""
+    since = asked_instant(request, "changed_since")
+    return queryset if since is None else queryset.filter(updated_at__gte=since)
+
+
+def asked_instant(request: Request, name: str) -> datetime | None:
+    """Return the moment of a query parameter; None without one. A date is its first moment, and what has no offset is in UTC."""
+    text = request.query_params.get(name, "")
+    if not text:
+        return None
+    try:
+        day = parse_date(text)
+        at = datetime.combine(day, time(), tzinfo=UTC) if day else parse_datetime(text)
+    except ValueError:
+        at = None
+    if at is None:
+        fault = _("A date or a time in ISO 8601 is needed.")
+        raise ApiProblem(400, "invalid", f"{name}: {fault}", details={name: [fault]})
+    return at if at.tzinfo else at.replace(tzinfo=UTC)
 
 
 def _limit(request: Request, default_limit: int, max_limit: int) -> int:

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from collections.abc import Mapping
 from typing import IO, Any
 
@@ -13,6 +14,9 @@ from rest_framework.parsers import BaseParser
 from workspace.errors import ApiProblem
 
 DEEPEST_NESTING = 32
+_UNSTORABLE = re.compile("[\0\ud800-\udfff]")
+# People put in lines and tabs. Other control characters, and those that turn the direction of writing, make one name look like another.
+_REFUSED = re.compile("[\0-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
 
 
 class StrictJSONParser(BaseParser):
@@ -20,22 +24,29 @@ class StrictJSONParser(BaseParser):
 
     media_type = "application/json"
     finite_only = True
+    takes_control_characters = False
 
     def parse(self, stream: IO[bytes], media_type: str | None = None, parser_context: Mapping[str, Any] | None = None) -> Any:
         limit = settings.DATA_UPLOAD_MAX_MEMORY_SIZE
         body = stream.read(limit + 1)
         if len(body) > limit:
             raise ApiProblem(413, "too_large", _("The request body is larger than %(value)s kB.") % {"value": limit // 1024})
-        return read_json(body, finite_only=self.finite_only)
+        return read_json(body, finite_only=self.finite_only, takes_control_characters=self.takes_control_characters)
 
 
-class MeasuredJSONParser(StrictJSONParser):
-    """Lets NaN and infinities pass, for views that name the record that holds them and take the others of the body."""
+class UavJSONParser(StrictJSONParser):
+    """Lets control characters pass: what a UAV says of a command counts, however garbled its reason is."""
+
+    takes_control_characters = True
+
+
+class MeasuredJSONParser(UavJSONParser):
+    """Lets NaN and infinities pass as well, for views that name the record that holds them and take the others of the body."""
 
     finite_only = False
 
 
-def read_json(body: bytes, *, finite_only: bool = True) -> Any:
+def read_json(body: bytes, *, finite_only: bool = True, takes_control_characters: bool = False) -> Any:
     """What a body says. Raises ParseError."""
     rules: dict[str, Any] = {"parse_constant": _refuse_constant, "parse_float": _finite_float} if finite_only else {}
     try:
@@ -46,7 +57,7 @@ def read_json(body: bytes, *, finite_only: bool = True) -> Any:
         raise ParseError(_("The body is nested deeper than %(deepest_nesting)s levels.") % {"deepest_nesting": DEEPEST_NESTING}) from error
     except ValueError as error:
         raise ParseError(_("The body is not JSON: %(error)s") % {"error": error}) from error
-    _check(value)
+    _check(value, _UNSTORABLE if takes_control_characters else _REFUSED)
     return value
 
 
@@ -74,7 +85,7 @@ def _finite_float(text: str) -> float:
     return value
 
 
-def _check(root: Any) -> None:
+def _check(root: Any, refused: re.Pattern[str]) -> None:
     """Walk level by level, so that depth costs no stack."""
     level = [root]
     for _depth in range(DEEPEST_NESTING + 1):
@@ -82,13 +93,9 @@ def _check(root: Any) -> None:
         for value in level:
             if isinstance(value, dict | list):
                 holders.append(value)
-            elif isinstance(value, str) and not _can_be_stored(value):
-                raise ParseError(_("A text holds a NUL character or half a surrogate pair."))
+            elif isinstance(value, str) and refused.search(value):
+                raise ParseError(_("A text holds a control character or half a surrogate pair."))
         if not holders:
             return
         level = [inner for holder in holders for inner in ((*holder.keys(), *holder.values()) if isinstance(holder, dict) else holder)]
     raise ParseError(_("The body is nested deeper than %(deepest_nesting)s levels.") % {"deepest_nesting": DEEPEST_NESTING})
-
-
-def _can_be_stored(text: str) -> bool:
-    return "\0" not in text and (text.isascii() or not any("\ud800" <= character <= "\udfff" for character in text))

@@ -9,7 +9,9 @@ from django.utils.translation import gettext as _
 
 PRODUCT_AND_TRADE = (
     "spanwise", "inspection", "inspector", "inspect", "powerline", "pylon", "tower", "bridge", "railway", "uav", "drone", "mavlink",
-    "pilot", "operator", "curator", "viewer", "administrator", "admin", "mission", "password", "passwort",
+    "pilot", "operator", "curator", "viewer", "administrator", "admin", "mission", "password", "passwort", "kennwort", "inspektion",
+    "stromleitung", "leitung", "freileitung", "strommast", "mast", "turm", "brücke", "bruecke", "bahn", "eisenbahn", "drohne", "flug",
+    "bediener", "kurator", "betrachter", "verwalter", "geheim", "willkommen", "sommer", "winter", "herbst", "frühling",
 )  # fmt: skip
 SHORTEST_WORD = 3  # of an organisation's name: what is shorter is in every password
 SHORTEST_REST = 8  # characters that have to be something else

@@ -13,7 +13,7 @@ from django.views.decorators.cache import never_cache
 from django.views.generic import FormView
 
 from workspace.invitations import InvitationGone, accept_invitation, mail_leaves_here, open_invitation
-from workspace.models import User
+from workspace.models import SCOPES_OF_ROLE, User
 from workspace.pages import SignedInPage
 from workspace.preferences import TIME_ZONES
 from workspace.second_factors import has_second_factor, is_required_of, recovery_codes_left
@@ -31,6 +31,7 @@ class AccountPage(SignedInPage):
             "has_second_factor": has_one,
             "second_factor_is_required": is_required_of(user),
             "codes_left": recovery_codes_left(user) if has_one else 0,
+            "token_scopes": [(scope.value, scope.label) for scope in SCOPES_OF_ROLE[user.role]],
         }
 
 

@@ -12,12 +12,25 @@ from workspace.accounts import revision_of_person
 from workspace.browser_sessions import session_ends_at
 from workspace.invitations import LONGEST_DAYS, state_of
 from workspace.invitations import InvitationState as State
-from workspace.models import ApiToken, BrowserSession, Invitation, Language, Role, SignInEntry, SignInOutcome, Theme, Units, User
+from workspace.models import (
+    SCOPES_OF_ROLE,
+    ApiToken,
+    BrowserSession,
+    Invitation,
+    Language,
+    Role,
+    SignInEntry,
+    SignInOutcome,
+    Theme,
+    TokenScope,
+    Units,
+    User,
+)
 from workspace.preferences import TIME_ZONES
 from workspace.serializers import Declared
 
 InvitationState = [state.value for state in State]
-LONGEST_TOKEN_DAYS = 3_650
+LONGEST_TOKEN_DAYS = 365
 
 
 class AccountSerializer(serializers.ModelSerializer):
@@ -54,6 +67,7 @@ class AccountChangeSerializer(serializers.Serializer):
 class PasswordChangeSerializer(serializers.Serializer):
     old_password = serializers.CharField(trim_whitespace=False, max_length=4_096)
     new_password = serializers.CharField(trim_whitespace=False, max_length=4_096)
+    end_tokens = serializers.BooleanField(default=False, help_text="revoke all own tokens as well")
 
     def validate_new_password(self, value: str) -> str:
         validate_password(value, self.context["user"])
@@ -64,11 +78,15 @@ class TokenSerializer(serializers.ModelSerializer):
     """A bearer token, without the token itself."""
 
     is_valid: Declared = serializers.SerializerMethodField()
+    scopes: Declared = serializers.SerializerMethodField()
 
     class Meta:
         model = ApiToken
-        fields = ["id", "name", "created_at", "expires_at", "revoked_at", "last_used_at", "is_valid"]
+        fields = ["id", "name", "scopes", "created_at", "expires_at", "revoked_at", "last_used_at", "is_valid"]
         read_only_fields = fields
+
+    def get_scopes(self, token: ApiToken) -> list[TokenScope]:
+        return [scope for scope in SCOPES_OF_ROLE[token.user.role] if token.scopes is None or scope in token.scopes]
 
     def get_is_valid(self, token: ApiToken) -> bool:
         return token.revoked_at is None and token.expires_at > timezone.now()
@@ -87,6 +105,16 @@ class NewTokenSerializer(TokenSerializer):
 class TokenInputSerializer(serializers.Serializer):
     name = serializers.CharField(max_length=100)
     days = serializers.IntegerField(min_value=1, max_value=LONGEST_TOKEN_DAYS, default=90)
+    scopes = serializers.ListField(
+        child=serializers.ChoiceField(choices=TokenScope.choices), min_length=1, max_length=len(TokenScope), required=False,
+        help_text="what it may be used for, within one's role; all that the role has unless told",
+    )  # fmt: skip
+
+    def validate_scopes(self, scopes: list[str]) -> list[str]:
+        own = SCOPES_OF_ROLE[self.context["user"].role]
+        if beyond := sorted(set(scopes) - set(own)):
+            raise serializers.ValidationError(_("Your role does not have {scopes}.").format(scopes=", ".join(beyond)))
+        return [scope for scope in own if scope in scopes]
 
 
 class TokenListSerializer(serializers.Serializer):

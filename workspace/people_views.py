@@ -17,7 +17,7 @@ from rest_framework.views import APIView
 from workspace import accounts, invitations, second_factors
 from workspace.errors import ApiProblem
 from workspace.invitations import InvitationState
-from workspace.models import ApiToken, Invitation, Role, SecondFactor, SignInEntry, SignInOutcome, User
+from workspace.models import Invitation, Role, SecondFactor, SignInEntry, SignInOutcome, User
 from workspace.paging import page_of
 from workspace.people_serializers import (
     InvitationInputSerializer,
@@ -34,8 +34,9 @@ from workspace.people_serializers import (
 )
 from workspace.permissions import ADMINISTRATORS, AdministratorsAlone, AdministratorsInTheBrowser, InTheBrowserAlone
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
+from workspace.public_address import public_address
 from workspace.schema import PAGE_PARAMETERS
-from workspace.services import NoAdministratorLeft
+from workspace.services import NoAdministratorLeft, OperatorsAlone, may_change
 from workspace.signed_in import SignedInRequest
 
 HERE_WITHIN = timedelta(minutes=5)
@@ -131,6 +132,8 @@ class PersonDetail(APIView):
             raise ApiProblem(412, "changed", words, details={"current": current}) from error
         except NoAdministratorLeft as error:
             raise ApiProblem(409, "no_administrator_left", str(error)) from error
+        except OperatorsAlone as error:
+            raise ApiProblem(403, "operators_alone", str(error)) from error
         return self._answer(request, user_id)
 
     @staticmethod
@@ -140,12 +143,12 @@ class PersonDetail(APIView):
 
 
 class PersonSessions(APIView):
-    permission_classes = [AdministratorsAlone]
+    permission_classes = [AdministratorsInTheBrowser]
 
     @extend_schema(
         operation_id="sign_person_out",
         summary="End all sessions of somebody",
-        description="Their tokens stay.",
+        description="Their tokens stay. Not with a token.",
         request=None,
         responses={204: OpenApiResponse(description="Ended.")},
     )
@@ -155,7 +158,7 @@ class PersonSessions(APIView):
 
 
 class PersonTokens(APIView):
-    permission_classes = [AdministratorsAlone]
+    permission_classes = [AdministratorsInTheBrowser]
 
     @extend_schema(
         operation_id="revoke_tokens_of_person",
@@ -163,8 +166,7 @@ class PersonTokens(APIView):
         responses={204: OpenApiResponse(description="Revoked.")},
     )
     def delete(self, request: SignedInRequest, user_id: int) -> Response:
-        for token in ApiToken.objects.filter(user=_person(request, user_id), revoked_at=None):
-            accounts.revoke_token(token=token, actor=request.user)
+        accounts.revoke_tokens(user=_person(request, user_id), actor=request.user)
         return Response(status=204)
 
 
@@ -181,6 +183,8 @@ class PersonSecondFactor(APIView):
         person = _person(request, user_id)
         if person.pk == request.user.pk:
             raise ApiProblem(409, "own_second_factor", _("Your own is on the page of your account, where a code is asked for."))
+        if not may_change(request.user, person):
+            raise ApiProblem(403, "operators_alone", str(OperatorsAlone()))
         second_factors.take_away(user=person, actor=request.user)
         return Response(status=204)
 
@@ -247,14 +251,14 @@ class InvitationList(APIView):
     def post(self, request: SignedInRequest) -> Response:
         body = InvitationInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
-        invitation, token = invitations.invite(actor=request.user, **body.validated_data)
-        link = request.build_absolute_uri(reverse("invitation", args=[token]))
+        invitation, token = invitations.invite(organisation=request.user.organisation, actor=request.user, **body.validated_data)
+        link = public_address(request) + reverse("invitation", args=[token])
         was_mailed = invitations.send_invitation(invitation=invitation, link=link)
         return Response(with_secret(NewInvitationSerializer, invitation, link=link, was_mailed=was_mailed), status=201)
 
 
 class InvitationDetail(APIView):
-    permission_classes = [AdministratorsAlone]
+    permission_classes = [AdministratorsInTheBrowser]
 
     @extend_schema(
         operation_id="revoke_invitation", summary="Make an invitation's link stop working", responses={200: InvitationSerializer}

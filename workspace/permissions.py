@@ -1,5 +1,6 @@
 """What a role may do in the API."""
 
+from collections.abc import Collection
 from typing import Any
 
 from django.utils.translation import gettext as _
@@ -7,12 +8,16 @@ from django.utils.translation import gettext_lazy
 from rest_framework.permissions import SAFE_METHODS, BasePermission
 from rest_framework.request import Request
 
-from workspace.models import Role
+from workspace.models import ApiToken, Role, TokenScope
 
 PLANNERS = frozenset({Role.OPERATOR, Role.ADMINISTRATOR})
 CURATORS = frozenset({Role.CURATOR, Role.ADMINISTRATOR})
 ADMINISTRATORS = frozenset({Role.ADMINISTRATOR})
 EVERYBODY = frozenset(Role)
+READING = frozenset({TokenScope.READ})
+FLYING = frozenset({TokenScope.FLY})
+CURATING = frozenset({TokenScope.CURATE})
+ADMINISTERING = frozenset({TokenScope.ADMINISTER})
 SEVERAL = {
     Role.VIEWER: gettext_lazy("Viewers"),
     Role.OPERATOR: gettext_lazy("Operators"),
@@ -28,20 +33,41 @@ ONE = {
 
 
 class RolePermission(BasePermission):
-    """Whoever is signed in may read; a view says with `write_roles` who may change things (operators if it says nothing)."""
+    """Whoever is signed in may read; a view says with `write_roles` who may change things (operators if it says nothing).
+
+    A token needs one of the scopes in `write_scopes` for that, else those that belong to these roles.
+    """
 
     def has_permission(self, request: Request, view: Any) -> bool:
         user = request.user
         if not user.is_authenticated:
             return False
         write_roles = getattr(view, "write_roles", PLANNERS)
-        if request.method in SAFE_METHODS or user.role in write_roles:
-            return True
+        if request.method in SAFE_METHODS:
+            return self.token_reaches(request, READING)
+        if user.role in write_roles:
+            return self.token_reaches(request, getattr(view, "write_scopes", None) or _scopes_for(write_roles))
         wanted: list[Role] = [role for role in Role if role in write_roles and role != Role.ADMINISTRATOR] or [Role.ADMINISTRATOR]
         self.message = _("{people} cannot do this. Ask an administrator for the {wanted} role.").format(
             people=SEVERAL[Role(user.role)], wanted=_(" or ").join(str(ONE[role]) for role in wanted)
         )
         return False
+
+    def token_reaches(self, request: Request, scopes: Collection[str]) -> bool:
+        """Whether a session asks, or a token with one of these scopes."""
+        token = request.auth
+        if not isinstance(token, ApiToken) or token.scopes is None or not set(scopes).isdisjoint(token.scopes):
+            return True
+        self.message = _("This needs a token with the scope {scopes}.").format(scopes=_(" or ").join(sorted(scopes)))
+        return False
+
+
+def _scopes_for(roles: Collection[Role]) -> Collection[str]:
+    """What a token needs where these roles may write; what viewers may ask, too, changes nothing."""
+    if Role.VIEWER in roles:
+        return READING
+    found = {scope for role, scope in ((Role.OPERATOR, TokenScope.PLAN), (Role.CURATOR, TokenScope.CURATE)) if role in roles}
+    return found or ADMINISTERING
 
 
 class AdministratorsAlone(RolePermission):
@@ -49,7 +75,9 @@ class AdministratorsAlone(RolePermission):
 
     def has_permission(self, request: Request, view: Any) -> bool:
         self.message = _("Only administrators see and change who works here.")
-        return bool(request.user.is_authenticated and request.user.role in ADMINISTRATORS)
+        if not (request.user.is_authenticated and request.user.role in ADMINISTRATORS):
+            return False
+        return self.token_reaches(request, ADMINISTERING)
 
 
 class InTheBrowserAlone(RolePermission):

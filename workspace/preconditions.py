@@ -19,12 +19,16 @@ def etag_of(revision: int) -> dict[str, str]:
     return {"ETag": f'"{revision}"'}
 
 
+def need_if_match(request: Request) -> None:
+    """Raises ApiProblem 428 without the header."""
+    if "If-Match" not in request.headers:
+        raise ApiProblem(428, "if_match_missing", _("Say with If-Match which revision you have seen: its ETag, or * for any."))
+
+
 def expected_revision(request: Request) -> int | None:
     """The revision that If-Match names; None for any (*). Raises ApiProblem 428 without the header, 412 for what is no ETag of ours."""
-    text = request.headers.get("If-Match")
-    if text is None:
-        raise ApiProblem(428, "if_match_missing", _("Say with If-Match which revision you have seen: its ETag, or * for any."))
-    text = text.strip().removeprefix("W/").strip('"')
+    need_if_match(request)
+    text = request.headers["If-Match"].strip().removeprefix("W/").strip('"')
     if text == "*":
         return None
     if not (text.isascii() and text.isdigit() and len(text) < 10):

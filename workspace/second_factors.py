@@ -61,17 +61,20 @@ def set_up(*, user: User, seed: bytes, code: str) -> list[str]:
 
 
 def try_code(*, user: User, code: str) -> None:
-    """A code of the app, or a recovery code; either is taken once. Raises WrongCode, TooManyCodes; SecondFactor.DoesNotExist."""
+    """A code of the app, or a recovery code; either is taken once. Raises WrongCode, TooManyCodes; SecondFactor.DoesNotExist.
+
+    After too many wrong ones no code of the app counts for a while; a recovery code, which nobody guesses, lets its owner in even then.
+    """
     with transaction.atomic():  # one try at a time: many at once gain nothing
         factor = SecondFactor.objects.select_for_update().select_related("user").get(user=user)
         is_held_back = _is_in_window(factor) and factor.wrong_tries >= TRIES
-        is_right = not is_held_back and (_take_code(factor, bare(code)) or _take_recovery_code(factor, bare(code)))
+        is_right = (not is_held_back and _take_code(factor, bare(code))) or _take_recovery_code(factor, bare(code))
         if is_right:
             factor.wrong_tries, factor.wrong_since = 0, None
         elif not is_held_back:
             _count_wrong(factor)
         factor.save(update_fields=["last_step", "wrong_tries", "wrong_since"])
-    if is_held_back:
+    if is_held_back and not is_right:
         raise TooManyCodes
     if not is_right:
         raise WrongCode(TRIES - factor.wrong_tries)

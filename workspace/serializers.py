@@ -20,9 +20,14 @@ class ErrorDetailSerializer(serializers.Serializer):
 
 
 class ErrorSerializer(serializers.Serializer):
-    """Every error of the API has this shape."""
+    """Every error of the API has this shape: `error`, and beside it a problem of RFC 9457."""
 
     error = ErrorDetailSerializer()
+    type = serializers.CharField(help_text="`urn:problem-type:spanwise:` and the error's code")
+    title = serializers.CharField(help_text="the status in words")
+    status = serializers.IntegerField(help_text="the HTTP status")
+    detail = serializers.CharField(help_text="as `error.message`")
+    instance = serializers.CharField(required=False, help_text="path of the request, where it is known")
 
 
 class JobErrorSerializer(serializers.Serializer):

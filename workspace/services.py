@@ -8,6 +8,8 @@ from functools import partial
 from typing import Any
 from uuid import UUID
 
+from celery import current_app
+from django.conf import settings
 from django.db import connection, transaction
 from django.db.models import Q
 from django.utils import timezone
@@ -17,6 +19,7 @@ from workspace.live import publish_job
 from workspace.models import (
     DEFAULT_ORGANISATION_ID,
     OPEN_STATES,
+    SCOPES_OF_ROLE,
     ApiToken,
     AuditEntry,
     IdempotencyKey,
@@ -59,14 +62,27 @@ class NoAdministratorLeft(ValueError):
         super().__init__(_("This would leave no administrator who can sign in. Make somebody else an administrator first."))
 
 
+class OperatorsAlone(PermissionError):
+    """Whoever could change an installation operator's account could become one."""
+
+    def __init__(self) -> None:
+        super().__init__(_("Only installation operators change the account of one."))
+
+
+def may_change(actor: User, user: User) -> bool:
+    """Whether the actor may change this account: that of an installation operator is for operators and its owner."""
+    return actor.operates_installation or actor.pk == user.pk or not user.operates_installation
+
+
 def hash_token(token: str) -> str:
     return hashlib.sha256(token.encode()).hexdigest()
 
 
-def create_api_token(*, user: User, name: str, expires_at: datetime) -> str:
-    """Make a bearer token and return it; it cannot be shown again."""
+def create_api_token(*, user: User, name: str, expires_at: datetime, scopes: Iterable[str] | None = None) -> str:
+    """Make a bearer token with these scopes, or all of the role, and return it; it cannot be shown again."""
     token = f"spw_{secrets.token_urlsafe(32)}"
-    ApiToken.objects.create(user=user, name=name, token_sha256=hash_token(token), expires_at=expires_at)
+    given = list(SCOPES_OF_ROLE[user.role] if scopes is None else scopes)
+    ApiToken.objects.create(user=user, name=name, token_sha256=hash_token(token), expires_at=expires_at, scopes=given)
     return token
 
 
@@ -137,7 +153,7 @@ def start_job(*, job_id: UUID | str) -> Job | None:
         if job.cancel_requested_at is not None:
             confirm_cancelled(job=job)
             return None
-        if job.state == JobState.RUNNING and job.attempts >= MAX_ATTEMPTS:
+        if job.state == JobState.RUNNING and (job.attempts >= MAX_ATTEMPTS or _has_used_its_time(job)):
             _give_up(job)
             return None
         job.state = JobState.RUNNING
@@ -192,7 +208,19 @@ def _end(job: Job, **values: Any) -> bool:
     return ended
 
 
+def _has_used_its_time(job: Job) -> bool:
+    """Whether its worker was stopped at the time limit: the same again would end the same way, and hold a worker as long."""
+    if job.started_at is None or job.lease_expires_at is None:
+        return False
+    heard_s = (job.lease_expires_at - job.started_at).total_seconds() - LEASE_S
+    limit_s = getattr(current_app.tasks.get(job.task), "soft_time_limit", None) or settings.CELERY_TASK_SOFT_TIME_LIMIT
+    return heard_s >= limit_s
+
+
 def _give_up(job: Job) -> None:
+    if _has_used_its_time(job):
+        fail_job(job=job, code="took_too_long", message="Not done within the time limit; it is not tried again.")
+        return
     fail_job(job=job, code="worker_lost", message=f"The worker was lost {MAX_ATTEMPTS} times; the job is given up.")
 
 
@@ -230,7 +258,7 @@ def requeue_lost_jobs() -> list[Job]:
         for job in Job.objects.select_for_update(skip_locked=True).filter(state=JobState.RUNNING, lease_expires_at__lt=now):
             if job.cancel_requested_at is not None:
                 confirm_cancelled(job=job)
-            elif job.attempts >= MAX_ATTEMPTS:
+            elif job.attempts >= MAX_ATTEMPTS or _has_used_its_time(job):
                 _give_up(job)
             else:
                 Job.objects.filter(pk=job.pk).update(state=JobState.QUEUED, lease_expires_at=now)
@@ -247,9 +275,11 @@ def forget_old_idempotency_keys() -> int:
 
 
 def save_person(*, user: User, actor: User) -> User:
-    """Store a new or changed account. Raises NoAdministratorLeft."""
+    """Store a new or changed account. Raises NoAdministratorLeft, OperatorsAlone."""
     with transaction.atomic():
         before = User.objects.filter(pk=user.pk).first()
+        if before and not may_change(actor, before):
+            raise OperatorsAlone
         user.save()
         _refuse_without_administrator(before)
         if before and _administrates(before) and not (_administrates(user) and before.organisation_id == user.organisation_id):
@@ -259,7 +289,7 @@ def save_person(*, user: User, actor: User) -> User:
 
 
 def change_people(*, users: Iterable[User], actor: User, role: Role | None = None, is_active: bool | None = None) -> int:
-    """Give several accounts a role, or let them in or keep them out; return how many were changed. Raises NoAdministratorLeft."""
+    """Give several accounts a role, or let them in or keep them out; return how many were changed. Raises as save_person."""
     changed = 0
     with transaction.atomic():
         for user in users:
@@ -272,7 +302,9 @@ def change_people(*, users: Iterable[User], actor: User, role: Role | None = Non
 
 
 def delete_person(*, user: User, actor: User) -> None:
-    """What they did stays in the history, without their name. Raises NoAdministratorLeft."""
+    """What they did stays in the history, without their name. Raises NoAdministratorLeft, OperatorsAlone."""
+    if not may_change(actor, User.objects.get(pk=user.pk)):
+        raise OperatorsAlone
     with transaction.atomic():
         before, key = person_facts(user), user.pk
         held = User(role=user.role, is_active=user.is_active, organisation_id=user.organisation_id)
@@ -282,9 +314,21 @@ def delete_person(*, user: User, actor: User) -> None:
         _record_person(actor if actor.pk != key else None, key, before, None)
 
 
+def set_installation_operator(*, user: User, is_operator: bool) -> None:
+    """On the machine, by whoever has it; no page and no address of the API gives this."""
+    with transaction.atomic():
+        before = person_facts(user)
+        user.is_installation_operator = is_operator
+        user.save(update_fields=["is_installation_operator"])
+        record_change(
+            organisation=user.organisation, actor=None, action="changed", subject_type="user", subject_id=user.pk,
+            before=before, after=person_facts(user),
+        )  # fmt: skip
+
+
 def person_facts(user: User) -> dict[str, Any]:
     """What the history says of an account; never its password."""
-    names = ("username", "first_name", "last_name", "email", "role", "is_active")
+    names = ("username", "first_name", "last_name", "email", "role", "is_active", "is_installation_operator")
     return {name: getattr(user, name) for name in names} | {"organisation": user.organisation.name}
 
 

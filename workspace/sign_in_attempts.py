@@ -2,7 +2,7 @@
 
 Who guesses is slowed down in three ways: by name and network, by network, and by name over all networks. A browser in which
 the name has signed in before (workspace/known_browsers.py) is counted for itself, so it is free of what others do to the name.
-Without the cache sign-in goes on unlimited.
+Without Redis each process counts for itself, so that there are as many tries more as there are processes.
 """
 
 import hashlib
@@ -11,6 +11,8 @@ import logging
 from dataclasses import dataclass
 
 from django.core.cache import cache
+from django.core.cache.backends.base import BaseCache
+from django.core.cache.backends.locmem import LocMemCache
 from django.http import HttpRequest
 
 from workspace.cache_absence import CACHE_AWAY
@@ -24,6 +26,7 @@ PASSWORD_CHANGES = "changing the password of"  # noqa: S105 - a purpose, no pass
 NETWORK_BITS_OF_IPV6 = 64  # what one subscriber usually has
 
 logger = logging.getLogger(__name__)
+_of_process: BaseCache = LocMemCache("sign-in attempts", {"OPTIONS": {"MAX_ENTRIES": 20_000}})  # while Redis is away
 
 
 class HeldBack(Exception):
@@ -40,14 +43,14 @@ class Try:
     """One try that was let through and counted before the password was looked at, so that many at once gain nothing."""
 
     keys: tuple[str, ...]
-    left: int | None  # in the window; None where nothing can be counted
+    left: int  # in the window
+    counts: BaseCache
 
     def succeeded(self) -> None:
         """Somebody who knows the password has not guessed: their own count ends, and the shared ones do not have this try."""
         try:
-            if self.keys:
-                cache.delete(self.keys[0])
-            _take_back(*self.keys[1:])
+            self.counts.delete(self.keys[0])
+            _take_back(self.counts, *self.keys[1:])
         except (*CACHE_AWAY, ValueError):  # ValueError: the window ended in between
             logger.warning("wrong sign-ins are not forgotten: the cache is away")
 
@@ -74,28 +77,34 @@ def try_to_sign_in(*, name: str, address: str, known_browser: str | None) -> Try
     """Count a try. `known_browser` is the mark of a browser in which this name has signed in before. Raises HeldBack."""
     network = network_of(address)
     try:
-        if known_browser:
-            own = _key("browser", name, known_browser)
-            return Try((own,), _count(own, TRIES))
-        own, everybody = _key("pair", name, network), _key("name", name)
-        left = _count(own, TRIES)
-        of_network = _key("network", network)
-        _count(of_network, TRIES_OF_A_NETWORK)
-        if _add(everybody) > TRIES_BEFORE_A_NAME_IS_SLOW and not cache.add(_key("slow", name), 1, SLOW_S):
-            _take_back(own, of_network)  # to wait for a turn is no wrong try
-            raise HeldBack(SLOW_S, name_is_slow=True)
-        return Try((own, of_network, everybody), left)
+        return _try(cache, name, network, known_browser)
     except (*CACHE_AWAY, ValueError):
-        logger.warning("wrong sign-ins are not counted: the cache is away")
-        return Try((), None)
+        logger.warning("wrong sign-ins are counted by this process alone: the cache is away")
+        return _try(_of_process, name, network, known_browser)
+
+
+def _try(counts: BaseCache, name: str, network: str, known_browser: str | None) -> Try:
+    if known_browser:
+        own = _key("browser", name, known_browser)
+        return Try((own,), _count(counts, own, TRIES), counts)
+    own, everybody = _key("pair", name, network), _key("name", name)
+    left = _count(counts, own, TRIES)
+    of_network = _key("network", network)
+    _count(counts, of_network, TRIES_OF_A_NETWORK)
+    if _add(counts, everybody) > TRIES_BEFORE_A_NAME_IS_SLOW and not counts.add(_key("slow", name), 1, SLOW_S):
+        _take_back(counts, own, of_network)  # to wait for a turn is no wrong try
+        raise HeldBack(SLOW_S, name_is_slow=True)
+    return Try((own, of_network, everybody), left, counts)
 
 
 def take_turn(purpose: str, *of_whom: str, most: int = TRIES) -> None:
     """Count something else that may be asked for only so often, such as mails to one address. Raises HeldBack."""
+    key = _key(purpose, *of_whom)
     try:
-        _count(_key(purpose, *of_whom), most)
+        _count(cache, key, most)
     except (*CACHE_AWAY, ValueError):
-        logger.warning("turns are not counted: the cache is away")
+        logger.warning("turns are counted by this process alone: the cache is away")
+        _count(_of_process, key, most)
 
 
 def is_first_in(seconds: int, *of_what: str) -> bool:
@@ -110,19 +119,19 @@ def _key(purpose: str, *parts: str) -> str:
     return "sign-in:" + hashlib.sha256("\n".join([purpose, *(part.casefold() for part in parts)]).encode()).hexdigest()
 
 
-def _add(key: str) -> int:
-    cache.add(key, 0, WINDOW_S)
-    return int(cache.incr(key))
+def _add(counts: BaseCache, key: str) -> int:
+    counts.add(key, 0, WINDOW_S)
+    return int(counts.incr(key))
 
 
-def _take_back(*keys: str) -> None:
+def _take_back(counts: BaseCache, *keys: str) -> None:
     for key in keys:
-        cache.decr(key)
+        counts.decr(key)
 
 
-def _count(key: str, most: int) -> int:
+def _count(counts: BaseCache, key: str, most: int) -> int:
     """Tries that are left after this one. Raises HeldBack."""
-    count = _add(key)
+    count = _add(counts, key)
     if count > most:
         raise HeldBack(WINDOW_S)
     return most - count

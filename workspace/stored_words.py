@@ -48,6 +48,8 @@ TEMPLATES = (
     gettext_noop("No plan within %(minutes)s min. Split the mission."),
     gettext_noop("The planner failed; the error is in the log."),
     gettext_noop("The worker was lost %(times)s times; the job is given up."),
+    gettext_noop("Not done within the time limit; it is not tried again."),
+    gettext_noop("Reading the file takes more processor time than a file of its size may need."),
     gettext_noop("The file is empty."),
     gettext_noop("The file cannot be read: %(error)s"),
     gettext_noop("This is neither OSM XML, OSM PBF nor Overpass JSON."),
@@ -59,6 +61,7 @@ TEMPLATES = (
     gettext_noop("The file could not be read."),
     gettext_noop("polygon is not closed"),
     gettext_noop("the border crosses itself"),
+    gettext_noop("Minutes or seconds of 60 were read as the next degree or minute: %(places)s."),
     gettext_noop(
         "%(voids)s of %(posts)s posts are void (%(percent)s %%), %(undeclared)s of them without being declared. "
         "An older model fills them where it reaches; elsewhere the ground stays unknown. Nothing is made up."
@@ -71,6 +74,15 @@ TEMPLATES = (
     gettext_noop("Waiting for a worker"),
     gettext_noop("Flying %(number)s of %(all)s"),
     gettext_noop("Rehearsed"),
+    gettext_noop("Planning “%(mission)s”"),
+    gettext_noop("Starting the simulated UAVs of “%(mission)s”"),
+    gettext_noop("Loading “%(mission)s”"),
+    gettext_noop("Starting “%(mission)s”"),
+    gettext_noop("Flying “%(mission)s”"),
+    gettext_noop("Demo missions made"),
+    gettext_noop("The demo region was removed."),
+    gettext_noop("The demo missions were not flown in time."),
+    gettext_noop("The demo missions could not be made; the error is in the log."),
     gettext_noop("The mission was changed while it was being rehearsed. Rehearse it again."),
     gettext_noop("Zones, terrain, towers or wires about the routes were changed while the mission was being rehearsed. Rehearse it again."),
     gettext_noop("Not flown within %(minutes)s min. Rehearse fewer conditions at once, or split the mission."),

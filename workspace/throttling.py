@@ -3,6 +3,7 @@
 import logging
 import time
 from functools import cache
+from math import ceil
 from typing import Any, ClassVar
 
 from django.conf import settings
@@ -27,6 +28,14 @@ def _rate(written: str | None) -> tuple[int | None, int | None]:
     """Requests and seconds of "40/second"; none without a limit."""
     parsed: tuple[int | None, int | None] = ScopedRateThrottle().parse_rate(written)
     return parsed
+
+
+def rate_limit_headers(scope: str, resets_in_s: float) -> dict[str, str]:
+    """Return RateLimit and RateLimit-Policy of a refused request, as draft-ietf-httpapi-ratelimit-headers-10 writes them."""
+    requests, duration_s = _rate(ScopedRate.THROTTLE_RATES[scope])
+    if requests is None or duration_s is None:
+        return {}
+    return {"RateLimit-Policy": f'"{scope}";q={requests};w={duration_s}', "RateLimit": f'"{scope}";r=0;t={ceil(resets_in_s)}'}
 
 
 def _count(key: str, kept_s: int) -> int:

@@ -313,6 +313,7 @@ class Installation:
         self.manage("migrate", "--verbosity", "0")
         if (PROJECT_DIR / "node_modules").exists():  # else the checkout has not been set up; static files then keep their plain names
             self.manage("collectstatic", "--no-input", "--verbosity", "0")
+        self.manage("make_api_document")
         if self.name_server:
             self.let_in(*self.names("web"), *self.names("live"))
         first = [*self.names("web"), "proxy"]  # the others once those answer, since all of them at once hold each other up

@@ -11,6 +11,7 @@ from django.http import HttpRequest, HttpResponse, HttpResponseRedirect
 
 from inspection.services import StaleRevision
 from inspection.services.curation import many_edits
+from workspace.admin import ReadOnlyAdmin
 from workspace.admin_history import HistoryAdmin
 from workspace.models import AuditEntry
 
@@ -39,8 +40,16 @@ class CuratedForm(forms.ModelForm):
         return cleaned
 
 
+class CommonGroundAdmin(ReadOnlyAdmin):
+    """What the program writes of the ground, which all organisations share."""
+
+    organisation_path = None
+
+
 class CuratedAdmin(HistoryAdmin):
     """Saves through the services of curation, with the revision that the form was filled in on."""
+
+    organisation_path = None
 
     def changeform_view(self, request: HttpRequest, object_id: str | None = None, *args: Any, **options: Any) -> HttpResponse:
         try:

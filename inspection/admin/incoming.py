@@ -9,6 +9,7 @@ from django.urls import reverse
 from django.utils.html import format_html
 from django.utils.safestring import SafeString
 
+from inspection.admin.curated import CommonGroundAdmin
 from inspection.models import (
     AssetSet,
     DataGap,
@@ -21,12 +22,11 @@ from inspection.models import (
     Upload,
 )
 from inspection.services.gaps import dismiss_gap, reopen_gap
-from workspace.admin import ReadOnlyAdmin
 from workspace.signed_in import user_of
 
 
 @admin.register(ImportProposal)
-class ImportProposalAdmin(ReadOnlyAdmin):
+class ImportProposalAdmin(CommonGroundAdmin):
     """Looked at, applied and discarded on the page of the imports, which each row leads to."""
 
     list_display = ["file", "page", "kind", "origin", "state", "new", "changed", "vanished", "created_by", "created_at", "decided_by"]
@@ -64,7 +64,7 @@ class ImportProposalAdmin(ReadOnlyAdmin):
 
 
 @admin.register(Upload)
-class UploadAdmin(ReadOnlyAdmin):
+class UploadAdmin(CommonGroundAdmin):
     list_display = ["file_name", "size_bytes", "received_bytes", "whole", "created_by", "created_at"]
     list_select_related = ["created_by"]
     search_fields = ["file_name", "created_by__username"]
@@ -75,7 +75,7 @@ class UploadAdmin(ReadOnlyAdmin):
 
 
 @admin.register(AssetSet)
-class AssetSetAdmin(ReadOnlyAdmin):
+class AssetSetAdmin(CommonGroundAdmin):
     list_display = ["name", "number_of_assets", "data_import"]
     list_select_related = ["data_import"]
     search_fields = ["name"]
@@ -89,7 +89,7 @@ class AssetSetAdmin(ReadOnlyAdmin):
 
 
 @admin.register(DataGap)
-class DataGapAdmin(ReadOnlyAdmin):
+class DataGapAdmin(CommonGroundAdmin):
     """Mended on the page of the gaps; here several are left as they are, or opened again, at once."""
 
     list_display = ["kind", "asset", "cut_off_m", "state", "note", "decided_by", "decided_at", "found_at"]
@@ -127,7 +127,7 @@ class DataGapAdmin(ReadOnlyAdmin):
 
 
 @admin.register(DataImport)
-class DataImportAdmin(ReadOnlyAdmin):
+class DataImportAdmin(CommonGroundAdmin):
     list_display = ["file_name", "kind", "is_synthetic", "data_timestamp", "imported_at", "imported_by", "attribution", "licence"]
     list_filter = ["kind", "is_synthetic"]
     list_select_related = ["imported_by"]
@@ -136,7 +136,7 @@ class DataImportAdmin(ReadOnlyAdmin):
 
 
 @admin.register(TerrainTile)
-class TerrainTileAdmin(ReadOnlyAdmin):
+class TerrainTileAdmin(CommonGroundAdmin):
     list_display = ["__str__", "columns", "rows", "step_lon_deg", "step_lat_deg", "vertical_datum"]
     list_select_related = ["data_import"]
     exclude = ["heights_amsl_m", "extent"]
@@ -146,7 +146,7 @@ class TerrainTileAdmin(ReadOnlyAdmin):
 
 
 @admin.register(GraphSnapshot)
-class GraphSnapshotAdmin(ReadOnlyAdmin):
+class GraphSnapshotAdmin(CommonGroundAdmin):
     list_display = ["version", "ground_revision", "nodes", "edges", "components", "excluded_nodes", "excluded_edges", "build_s", "built_at"]
     exclude = ["arrays"]
 
@@ -155,5 +155,5 @@ class GraphSnapshotAdmin(ReadOnlyAdmin):
 
 
 @admin.register(Ground)
-class GroundAdmin(ReadOnlyAdmin):
+class GroundAdmin(CommonGroundAdmin):
     list_display = ["revision", "changed_at"]

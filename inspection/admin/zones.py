@@ -9,14 +9,13 @@ from django.db.models import Count, Field, QuerySet
 from django.http import HttpRequest
 
 from inspection import services
-from inspection.admin.curated import CuratedAdmin, CuratedForm, expected_revision
+from inspection.admin.curated import CommonGroundAdmin, CuratedAdmin, CuratedForm, expected_revision
 from inspection.admin_json import StrictJSONField
 from inspection.admin_map import GeoJSONField
 from inspection.models import NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services.subscriptions import change_subscription
 from inspection.zones.geometry_gate import GeometryFault
 from inspection.zones.schedule import checked_schedule
-from workspace.admin import ReadOnlyAdmin
 from workspace.signed_in import user_of
 
 FORM_FIELDS: dict[type[Field], dict[str, Any]] = {
@@ -85,7 +84,7 @@ def _height(value_m: float | None, reference: str) -> str:
 
 
 @admin.register(ZoneSet)
-class ZoneSetAdmin(ReadOnlyAdmin):
+class ZoneSetAdmin(CommonGroundAdmin):
     list_display = ["name", "number_of_zones", "source_format", "data_import"]
     list_select_related = ["data_import"]
     search_fields = ["name"]
@@ -99,7 +98,7 @@ class ZoneSetAdmin(ReadOnlyAdmin):
 
 
 @admin.register(ZoneSetVersion)
-class ZoneSetVersionAdmin(ReadOnlyAdmin):
+class ZoneSetVersionAdmin(CommonGroundAdmin):
     """A set is rolled back to a version on the page of the zones, where the difference is seen first."""
 
     list_display = ["zone_set", "number", "zones", "data_import", "created_by", "created_at"]
@@ -112,7 +111,7 @@ class ZoneSetVersionAdmin(ReadOnlyAdmin):
 
 
 @admin.register(ZoneSubscription)
-class ZoneSubscriptionAdmin(ReadOnlyAdmin):
+class ZoneSubscriptionAdmin(CommonGroundAdmin):
     """Made and changed on the page of the zones; here several are paused or resumed at once."""
 
     list_display = ["zone_set", "address", "interval_h", "is_active", "fetched_at", "next_fetch_at", "problem"]

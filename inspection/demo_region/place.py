@@ -34,10 +34,17 @@ def lon_lat(east_m: float, north_m: float) -> LonLat:
 
 @dataclass(frozen=True)
 class BasedUav:
+    """A UAV with the figures of its type; all but battery, range and speed are those of the simulated airframe Inspector."""
+
     name: str
     sensors: tuple[str, ...]
     max_range_m: float
     cruise_speed_mps: float
+    battery_wh: float
+    mass_kg: float = 3.77
+    max_airspeed_mps: float = 19.0
+    rotor_disk_m2: float = 0.5188
+    hover_power_w: float = 439.0  # 263.2 Wh last 36 minutes
 
     @property
     def type_name(self) -> str:
@@ -56,16 +63,16 @@ BASES = (
         "Elmsgard depot",
         lon_lat(-9_050.0, 2_450.0),
         (
-            BasedUav("Kestrel 1", ("RGB camera", "Thermal camera"), 60_000.0, 14.0),
-            BasedUav("Kestrel 2", ("RGB camera", "Thermal camera"), 60_000.0, 14.0),
+            BasedUav("Kestrel 1", ("RGB camera", "Thermal camera"), 24_000.0, 12.0, 263.2),
+            BasedUav("Kestrel 2", ("RGB camera", "Thermal camera"), 24_000.0, 12.0, 263.2),
         ),
     ),
     Base(
         "Varneck depot",
         lon_lat(10_900.0, 3_150.0),
         (
-            BasedUav("Osprey 1", ("RGB camera", "Lidar"), 90_000.0, 18.0),
-            BasedUav("Osprey 2", ("RGB camera", "Lidar"), 90_000.0, 18.0),
+            BasedUav("Osprey 1", ("RGB camera", "Lidar"), 36_000.0, 12.0, 395.0),
+            BasedUav("Osprey 2", ("RGB camera", "Lidar"), 36_000.0, 12.0, 395.0),
         ),
     ),
 )

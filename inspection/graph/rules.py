@@ -14,4 +14,4 @@ class LinkingRules:
     railway_spacing_m: float = 250.0  # a railway's way vertices are thinned to at most this
     off_network_factor: float = 2.0  # cost per metre away from infrastructure, so that routes stay near the lines
     detour_m: float = 10_000.0  # the longest way round zones, between the ends of what they cut out of a line; 0 for none
-    zone_clearance_m: float = 5.0  # more than the gap between a chart's straight line and the geodesic on a leg of 5 km
+    zone_clearance_m: float = 12.0  # error of a satellite position, twice, and 2 m of tracking: a rehearsal asks for 10 m

@@ -4,6 +4,7 @@ from inspection.models.assets import Asset, AssetKind, AssetSet, Bridge, OsmType
 from inspection.models.gaps import DataGap, GapKind, GapSearch, GapState
 from inspection.models.graph import GraphSnapshot, Ground
 from inspection.models.imports import (
+    ROW_ACTIONS,
     ChangeAction,
     DataImport,
     ImportKind,
@@ -18,6 +19,7 @@ from inspection.models.terrain import TerrainTile
 from inspection.models.zones import HeightReference, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 
 __all__ = [
+    "ROW_ACTIONS",
     "Asset",
     "AssetKind",
     "AssetSet",

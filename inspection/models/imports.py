@@ -136,6 +136,10 @@ class ChangeAction(models.TextChoices):
     CHANGED = "changed", "Changed"
     VANISHED = "vanished", "Vanished"
     KEPT = "kept", "Kept as edited by hand"
+    NOT_READ = "not_read", "Not read"  # a record of the file with a fault; what the set has of it stays
+
+
+ROW_ACTIONS = (ChangeAction.NEW, ChangeAction.CHANGED, ChangeAction.VANISHED, ChangeAction.KEPT)  # that rows of the ground can have
 
 
 class ProposedChange(models.Model):

@@ -11,9 +11,13 @@ from typing import BinaryIO
 
 MAX_BLOB_HEADER_BYTES = 64 * 1024  # OSM wiki, PBF format: "should be less than 32 KiB and must be less than 64 KiB"
 MAX_BLOB_BYTES = 32 * 1024 * 1024  # same page, for the uncompressed size
+MAX_BLOB_FIELDS = 100  # a Blob and its header have a handful
+MAX_BLOCK_FIELDS = 10_000  # the groups of a block, which holds some 8,000 objects
+MAX_BLOCK_STRINGS = 500_000  # in one block's table; 60 of its own for each object
 MAX_UNPACKED_BYTES = 64 * 1024**3
 MAX_RATIO = 100  # OSM XML packs about 10:1, bzip2 up to 20:1; a bomb 1,000:1 and more
 FREE_UNPACKED_BYTES = 4 * 1024 * 1024  # a small file may pack as well as it likes
+BOMB = f"The file unpacks to more than {MAX_RATIO} times its size; refused as a decompression bomb."
 _CHUNK = 1024 * 1024
 _BLOB_TYPES = {b"OSMHeader", b"OSMData"}
 
@@ -93,7 +97,7 @@ def _examine_stream(path: Path, file_format: OsmFormat, progress: Progress | Non
         while chunk := file.read(_CHUNK):
             unpacked += len(chunk)
             if is_packed and unpacked > FREE_UNPACKED_BYTES and unpacked > MAX_RATIO * packed_bytes:
-                raise OsmFileError(f"The file unpacks to more than {MAX_RATIO} times its size; refused as a decompression bomb.")
+                raise OsmFileError(BOMB)
             if unpacked > MAX_UNPACKED_BYTES:
                 raise OsmFileError(f"The file unpacks to more than {MAX_UNPACKED_BYTES // 1024**3} GiB.")
             if is_xml and len(chunk) == _CHUNK and b">" not in chunk:
@@ -104,7 +108,7 @@ def _examine_stream(path: Path, file_format: OsmFormat, progress: Progress | Non
 
 def _examine_pbf(path: Path) -> None:
     """Walk from blob to blob, one in memory at a time."""
-    size = path.stat().st_size
+    size, unpacked = path.stat().st_size, 0
     with path.open("rb") as file:
         offset = 0
         while offset < size:
@@ -125,7 +129,9 @@ def _examine_pbf(path: Path) -> None:
                 raise OsmFileError(f"The PBF has a blob of {blob_bytes} bytes at byte {offset}; the format allows 32 MiB.")
             if start + blob_bytes > size:
                 raise OsmFileError(f"The PBF is cut off: the blob at byte {offset} goes past the end of the file.")
-            _examine_blob(file, start, start + blob_bytes)
+            unpacked += _examine_blob(file, start, start + blob_bytes)
+            if unpacked > FREE_UNPACKED_BYTES and unpacked > MAX_RATIO * size:
+                raise OsmFileError(BOMB)
             offset = start + blob_bytes
 
 
@@ -133,23 +139,26 @@ def _blob_header(data: bytes, offset: int) -> tuple[bytes, int]:
     """The type (field 1) and datasize (field 3) of a BlobHeader message."""
     blob_type, blob_bytes = b"", -1
     try:
-        for number, value in _fields(data):
+        for number, value in _fields(data, MAX_BLOB_FIELDS):
             if number == 1 and isinstance(value, memoryview):
                 blob_type = bytes(value)
             elif number == 3 and isinstance(value, int):
                 blob_bytes = value
-    except IndexError as error:
+    except (IndexError, _TooManyFields) as error:
         raise OsmFileError(f"The PBF is damaged: no blob header can be read at byte {offset}.") from error
     return blob_type, blob_bytes
 
 
-def _examine_blob(file: BinaryIO, start: int, end: int) -> None:
-    """Check a Blob message: raw_size (field 2), and the strings of its data, be that plain (field 1) or zlib (field 3)."""
+def _examine_blob(file: BinaryIO, start: int, end: int) -> int:
+    """Check a Blob message: raw_size (field 2), and the strings of its data, be that plain (field 1) or zlib (field 3).
+
+    Returns the size of its data, unpacked [bytes].
+    """
     file.seek(start)
     raw_size: int | None = None
     packed = plain = None
     try:
-        for number, value in _fields(file.read(end - start)):
+        for number, value in _fields(file.read(end - start), MAX_BLOB_FIELDS):
             if number == 2 and isinstance(value, int):
                 raw_size = value
             elif number == 1 and isinstance(value, memoryview):
@@ -167,26 +176,35 @@ def _examine_blob(file: BinaryIO, start: int, end: int) -> None:
             raise OsmFileError("The PBF is packed with another method than zlib, which is not read; write it anew with zlib.")
         if _has_string_with_null(plain):
             raise OsmFileError(f"The PBF has a text with a null character in the blob at byte {start}.")
+        return len(plain)
     except IndexError as error:
         raise OsmFileError(f"The PBF is damaged: no blob can be read at byte {start}.") from error
+    except _TooManyFields as error:
+        raise OsmFileError(f"The PBF has more parts than a file of its kind may have, in the blob at byte {start}.") from error
 
 
 def _has_string_with_null(block: memoryview) -> bool:
     """Whether the string table (field 1) of a PrimitiveBlock has one; libosmium reads past the end of its buffer at such a tag."""
-    for number, table in _fields(block):
+    for number, table in _fields(block, MAX_BLOCK_FIELDS):
         if number == 1 and isinstance(table, memoryview):
             text = bytes(table)
             if text.count(0) == text.startswith(b"\x0a\x00"):  # the empty string that every table begins with
                 continue
-            if any(isinstance(string, memoryview) and 0 in string for _, string in _fields(table)):
+            if any(isinstance(string, memoryview) and 0 in string for _, string in _fields(table, MAX_BLOCK_STRINGS)):
                 return True
     return False
 
 
-def _fields(data: bytes | memoryview) -> Iterator[tuple[int, int | memoryview]]:
-    """The fields of a protobuf message, numbers and byte strings; IndexError when it is none."""
-    view, at = memoryview(data), 0
+class _TooManyFields(Exception):
+    """A message has more fields than its kind may have."""
+
+
+def _fields(data: bytes | memoryview, max_fields: int) -> Iterator[tuple[int, int | memoryview]]:
+    """The fields of a protobuf message, numbers and byte strings; IndexError when it is none, _TooManyFields beyond max_fields."""
+    view, at, number = memoryview(data), 0, 0
     while at < len(view):
+        if (number := number + 1) > max_fields:
+            raise _TooManyFields
         key, at = _varint(view, at)
         if key & 7 == 0:
             value, at = _varint(view, at)

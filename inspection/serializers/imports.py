@@ -126,6 +126,8 @@ def proposal_json(proposal: ImportProposal, *, is_brief: bool = False) -> dict[s
     summary = {name: value for name, value in proposal.summary.items() if not (is_brief and isinstance(value, dict | list))}
     if "notes" in summary:
         summary["notes"] = [in_words(note) for note in summary["notes"]]
+    if "not_read" in summary:
+        summary["not_read"] = [record | {"message": in_words(record["message"])} for record in summary["not_read"]]
     return {
         "id": str(proposal.pk),
         "kind": proposal.kind,

@@ -16,7 +16,7 @@ from django.db.backends.utils import CursorWrapper
 from inspection.asset_files.asset_file import AssetFile, Row, RowFaults, opened_asset_file
 from inspection.asset_files.mapping import AssetRecord, Mapping, Tally, checked_mapping, records_of
 from inspection.asset_files.rows import AssetFileError
-from inspection.models import Asset, AssetSet, ChangeAction, DataImport, ImportKind
+from inspection.models import ROW_ACTIONS, Asset, AssetSet, ChangeAction, DataImport, ImportKind
 from inspection.services.facts import asset_facts, says_the_same
 from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.services.osm_import import SYNTHETIC_ATTRIBUTION
@@ -211,7 +211,7 @@ def staged(
         cursor.execute(_FATES, {"asset_set": asset_set.pk if asset_set else None, "replace_edited": replace_edited})
         cursor.execute("SELECT fate, count(*) FROM asset_fate GROUP BY fate")
         found = dict(cursor.fetchall())
-        yield Difference({fate: found.get(fate, 0) for fate in (*ChangeAction.values, UNCHANGED)})
+        yield Difference({fate: found.get(fate, 0) for fate in (*ROW_ACTIONS, UNCHANGED)})
         cursor.execute("DROP TABLE asset_fate")  # before the end of the transaction: several imports may share one
         cursor.execute("DROP TABLE asset_staging")
 

@@ -12,14 +12,15 @@ from pathlib import Path, PurePosixPath
 
 from django.conf import settings
 from django.db import transaction
-from django.db.models import Q
+from django.db.models import Count, Q, Sum
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from inspection.models import ImportProposal, ProposalState, Upload, UploadPart
-from workspace.models import User
+from workspace.models import Organisation, User
 
 PART_BYTES = 1024 * 1024
+MAX_UPLOADS = 200  # that are kept, of one organisation
 KEPT = timedelta(hours=24)  # an upload that nobody went on with, or that was decided on
 _FOLDER_PREFIX = "spanwise-upload-"
 _OPEN_STATES = (ProposalState.READING, ProposalState.READY, ProposalState.APPLYING)
@@ -34,6 +35,10 @@ class UploadTooLarge(UploadRefused):
     pass
 
 
+class TooManyUploads(UploadRefused):
+    """The files of an organisation that are kept take as much room as they may."""
+
+
 class UploadGap(UploadRefused):
     """Bytes before these are missing, or some of these are here already; the upload says how many it has."""
 
@@ -43,9 +48,19 @@ class UploadInUse(UploadRefused):
 
 
 def begin_upload(*, file_name: str, size_bytes: int, created_by: User | None) -> Upload:
-    """Raises UploadTooLarge."""
+    """Raises UploadTooLarge, or TooManyUploads for one that does not fit into what the organisation may have waiting.
+
+    Two that are begun at once wait for each other.
+    """
     _refuse_more_than(max(settings.LARGEST_FILE_BYTES.values()), size_bytes)
-    return Upload.objects.create(file_name=plain_name(file_name), size_bytes=size_bytes, created_by=created_by)
+    with transaction.atomic():
+        if created_by is not None:
+            Organisation.objects.select_for_update(no_key=True).filter(pk=created_by.organisation_id).values_list("pk").first()
+            own = Upload.objects.filter(created_by__organisation=created_by.organisation_id)
+            kept = own.aggregate(bytes=Sum("size_bytes"), number=Count("pk"))
+            if (kept["bytes"] or 0) + size_bytes > settings.UPLOADS_BYTES or kept["number"] >= MAX_UPLOADS:
+                raise TooManyUploads(_("Your organisation's files that wait take all the room they may. Decide on them, or delete some."))
+        return Upload.objects.create(file_name=plain_name(file_name), size_bytes=size_bytes, created_by=created_by)
 
 
 def check_size_for(kind: str, size_bytes: int) -> None:

@@ -17,6 +17,7 @@ from inspection.services.osm_import import SYNTHETIC_ATTRIBUTION
 from inspection.services.proposals.reading import Provenance
 from inspection.services.zone_sets import ZoneDifference, difference_of, keep_what_was, store_version, write_difference
 from inspection.zones.geometry_gate import GeometryFault
+from inspection.zones.records import UnreadRecord
 from inspection.zones.zone_file import MAX_FILE_BYTES, ZoneFile, ZoneFileError, read_zones
 from workspace.models import User
 
@@ -32,6 +33,7 @@ def import_zones(
     replace_edited: bool = False,
     replace_all: bool | None = None,
     source_format: str = "",
+    leave_out_faulty: bool = False,
     provenance: Provenance | None = None,
 ) -> DataImport:
     """Make the set (by default named after the file) what the file says, and return the import with its counts.
@@ -40,14 +42,14 @@ def import_zones(
     replace_edited says otherwise. Raises ZoneFileError and changes nothing, also when the set has zones that are all elsewhere: they
     would be gone unnoticed. A set that is named, or replace_all, says that this is meant.
     """
-    content, sha256 = read_zone_file(path, source_format=source_format)
+    content, sha256 = read_zone_file(path, source_format=source_format, leave_out_faulty=leave_out_faulty)
     name = set_name_of(path, set_name)
     with transaction.atomic():
         hold_ground()
         zone_set, _ = ZoneSet.objects.select_related("data_import").get_or_create(name=name)
         if not (set_name is not None if replace_all is None else replace_all):
             refuse_if_elsewhere(zone_set, content, f"--set {name} replaces them, another name keeps both")
-        found = difference_of(zone_set, content.zones, replace_edited=replace_edited)
+        found = difference_of(zone_set, content.zones, replace_edited=replace_edited, unread=content.unread)
         counts = zone_counts(content) | found.numbers | {"removed": len(found.vanished)}
         origin = _origin(content, provenance, is_synthetic=is_synthetic)
         if zone_set.data_import is not None and zone_set.data_import.sha256 == sha256 and not found.changes_something:
@@ -79,12 +81,12 @@ def make_so(
     mark_ground_changed()
 
 
-def read_zone_file(path: Path, *, source_format: str = "") -> tuple[ZoneFile, str]:
+def read_zone_file(path: Path, *, source_format: str = "", leave_out_faulty: bool = False) -> tuple[ZoneFile, str]:
     """The zones of a file and its SHA-256. Raises ZoneFileError, also if the file is in another format than was said."""
     if path.stat().st_size > MAX_FILE_BYTES:
         raise ZoneFileError([GeometryFault("", f"the file is larger than {MAX_FILE_BYTES // 2**20} MiB")])
     data = path.read_bytes()
-    content = read_zones(data)
+    content = read_zones(data, leave_out_faulty=leave_out_faulty)
     if source_format and content.source_format != FORMAT_NAMES[source_format]:
         message = f"the file is {content.source_format}, not {FORMAT_NAMES[source_format]} as was said"
         raise ZoneFileError([GeometryFault("", message)])
@@ -131,6 +133,14 @@ def zone_counts(content: ZoneFile) -> dict[str, Any]:
         "extent": list(extent_of(content)), "provider": content.provider,
         "valid_from": content.valid_from, "valid_until": content.valid_until,
         "notes": list(content.notes),
+    } | ({"not_read": [_unread_json(record) for record in content.unread]} if content.unread else {})  # fmt: skip
+
+
+def _unread_json(record: UnreadRecord) -> dict[str, Any]:
+    position = record.fault.position
+    return {
+        "place": record.fault.place, "message": record.fault.message, "position": list(position) if position else None,
+        "name": record.name, "bbox": list(record.bbox) if record.bbox else None,
     }  # fmt: skip
 
 

@@ -13,7 +13,8 @@ from django.db.models import Max
 from inspection.models import DataImport, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services.facts import zone_facts
 from inspection.services.ground import hold_ground, mark_ground_changed
-from inspection.zones.records import HeightBand, ZoneRecord
+from inspection.zones.records import HeightBand, UnreadRecord, ZoneRecord
+from inspection.zones.texts import MAX_IDENTIFIER
 from workspace.models import DEFAULT_ORGANISATION_ID, AuditEntry, User
 from workspace.services import record_change
 
@@ -43,13 +44,17 @@ Key = tuple[str, int]
 
 @dataclass
 class ZoneDifference:
-    """What other records would change in a set. kept: edited by hand, and the source now says something else, or nothing."""
+    """What other records would change in a set. kept: edited by hand, and the source now says something else, or nothing.
+
+    unread: the source says something of them, but its record has a fault: they stay as they are.
+    """
 
     new: list[ZoneRecord] = field(default_factory=list)
     changed: list[tuple[NoFlyZone, ZoneRecord]] = field(default_factory=list)
     vanished: list[NoFlyZone] = field(default_factory=list)
     kept: list[tuple[NoFlyZone, ZoneRecord | None]] = field(default_factory=list)
     confirmed: list[NoFlyZone] = field(default_factory=list)  # edited, and the source now says the same
+    unread: list[NoFlyZone] = field(default_factory=list)
     unchanged: int = 0
 
     @property
@@ -64,8 +69,13 @@ class ZoneDifference:
         return bool(self.new or self.changed or self.vanished)
 
 
-def difference_of(zone_set: ZoneSet | None, records: Iterable[ZoneRecord], *, replace_edited: bool = False) -> ZoneDifference:
-    """Compare the set's rows with what a file or a version says; edited rows are kept unless they are to be replaced."""
+def difference_of(
+    zone_set: ZoneSet | None, records: Iterable[ZoneRecord], *, replace_edited: bool = False, unread: Iterable[UnreadRecord] = ()
+) -> ZoneDifference:
+    """Compare the set's rows with what a file or a version says; edited rows are kept unless they are to be replaced.
+
+    A zone whose record could not be read does not vanish: nobody knows what the file says of it.
+    """
     found = ZoneDifference()
     held = {(zone.identifier, zone.layer): zone for zone in zone_set.zones.all()} if zone_set else {}
     for record in records:
@@ -80,8 +90,11 @@ def difference_of(zone_set: ZoneSet | None, records: Iterable[ZoneRecord], *, re
             found.kept.append((zone, record))
         else:
             found.changed.append((zone, record))
+    not_read = {name for record in unread for name in (record.identifier, record.name[:MAX_IDENTIFIER]) if name}
     for zone in held.values():
-        if zone.is_edited and not replace_edited:
+        if zone.identifier in not_read:
+            found.unread.append(zone)
+        elif zone.is_edited and not replace_edited:
             found.kept.append((zone, None))
         else:
             found.vanished.append(zone)

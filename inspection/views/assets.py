@@ -22,10 +22,10 @@ from inspection.views.edits import edits
 from inspection.views.history import answer, asset_now
 from inspection.views.parameters import BOX, box_of, kinds_of, text_of
 from workspace.idempotency import idempotent
-from workspace.paging import page_of
+from workspace.paging import changed_since, page_of
 from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
-from workspace.schema import PAGE_PARAMETERS
+from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
 
@@ -41,6 +41,7 @@ class AssetList(APIView):
             OpenApiParameter("text", str, description='words in name, ref or operator; "138 kV"; an OSM id such as w123; best first'),
             OpenApiParameter("flyable", bool, description="true: only what may be flown to"),
             OpenApiParameter("total", bool, description="true: also how many there are, on all pages"),
+            CHANGED_SINCE,
             *PAGE_PARAMETERS,
         ],
         responses=AssetCollectionSerializer,
@@ -49,6 +50,7 @@ class AssetList(APIView):
         text = text_of(request)
         flyable = True if request.query_params.get("flyable") == "true" else None
         found = selectors.assets_on_the_ground(box=box_of(request), kinds=kinds_of(request), text=text, flyable=flyable)
+        found = changed_since(request, found)
         assets = found.only(*FIELDS_OF_AN_ASSET)
         page = page_of(request, with_match_rank(assets, text=text), order=BEST_FIRST) if text else page_of(request, assets)
         features = [asset_feature(asset) for asset in page.rows]

@@ -4,7 +4,7 @@ from typing import Any
 
 from django.http import Http404
 from django.utils.translation import gettext as _
-from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, PolymorphicProxySerializer, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
@@ -25,6 +25,9 @@ from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, eta
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
+UNDONE = PolymorphicProxySerializer(
+    component_name="UndoneFeature", serializers=[AssetDetailFeatureSerializer, ZoneDetailFeatureSerializer], resource_type_field_name=None
+)
 CANNOT = {409: OpenApiResponse(description="It was changed again since, or there is nothing to go back to.")}
 
 
@@ -91,7 +94,7 @@ class HistoryUndo(APIView):
         summary="Take the newest change of an asset or zone back",
         description="What was deleted is there again under its old id, what was created is gone. The taking back is a change too.",
         request=None,
-        responses={200: AssetDetailFeatureSerializer, 204: OpenApiResponse(description="What was created is gone.")} | CANNOT,
+        responses={200: UNDONE, 204: OpenApiResponse(description="What was created is gone.")} | CANNOT,
     )
     def post(self, request: SignedInRequest, entry_id: int) -> Response:
         entry = changes_of_the_ground().filter(pk=entry_id).first()

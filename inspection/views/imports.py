@@ -8,6 +8,7 @@ from django.db import transaction
 from django.http import Http404
 from django.urls import reverse
 from django.utils.translation import gettext as _
+from django.utils.translation import ngettext
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -181,7 +182,8 @@ class ImportApply(APIView):
         operation_id="apply_import",
         summary="Make the ground what the file says",
         description="If the ground has changed since the difference was taken, and the difference with it, nothing is applied: the "
-        "proposal is `ready` again with the new difference.",
+        "proposal is `ready` again with the new difference. Where `summary.not_read` lists records with faults, the parameter `seen` "
+        "holds the `place` of each; without one of them the answer is 409 `not_seen`, with the missing places in its details.",
         request=ParametersSerializer,
         responses={202: ProposalSerializer} | IN_ANOTHER_STATE,
     )
@@ -192,6 +194,13 @@ class ImportApply(APIView):
                 send_job_of(pipeline.ask_to_apply(proposal=_proposal(proposal_id), parameters=parameters, actor=request.user))
         except pipeline.WrongState as error:
             raise _too_late(error) from error
+        except pipeline.NotSeen as error:
+            words = ngettext(
+                "%(count)s record of the file is not read. See it first.",
+                "%(count)s records of the file are not read. See each of them first.",
+                len(error.places),
+            )
+            raise ApiProblem(409, "not_seen", words % {"count": len(error.places)}, details={"places": error.places}) from error
         return _answer(proposal_id, 202)
 
 

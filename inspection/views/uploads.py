@@ -12,10 +12,19 @@ from rest_framework.views import APIView
 from inspection.models import Upload
 from inspection.selectors.imports import upload_of_id
 from inspection.serializers.imports import UploadInputSerializer, UploadSerializer, upload_json
-from inspection.services.uploads import UploadGap, UploadInUse, UploadRefused, UploadTooLarge, begin_upload, delete_upload, receive_part
+from inspection.services.uploads import (
+    TooManyUploads,
+    UploadGap,
+    UploadInUse,
+    UploadRefused,
+    UploadTooLarge,
+    begin_upload,
+    delete_upload,
+    receive_part,
+)
 from workspace.errors import ApiProblem
 from workspace.parsers import OctetParser
-from workspace.permissions import CURATORS, RolePermission
+from workspace.permissions import CURATING, CURATORS, RolePermission
 from workspace.signed_in import SignedInRequest
 
 
@@ -24,7 +33,9 @@ class CuratorsAlone(RolePermission):
 
     def has_permission(self, request: Request, view: object) -> bool:
         self.message = "Only curators bring data in. Ask an administrator for the curator role."
-        return request.user.is_authenticated and request.user.role in CURATORS
+        if not (request.user.is_authenticated and request.user.role in CURATORS):
+            return False
+        return self.token_reaches(request, CURATING)
 
 
 def _upload(upload_id: UUID) -> Upload:
@@ -37,7 +48,13 @@ def _upload(upload_id: UUID) -> Upload:
 class UploadList(APIView):
     permission_classes = [CuratorsAlone]
 
-    @extend_schema(operation_id="begin_upload", summary="Announce a file", request=UploadInputSerializer, responses={201: UploadSerializer})
+    @extend_schema(
+        operation_id="begin_upload",
+        summary="Announce a file",
+        description="409 `too_many_uploads` where the organisation's files that are kept leave no room for it.",
+        request=UploadInputSerializer,
+        responses={201: UploadSerializer, 409: OpenApiResponse(description="The organisation's files that are kept leave no room.")},
+    )
     def post(self, request: SignedInRequest) -> Response:
         body = UploadInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
@@ -45,6 +62,8 @@ class UploadList(APIView):
             upload = begin_upload(**body.validated_data, created_by=request.user)
         except UploadTooLarge as error:
             raise ApiProblem(413, "too_large", str(error)) from error
+        except TooManyUploads as error:
+            raise ApiProblem(409, "too_many_uploads", str(error)) from error
         return Response(upload_json(upload), status=201)
 
 

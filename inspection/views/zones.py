@@ -17,10 +17,10 @@ from inspection.views.edits import edits
 from inspection.views.history import answer, zone_now
 from inspection.views.parameters import BOX, box_of, invalid, text_of
 from workspace.idempotency import idempotent
-from workspace.paging import page_of
+from workspace.paging import changed_since, page_of
 from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
-from workspace.schema import PAGE_PARAMETERS
+from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
 
@@ -34,12 +34,14 @@ class ZoneList(APIView):
             BOX,
             OpenApiParameter("text", str, description="words in name, identifier, restriction or reason"),
             OpenApiParameter("zone_set", int, description="the id of a set"),
+            CHANGED_SINCE,
             *PAGE_PARAMETERS,
         ],
         responses=ZoneCollectionSerializer,
     )
     def get(self, request: Request) -> Response:
-        page = page_of(request, selectors.zones(box=box_of(request), text=text_of(request), zone_set=_set_of(request)))
+        found = selectors.zones(box=box_of(request), text=text_of(request), zone_set=_set_of(request))
+        page = page_of(request, changed_since(request, found))
         features = [zone_feature(zone) for zone in page.rows]
         return Response({"type": "FeatureCollection", "features": features, "next": page.next})
 

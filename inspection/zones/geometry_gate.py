@@ -38,6 +38,10 @@ class GeometryFault(ValueError):
         return f"{self.place}: {self.message}{where}" if self.place else f"{self.message}{where}"
 
 
+class TooMuch(GeometryFault):
+    """More than is taken of one document: it is refused as a whole, whatever is wrong with single records."""
+
+
 class VertexBudget:
     """How many vertices and polygons one document may have in all."""
 
@@ -49,9 +53,9 @@ class VertexBudget:
         self.vertices += vertices
         self.polygons += 1
         if self.vertices > self.max_vertices:
-            raise GeometryFault(place, f"the document has more than {self.max_vertices} vertices")
+            raise TooMuch(place, f"the document has more than {self.max_vertices} vertices")
         if self.polygons > self.max_polygons:
-            raise GeometryFault(place, f"the document has more than {self.max_polygons} polygons")
+            raise TooMuch(place, f"the document has more than {self.max_polygons} polygons")
 
 
 def checked_position(value: Any, place: str = "position") -> LonLat:
@@ -122,7 +126,7 @@ def checked_polygon(rings: Any, place: str, budget: VertexBudget) -> list[Polygo
         raise GeometryFault(place, "the polygon is empty")
     number = sum(len(ring) for ring in rings if isinstance(ring, list))
     if number > MAX_POLYGON_VERTICES:
-        raise GeometryFault(place, f"the polygon has {number} vertices; at most {MAX_POLYGON_VERTICES} are taken")
+        raise TooMuch(place, f"the polygon has {number} vertices; at most {MAX_POLYGON_VERTICES} are taken")
     budget.take(number, place)
     paths = [_checked_ring(ring, f"{place}[{index}]") for index, ring in enumerate(rings)]
     return polygons_of_rings(paths, place)
@@ -155,7 +159,7 @@ def _checked_path(coordinates: Any, place: str, *, minimum: int, maximum: int) -
     if not isinstance(coordinates, list) or not coordinates:
         raise GeometryFault(place, "the geometry is empty")
     if len(coordinates) > maximum:
-        raise GeometryFault(place, f"there are {len(coordinates)} vertices; at most {maximum} are taken")
+        raise TooMuch(place, f"there are {len(coordinates)} vertices; at most {maximum} are taken")
     points = _all_at_once(coordinates)
     if points is None:
         points = np.array([checked_position(position, f"{place}[{index}]") for index, position in enumerate(coordinates)], dtype=np.float64)

@@ -17,10 +17,10 @@ from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import FloatArray
 from inspection.zones.arcs import arc, arc_between, circle_ring
 from inspection.zones.faults import FaultList
-from inspection.zones.geometry_gate import MAX_POLYGON_VERTICES, MAX_POLYGONS, GeometryFault, VertexBudget, polygons_of_rings
+from inspection.zones.geometry_gate import MAX_POLYGON_VERTICES, MAX_POLYGONS, GeometryFault, TooMuch, VertexBudget, polygons_of_rings
 from inspection.zones.loops import area_of_all_loops
-from inspection.zones.openair_values import height_of, length_m_of, number_of, position_of
-from inspection.zones.records import HeightBand, ZoneRecord
+from inspection.zones.openair_values import has_sixty, height_of, length_m_of, number_of, position_of
+from inspection.zones.records import HeightBand, UnreadRecord, ZoneRecord
 from inspection.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
 
 CLASSES = {
@@ -29,6 +29,8 @@ CLASSES = {
     "RMZ": "Radio mandatory zone", "TMZ": "Transponder mandatory zone", "UNC": "Unclassified", "UNCLASSIFIED": "Unclassified",
 }  # fmt: skip
 MAX_LINE_CHARACTERS = 2_000
+MOST_LISTED = 20  # in a note
+HALF_ROUND_DEG = 180.0
 _LOOKS = re.compile(rb"^\s*AC\s+\S", re.MULTILINE)
 _COMMENT = re.compile(r"(^|\s)\*.*$")
 _PEN = {"SP", "SB", "AT", "TO", "TC", "CO"}
@@ -57,8 +59,8 @@ class _Record:
     has_only_a_pen: bool = True
 
 
-def zones_of_openair(text: str, faults: FaultList) -> tuple[list[ZoneRecord], list[str]]:
-    """The zones, and what people should know of how the file was read."""
+def zones_of_openair(text: str, faults: FaultList, unread: list[UnreadRecord]) -> tuple[list[ZoneRecord], list[str]]:
+    """The zones, and what people should know of how the file was read; records with a fault are added to unread."""
     reader = _Reader(faults)
     for number, line in enumerate(text.splitlines(), start=1):
         with faults.gathering():
@@ -67,7 +69,11 @@ def zones_of_openair(text: str, faults: FaultList) -> tuple[list[ZoneRecord], li
         reader.finish()
     notes = [f"{reader.pens} records only set pen and brush; they draw nothing."] if reader.pens else []
     if names := reader.crossing_names:
-        notes.append(f"The border crosses itself, so all that any of its loops encloses counts: {', '.join(names[:20])}.")
+        notes.append(f"The border crosses itself, so all that any of its loops encloses counts: {', '.join(names[:MOST_LISTED])}.")
+    if carried := reader.carried_over:
+        more = f" and {len(carried) - MOST_LISTED} more" if len(carried) > MOST_LISTED else ""
+        notes.append(f"Minutes or seconds of 60 were read as the next degree or minute: {', '.join(carried[:MOST_LISTED])}{more}.")
+    unread += reader.unread
     return reader.zones, notes
 
 
@@ -78,7 +84,9 @@ class _Reader:
         self.pens = 0
         self.crossing_names: list[str] = []
         self.record: _Record | None = None
-        self.is_broken = False  # the record has a fault already: what follows from it is not told again
+        self.carried_over: list[str] = []
+        self.unread: list[UnreadRecord] = []
+        self.fault: GeometryFault | None = None  # of the record: what follows from it is not told again
         self.budget = VertexBudget()
         self.commands: dict[str, Callable[[_Record, str, str], None]] = {
             "AN": self._name, "AL": self._lower, "AH": self._upper, "V": self._variable, "DP": self._point, "DA": self._arc,
@@ -87,7 +95,7 @@ class _Reader:
 
     def take(self, number: int, line: str) -> None:
         if len(line) > MAX_LINE_CHARACTERS:
-            raise GeometryFault(f"line {number}", f"the line has {len(line)} characters; at most {MAX_LINE_CHARACTERS} are read")
+            raise TooMuch(f"line {number}", f"the line has {len(line)} characters; at most {MAX_LINE_CHARACTERS} are read")
         words = _COMMENT.sub("", line).strip()
         if not words:
             return
@@ -98,19 +106,18 @@ class _Reader:
             with self.faults.gathering():
                 self.finish()
             if len(self.zones) + self.pens >= MAX_POLYGONS:
-                raise GeometryFault(place, f"there are more than {MAX_POLYGONS} records")
+                raise TooMuch(place, f"there are more than {MAX_POLYGONS} records")
             self.record = _Record(number, checked_text(rest, place, 40).upper())
-            self.is_broken = False
+            self.fault = None
             return
         if self.record is None:
             raise GeometryFault(place, f"{command[:10]!r} stands before the first AC, the start of a record")
-        if self.is_broken:
-            return
         try:
             self._do(self.record, command, rest, place)
-        except GeometryFault:
-            self.is_broken = True
-            raise
+        except GeometryFault as fault:
+            if self.fault is None:
+                self.fault = fault
+                raise
 
     def _do(self, record: _Record, command: str, rest: str, place: str) -> None:
         if command in _PEN:
@@ -123,17 +130,24 @@ class _Reader:
         else:
             raise GeometryFault(place, f"the command {command[:10]!r} is not known")
         if len(record.points) > MAX_POLYGON_VERTICES:
-            raise GeometryFault(place, f"the airspace has more than {MAX_POLYGON_VERTICES} vertices")
+            record.points.clear()  # nothing more is kept of it
+            raise TooMuch(place, f"the airspace has more than {MAX_POLYGON_VERTICES} vertices")
 
     def finish(self) -> None:
         """The record is read to its end."""
         record, self.record = self.record, None
-        if record is None or self.is_broken:
+        if record is None:
             return
-        if record.has_only_a_pen:
+        if self.fault is not None:
+            self.unread.append(_unread(record, self.fault))
+        elif record.has_only_a_pen:
             self.pens += 1
-            return
-        self.zones.append(self._zone(record))
+        else:
+            try:
+                self.zones.append(self._zone(record))
+            except GeometryFault as fault:
+                self.unread.append(_unread(record, fault))
+                raise
 
     def _zone(self, record: _Record) -> ZoneRecord:
         place = f"line {record.line}"
@@ -183,14 +197,20 @@ class _Reader:
     def _variable(self, record: _Record, rest: str, place: str) -> None:
         variable, _, value = (part.strip() for part in rest.partition("="))
         if variable.upper() == "X":
-            record.centre = position_of(value, place)
+            record.centre = self._position(value, place)
         elif variable.upper() == "D" and value in {"+", "-"}:
             record.is_clockwise = value == "+"
         elif variable.upper() not in {"Z", "W", "T"}:  # zoom, width and label: how it is drawn
             raise GeometryFault(place, f"the variable {rest[:20]!r} is not known")
 
+    def _position(self, text: str, place: str) -> LonLat:
+        position = position_of(text, place)
+        if self.fault is None and has_sixty(text) and place not in self.carried_over[-1:]:
+            self.carried_over.append(place)
+        return position
+
     def _point(self, record: _Record, rest: str, place: str) -> None:
-        position = position_of(rest, place)
+        position = self._position(rest, place)
         record.points.append((position.lon, position.lat))
 
     def _circle(self, record: _Record, rest: str, place: str) -> None:
@@ -213,7 +233,7 @@ class _Reader:
         parts = rest.split(",")
         if len(parts) != 2:
             raise GeometryFault(place, "DB has two positions with a comma between")
-        start, end = position_of(parts[0], place), position_of(parts[1], place)
+        start, end = self._position(parts[0], place), self._position(parts[1], place)
         self._add(record, arc_between(self._centre(record, place), start, end, record.is_clockwise, place))
 
     def _add(self, record: _Record, path: FloatArray) -> None:
@@ -223,3 +243,13 @@ class _Reader:
         if record.centre is None:
             raise GeometryFault(place, "there is no centre: V X= is missing before this")
         return record.centre
+
+
+def _unread(record: _Record, fault: GeometryFault) -> UnreadRecord:
+    points = np.array(record.points, dtype=np.float64) if record.ring is None else record.ring
+    bbox = None
+    if len(points) and np.ptp(points[:, 0]) <= HALF_ROUND_DEG:  # not over the antimeridian
+        (west, south), (east, north) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+        bbox = (west, south, east, north)
+    name = record.name or f"{record.airspace_class} without a name"
+    return UnreadRecord(fault, name, str(record.facts.get("identifier") or record.name)[:MAX_IDENTIFIER], bbox)

@@ -11,6 +11,7 @@ from inspection.zones.records import FOOT_M
 
 NAUTICAL_MILE_M = 1_852.0
 FLIGHT_LEVEL_M = 100 * FOOT_M
+SIXTY = 60.0
 _ANGLE = r"(\d{1,3}(?:\.\d+)?)(?::(\d{1,2}(?:\.\d+)?))?(?::(\d{1,2}(?:\.\d+)?))?"
 _POSITION = re.compile(rf"{_ANGLE}\s*([NS])[\s,]*{_ANGLE}\s*([EW])", re.IGNORECASE)
 _HEIGHT = re.compile(r"(-?\d{1,6}(?:\.\d+)?)\s*(FT|F|M)?\s*(AGL|ASFC|GND|SFC|AGND|AMSL|MSL|ASL|ALT|STD)?", re.IGNORECASE)
@@ -23,13 +24,19 @@ _LENGTH_M = {"": NAUTICAL_MILE_M, "NM": NAUTICAL_MILE_M, "KM": 1_000.0, "M": 1.0
 
 
 def position_of(text: str, place: str) -> LonLat:
-    """A position such as 48:47:27 N 016:53:33 E; minutes and seconds may be left out or have decimals."""
+    """A position such as 48:47:27 N 016:53:33 E; minutes and seconds may be left out or have decimals. See `has_sixty`."""
     match = _POSITION.fullmatch(text.strip())
     if match is None:
         raise GeometryFault(place, f"{text.strip()[:60]!r} is no position such as 48:47:27 N 016:53:33 E")
     lat = _degrees(match[1], match[2], match[3], place) * (1 if match[4].upper() == "N" else -1)
     lon = _degrees(match[5], match[6], match[7], place) * (1 if match[8].upper() == "E" else -1)
     return checked_position([lon, lat], place)
+
+
+def has_sixty(text: str) -> bool:
+    """Whether minutes or seconds of a position are 60, as rounding writes them: they are the next degree or minute."""
+    match = _POSITION.fullmatch(text.strip())
+    return match is not None and any(part is not None and float(part) == SIXTY for part in (match[2], match[3], match[6], match[7]))
 
 
 def height_of(text: str, place: str) -> tuple[float | None, str]:
@@ -70,6 +77,6 @@ def number_of(text: str, place: str) -> float:
 
 
 def _degrees(degrees: str, minutes: str | None, seconds: str | None, place: str) -> float:
-    if float(minutes or 0) >= 60 or float(seconds or 0) >= 60:
-        raise GeometryFault(place, "minutes and seconds are below 60")
+    if float(minutes or 0) > SIXTY or float(seconds or 0) > SIXTY:
+        raise GeometryFault(place, "minutes and seconds are at most 60")
     return float(degrees) + float(minutes or 0) / 60 + float(seconds or 0) / 3600

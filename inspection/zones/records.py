@@ -5,6 +5,8 @@ from typing import Any
 
 from shapely import MultiPolygon
 
+from inspection.zones.geometry_gate import GeometryFault
+
 FOOT_M = 0.3048
 NO_CEILING = 99_999  # written by some sources (Switzerland) where there is no upper limit
 HEIGHT_REFERENCES = ("AGL", "AMSL", "WGS84")
@@ -36,3 +38,13 @@ class ZoneRecord:
     circle: dict[str, Any] | None = None  # {"centre": [lon, lat], "radius_m": number}; geometry encloses it
     schedule: list[Any] | None = None  # None: permanent
     properties: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class UnreadRecord:
+    """A record with a fault. bbox: west, south, east, north [deg] of those of its positions that can be read; None where none can."""
+
+    fault: GeometryFault
+    name: str = ""
+    identifier: str = ""
+    bbox: tuple[float, float, float, float] | None = None

@@ -1,17 +1,20 @@
 """A zone file as a whole: which format it is, its zones, or all that is wrong with it."""
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from inspection.zones.ed269 import is_ed269, zones_of_ed269
 from inspection.zones.ed318 import is_ed318, stated_validity, text_of, zones_of_ed318
 from inspection.zones.faults import MAX_FAULTS, FaultList, TooManyFaults
 from inspection.zones.geojson import zones_of_geojson
-from inspection.zones.geometry_gate import GeometryFault
+from inspection.zones.geometry_gate import GeometryFault, TooMuch
 from inspection.zones.openair import looks_like_openair, zones_of_openair
-from inspection.zones.records import ZoneRecord
+from inspection.zones.records import UnreadRecord, ZoneRecord
 from inspection.zones.strict_json import JsonFault, can_be_stored, parse_strict_json
 from inspection.zones.texts import MAX_NAME
+from inspection.zones.unread import unread_of_document
 
 MAX_FILE_BYTES = 32 * 1024 * 1024
 _GEOJSON = {"FeatureCollection", "Feature", "Polygon", "MultiPolygon", "Point", "GeometryCollection"}
@@ -34,6 +37,7 @@ class ZoneFile:
     valid_from: str | None = None  # as stated, RFC 3339, UTC
     valid_until: str | None = None
     notes: tuple[str, ...] = ()  # what people should know of how it was read
+    unread: tuple[UnreadRecord, ...] = ()
 
 
 @dataclass
@@ -43,14 +47,18 @@ class _Read:
     provider: str = ""
     validity: tuple[str | None, str | None] = (None, None)
     notes: list[str] = field(default_factory=list)
+    unread: list[UnreadRecord] = field(default_factory=list)
 
 
-def read_zones(data: bytes) -> ZoneFile:
-    """All the zones of an ED-269, ED-318, GeoJSON or OpenAir text, or ZoneFileError: none of a file that has a fault."""
+def read_zones(data: bytes, *, leave_out_faulty: bool = False) -> ZoneFile:
+    """All the zones of an ED-269, ED-318, GeoJSON or OpenAir text, or ZoneFileError: none of a file that has a fault.
+
+    With leave_out_faulty the records that have one are listed instead, if every fault is one record's; what is too large, or no file of
+    these kinds, is refused all the same.
+    """
     found = FaultList()
     try:
         read = _read_openair(data, found) if looks_like_openair(data) and data.lstrip()[:1] not in {b"{", b"["} else _read_json(data, found)
-        records = read.records
     except JsonFault as fault:
         raise ZoneFileError([GeometryFault("", str(fault))]) from fault
     except TooManyFaults as many:
@@ -58,9 +66,8 @@ def read_zones(data: bytes) -> ZoneFile:
     except GeometryFault as fault:
         found.faults.append(fault)
         raise ZoneFileError(found.faults) from fault
-    if not found.faults:
-        found.faults = [unstorable for record in records if (unstorable := _unstorable(record))]
-    if found.faults:
+    records = _storable(read, found)
+    if found.faults and not (leave_out_faulty and _are_all_of_records(found.faults, read.unread)):
         raise ZoneFileError(found.faults[:MAX_FAULTS])
     if not records:
         raise ZoneFileError([GeometryFault("", "the file has no zones")])
@@ -71,7 +78,27 @@ def read_zones(data: bytes) -> ZoneFile:
         read.provider,
         *read.validity,
         tuple(read.notes),
+        tuple(read.unread),
     )
+
+
+def _storable(read: _Read, found: FaultList) -> list[ZoneRecord]:
+    """The records that the database can hold; the others are unread, too."""
+    kept = []
+    for record in read.records:
+        fault = _unstorable(record)
+        if fault is None:
+            kept.append(record)
+        else:
+            found.faults.append(fault)
+            west, south, east, north = record.geometry.bounds
+            read.unread.append(UnreadRecord(fault, record.name, record.identifier, (west, south, east, north)))
+    return kept
+
+
+def _are_all_of_records(faults: Sequence[GeometryFault], unread: Sequence[UnreadRecord]) -> bool:
+    of_records = {id(record.fault) for record in unread}
+    return len(faults) < MAX_FAULTS and all(id(fault) in of_records and not isinstance(fault, TooMuch) for fault in faults)
 
 
 def _read_openair(data: bytes, faults: FaultList) -> _Read:
@@ -83,12 +110,19 @@ def _read_openair(data: bytes, faults: FaultList) -> _Read:
     except UnicodeDecodeError:
         text = data.decode("cp1252", errors="replace")
         notes.append("The text is not UTF-8 and was read as Windows-1252.")
-    zones, more = zones_of_openair(text, faults)
-    return _Read("OpenAir", zones, notes=notes + more)
+    unread: list[UnreadRecord] = []
+    zones, more = zones_of_openair(text, faults, unread)
+    return _Read("OpenAir", zones, notes=notes + more, unread=unread)
 
 
 def _read_json(data: bytes, faults: FaultList) -> _Read:
     document = parse_strict_json(data, max_bytes=MAX_FILE_BYTES)
+    read = _read_document(document, faults)
+    read.unread = unread_of_document(document, faults.faults)
+    return read
+
+
+def _read_document(document: Any, faults: FaultList) -> _Read:
     if is_ed318(document):
         validity = stated_validity(document, faults)
         metadata = document.get("metadata")

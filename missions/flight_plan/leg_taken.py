@@ -69,11 +69,10 @@ def leg_taken(
     own: Speeds,
     table: FloatArray,
 ) -> tuple[float, float]:
-    """Seconds and joules of a leg between two heights above ground: flown level, and then straight up or down to its end.
+    """Seconds and joules of a leg between two heights above ground: flown straight, as slowly as its length and its rise ask for.
 
-    Both in the wind of its middle height. Endless where the wind leaves no headway at any height that the leg comes through, so that a
-    part of an open leg is open. (east, north) is the leg's direction, of length 1; rise_m counts the ground's rise, too. A UAV that flies
-    and climbs at once is sooner there: this errs on the long side.
+    In the wind of its middle height. Endless where the wind leaves no headway at any height that the leg comes through, so that a part of
+    an open leg is open. (east, north) is the leg's direction, of length 1; rise_m counts the ground's rise, too.
     """
     if start_agl_m != end_agl_m and is_closed(length_m > 0.0, east, north, start_agl_m, end_agl_m, wind, own):
         return np.inf, np.inf
@@ -97,22 +96,26 @@ def taken_in_wind(
     air_2 = east_mps * east_mps + north_mps * north_mps
     if air_2 > own.limit_mps * own.limit_mps:
         return np.inf, np.inf
-    seconds = joules = 0.0
-    has_battery = len(table) > 0
+    level_s = level_air_mps = 0.0
     if length_m > 0.0:
         along_mps, across_mps = east * east_mps + north * north_mps, east * north_mps - north * east_mps
-        ground_mps, air_mps = ground_and_air_speed(own.cruise_mps, own.limit_mps, along_mps, across_mps)
+        ground_mps, level_air_mps = ground_and_air_speed(own.cruise_mps, own.limit_mps, along_mps, across_mps)
         if ground_mps == TOO_STRONG:
             return np.inf, np.inf
-        seconds = length_m / ground_mps
-        if has_battery:
-            joules = seconds * watts(table, LEVEL, air_mps, density)
-    if rise_m != 0.0:
-        vertical_s = rise_m / own.climb_mps if rise_m > 0.0 else -rise_m / own.descent_mps
-        seconds += vertical_s
-        if has_battery:
-            joules += vertical_s * watts(table, CLIMBING if rise_m > 0.0 else LEVEL, math.sqrt(air_2), density)
-    return seconds, joules
+        level_s = length_m / ground_mps
+    vertical_s = rise_m / own.climb_mps if rise_m > 0.0 else -rise_m / own.descent_mps
+    longer_s = max(vertical_s - level_s, 0.0)
+    if len(table) == 0:
+        return level_s + longer_s, 0.0
+    joules = 0.0
+    if level_s > 0.0:
+        level_w = watts(table, LEVEL, level_air_mps, density)
+        joules = level_s * level_w
+        if rise_m > 0.0:  # what lifts the weight is paid beside the level flight, in which it costs more than in a hover
+            joules += (vertical_s - longer_s) * (watts(table, CLIMBING, level_air_mps, density) - level_w)
+    if longer_s > 0.0:
+        joules += longer_s * watts(table, CLIMBING if rise_m > 0.0 else LEVEL, math.sqrt(air_2), density)
+    return level_s + longer_s, joules
 
 
 @njit(cache=True, nogil=True)

@@ -59,8 +59,8 @@ def _figures(performance: Performance) -> tuple[float, ...]:
         performance.rotor_disk_m2,
         performance.hover_efficiency,
         performance.avionics_w,
-        performance.drag_area_m2,
-        performance.rotor_drag,
+        performance.body_drag_area_m2,
+        performance.disk_drag,
     )
 
 

@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import short_distance_m
-from missions.flight_plan.waypoints import END, NONE, PASS, START, TARGET, FloatArray, IntArray, RoutePoints
+from missions.flight_plan.waypoints import END, NONE, PASS, START, TARGET, FloatArray, IntArray, RoutePoints, Waypoints
 from missions.routing.problem import Task
 
 SAME_PLACE_DEG = 1e-9  # a tenth of a millimetre: rounding, not movement
+
+SAME_HEIGHT_M = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,6 +198,42 @@ def _divisions(position: FloatArray, longest_leg_m: float) -> tuple[IntArray, Fl
             count += 1
             before_lon, before_lat = next_lon, next_lat
     return legs, shares, lengths_m
+
+
+def without_idle_points(waypoints: Waypoints) -> Waypoints:
+    """Without what is passed straight above or below where the UAV comes to a place, does something there and leaves it.
+
+    Of points one above another stay the first, the last, and those at which something is done: in between the UAV would go up and down
+    for nothing. Heights stay within those of the points that were there.
+    """
+    points = waypoints.points
+    kept = np.ones(len(points), dtype=bool)
+    same = np.zeros(len(points) + 1, dtype=bool)  # as the point before
+    same[1:-1] = (np.abs(np.diff(points.position, axis=0)) <= SAME_PLACE_DEG).all(axis=1)
+    is_idle = (points.kind == PASS) & (points.target == NONE)
+    is_idle[list(points.task)] = False
+    kept[is_idle & same[:-1] & same[1:]] = False
+    before = None  # the last that is kept
+    for place in np.flatnonzero(kept).tolist():
+        has_repeat = (
+            before is not None and same[before + 1 : place + 1].all() and abs(points.agl_m[before] - points.agl_m[place]) <= SAME_HEIGHT_M
+        )
+        if has_repeat and is_idle[place]:
+            kept[place] = False
+        elif has_repeat and before is not None and is_idle[before]:
+            kept[before], before = False, place
+        else:
+            before = place
+    if kept.all():
+        return waypoints
+    number = np.cumsum(kept) - 1
+    left = RoutePoints(
+        points.position[kept], points.agl_m[kept], points.kind[kept], points.asset[kept], points.target[kept],
+        {int(number[place]): task for place, task in points.task.items()},
+        {int(number[place]): speed_mps for place, speed_mps in points.speed_mps.items() if kept[place]},
+    )  # fmt: skip
+    relative_m = left.agl_m if waypoints.relative_m is points.agl_m else waypoints.relative_m[kept]
+    return Waypoints(left, None if waypoints.amsl_m is None else waypoints.amsl_m[kept], relative_m)
 
 
 def line_of(points: RoutePoints) -> NDArray[np.float64]:

@@ -60,10 +60,10 @@ def timing(
 ) -> Timing:
     """Seconds and watt-hours to each waypoint. Raises NoHeadway where the wind is too strong for the UAV.
 
-    Each leg is flown level, in the wind of its middle height, and then straight up or down to its end, in the same wind; a UAV that does
-    both at once is sooner there, so this errs on the long side. The column from the ground at the start counts, and with `lands` the one
-    at the end. A leg with a speed of its own is flown at that, within the airspeed limit like any other. Taking off, stopping to stay and
-    landing count with what `Manoeuvres` say of them; turns do not. Without heights above sea level the air is taken to be that of the sea.
+    Each leg is flown straight, in the wind of its middle height, as slowly as its length and its rise ask for. The column from the ground
+    at the start counts, and with `lands` the one at the end. A leg with a speed of its own is flown at that, within the airspeed limit like
+    any other. Taking off, stopping to stay and landing count with what `Manoeuvres` say of them; turns do not. Without heights above sea
+    level the air is taken to be that of the sea.
     """
     points = waypoints.points
     battery_wh = performance.battery_wh

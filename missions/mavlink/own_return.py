@@ -25,7 +25,7 @@ NAMES = {autopilot: frozenset(name for group in groups for name in group) for au
 BENDING = {PX4: ("RTL_TYPE", "GF_AVOID_NODES"), ARDUPILOT: ("RTL_ALT_TYPE", "OA_TYPE")}  # unless 0: over terrain, round fences, …
 IN_CENTIMETRES = frozenset({"RTL_ALT", "RTL_CLIMB_MIN"})
 LEAST_CONE_SLOPE = 0.5  # ArduPilot: below that there is no cone
-FENCES_HEIGHT = 1  # the bit of FENCE_TYPE
+FENCES_HEIGHT, FENCES_POLYGONS = 1, 4  # bits of FENCE_TYPE
 # where it is not told
 USUAL = {"RTL_CONE_SLOPE": 3.0, "FENCE_MARGIN": 2.0, "RTL_MIN_DIST": 10.0, "RTL_CONE_ANG": 45.0, "NAV_ACC_RAD": 10.0}
 
@@ -131,6 +131,16 @@ def own_return(autopilot: str, parameters: Mapping[str, float]) -> OwnReturn | N
         cone_slope=slope if slope >= LEAST_CONE_SLOPE else None,
         ceiling_m=_ceiling_m(values),
     )
+
+
+def fence_off_by(autopilot: str, parameters: Mapping[str, float]) -> str:
+    """The parameter by which an ArduPilot ignores the fence that it holds, as "FENCE_ENABLE 0"; empty: it does not, or has not told."""
+    if autopilot != ARDUPILOT or "FENCE_ENABLE" not in parameters:
+        return ""
+    if not parameters["FENCE_ENABLE"] and not parameters.get("FENCE_AUTOENABLE"):
+        return "FENCE_ENABLE 0"
+    kinds = int(parameters.get("FENCE_TYPE", FENCES_POLYGONS))
+    return "" if kinds & FENCES_POLYGONS else f"FENCE_TYPE {kinds}"
 
 
 def _ceiling_m(values: Mapping[str, float]) -> float | None:

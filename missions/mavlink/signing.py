@@ -30,6 +30,7 @@ class Refusal(StrEnum):
     WRONG_SIGNATURE = "wrong-signature"
     REPLAYED = "replayed"
     TOO_OLD = "too-old"
+    BEFORE_START = "before-start"
     FROM_THE_FUTURE = "from-the-future"
     TOO_MANY_STREAMS = "too-many-streams"
 
@@ -39,35 +40,54 @@ def timestamp_at(unix_s: float) -> int:
     return min(max(round((unix_s - EPOCH_UNIX_S) * UNITS_PER_S), 0), _LARGEST_TIMESTAMP)
 
 
+def unix_s_of(timestamp: int) -> float:
+    """Seconds since 1970, of what frames bear."""
+    return timestamp / UNITS_PER_S + EPOCH_UNIX_S
+
+
+def stream_of(frame: Frame) -> str:
+    """Component and link: timestamps go on within these."""
+    return f"{frame.component}:{frame.link_id}"
+
+
 def tag_of(raw_without_tag: bytes, key: bytes) -> bytes:
     return hashlib.sha256(key + raw_without_tag).digest()[:TAG]
 
 
 @dataclass
 class SignatureCheck:
-    """Which signed frames of one vehicle are believed. `last` is the newest timestamp by component and link, as "1:0"."""
+    """Which signed frames of one vehicle are believed. `last` is the newest timestamp by component and link, as "1:0".
+
+    Frames of before `since`, a timestamp, may have been recorded while nobody here took them: they are refused.
+    """
 
     key: bytes = field(repr=False)
     last: dict[str, int] = field(default_factory=dict)
+    since: int = 0
 
     def refusal(self, frame: Frame, now_unix_s: float) -> Refusal | None:
         """None for a frame to be taken; only then is its timestamp the newest of its stream."""
         if frame.timestamp is None:
             return Refusal.UNSIGNED
-        if not hmac.compare_digest(tag_of(frame.raw[:-TAG], self.key), frame.raw[-TAG:]):
+        if not self.is_signed_right(frame):
             return Refusal.WRONG_SIGNATURE
-        stream = f"{frame.component}:{frame.link_id}"
+        stream = stream_of(frame)
         before = self.last.get(stream)
         if before is not None and frame.timestamp <= before:
             return Refusal.REPLAYED
         if frame.timestamp < timestamp_at(now_unix_s - LONGEST_AGO_S):
             return Refusal.TOO_OLD
+        if frame.timestamp < self.since:
+            return Refusal.BEFORE_START
         if frame.timestamp > timestamp_at(now_unix_s + FURTHEST_AHEAD_S):
             return Refusal.FROM_THE_FUTURE
         if before is None and len(self.last) >= MOST_STREAMS:
             return Refusal.TOO_MANY_STREAMS
         self.last[stream] = frame.timestamp
         return None
+
+    def is_signed_right(self, frame: Frame) -> bool:
+        return frame.is_signed and hmac.compare_digest(tag_of(frame.raw[:-TAG], self.key), frame.raw[-TAG:])
 
 
 @dataclass

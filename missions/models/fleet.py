@@ -111,6 +111,7 @@ class Uav(models.Model):
         default=False, db_default=False, help_text="MAVLink without a signature is taken for this UAV's: only on a closed network"
     )
     is_simulated = models.BooleanField(default=False, db_default=False, help_text="no real aircraft; may fly without terrain data")
+    is_demo = models.BooleanField(default=False, db_default=False, help_text="made with the demo data, and goes with them")
     location = models.PointField(srid=4326)
     located_at = models.DateTimeField(null=True, blank=True, help_text="when the location was set or reported")
     max_range_m = models.FloatField(null=True, blank=True, help_text="metres on one battery; empty = its type's, else not limited")
@@ -183,13 +184,16 @@ class UavCredential(models.Model):
     created_by = models.ForeignKey(User, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     last_used_at = models.DateTimeField(null=True, blank=True)
+    replaced_at = models.DateTimeField(null=True, blank=True, help_text="a newer one was made; this one counts until that was used")
     revoked_at = models.DateTimeField(null=True, blank=True)
 
     class Meta:
         ordering = ["-created_at"]
         verbose_name = "UAV credential"
         constraints = [
-            models.UniqueConstraint(fields=["uav", "kind"], condition=Q(revoked_at=None), name="uav_credential_one_in_force"),
+            models.UniqueConstraint(
+                fields=["uav", "kind"], condition=Q(revoked_at=None, replaced_at=None), name="uav_credential_one_newest"
+            ),
             models.CheckConstraint(condition=Q(kind__in=CredentialKind.values), name="uav_credential_kind_known"),
         ]
 

@@ -65,6 +65,7 @@ class Mission(models.Model):
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     updated_at = models.DateTimeField(auto_now=True)
     deleted_at = models.DateTimeField(null=True, blank=True, help_text="deleted missions can be brought back")
+    is_demo = models.BooleanField(default=False, db_default=False, help_text="made with the demo data, and goes with them")
     started_at = models.DateTimeField(null=True, blank=True, help_text="when its first UAV began to fly")
     ended_at = models.DateTimeField(null=True, blank=True, help_text="when it was completed, aborted, or had failed")
     continues = models.ForeignKey(

@@ -22,6 +22,8 @@ class Told(NamedTuple):
 
 
 _THERE = {End.OPEN: "there", End.RETURN: "there and back", End.ANY_BASE: "there and on to the nearest base"}
+NO_WAY = "No UAV can get there: no way on the network keeps clear of every zone."
+NEAREST = "the UAV that comes nearest to it"  # a problem has no names: who has them puts one in
 RANGE_ALONE = Told(Reason.BEYOND_RANGE, "It is within range alone, but not within the range that is left after the other targets.", 0.0)
 NOT_ON_ONE_ROUTE = Told(Reason.NO_PATH, "A UAV can get there, but not on one route with its other targets. Add a UAV.")
 
@@ -129,12 +131,8 @@ def reasons(problem: Problem, needed_m: FloatArray, routes: Routes) -> tuple[Una
     if not left_out:
         return ()
     visits_of = problem.visits_of_target()
-    asked = [visit for target in left_out for visit in visits_of[target]]
-    needed_m = _on_one_route(problem, Kind.METRES, needed_m, asked)
+    needed_m, used_wh = least_needs(problem, needed_m, [visit for target in left_out for visit in visits_of[target]])
     within_range = _within(problem, needed_m)
-    used_wh = needed_wh(problem)
-    if used_wh is not None:
-        used_wh = _on_one_route(problem, Kind.WH, used_wh, asked)
     owner = problem.owner or tuple(range(len(routes)))
     done_by = dict.fromkeys(owner, 0)
     for uav, route in zip(owner, routes, strict=True):
@@ -153,6 +151,13 @@ def reasons(problem: Problem, needed_m: FloatArray, routes: Routes) -> tuple[Una
         nearest = None if told.uav is None else list(dict.fromkeys(owner)).index(owner[told.uav])
         found.append(Unassigned(target, told.reason, told.message, told.missing, nearest))
     return tuple(found)
+
+
+def least_needs(problem: Problem, needed_m: FloatArray, visits: Sequence[int]) -> tuple[FloatArray, FloatArray | None]:
+    """Metres and Wh (u, v) that each UAV needs at least, exact for these visits; Wh are None if none are limited."""
+    used_wh = needed_wh(problem)
+    exact_wh = None if used_wh is None else _on_one_route(problem, Kind.WH, used_wh, visits)
+    return _on_one_route(problem, Kind.METRES, needed_m, visits), exact_wh
 
 
 def _on_one_route(problem: Problem, kind: Kind, needed: FloatArray, visits: Sequence[int]) -> FloatArray:
@@ -175,7 +180,7 @@ def _beyond_reach(problem: Problem, needed_m: FloatArray, within_range: BoolArra
     if visits and problem.allowed is not None and not problem.allowed[:, visits].any():
         return Told(Reason.NOT_ALLOWED, "No UAV of the plan is allowed to do it: none has the sensor or is the UAV that it is tied to.")
     if not np.isfinite(needed_m).any():
-        return Told(Reason.NO_PATH, "No UAV can get there: no way on the network keeps clear of every zone.")
+        return Told(Reason.NO_PATH, NO_WAY)
     if within.any():
         return None
     limit_m = np.array([uav.limit_m for uav in problem.uavs])
@@ -183,7 +188,7 @@ def _beyond_reach(problem: Problem, needed_m: FloatArray, within_range: BoolArra
     uav, visit = np.unravel_index(np.argmin(missing_m), needed_m.shape)
     there = _THERE[problem.uavs[uav].end]
     needed, missing = _km(needed_m[uav, visit]), _km(missing_m[uav, visit])
-    message = f"It is {needed} {there}, {missing} more than the range of the UAV that comes nearest to it."
+    message = f"It is {needed} {there}, {missing} more than the range of {NEAREST}."
     return Told(Reason.BEYOND_RANGE, message, float(missing_m[uav, visit]), int(uav))
 
 
@@ -195,7 +200,7 @@ def _beyond_battery(problem: Problem, used_wh: FloatArray, within_range: BoolArr
     uav, visit = np.unravel_index(np.argmin(missing_wh), missing_wh.shape)
     needed, missing = used_wh[uav, visits[int(visit)]], float(missing_wh[uav, visit])
     there = _THERE[problem.uavs[uav].end]
-    said = f"It takes {needed:,.1f} Wh {there}, {missing:,.1f} Wh more than the battery of the UAV that comes nearest to it may give."
+    said = f"It takes {needed:,.1f} Wh {there}, {missing:,.1f} Wh more than the battery of {NEAREST} may give."
     return Told(Reason.BEYOND_ENERGY, said, missing, int(uav))
 
 

@@ -76,7 +76,15 @@ class BasePageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
-class CredentialInputSerializer(KnownFieldsSerializer):
+class InsistSerializer(serializers.Serializer):
+    insist_reason = serializers.CharField(
+        max_length=300,
+        required=False,
+        help_text="administrators alone: why it is done although the UAV flies or something is on its way to it",
+    )
+
+
+class CredentialInputSerializer(InsistSerializer, KnownFieldsSerializer):
     kind = serializers.ChoiceField(choices=CredentialKind.choices)
 
 
@@ -86,6 +94,7 @@ class CredentialSerializer(serializers.Serializer):
     created_at = serializers.DateTimeField()
     created_by = serializers.CharField(allow_null=True)
     last_used_at = serializers.DateTimeField(allow_null=True)
+    replaced_at = serializers.DateTimeField(allow_null=True, help_text="a newer one was made; it counts until that was used")
     revoked_at = serializers.DateTimeField(allow_null=True)
 
 
@@ -124,5 +133,5 @@ def base_json(row: Base) -> dict[str, Any]:
 
 
 def credential_json(row: UavCredential) -> dict[str, Any]:
-    names = ("kind", "created_at", "last_used_at", "revoked_at")
+    names = ("kind", "created_at", "last_used_at", "replaced_at", "revoked_at")
     return {"id": row.pk, "created_by": row.created_by.username if row.created_by else None} | {name: getattr(row, name) for name in names}

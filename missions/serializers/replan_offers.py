@@ -12,6 +12,10 @@ REVISIONS = {OfferState.COMPUTING: 1, OfferState.OPEN: 2}  # an offer is worked 
 DECIDED = 3
 
 
+def revision_of_offer(offer: ReplanOffer) -> int:
+    return REVISIONS.get(OfferState(offer.state), DECIDED)
+
+
 class ReplanOfferSerializer(serializers.Serializer):
     id = serializers.UUIDField()
     mission = serializers.UUIDField(help_text="the mission that flies")
@@ -53,7 +57,7 @@ def offer_json(offer: ReplanOffer) -> dict[str, Any]:
         "code": offer.code,
         "cause": offer.cause,
         "state": offer.state,
-        "revision": REVISIONS.get(OfferState(offer.state), DECIDED),
+        "revision": revision_of_offer(offer),
         "difference": difference_in_words(offer.difference),
         "continuation": None if offer.continuation_id is None else str(offer.continuation_id),
         "created_at": offer.created_at,

@@ -77,6 +77,7 @@ def mission_summary(
         "unassigned_count": mission.unassigned_count,
         "uav_count": mission.uav_count,
         "is_simulated": mission.is_simulated,
+        "is_demo": mission.is_demo,
         "total_length_m": mission.total_length_m,
         "longest_route_m": mission.longest_route_m,
         "duration_s": mission.duration_s,

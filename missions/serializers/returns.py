@@ -15,6 +15,10 @@ class ReturnCheckSerializer(serializers.Serializer):
     height_m = serializers.FloatField(allow_null=True, help_text="above the take-off, as that parameter was read")
     safe_height_m = serializers.FloatField(allow_null=True, help_text="at which nothing would be in the way; null: none, or it is clear")
     read_at = serializers.DateTimeField(allow_null=True)
+    fence_warning = serializers.CharField(
+        allow_blank=True,
+        help_text="that its autopilot ignores the fence of the mission; empty: it does not, or is not known to",
+    )
 
 
 class ReturnChecksSerializer(serializers.Serializer):

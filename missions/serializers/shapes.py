@@ -383,6 +383,7 @@ class MissionSummarySerializer(serializers.Serializer):
     unassigned_count = serializers.IntegerField(help_text="of these, how many the plan does not reach")
     uav_count = serializers.IntegerField()
     is_simulated = serializers.BooleanField(help_text="one of its UAVs is no real aircraft")
+    is_demo = serializers.BooleanField(help_text="made with the demo data, and goes with them")
     total_length_m = serializers.FloatField(allow_null=True)
     longest_route_m = serializers.FloatField(allow_null=True)
     duration_s = serializers.FloatField(allow_null=True, help_text="of the longest route in time")

@@ -102,7 +102,7 @@ def assignment(
         to_start_m=ways.to_start_m,
         objective=request.objective if uavs else Objective.TOTAL,
         to_base_m=np.broadcast_to(ways.to_base_m[:, None], (len(visits), len(uavs))) if EndAction.BASE in ends else None,
-        allowed=_allowed(request, uavs, places, visits, kept_from)
+        allowed=allowed_visits(request, uavs, places, visits, kept_from)
         if kept_from or any(target.uav or target.sensor for target in targets)
         else None,
         priorities=tuple(target.priority for target in targets) if any(target.priority != Priority.NORMAL for target in targets) else (),
@@ -131,8 +131,12 @@ def _usable_wh(asked: UavRequest, share: float | None, *, may_charge: bool) -> f
     return None if usable_wh is None else usable_wh * (1.0 if share is None else share) * (1.0 - COUNTED_CLOSE)
 
 
-def _allowed(
-    request: PlanRequest, uavs: Sequence[int], places: Sequence[Place], visits: Sequence[Visit], kept_from: Mapping[int, Collection[int]]
+def allowed_visits(
+    request: PlanRequest,
+    uavs: Sequence[int],
+    places: Sequence[Place],
+    visits: Sequence[Visit],
+    kept_from: Mapping[int, Collection[int]] = NOTHING_KEPT,
 ) -> BoolArray:
     """Which visits each UAV may fly, (u, v)."""
     of_place = [
@@ -155,13 +159,13 @@ def _runs(
 ) -> tuple[dict[int, str], tuple[Lock, ...]]:
     """What is left of runs that cannot be flown, with the reason, and the runs that can."""
     start_of = {request.uavs[uav].name: start for start, uav in enumerate(uavs)}
-    on_the_ground = {request.uavs[uav].name for uav in grounded}
+    on_the_ground = {request.uavs[uav].name: grounding.message for uav, grounding in grounded.items()}
     place_of = {place.target: number for number, place in enumerate(places)}
     held_back: dict[int, str] = {}
     locks: list[Lock] = []
     for lock in request.locks:
         if lock.uav in on_the_ground:
-            held_back |= _held(lock, place_of, f"It is locked to {lock.uav}, which cannot take off.")
+            held_back |= _held(lock, place_of, f"It is locked to {lock.uav}. {on_the_ground[lock.uav]}")
         elif any(target not in place_of for target in lock.targets):
             held_back |= _held(lock, place_of, "It is locked to others of which one cannot be reached: the run is left out as a whole.")
         else:

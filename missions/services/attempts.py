@@ -124,7 +124,7 @@ def attempt(
         courses,
     )
     solution, lock_cost = solve_assignment(asked, stop=stop, on_progress=_passed_on(sketch, on_progress), seed=seed, search_s=search_s)
-    left_out += unreached_places(solution.unassigned, request, uavs, asked, places, ways, scene, no_landing, kept_from)
+    left_out += unreached_places(solution.unassigned, request, uavs, asked, places, ways, scene, grounded, no_landing, kept_from)
     return Attempt(scene, uavs, grounded, left_out, solution, lock_cost, drawing, asked.problem)
 
 

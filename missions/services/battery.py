@@ -92,6 +92,6 @@ def without_overruns(
     request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute], over: Collection[int]
 ) -> tuple[Attempt, list[PlannedRoute]]:
     """The UAVs of these numbers stay on the ground, and what they would have done is left out."""
-    left_out = [LeftOut(target, BEYOND_ENERGY, KEPT_BACK) for uav in over for target in routes[uav].targets]
+    left_out = [LeftOut(target, BEYOND_ENERGY, KEPT_BACK, uavs=(uav,)) for uav in over for target in routes[uav].targets]
     grounded = [PlannedRoute(end_action=request.end_action(number)) if number in over else route for number, route in enumerate(routes)]
     return replace(found, left_out=[*found.left_out, *left_out]), grounded

@@ -9,11 +9,13 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from django.db import transaction
+from django.db.models import Q
 from django.utils import timezone
 from django.utils.crypto import salted_hmac
 
 from missions.models import CredentialKind, Uav, UavCredential
 from missions.services.fleet_rows import locked
+from missions.services.link_changes import refuse_while_needed
 from workspace.models import User
 from workspace.prepared import prepared_rows
 from workspace.services import USE_NOTED_EVERY, hash_token, record_change
@@ -27,11 +29,19 @@ class NewCredential:
     secret: str  # nobody can read it again
 
 
-def make_credential(*, uav: Uav, actor: User, kind: CredentialKind) -> NewCredential:
-    """A new token or key; the one before it no longer counts from this moment."""
+def make_credential(*, uav: Uav, actor: User, kind: CredentialKind, insist_reason: str = "") -> NewCredential:
+    """A new token or key. One before it that was used counts until the new one is used; one that nobody used counts no more.
+
+    Raises Refused where one is replaced in flight, or with a command on its way, without a reason to insist.
+    """
     with transaction.atomic():
         locked(uav, None)
-        replaced = _revoke_all(uav, kind)
+        before = uav.credentials.filter(kind=kind, revoked_at=None)
+        is_rotated = before.exists()
+        if is_rotated and not insist_reason:
+            refuse_while_needed(uav)
+        before.filter(replaced_at=None, last_used_at=None).update(revoked_at=timezone.now())
+        before.filter(replaced_at=None).update(replaced_at=timezone.now())
         token = f"spu_{secrets.token_urlsafe(32)}"
         credential = UavCredential.objects.create(
             uav=uav,
@@ -40,15 +50,25 @@ def make_credential(*, uav: Uav, actor: User, kind: CredentialKind) -> NewCreden
             token_sha256=hash_token(token) if kind == CredentialKind.LINK_TOKEN else None,
             key_salt=secrets.token_hex(32) if kind == CredentialKind.MAVLINK_KEY else "",
         )
-        _note(uav, actor, "rotate" if replaced else "create", credential)
+        _note(uav, actor, "rotate" if is_rotated else "create", credential, insist_reason)
     return NewCredential(credential, token if kind == CredentialKind.LINK_TOKEN else mavlink_signing_key(credential=credential).hex())
 
 
-def revoke_credential(*, credential: UavCredential, actor: User) -> None:
-    """Nothing happens to one that no longer counts."""
+def revoke_credential(*, credential: UavCredential, actor: User, insist_reason: str = "") -> None:
+    """It counts no more from this moment, nor do those that it replaced. Nothing happens to one that was revoked.
+
+    Raises Refused as make_credential.
+    """
     with transaction.atomic():
-        if UavCredential.objects.filter(pk=credential.pk, revoked_at=None).update(revoked_at=timezone.now()):
-            _note(credential.uav, actor, "revoke", credential)
+        locked(credential.uav, None)
+        in_force = UavCredential.objects.filter(pk=credential.pk, revoked_at=None)
+        if not in_force.exists():
+            return
+        if not insist_reason:
+            refuse_while_needed(credential.uav)
+        earlier = Q(uav=credential.uav_id, kind=credential.kind, pk__lt=credential.pk)
+        UavCredential.objects.filter(Q(pk=credential.pk) | earlier, revoked_at=None).update(revoked_at=timezone.now())
+        _note(credential.uav, actor, "revoke", credential, insist_reason)
 
 
 # Nobody waits for the disk, as for the tokens of users.
@@ -58,15 +78,26 @@ _NOTE_USE = """
 
 
 def note_link_token_use(*, credential_id: int, last_used_at: datetime | None) -> None:
-    """When a UAV proved itself with this token last, to the minute: it asks every few seconds."""
+    """When a UAV proved itself with this token last, to the minute: it asks every few seconds. The first use ends those before it."""
     now = timezone.now()
     if last_used_at is None or now - last_used_at >= USE_NOTED_EVERY:
         prepared_rows(_NOTE_USE, [now, credential_id])
+    if last_used_at is None:
+        _revoke_replaced_by([credential_id])
 
 
 def note_mavlink_key_use(*, credential_ids: Collection[int]) -> None:
-    """UAVs have signed with these."""
+    """UAVs have signed with these. Those before them count no more."""
     UavCredential.objects.filter(pk__in=credential_ids).update(last_used_at=timezone.now())
+    _revoke_replaced_by(credential_ids)
+
+
+def _revoke_replaced_by(used_ids: Collection[int]) -> None:
+    """The newest of its kind was used: the UAV has it."""
+    newest = UavCredential.objects.filter(pk__in=used_ids, revoked_at=None, replaced_at=None)
+    for uav_id, kind in newest.values_list("uav", "kind"):
+        replaced = UavCredential.objects.filter(uav=uav_id, kind=kind, revoked_at=None, replaced_at__isnull=False)
+        replaced.update(revoked_at=timezone.now())
 
 
 def mavlink_signing_key(*, credential: UavCredential) -> bytes:
@@ -74,12 +105,8 @@ def mavlink_signing_key(*, credential: UavCredential) -> bytes:
     return salted_hmac(KEY_PURPOSE, f"{credential.uav_id}:{credential.key_salt}", algorithm="sha256").digest()
 
 
-def _revoke_all(uav: Uav, kind: CredentialKind) -> bool:
-    return bool(uav.credentials.filter(kind=kind, revoked_at=None).update(revoked_at=timezone.now()))
-
-
-def _note(uav: Uav, actor: User, action: str, credential: UavCredential) -> None:
+def _note(uav: Uav, actor: User, action: str, credential: UavCredential, insist_reason: str) -> None:
+    after = {"uav": uav.pk, "kind": credential.kind} | ({"insisted": insist_reason} if insist_reason else {})
     record_change(
-        organisation=uav.organisation, actor=actor, action=action, subject_type="uav_credential", subject_id=credential.pk,
-        after={"uav": uav.pk, "kind": credential.kind},
+        organisation=uav.organisation, actor=actor, action=action, subject_type="uav_credential", subject_id=credential.pk, after=after
     )  # fmt: skip

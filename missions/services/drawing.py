@@ -17,7 +17,7 @@ from missions.flight_plan.charging import CannotCharge, ChargingStop, charging_s
 from missions.flight_plan.heights import GroundHeights, pass_agl_m, with_heights
 from missions.flight_plan.obstacles import rising_over
 from missions.flight_plan.power import NoHeadway
-from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
+from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs, without_idle_points
 from missions.flight_plan.sorties import joined_sorties, timing_of_route
 from missions.flight_plan.timing import Timing
 from missions.flight_plan.waypoints import NONE, RoutePoints, Waypoints
@@ -143,7 +143,7 @@ class Drawing(LaidOut):
         points, length_m = with_short_legs(points, flight.longest_leg_m)
         waypoints, is_flat = with_heights(points, ground, flight)
         waypoints, blocked = rising_over(waypoints, spans_of(self.scene.network), ground, flight)
-        return _Flown(waypoints, length_m, is_flat, blocked)
+        return _Flown(without_idle_points(waypoints), length_m, is_flat, blocked)
 
     def _base(self, action: EndAction, order: Sequence[int]) -> BaseRequest | None:
         return self.bases[self.ways.nearest_base[order[-1]]] if action is EndAction.BASE else None

@@ -33,14 +33,15 @@ KeptFrom = Mapping[int, frozenset[int]]
 class Shown:
     """What drawn routes have shown so far: usable_share and kept_from as in `assignment`, and spans, by their numbers, to go round.
 
-    closed are those of the spans that are gone round with the towers at their ends. wires: why targets were kept from UAVs for wires.
+    closed are those of the spans that are gone round with the towers at their ends. wires: from which UAV targets were kept for
+    wires, and why.
     """
 
     usable_share: Mapping[int, float] = field(default_factory=dict)
     kept_from: KeptFrom = field(default_factory=dict)
     spans: frozenset[int] = frozenset()
     closed: frozenset[int] = frozenset()
-    wires: Mapping[int, str] = field(default_factory=dict)
+    wires: Mapping[int, tuple[int, str]] = field(default_factory=dict)
 
     def keeping(self, targets_of: KeptFrom) -> "Shown":
         """With these targets kept from these UAVs, too."""
@@ -115,7 +116,7 @@ class DrawnAttempts:
             return replace(shown, closed=shown.closed | spans)
         if not barred:
             barred, text = targets_barred_after_others(found, in_the_way, self.ground), barred_after_others_text
-        why = {target: text(self.request.uavs[uav].name) for uav, targets in barred.items() for target in targets}
+        why = {target: (uav, text(self.request.uavs[uav].name)) for uav, targets in barred.items() for target in targets}
         return replace(shown.keeping(barred), wires={**shown.wires, **why})
 
     def _after_overruns(

@@ -4,6 +4,7 @@ from typing import Any
 
 from django.contrib.gis.geos import Point
 from django.db import transaction
+from django.db.models.functions import Now
 
 from inspection.geodesy import LonLat
 from missions.models import Base, Uav, UavType
@@ -62,7 +63,7 @@ def change_base(*, base: Base, actor: User, position: LonLat | None, values: dic
             held.location = Point(*position, srid=4326)
         held.revision += 1
         stored(held, actor=actor, action="change", before=before, facts=_base_facts)
-        Uav.objects.filter(base=held).update(base_name=held.name)
+        Uav.objects.filter(base=held).update(base_name=held.name, updated_at=Now())
         return held
 
 

@@ -30,6 +30,14 @@ class SystemIdTaken(Exception):
     """Another UAV has this MAVLink system id."""
 
 
+class SystemIdQuota(Exception):
+    """The organisation has as many MAVLink system ids as one may have."""
+
+    def __init__(self, limit: int) -> None:
+        super().__init__(str(limit))
+        self.limit = limit
+
+
 class FleetChanged(Exception):
     """Somebody else was faster: the row is not the one that the caller has seen."""
 

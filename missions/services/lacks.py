@@ -1,6 +1,6 @@
 """How many Wh are missing for what no battery lasts for: as the best route to it alone is drawn, over the ground and what stands tall."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from missions.flight_plan.heights import GroundHeights
@@ -35,15 +35,18 @@ def with_lacks(request: PlanRequest, found: Attempt, ground: GroundHeights | Non
     return told
 
 
-def least_missing(plan: Sequence[LeftOut], other: Sequence[LeftOut]) -> list[LeftOut]:
+def least_missing(plan: Sequence[LeftOut], other: Sequence[LeftOut], flown: Mapping[int, UavRequest]) -> list[LeftOut]:
     """What another plan leaves out as out of reach, too, may lack less on its ways, nothing where it could be done alone on these.
 
-    Who has the range on one way lacks the battery.
+    Who has the range on one way lacks the battery. flown: what the other plan visits, and who does; that is not out of reach at all.
     """
     theirs = {item.target: item for item in other if item.missing is not None}
 
     def least(item: LeftOut) -> LeftOut:
         same = theirs.get(item.target)
+        if item.reason in OUT_OF_REACH and item.missing and item.target in flown:
+            alone = _alone(item.target, flown[item.target])
+            return replace(alone, message=alone.message + LOCKED) if item.message.endswith(LOCKED) else alone
         if same is None or item.reason not in OUT_OF_REACH:
             return item
         if item.missing is None:
@@ -67,7 +70,7 @@ def _told(item: LeftOut, request: PlanRequest, lacks: LeastLacks) -> LeftOut:
     if least is None and not by_range:
         for target, uav in lacks.barred:
             if target == item.target:
-                return LeftOut(target, NO_PATH, barred_text(request.uavs[uav].name))
+                return LeftOut(target, NO_PATH, barred_text(request.uavs[uav].name), uavs=(uav,))
     if least is None:
         is_way = lacks.is_clear is None or (by_range and lacks.of_range(item.target) is not None)
         if is_way or by_range:
@@ -80,7 +83,9 @@ def _told(item: LeftOut, request: PlanRequest, lacks: LeastLacks) -> LeftOut:
             return replace(told, missing=0.0)
         return _alone(item.target, request.uavs[least.uav])
     shortfall = of_battery(request.uavs[least.uav], least.missing)
-    return replace(told, message=with_minutes(_message(least, request), shortfall), missing=least.missing, shortfall=shortfall)
+    return replace(
+        told, message=with_minutes(_message(least, request), shortfall), missing=least.missing, shortfall=shortfall, uavs=(least.uav,)
+    )
 
 
 def _alone(target: int, uav: UavRequest) -> LeftOut:

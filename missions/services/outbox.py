@@ -219,17 +219,23 @@ def note_failed(command_id: UUID, code: str, words: str, *, attempt: int, holder
     return _note(command_id, attempt, holder, CommandState.FAILED, ended, words)
 
 
-def note_released(command_id: UUID, *, attempt: int, holder: str, retry_in_s: float = 0.0, note: str = "") -> bool:
-    """Given back, for anybody to take after so many seconds."""
-    back = {"holder": "", "lease_expires_at": Now() + timedelta(seconds=retry_in_s) if retry_in_s else None}
+def note_released(command_id: UUID, *, attempt: int, holder: str, retry_in_s: float = 0.0, note: str = "", code: str = "") -> bool:
+    """Given back, for anybody to take after so many seconds. With a `code` the row keeps why it has to wait, which `note` tells."""
+    back: dict[str, Any] = {"holder": "", "lease_expires_at": Now() + timedelta(seconds=retry_in_s) if retry_in_s else None}
+    back |= {"outcome_code": code[:50], "outcome": note[:500]} if code else {}
     return _note(command_id, attempt, holder, CommandState.QUEUED, back, note)
 
 
 def expire_overdue() -> int:
-    """End what nobody wants any more and nobody is carrying; returns how many."""
+    """End what nobody wants any more and nobody is carrying; returns how many. Of one that had to wait the reason is kept."""
     overdue = UavCommand.objects.filter(Q(lease_expires_at=None) | Q(lease_expires_at__lt=Now()), expires_at__lte=Now())
     with transaction.atomic():
-        never = _end(overdue.filter(sent_at=None), NOT_DELIVERED, "It could not be delivered in time.", skip_locked=True)
+        unsent = overdue.filter(sent_at=None)
+        never = _end(unsent.filter(outcome_code=""), NOT_DELIVERED, "It could not be delivered in time.", skip_locked=True)
+        waited = unsent.exclude(outcome_code="").order_by("outcome_code", "outcome")
+        for code, why in waited.values_list("outcome_code", "outcome").distinct():
+            words = f"It was not sent in time. {why}"[:500]
+            never += _end(waited.filter(outcome_code=code, outcome=why), code, words, skip_locked=True)
         sent = overdue.filter(sent_at__isnull=False)
         unsure = _end(sent, UNCONFIRMED, "It was sent; whether it was done is not known.", skip_locked=True)
     return never + unsure

@@ -89,10 +89,12 @@ def _is_barred(found: Attempt, uav: int, order: Sequence[int], ground: GroundHei
     return route is not None and bool(spans_in_the_way([route], found.scene.network, ground))
 
 
-def told_of_wires(left_out: Sequence[LeftOut], why: Mapping[int, str]) -> list[LeftOut]:
-    """With the reasons for what was kept from UAVs for wires, unless others lack the range for it."""
+def told_of_wires(left_out: Sequence[LeftOut], why: Mapping[int, tuple[int, str]]) -> list[LeftOut]:
+    """With the reasons for what was kept from UAVs, by their numbers, for wires, unless others lack the range for it."""
     return [
-        LeftOut(item.target, NO_PATH, why[item.target]) if item.target in why and item.reason == Reason.BEYOND_ENERGY.value else item
+        LeftOut(item.target, NO_PATH, why[item.target][1], uavs=(why[item.target][0],))
+        if item.target in why and item.reason == Reason.BEYOND_ENERGY.value
+        else item
         for item in left_out
     ]
 
@@ -111,6 +113,8 @@ def without_routes_barred(
     request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute], barred: Mapping[int, Collection[int]]
 ) -> tuple[Attempt, list[PlannedRoute]]:
     """The UAVs of these numbers stay on the ground, and what they would have done is left out."""
-    left_out = [LeftOut(target, NO_PATH, barred_text(request.uavs[uav].name)) for uav in barred for target in routes[uav].targets]
+    left_out = [
+        LeftOut(target, NO_PATH, barred_text(request.uavs[uav].name), uavs=(uav,)) for uav in barred for target in routes[uav].targets
+    ]
     grounded = [PlannedRoute(end_action=request.end_action(number)) if number in barred else route for number, route in enumerate(routes)]
     return replace(found, left_out=[*found.left_out, *left_out]), grounded

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from enum import StrEnum
 from functools import partial
@@ -18,11 +18,12 @@ from inspection.selectors.planning import planning_read
 from inspection.zones.reach import ZoneTable
 from missions.flight_plan.ways_home import Haven, InTheWay, Places, Trouble, WaysHome
 from missions.flight_plan.zone_facts import zones_near
+from missions.mavlink.fence import fence_of
 from missions.mavlink.frozen import Flight, NotARoute
-from missions.mavlink.own_return import NAMES, PARAMETERS, OwnReturn, own_return
+from missions.mavlink.own_return import NAMES, PARAMETERS, OwnReturn, fence_off_by, own_return
 from missions.models import LinkKind, Mission, Route, Uav
 from missions.services.approval_document import frozen_route
-from missions.services.approved_fence import rally_points
+from missions.services.approved_fence import rally_points, zones_beside
 from missions.zone_selectors import departure_s, zone_margins
 
 STEP_M = 5.0  # by which a height is looked for that is clear
@@ -39,6 +40,7 @@ class ReturnState(StrEnum):
 class ReturnCheck:
     """Of one UAV of a mission. `height_m` counts from where it took off; `warnings` are sentences, none where all is clear.
 
+    `fence_warning` tells that its autopilot ignores the fence that goes with the mission; empty where it does not, or is not known to.
     `safe_height_m` is one at which nothing is in the way; None where it is clear, or where no height would be.
     """
 
@@ -51,6 +53,7 @@ class ReturnCheck:
     height_m: float | None = None
     safe_height_m: float | None = None
     read_at: datetime | None = None
+    fence_warning: str = ""
 
 
 def note_own_return(*, uav_id: int, autopilot: str, parameters: dict[str, float]) -> None:
@@ -64,7 +67,21 @@ def note_own_return(*, uav_id: int, autopilot: str, parameters: dict[str, float]
 def return_checks(mission: Mission) -> list[ReturnCheck]:
     """For each UAV that flies a route, of a mission as loaded by selectors.mission_of_organisation. Raises NoGraph."""
     routes = [route for route in mission.routes.all() if route.geometry is not None]
-    return [_check(mission, route) for route in routes]
+    return [replace(_check(mission, route), fence_warning=_fence_warning(mission, route)) for route in routes]
+
+
+def _fence_warning(mission: Mission, route: Route) -> str:
+    uav = route.mission_uav.uav
+    told = {} if uav is None or uav.link != LinkKind.MAVLINK else uav.autopilot_return
+    off_by = fence_off_by(told.get("autopilot", ""), told.get("parameters", {}))
+    if not off_by:
+        return ""
+    try:
+        fence = fence_of(zones_beside(route, departure_s(mission)), frozen_route(route, mission))
+    except NotARoute:
+        return ""
+    words = _("%(uav)s ignores the fence that goes with the mission: its autopilot has %(parameter)s.")
+    return words % {"uav": route.mission_uav.name, "parameter": off_by} if fence.items else ""
 
 
 def _check(mission: Mission, route: Route) -> ReturnCheck:

@@ -23,6 +23,7 @@ from missions.services.drawn_attempts import DrawnAttempts, Shown
 from missions.services.lacks import OUT_OF_REACH, least_missing, with_lacks
 from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
+from missions.services.other_limits import with_other_limits
 from missions.services.places import Place, places_of, whole_assets
 from missions.services.plan_figures import counted
 from missions.services.plan_json import PlannedRoute, plan_to_json
@@ -64,9 +65,11 @@ class Finished:
     worth: Worth
     is_whole: bool  # the search could count on all of what the batteries hold, and on all ways
 
-    def beside(self, other: "Finished") -> "Finished":
+    def beside(self, other: "Finished", request: PlanRequest) -> "Finished":
         """The same, with less missing for what is out of reach where the other plan shows that."""
-        return replace(self, found=replace(self.found, left_out=least_missing(self.found.left_out, other.found.left_out)))
+        routes = [] if other.met else zip(request.uavs, other.routes, strict=True)
+        flown = {target: uav for uav, route in routes for target in route.targets}
+        return replace(self, found=replace(self.found, left_out=least_missing(self.found.left_out, other.found.left_out, flown)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,12 +100,12 @@ class _Planner:
             tried = self._finished(ground, choice, chosen, share / MOST_TRIES)
             freest = freest or tried
             if not tried.worth < best.worth:
-                best = best.beside(tried)
+                best = best.beside(tried, self.request)
                 break
             if not tried.met:
-                best = tried.beside(best)
+                best = tried.beside(best, self.request)
                 break
-            best = best.beside(tried)
+            best = best.beside(tried, self.request)
             chosen = choice.with_zones(chosen, tried.met)
         return best, freest or best
 
@@ -143,7 +146,7 @@ class _Planner:
             return preferred
         shortest = self._drawn(ground, choice, chosen, share / 2, walls, is_by_length=True)
         best, other = (shortest, preferred) if shortest.worth.left_out < preferred.worth.left_out else (preferred, shortest)
-        return best.beside(other)
+        return best.beside(other, self.request)
 
     def _is_out_of_reach(self, plan: Finished) -> bool:
         """Whether a target is left out for which another way might do."""
@@ -239,7 +242,7 @@ def _answer(request: PlanRequest, ground: PlanningGround, plan: Finished, freest
     return plan_to_json(
         request,
         plan.routes,
-        plan.found.left_out,
+        with_other_limits(request, plan.found, heights_at(ground.edition)),
         warnings_of(request, plan.found.grounded, is_by_length=plan.found.scene.is_by_length),
         graph_version=plan.found.scene.graph.version,
         ground_revision=ground.edition[0],

@@ -46,7 +46,7 @@ class LeftOut:
     """A target that no route visits; `target` is its place in the request.
 
     missing: metres or Wh without which no UAV can do it even alone, 0 where one could; None where that has no number. `shortfall` is
-    what the message tells.
+    what the message tells. uavs: those that the message speaks of, by their places in the request.
     """
 
     target: int
@@ -54,6 +54,7 @@ class LeftOut:
     message: str
     missing: float | None = None
     shortfall: Shortfall | None = None
+    uavs: tuple[int, ...] = ()
 
 
 def asset_gone(target: int) -> LeftOut:

@@ -3,13 +3,14 @@
 from datetime import datetime
 from typing import Any
 
+from django.conf import settings
 from django.contrib.gis.geos import Point
 from django.db import transaction
 from django.utils import timezone
 
 from inspection.geodesy import LonLat
-from missions.models import Base, Uav, UavType
-from missions.services.fleet_rows import deleted, facts_to_restore, locked, stored
+from missions.models import Base, Uav, UavState, UavType
+from missions.services.fleet_rows import SystemIdQuota, deleted, facts_to_restore, locked, stored
 from missions.services.link_changes import refuse_to_cut_off
 from workspace.models import Organisation, User
 
@@ -23,21 +24,28 @@ FIELDS = (
 def create_uav(*, organisation: Organisation, actor: User, position: LonLat | None, values: dict[str, Any]) -> Uav:
     """values has some of FIELDS, name among them, and perhaps `base` and `uav_type`; without a position it stands at its base.
 
-    Raises NameTaken or SystemIdTaken.
+    Raises NameTaken, SystemIdTaken or SystemIdQuota.
     """
     uav = Uav(organisation=organisation)
     _put(uav, values)
     _place(uav, position or LonLat(*values["base"].location.coords))
-    return stored(uav, actor=actor, action="create", before=None, facts=_facts)
+    with transaction.atomic():
+        _refuse_beyond_quota(uav)
+        return stored(uav, actor=actor, action="create", before=None, facts=_facts)
 
 
 def change_uav(*, uav: Uav, actor: User, position: LonLat | None, values: dict[str, Any], expected_revision: int | None = None) -> Uav:
-    """Raises FleetChanged, NameTaken, SystemIdTaken, or Refused for another link or system id while anything is on its way to it."""
+    """Retired, it gives its MAVLink system id back.
+
+    Raises FleetChanged, NameTaken, SystemIdTaken, SystemIdQuota, or Refused for another link or system id while anything is on its way.
+    """
     with transaction.atomic():
         held = locked(uav, expected_revision)
         before = _facts(held)
         _put(held, values)
         refuse_to_cut_off(held, before)
+        if held.mavlink_system_id != before["mavlink_system_id"]:
+            _refuse_beyond_quota(held)
         if position is not None:
             _place(held, position)
         held.revision += 1
@@ -50,7 +58,7 @@ def delete_uav(*, uav: Uav, actor: User, expected_revision: int | None = None) -
 
 
 def restore_uav(*, organisation: Organisation, actor: User, key: int) -> Uav:
-    """As it was when it was deleted, but without credentials. Raises NotDeleted, NameTaken or SystemIdTaken."""
+    """As it was when it was deleted, but without credentials. Raises NotDeleted, NameTaken, SystemIdTaken or SystemIdQuota."""
     facts = facts_to_restore(Uav, organisation=organisation, key=key)
     type_key, base_key = facts.get("uav_type"), facts.get("base")
     uav = Uav(  # an entry of before there were states, types and bases says nothing of them
@@ -64,7 +72,22 @@ def restore_uav(*, organisation: Organisation, actor: User, key: int) -> Uav:
     uav.location = Point(facts["position"], srid=4326)
     located_at = facts.get("located_at")
     uav.located_at = located_at and datetime.fromisoformat(located_at)
-    return stored(uav, actor=actor, action="restore", before=None, facts=_facts)
+    with transaction.atomic():
+        _refuse_beyond_quota(uav)
+        return stored(uav, actor=actor, action="restore", before=None, facts=_facts)
+
+
+def _refuse_beyond_quota(uav: Uav) -> None:
+    """Raises SystemIdQuota. An installation has 254 ids; one organisation alone may take them all.
+
+    Two that take the last one at once wait for each other.
+    """
+    if uav.mavlink_system_id is None or Organisation.objects.count() == 1:
+        return
+    Organisation.objects.select_for_update(no_key=True).filter(pk=uav.organisation_id).values_list("pk").first()
+    others = Uav.objects.filter(organisation=uav.organisation_id, mavlink_system_id__isnull=False).exclude(pk=uav.pk)
+    if others.count() >= settings.MAX_SYSTEM_IDS:
+        raise SystemIdQuota(settings.MAX_SYSTEM_IDS)
 
 
 def _put(uav: Uav, values: dict[str, Any]) -> None:
@@ -77,6 +100,8 @@ def _put(uav: Uav, values: dict[str, Any]) -> None:
         uav.base_name = values.get("base_name", "")
     elif "base_name" in values:
         uav.base = Base.objects.filter(organisation=uav.organisation, name=uav.base_name).first()
+    if uav.state == UavState.RETIRED:
+        uav.mavlink_system_id = None
 
 
 def _place(uav: Uav, position: LonLat) -> None:

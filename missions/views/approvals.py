@@ -16,16 +16,18 @@ from missions.serializers import commands as shapes
 from missions.serializers.shapes import MissionSerializer
 from missions.services.approval import approve_mission, revoke_approval
 from missions.services.dispatch import abort_mission, dispatch_mission
-from missions.views.missions import IF_MATCH, answer_mission, expected_revision, mission_or_404
+from missions.views.missions import IF_MATCH, IF_MATCH_OPTIONAL, answer_mission, expected_revision, mission_or_404, stated_revision
 from missions.views.problems import api_problems, refusals
 from workspace.idempotency import idempotent
 from workspace.models import User
+from workspace.permissions import FLYING
 from workspace.signed_in import SignedInRequest
 
 REFUSED = {
     409: OpenApiResponse(description="It cannot be done: `details.reasons` has each reason; or somebody else was faster."),
     412: OpenApiResponse(description="The mission has changed since."),
 }
+REFUSED_UNSEEN = REFUSED | {428: OpenApiResponse(description="If-Match is missing.")}
 
 
 def _body(serializer: type, request: Request) -> dict[str, Any]:
@@ -60,12 +62,14 @@ class MissionApproval(APIView):
 
 
 class MissionApprove(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="approve_mission",
         summary="Approve a planned mission: from now on it is frozen",
         parameters=[IF_MATCH],
         request=shapes.ApproveInputSerializer,
-        responses={200: MissionSerializer, **REFUSED},
+        responses={200: MissionSerializer, **REFUSED_UNSEEN},
     )
     @idempotent
     def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
@@ -78,17 +82,19 @@ class MissionApprove(APIView):
 
 
 class MissionRevoke(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="revoke_mission",
         summary="Take an approval back: the mission can be changed again",
         description="If it may be on UAVs, each is told to drop it, and the mission is planned again once all were seen without it.",
-        parameters=[IF_MATCH],
+        parameters=[IF_MATCH_OPTIONAL],
         request=shapes.ReasonInputSerializer,
         responses={200: MissionSerializer, **REFUSED},
     )
     @idempotent
     def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
-        expected = expected_revision(request)
+        expected = stated_revision(request)
         mission = mission_or_404(request.user, mission_id)
         values = _body(shapes.ReasonInputSerializer, request)
         with api_problems(has_precondition=expected is not None), refusals():
@@ -97,13 +103,15 @@ class MissionRevoke(APIView):
 
 
 class MissionDispatch(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="dispatch_mission",
         summary="Send an approved mission to its UAVs",
         description="Each UAV is given the first flight of its route; with `uav` one of them, with `flight` a later flight of it.",
         parameters=[IF_MATCH],
         request=shapes.DispatchInputSerializer,
-        responses={200: shapes.SentSerializer, **REFUSED},
+        responses={200: shapes.SentSerializer, **REFUSED_UNSEEN},
     )
     @idempotent
     def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
@@ -123,16 +131,19 @@ class MissionDispatch(APIView):
 
 
 class MissionAbort(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="abort_mission",
         summary="Abort a mission that is on its way",
-        parameters=[IF_MATCH],
+        description="Works without If-Match: whatever was changed since, the UAVs are told to stop flying it.",
+        parameters=[IF_MATCH_OPTIONAL],
         request=shapes.WhyInputSerializer,
         responses={200: shapes.SentSerializer, **REFUSED},
     )
     @idempotent
     def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
-        expected = expected_revision(request)
+        expected = stated_revision(request)
         mission = mission_or_404(request.user, mission_id)
         values = _body(shapes.WhyInputSerializer, request)
         with api_problems(has_precondition=expected is not None), refusals():

@@ -18,6 +18,7 @@ from missions.views.problems import refusals
 from missions.views.uavs import uav_or_404
 from workspace.idempotency import idempotent
 from workspace.paging import page_of
+from workspace.permissions import FLYING
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
@@ -44,6 +45,8 @@ class MissionCommands(APIView):
 
 
 class UavCommands(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="list_commands_of_uav",
         summary="What a UAV was told, the newest first",

@@ -1,20 +1,39 @@
 """What a UAV proves itself with: made, replaced, revoked."""
 
+from typing import Any
+
 from django.shortcuts import get_object_or_404
-from drf_spectacular.utils import extend_schema
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions import fleet_selectors, services
 from missions.models import CredentialKind
-from missions.serializers.fleet import CredentialInputSerializer, CredentialPageSerializer, NewCredentialSerializer, credential_json
+from missions.serializers.fleet import (
+    CredentialInputSerializer,
+    CredentialPageSerializer,
+    InsistSerializer,
+    NewCredentialSerializer,
+    credential_json,
+)
+from missions.views.problems import refusals
 from missions.views.uavs import uav_or_404
+from workspace.errors import ApiProblem
 from workspace.paging import page_of
+from workspace.permissions import ADMINISTRATORS, InTheBrowserAlone
+from workspace.proof import PASSWORD_NEEDED, require_proof
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
+NEEDED_NOW = OpenApiResponse(
+    description="The UAV flies, or a command or mission is on its way to it: an administrator may insist by `insist_reason`."
+)
+
 
 class UavCredentials(APIView):
+    permission_classes = [InTheBrowserAlone]
+
     @extend_schema(
         operation_id="list_uav_credentials",
         summary="Tokens and keys of a UAV, the newest first; never the secrets themselves",
@@ -30,24 +49,53 @@ class UavCredentials(APIView):
         operation_id="make_uav_credential",
         summary="Make a link token or a MAVLink signing key",
         description=(
-            "The answer has the secret, this once. One of the same kind that was in force is revoked. There is no Idempotency-Key here, "
-            "because kept answers would hold the secret: asking again makes another one."
+            "The answer has the secret, this once. One of the same kind that was in force counts until the new one was used. Not with a "
+            "token, and within 15 min of saying one's password. There is no Idempotency-Key here, because kept answers would hold the "
+            "secret: asking again makes another one."
         ),
         request=CredentialInputSerializer,
-        responses={201: NewCredentialSerializer},
+        responses={201: NewCredentialSerializer, 403: PASSWORD_NEEDED, 409: NEEDED_NOW},
     )
     def post(self, request: SignedInRequest, uav_id: int) -> Response:
+        require_proof(request)
         uav = uav_or_404(request.user, uav_id)
         serializer = CredentialInputSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)
-        made = services.make_credential(uav=uav, actor=request.user, kind=CredentialKind(serializer.validated_data["kind"]))
+        values = serializer.validated_data
+        with refusals():
+            made = services.make_credential(
+                uav=uav, actor=request.user, kind=CredentialKind(values["kind"]), insist_reason=_insist_reason(request, values)
+            )
         made.credential.refresh_from_db()
         return Response(credential_json(made.credential) | {"secret": made.secret}, status=201, headers={"Cache-Control": "no-store"})
 
 
 class UavCredentialDetail(APIView):
-    @extend_schema(operation_id="revoke_uav_credential", summary="Revoke a token or a key", responses={204: None})
+    permission_classes = [InTheBrowserAlone]
+
+    @extend_schema(
+        operation_id="revoke_uav_credential",
+        summary="Revoke a token or a key",
+        description="It counts no more at once. Not with a token, and within 15 min of saying one's password.",
+        parameters=[InsistSerializer],
+        responses={204: None, 403: PASSWORD_NEEDED, 409: NEEDED_NOW},
+    )
     def delete(self, request: SignedInRequest, uav_id: int, credential_id: int) -> Response:
+        require_proof(request)
+        serializer = InsistSerializer(data=request.query_params)
+        serializer.is_valid(raise_exception=True)
         credentials = fleet_selectors.credentials_of_uav(uav_or_404(request.user, uav_id)).select_related("uav__organisation")
-        services.revoke_credential(credential=get_object_or_404(credentials, pk=credential_id), actor=request.user)
+        credential = get_object_or_404(credentials, pk=credential_id)
+        with refusals():
+            services.revoke_credential(
+                credential=credential, actor=request.user, insist_reason=_insist_reason(request, serializer.validated_data)
+            )
         return Response(status=204)
+
+
+def _insist_reason(request: SignedInRequest, values: dict[str, Any]) -> str:
+    """Raises ApiProblem 403 for a reason of anybody but an administrator."""
+    reason = str(values.get("insist_reason", ""))
+    if reason and request.user.role not in ADMINISTRATORS:
+        raise ApiProblem(403, "permission_denied", _("Only administrators replace or revoke it now."))
+    return reason

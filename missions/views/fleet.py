@@ -22,9 +22,9 @@ from missions.serializers.fleet import (
 from missions.views.fleet_problems import CHANGE_ANSWERS, DELETE_ANSWERS, RESTORE_CONFLICT, TAKEN, fleet_problems
 from workspace.idempotency import idempotent
 from workspace.models import User
-from workspace.paging import page_of
+from workspace.paging import changed_since, page_of
 from workspace.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
-from workspace.schema import PAGE_PARAMETERS
+from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
 TEXT = OpenApiParameter("text", str, description="part of the name")
@@ -54,11 +54,14 @@ def _type_now(user: User, type_id: int) -> Any:
 
 class UavTypeList(APIView):
     @extend_schema(
-        operation_id="list_uav_types", summary="UAV types, by name", parameters=[TEXT, *PAGE_PARAMETERS], responses=UavTypePageSerializer
+        operation_id="list_uav_types",
+        summary="UAV types, by name",
+        parameters=[TEXT, CHANGED_SINCE, *PAGE_PARAMETERS],
+        responses=UavTypePageSerializer,
     )
     def get(self, request: SignedInRequest) -> Response:
         types = fleet_selectors.types_of_organisation(request.user.organisation, text=_text(request))
-        page = page_of(request, types, order=("name", "pk"))
+        page = page_of(request, changed_since(request, types), order=("name", "pk"))
         return Response({"results": [uav_type_json(row) for row in page.rows], "next": page.next})
 
     @extend_schema(
@@ -139,10 +142,15 @@ def _base_now(user: User, base_id: int) -> Any:
 
 
 class BaseList(APIView):
-    @extend_schema(operation_id="list_bases", summary="Bases, by name", parameters=[TEXT, *PAGE_PARAMETERS], responses=BasePageSerializer)
+    @extend_schema(
+        operation_id="list_bases",
+        summary="Bases, by name",
+        parameters=[TEXT, CHANGED_SINCE, *PAGE_PARAMETERS],
+        responses=BasePageSerializer,
+    )
     def get(self, request: SignedInRequest) -> Response:
         bases = fleet_selectors.bases_of_organisation(request.user.organisation, text=_text(request))
-        page = page_of(request, bases, order=("name", "pk"))
+        page = page_of(request, changed_since(request, bases), order=("name", "pk"))
         return Response({"results": [base_json(row) for row in page.rows], "next": page.next})
 
     @extend_schema(operation_id="create_base", summary="Add a base", request=BaseSerializer, responses={201: BaseSerializer, **TAKEN})

@@ -9,7 +9,7 @@ from django.utils.translation import ngettext
 from drf_spectacular.utils import OpenApiResponse
 
 from missions.fleet_selectors import last_change
-from missions.services import FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdTaken
+from missions.services import FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdQuota, SystemIdTaken
 from workspace.errors import ApiProblem
 from workspace.preconditions import PRECONDITION_ANSWERS
 
@@ -32,6 +32,9 @@ def fleet_problems(current: Callable[[], Any] | None = None) -> Iterator[None]:
     except SystemIdTaken as error:
         message = _("Another UAV has this MAVLink system id.")
         raise ApiProblem(409, "system_id_taken", message, details={"mavlink_system_id": [message]}) from error
+    except SystemIdQuota as error:
+        message = _("Your organisation has %(limit)s MAVLink system ids already. Retire a UAV to free its id.") % {"limit": error.limit}
+        raise ApiProblem(409, "system_id_quota", message, details={"mavlink_system_id": [message]}) from error
     except FleetRowInUse as error:
         raise ApiProblem(409, f"{error.subject}_in_use", _in_use(error)) from error
     except NotDeleted as error:

@@ -1,9 +1,7 @@
 """What the list of missions may be asked for, from the address to a filter."""
 
-from datetime import UTC, datetime, time
 from typing import Any
 
-from django.utils.dateparse import parse_date, parse_datetime
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter
 from rest_framework.request import Request
@@ -11,6 +9,7 @@ from rest_framework.request import Request
 from missions.list_selectors import LAST_CHANGED_FIRST, ORDERS, MissionFilter, order_of
 from missions.models import MissionState
 from workspace.errors import ApiProblem
+from workspace.paging import asked_instant
 
 ORDER_NAMES = [*ORDERS, *(f"-{name}" for name in ORDERS)]
 FILTER_PARAMETERS = [
@@ -41,8 +40,8 @@ def asked_filter(request: Request) -> MissionFilter:
         author=ask.get("author", "").strip()[:150].replace("\0", ""),
         uav=int(uav) if uav else None,
         is_stale={"true": True, "false": False}.get(ask.get("stale", "")),
-        changed_from=_instant(ask.get("changed_from", ""), "changed_from"),
-        changed_before=_instant(ask.get("changed_before", ""), "changed_before"),
+        changed_from=asked_instant(request, "changed_from"),
+        changed_before=asked_instant(request, "changed_before"),
         is_deleted=ask.get("deleted") == "true",
     )
 
@@ -52,19 +51,6 @@ def asked_order(request: Request) -> tuple[str, str]:
         return order_of(request.query_params.get("order") or LAST_CHANGED_FIRST)
     except KeyError as error:
         raise _refusal("order", _("Missions are sorted by %(names)s.") % {"names": ", ".join(ORDERS)}) from error
-
-
-def _instant(text: str, name: str) -> datetime | None:
-    if not text:
-        return None
-    try:
-        day = parse_date(text)
-        at = datetime.combine(day, time(), tzinfo=UTC) if day else parse_datetime(text)
-    except ValueError:
-        at = None
-    if at is None:
-        raise _refusal(name, _("A date or a time in ISO 8601 is needed."))
-    return at if at.tzinfo else at.replace(tzinfo=UTC)
 
 
 def _refusal(name: str, message: str) -> Any:

@@ -28,13 +28,19 @@ from missions.views.problems import api_problems
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import Job, User
-from workspace.paging import page_of
-from workspace.schema import PAGE_PARAMETERS
+from workspace.paging import changed_since, page_of
+from workspace.preconditions import need_if_match
+from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 from workspace.throttling import ScopedRate
 
 IF_MATCH = OpenApiParameter(
-    "If-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen; 412 if it has changed"
+    "If-Match", str, OpenApiParameter.HEADER, required=True,
+    description="the ETag of the mission as last seen, or * for whatever is there; 412 if it has changed",
+)  # fmt: skip
+# What stops UAVs, or takes from them what they would fly, is never held up by a header that is missing.
+IF_MATCH_OPTIONAL = OpenApiParameter(
+    "If-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen: 412 if it has changed; without it any"
 )
 IF_NONE_MATCH = OpenApiParameter(
     "If-None-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen; 304 while it is the same"
@@ -42,6 +48,7 @@ IF_NONE_MATCH = OpenApiParameter(
 CHANGED = {
     409: OpenApiResponse(description="The mission cannot be changed, or somebody else was faster."),
     412: OpenApiResponse(description="The mission has changed since."),
+    428: OpenApiResponse(description="If-Match is missing."),
 }
 PLANNED_LATER = {202: OpenApiResponse(shapes.JobLinkSerializer, description="Stored; a job plans it, see Location.")}
 
@@ -63,6 +70,12 @@ def answer_mission(user: User, mission_id: UUID, *, status: int = 200) -> Respon
 
 
 def expected_revision(request: Request) -> int | None:
+    """The revision that If-Match names; None for any (*). Raises ApiProblem 428 without the header."""
+    need_if_match(request)
+    return stated_revision(request)
+
+
+def stated_revision(request: Request) -> int | None:
     """The revision that If-Match names; None without the header or for any (*)."""
     text = request.headers.get("If-Match", "*").strip().removeprefix("W/").strip('"')
     if text == "*":
@@ -108,14 +121,14 @@ class MissionList(_PlansWhenAsked):
     @extend_schema(
         operation_id="list_missions",
         summary="Missions, the last changed first",
-        parameters=[*FILTER_PARAMETERS, *PAGE_PARAMETERS],
+        parameters=[*FILTER_PARAMETERS, CHANGED_SINCE, *PAGE_PARAMETERS],
         responses=shapes.MissionPageSerializer,
     )
     def get(self, request: SignedInRequest) -> Response:
         organisation, asked = request.user.organisation, asked_filter(request)
-        rows = mission_rows(missions_found(organisation, asked))
+        rows = mission_rows(changed_since(request, missions_found(organisation, asked)))
         page = page_of(request, rows, order=asked_order(request), default_limit=50, max_limit=200)
-        by_state = counts_by_state(missions_found(organisation, replace(asked, states=())))
+        by_state = counts_by_state(changed_since(request, missions_found(organisation, replace(asked, states=()))))
         drawings, ground = surroundings(page.rows), ground_revision()
         bases, others = bases_landed_at(page.rows, organisation.pk), missions_with_other_uavs(page.rows)
         return Response({

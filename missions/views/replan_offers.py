@@ -11,13 +11,14 @@ from rest_framework.views import APIView
 from missions.models import ReplanOffer
 from missions.serializers import replan_offers as shapes
 from missions.services.replanning import accept_offer, ask_for_offer, decline_offer
-from missions.views.missions import IF_MATCH, expected_revision, mission_or_404
+from missions.views.missions import IF_MATCH, IF_MATCH_OPTIONAL, expected_revision, mission_or_404, stated_revision
 from missions.views.plans import job_answer
 from missions.views.problems import api_problems, refusals
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import User
 from workspace.paging import page_of
+from workspace.permissions import FLYING
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 from workspace.tasks import send_job_on_commit
@@ -27,9 +28,12 @@ REFUSED = {
     409: OpenApiResponse(description="It cannot be done: `details.reasons` has each reason. An outdated offer can be worked out again."),
     412: OpenApiResponse(description="The offer is no longer as it was seen."),
 }
+REFUSED_UNSEEN = REFUSED | {428: OpenApiResponse(description="If-Match is missing.")}
 
 
 class MissionReplanOffers(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="list_replan_offers",
         summary="Other ways offered to do what is left of a mission, the newest first",
@@ -64,6 +68,8 @@ class ReplanOfferDetail(APIView):
 
 
 class ReplanOfferAccept(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="accept_replan_offer",
         summary="Fly the offered plan",
@@ -71,24 +77,26 @@ class ReplanOfferAccept(APIView):
         " hover, and started; what they leave of the mission that flies is taken over. Where a step fails a UAV stays held.",
         parameters=[IF_MATCH],
         request=None,
-        responses={200: shapes.ReplanOfferSerializer, **REFUSED},
+        responses={200: shapes.ReplanOfferSerializer, **REFUSED_UNSEEN},
     )
     @idempotent
     def post(self, request: SignedInRequest, offer_id: UUID) -> Response:
-        return _decided(request, offer_id, accept_offer)
+        return _decided(request, offer_id, accept_offer, expected_revision(request))
 
 
 class ReplanOfferDecline(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="decline_replan_offer",
         summary="Leave the mission as it is",
-        parameters=[IF_MATCH],
+        parameters=[IF_MATCH_OPTIONAL],
         request=None,
-        responses={200: shapes.ReplanOfferSerializer, **REFUSED},
+        responses={200: shapes.ReplanOfferSerializer, **REFUSED_UNSEEN},
     )
     @idempotent
     def post(self, request: SignedInRequest, offer_id: UUID) -> Response:
-        return _decided(request, offer_id, decline_offer)
+        return _decided(request, offer_id, decline_offer, stated_revision(request))
 
 
 def offer_or_404(user: User, offer_id: UUID) -> ReplanOffer:
@@ -99,8 +107,7 @@ def offer_or_404(user: User, offer_id: UUID) -> ReplanOffer:
     return offer
 
 
-def _decided(request: SignedInRequest, offer_id: UUID, decide: Callable[..., ReplanOffer]) -> Response:
-    expected = expected_revision(request)
+def _decided(request: SignedInRequest, offer_id: UUID, decide: Callable[..., ReplanOffer], expected: int | None) -> Response:
     offer = offer_or_404(request.user, offer_id)
     if expected is not None and shapes.offer_json(offer)["revision"] != expected:
         raise ApiProblem(412, "offer_changed", "The offer is no longer as it was seen. Load it again.")

@@ -17,6 +17,7 @@ from missions import services
 from missions.serializers.plain_request import plain_request
 from workspace.authentication import holder_of, holder_of_session
 from workspace.errors import DATABASE_AWAY
+from workspace.models import TokenScope
 from workspace.parsers import read_json
 from workspace.permissions import PLANNERS
 from workspace.throttling import ScopedRate
@@ -43,7 +44,7 @@ def small_plan(request: HttpRequest, *, throttle_scope: str) -> HttpResponse | N
 def _plan_of(request: HttpRequest, body: bytes, throttle_scope: str) -> dict[str, Any] | None:
     authorization = request.META.get("HTTP_AUTHORIZATION")
     holder = holder_of_session(request) if authorization is None else holder_of(authorization)
-    if holder is None or holder.role not in PLANNERS:
+    if holder is None or holder.role not in PLANNERS or not (holder.scopes is None or TokenScope.PLAN in holder.scopes):
         return None
     asked = plain_request(read_json(body))
     if asked is None or len(asked.targets) > settings.ROUTING_RULES.small_plan_targets:

@@ -19,10 +19,10 @@ from missions.views.problems import refusals
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import User
-from workspace.paging import page_of
+from workspace.paging import changed_since, page_of
 from workspace.permissions import ADMINISTRATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
-from workspace.schema import PAGE_PARAMETERS
+from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
 WAIVES_SAFETY = ("is_simulated", "allows_unsigned")
@@ -97,6 +97,7 @@ class UavList(APIView):
             OpenApiParameter("base", int),
             OpenApiParameter("type", int),
             OpenApiParameter("sensor", str, description="part of the name of one of its sensors"),
+            CHANGED_SINCE,
             *PAGE_PARAMETERS,
         ],
         responses=UavCollectionSerializer,
@@ -105,7 +106,7 @@ class UavList(APIView):
         filters = _filters(request)
         found = fleet_selectors.uavs_that_match(request.user.organisation, **filters)
         in_any_state = fleet_selectors.uavs_that_match(request.user.organisation, **filters | {"state": fleet_selectors.EVERY_STATE})
-        page = page_of(request, fleet_selectors.with_use(found), order=("name", "pk"))
+        page = page_of(request, fleet_selectors.with_use(changed_since(request, found)), order=("name", "pk"))
         return Response(
             {
                 "type": "FeatureCollection",

@@ -2,6 +2,10 @@
 
 from dataclasses import dataclass
 
+from missions.flight_plan.rules import FlightRules
+
+AS_PLANNED = FlightRules()
+
 
 @dataclass(frozen=True, slots=True)
 class Airframe:
@@ -9,8 +13,9 @@ class Airframe:
 
     max_airspeed_mps       what plans may count on; the tilt limit leaves some more, for gusts
     max_speed_mps          over ground, whatever a mission asks for
+    climb_mps, descent_mps as plans count on, and as an operator sets the autopilot; each airframe can do more
     acceleration_mps2      along a straight leg, speeding up and slowing down
-    corner_mps2            across, in the rounded corner before a waypoint that is passed
+    corner_mps2            across, in the rounded corner before a waypoint that is passed; ArduCopter's is twice its WPNAV_ACCEL of 2.5
     empty_cell_v, full_cell_v, resistance_ohm
                            the battery's open voltage between 0 and 100 %, and what a current takes of it
     """
@@ -23,8 +28,8 @@ class Airframe:
     max_airspeed_mps: float
     max_speed_mps: float
     cruise_speed_mps: float
-    climb_mps: float = 2.0
-    descent_mps: float = 2.0
+    climb_mps: float = AS_PLANNED.climb_speed_mps
+    descent_mps: float = AS_PLANNED.climb_speed_mps
     acceleration_mps2: float = 2.0
     corner_mps2: float = 2.5
     empty_cell_v: float = 3.5
@@ -54,8 +59,7 @@ AIRFRAMES = {
             max_airspeed_mps=19.0,
             max_speed_mps=17.0,
             cruise_speed_mps=10.0,
-            climb_mps=4.0,
-            descent_mps=3.0,
+            corner_mps2=5.0,
             resistance_ohm=0.03,
         ),
     )

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 Vector = tuple[float, float, float]
 
-CORNER_M = 0.4  # how far inside a waypoint the corner may be cut
+CORNER_M = 1.3  # how far inside a waypoint the corner may be cut; ArduCopter's WPNAV_RADIUS is 2 m, PX4's NAV_ACC_RAD 10 m
 STRAIGHT_RAD = 1e-3  # less of a turn is none
 REVERSAL_RAD = math.radians(150.0)  # more of a turn is made standing
 LEAST_LEG_M = 0.05

@@ -21,7 +21,7 @@ class GuidanceRules:
     most_lift_mps: float = 1.5
     lead_s: float = 0.3
     slow_landing_mps: float = 0.6
-    landing_slope_per_s: float = 0.25  # m/s for each metre above ground
+    landing_slope_per_s: float = 0.18  # m/s for each metre above ground: the last 8 m take the 11 s that plans count
 
 
 class Command(NamedTuple):

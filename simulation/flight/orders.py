@@ -199,7 +199,8 @@ def _order(index: int, item: MissionItem) -> Order:
     if command == mavlink.MAV_CMD_DO_CHANGE_SPEED:
         return NOTHING if math.isnan(two) or two < 0.0 else SetSpeed(_within(index, two, 0.1, MOST_SPEED_MPS, 2))
     if command in (mavlink.MAV_CMD_DO_SET_ROI_LOCATION, mavlink.MAV_CMD_DO_SET_ROI):
-        return LookAt(_place(index, item))
+        is_end = command == mavlink.MAV_CMD_DO_SET_ROI and not (item.longitude_e7 or item.latitude_e7 or item.altitude_m)
+        return LookAt(None if is_end else _place(index, item))
     if command == mavlink.MAV_CMD_DO_SET_ROI_NONE:
         return LookAt(None)
     if command == mavlink.MAV_CMD_CONDITION_YAW:

@@ -48,7 +48,7 @@ SOURCES = (
     gettext_noop("a third of the distance that UAVs are kept apart"),
     gettext_noop("height margin from zones"),
     gettext_noop("doubt of a battery's gauge"),
-    gettext_noop("error of a satellite position, twice"),
+    gettext_noop("SPANWISE_ZONE_CLEARANCE_M less 2 m of tracking"),
     gettext_noop("SPANWISE_ZONE_HEIGHT_MARGIN_M less 2 m of tracking"),
     gettext_noop("SPANWISE_CLEARANCE_M less 5 m"),
     gettext_noop("arms of a tower beside its middle"),

@@ -104,7 +104,7 @@ class SimulatedFlightsInputSerializer(KnownFieldsSerializer):
 
 class PoolUavSerializer(KnownFieldsSerializer):
     position = PositionField()
-    name = serializers.CharField(max_length=60, required=False, default="")
+    name = serializers.CharField(max_length=60, allow_blank=True, default="")
     heading_deg = serializers.FloatField(min_value=0, max_value=360, default=0.0)
     ground_amsl_m = serializers.FloatField(
         min_value=-500, max_value=9_000, allow_null=True, default=None, help_text="of the ground there, where no terrain model tells it"

@@ -121,7 +121,12 @@ def _stand_on(rehearsal: Rehearsal, plan: PlanToFly, ground: PlanningGround) -> 
 
 
 def limits_of_settings() -> Limits:
-    return Limits.of(settings.FLIGHT_RULES, settings.SEPARATION_RULES, zone_height_m=settings.ZONE_RULES.height_margin_m)
+    return Limits.of(
+        settings.FLIGHT_RULES,
+        settings.SEPARATION_RULES,
+        zone_beside_m=settings.GRAPH_RULES.zone_clearance_m,
+        zone_height_m=settings.ZONE_RULES.height_margin_m,
+    )
 
 
 def _shares(progress: OnProgress, number: int, runs: int) -> Callable[[float], None]:

@@ -9,6 +9,7 @@ from django.utils.translation import gettext as _
 
 from missions.models import CredentialKind, LinkKind, Mission, MissionState, MissionUav, Uav
 from missions.services.credentials import make_credential
+from missions.services.fleet_rows import SystemIdQuota
 from missions.services.refused import Reason, Refused, refuse, refuse_for
 from missions.services.uavs import change_uav
 from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
@@ -69,7 +70,10 @@ def reachable(uav: Uav, actor: User) -> Uav:
         free = next((number for number in range(1, HIGHEST_SYSTEM + 1) if number not in taken), None)
         if free is None:
             raise refuse("no_system_id", _("All MAVLink system ids are taken."))
-        uav = change_uav(uav=uav, actor=actor, position=None, values={"mavlink_system_id": free})
+        try:
+            uav = change_uav(uav=uav, actor=actor, position=None, values={"mavlink_system_id": free})
+        except SystemIdQuota as error:
+            raise refuse("no_system_id", _("Your organisation has no MAVLink system id left. Retire a UAV to free its id.")) from error
     has_key = uav.credentials.filter(kind=CredentialKind.MAVLINK_KEY, revoked_at=None).exists()
     if not has_key and not uav.allows_unsigned:
         make_credential(uav=uav, actor=actor, kind=CredentialKind.MAVLINK_KEY)

@@ -1,6 +1,7 @@
 """A batch of simulated UAVs in one process, at one pace: a step for all of them, then the ears until the next."""
 
 import logging
+import math
 import selectors
 import time
 from collections.abc import Callable, Sequence
@@ -14,6 +15,7 @@ from simulation.vehicle_protocol.pace import Pace
 
 logger = logging.getLogger(__name__)
 
+SPEED_UNHEARD = 1.0  # while a station falls silent that has to keep up with the reports: those that it is too busy for are lost
 STEP_S = 0.04  # of simulated time, as SimulatedUav has it
 SLOWEST, FASTEST = 0.1, 60.0
 
@@ -86,7 +88,9 @@ class Fleet:
             for uav in self._flying():
                 selector.register(uav.radio.socket, selectors.EVENT_READ, uav)
             while not self._is_ended:
-                if self._pace.begin(time.monotonic()):
+                now_s = time.monotonic()
+                self._pace.limit = SPEED_UNHEARD if any(uav.radio.is_station_silent(now_s) for uav in self._flying()) else math.inf
+                if self._pace.begin(now_s):
                     if until():
                         break
                     self._make_changes(selector)

@@ -13,6 +13,9 @@ from missions.mavlink.frames import Damage, Frame, frames_of_datagram
 LARGEST_DATAGRAM = 65_535
 MOST_DATAGRAMS = 100  # that are heard before something else has its turn
 MOST_PEERS = 16
+HEARTBEAT = 0  # its message id
+FEWEST_HEARTBEATS = 3  # of a station that sends them regularly
+SILENT_AFTER_S = 2.0  # of wall time; such stations send one a second
 FORGOTTEN_AFTER_S = 60.0  # of silence; the addresses it was given never
 Address = tuple[str, int]
 
@@ -49,6 +52,8 @@ class Radio:
     damages: Counter[Damage] = field(default_factory=Counter)
     _peers: dict[Address, _Peer] = field(default_factory=dict)
     _links: int = 0
+    _heartbeats: int = 0
+    _heartbeat_s: float = 0.0
 
     def __post_init__(self) -> None:
         first = self.listen or next(iter(self.given), ("127.0.0.1", 0))
@@ -88,7 +93,13 @@ class Radio:
             except OSError:  # what was sent before could not be delivered
                 continue
             for frame in frames_of_datagram(datagram, self.damages):
+                if frame.message_id == HEARTBEAT:
+                    self._heartbeats, self._heartbeat_s = self._heartbeats + 1, time.monotonic()
                 yield frame, (address[0], address[1])
+
+    def is_station_silent(self, now_s: float) -> bool:
+        """Whether a station that has sent heartbeats is late with the next one: it may not keep up with what it is sent."""
+        return self._heartbeats >= FEWEST_HEARTBEATS and now_s - self._heartbeat_s > SILENT_AFTER_S
 
     def link_of(self, address: Address) -> int | None:
         """Of who sent something that was believed; None while too many others are talking."""

@@ -19,7 +19,8 @@ WITH_PLACE = frozenset(
 # How many of its parameters ArduCopter keeps, as whole numbers (read in its AP_Mission.cpp); the others come back as 0.
 KEPT_BY_ARDUPILOT = {
     mavlink.MAV_CMD_NAV_WAYPOINT: 1, mavlink.MAV_CMD_NAV_TAKEOFF: 1, mavlink.MAV_CMD_NAV_LAND: 1, mavlink.MAV_CMD_NAV_LOITER_TIME: 1,
-    mavlink.MAV_CMD_DO_SET_ROI_LOCATION: 1, mavlink.MAV_CMD_DO_SET_ROI_NONE: 1, mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: 0,
+    mavlink.MAV_CMD_DO_SET_ROI_LOCATION: 1, mavlink.MAV_CMD_DO_SET_ROI_NONE: 1, mavlink.MAV_CMD_DO_SET_ROI: 1,
+    mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: 0,
     mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION: 1, mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION: 1,
     mavlink.MAV_CMD_NAV_RALLY_POINT: 0,
 }  # fmt: skip

@@ -1,5 +1,6 @@
 """How simulated time follows the clock on the wall: at a pace, step by step, and never in a spiral of ever later steps."""
 
+import math
 from dataclasses import dataclass
 
 RESYNC_AFTER_S = 1.0  # of wall time: what is further behind is given up
@@ -10,7 +11,7 @@ class Pace:
     """`speed` simulated seconds a second of the wall. Times are monotonic wall seconds.
 
     A step is late when it begins more than a whole step after it was due. Behind by more than RESYNC_AFTER_S the rest is not made up for:
-    `slipped_s` counts what simulated time has lost so.
+    `slipped_s` counts what simulated time has lost so. `limit` is a speed that holds while it is below the wanted one.
     """
 
     step_s: float
@@ -20,11 +21,12 @@ class Pace:
     late_steps: int = 0
     latest_s: float = 0.0
     slipped_s: float = 0.0
+    limit: float = math.inf
 
     @property
     def interval_s(self) -> float:
         """Between two steps, on the wall."""
-        return self.step_s / self.speed
+        return self.step_s / min(self.speed, self.limit)
 
     def begin(self, now_s: float) -> bool:
         """Whether a step is due; it counts as taken then."""

@@ -17,6 +17,7 @@ from simulation.verdict.reaching import Visit, visits_of
 from simulation.verdict.zone_approach import ZoneApproach, zone_approaches
 
 MEETING_STEP_S = 0.2
+AS_PLANNED = 1.05  # of the planned energy
 NEAR_ZONES = 5  # of a route that are told of
 
 GroundHeights = Callable[[FloatArray], FloatArray]
@@ -184,8 +185,13 @@ def _of_energy(route: FlownRoute, energy: Sequence[FlightEnergy], visits: Sequen
         if one.left_percent < route.reserve_percent:
             last = next((v.waypoint.target for v in reversed(visits) if v.flight == one.flight and v.waypoint.target is not None), None)
             yield Finding(Level.FAIL, "reserve", route.uav, last, facts)
-        elif one.left_percent < route.reserve_percent + limits.reserve_spare_percent:
+        elif one.left_percent < route.reserve_percent + limits.reserve_spare_percent and not _is_as_planned(route, energy):
             yield Finding(Level.WARNINGS, "reserve-near", route.uav, None, facts)
+
+
+def _is_as_planned(route: FlownRoute, energy: Sequence[FlightEnergy]) -> bool:
+    """Whether it took no more than planned: then what it leaves is what its operator has seen on the plan."""
+    return route.planned_wh is not None and sum(one.used_wh for one in energy) <= AS_PLANNED * route.planned_wh
 
 
 def _of_following(route: FlownRoute, following: Following, limits: Limits) -> Iterator[Finding]:

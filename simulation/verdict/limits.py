@@ -31,10 +31,11 @@ class Limits:
     column_m: float = 15.0
 
     @classmethod
-    def of(cls, flight: FlightRules, separation: SeparationRules, *, zone_height_m: float) -> "Limits":
+    def of(cls, flight: FlightRules, separation: SeparationRules, *, zone_beside_m: float, zone_height_m: float) -> "Limits":
         """As the settings have them: a rehearsal is held against what the plan was made by."""
         return cls(
             late_warn_s=separation.time_s,
+            zone_beside_m=max(zone_beside_m - TRACKING_M, 0.0),
             zone_height_m=max(zone_height_m - TRACKING_M, 0.0),
             obstacle_warn_m=max(flight.clearance_m - TOLD_SHORT_M, cls.obstacle_fail_m),
             ground_warn_m=max(flight.clearance_m - TOLD_SHORT_M, cls.ground_fail_m),
@@ -55,7 +56,7 @@ SOURCES: Mapping[str, str] = {
     "height_fail_m": "height margin from zones",
     "reserve_spare_percent": "doubt of a battery's gauge",
     "late_warn_s": "SPANWISE_SEPARATION_TIME_S",
-    "zone_beside_m": "error of a satellite position, twice",
+    "zone_beside_m": "SPANWISE_ZONE_CLEARANCE_M less 2 m of tracking",
     "zone_height_m": "SPANWISE_ZONE_HEIGHT_MARGIN_M less 2 m of tracking",
     "obstacle_warn_m": "SPANWISE_CLEARANCE_M less 5 m",
     "obstacle_fail_m": "arms of a tower beside its middle",

@@ -17,7 +17,7 @@ from simulation.serializers import shapes
 from simulation.services.airframes import NoSuchAirframe, choose_airframe
 from simulation.services.fleet import airframe_of_type
 from simulation.services.green_verdict import set_rule
-from workspace.permissions import ADMINISTRATORS
+from workspace.permissions import ADMINISTRATORS, InTheBrowserAlone
 from workspace.signed_in import SignedInRequest
 
 
@@ -69,6 +69,7 @@ class UavTypeAirframe(APIView):
 
 class RehearsalRuleView(APIView):
     write_roles = ADMINISTRATORS
+    permission_classes = [InTheBrowserAlone]
 
     @extend_schema(
         operation_id="get_rehearsal_rule",

@@ -37,6 +37,7 @@ from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import User
 from workspace.paging import page_of
+from workspace.permissions import FLYING
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
@@ -53,6 +54,8 @@ STATE = OpenApiParameter("state", str, enum=WHICH, description="those that wait 
 
 
 class MissionSimulatedFlights(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="list_simulated_flights",
         summary="Simulations that stand in for a mission's UAVs, the newest first",
@@ -97,6 +100,8 @@ class MissionSimulatedFlights(APIView):
 
 
 class Simulations(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="list_simulations",
         summary="Simulated UAVs of one's organisation that wait or fly, the newest first",
@@ -146,6 +151,8 @@ class Simulations(APIView):
 
 
 class SimulationDetail(APIView):
+    write_scopes = FLYING
+
     @extend_schema(operation_id="get_simulation", summary="A simulation with each of its UAVs", responses=shapes.SimulationSerializer)
     def get(self, request: SignedInRequest, simulation_id: UUID) -> Response:
         return _answer(request.user, simulation_id)
@@ -176,6 +183,8 @@ class SimulationDetail(APIView):
 
 
 class SimulatedVehicleDetail(APIView):
+    write_scopes = FLYING
+
     @extend_schema(operation_id="get_simulated_vehicle", summary="One simulated UAV", responses=shapes.SimulatedVehicleSerializer)
     def get(self, request: SignedInRequest, vehicle_id: UUID) -> Response:
         return Response(shapes.vehicle_json(_vehicle_or_404(request.user, vehicle_id)))

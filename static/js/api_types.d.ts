@@ -76,9 +76,10 @@ export interface components {
          *     * `changed` - Changed
          *     * `vanished` - Vanished
          *     * `kept` - Kept as edited by hand
+         *     * `not_read` - Not read
          * @enum {string}
          */
-        ActionEnum: "new" | "changed" | "vanished" | "kept";
+        ActionEnum: "new" | "changed" | "vanished" | "kept" | "not_read";
         /** @description Either `uav`, which gets the system id, or what a new UAV is made from. */
         AdoptionRequest: {
             /** Format: int64 */
@@ -139,7 +140,7 @@ export interface components {
             opened_at: string;
             /** Format: date-time */
             closed_at: string | null;
-            /** @description cleared, landed or mission-ended */
+            /** @description cleared, landed, mission-ended or by-person */
             close_reason: string;
             /** Format: date-time */
             acknowledged_at: string | null;
@@ -174,7 +175,7 @@ export interface components {
             opened_at: string;
             /** Format: date-time */
             closed_at: string | null;
-            /** @description cleared, landed or mission-ended */
+            /** @description cleared, landed, mission-ended or by-person */
             close_reason: string;
             /** Format: date-time */
             acknowledged_at: string | null;
@@ -567,6 +568,11 @@ export interface components {
             /** Format: double */
             radius_m: number;
         };
+        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        ClosingInputRequest: {
+            /** @description what became of the UAV; kept as a note */
+            reason: string;
+        };
         Command: {
             /** Format: uuid */
             id: string;
@@ -743,11 +749,18 @@ export interface components {
             created_by: string | null;
             /** Format: date-time */
             last_used_at: string | null;
+            /**
+             * Format: date-time
+             * @description a newer one was made; it counts until that was used
+             */
+            replaced_at: string | null;
             /** Format: date-time */
             revoked_at: string | null;
         };
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         CredentialInputRequest: {
+            /** @description administrators alone: why it is done although the UAV flies or something is on its way to it */
+            insist_reason?: string;
             kind: components["schemas"]["CredentialKind"];
         };
         /**
@@ -786,6 +799,17 @@ export interface components {
          * @enum {string}
          */
         DeckSourceEnum: "tag" | "layer";
+        DemoData: {
+            /** @description the demo region is there, and its missions are not */
+            can_be_made: boolean;
+            /**
+             * Format: uuid
+             * @description that makes the missions now
+             */
+            job: string | null;
+            missions: number;
+            uavs: number;
+        };
         DismissRequest: {
             /** @default  */
             note: string;
@@ -829,9 +853,19 @@ export interface components {
             flight: number;
             outcome: components["schemas"]["EndedFlightOutcomeEnum"];
         };
-        /** @description Every error of the API has this shape. */
+        /** @description Every error of the API has this shape: `error`, and beside it a problem of RFC 9457. */
         Error: {
             error: components["schemas"]["ErrorDetail"];
+            /** @description `urn:problem-type:spanwise:` and the error's code */
+            type: string;
+            /** @description the status in words */
+            title: string;
+            /** @description the HTTP status */
+            status: number;
+            /** @description as `error.message` */
+            detail: string;
+            /** @description path of the request, where it is known */
+            instance?: string;
         };
         ErrorDetail: {
             /** @description for programs: stays the same */
@@ -1135,6 +1169,18 @@ export interface components {
             /** @description a flight of it failed: it is not set in motion again in this mission */
             has_failed: boolean;
         };
+        /** @description A time in the air without reports for over 60 s. No other figure speaks of it. */
+        FlownGap: {
+            /** Format: date-time */
+            began_at: string;
+            /** Format: date-time */
+            ended_at: string;
+            /**
+             * Format: double
+             * @description of the route between its ends
+             */
+            length_m: number;
+        };
         FlownLeg: {
             /** @description in the air, with a position */
             reports: number;
@@ -1173,9 +1219,10 @@ export interface components {
             height_max_m: number | null;
             /**
              * Format: double
-             * @description length of the track as it was reported
+             * @description length of the track as it was reported, without gaps
              */
             flown_m: number;
+            gaps: components["schemas"]["FlownGap"][];
             /** Format: double */
             battery_lowest_percent: number | null;
             /**
@@ -1211,6 +1258,30 @@ export interface components {
             flight: number;
             /** @description its place in the mission; null: the way back, or down */
             target: number | null;
+        };
+        FlownTotals: {
+            /** Format: double */
+            length_m: number;
+            /**
+             * Format: double
+             * @description from the first take-off to the last landing
+             */
+            duration_s: number | null;
+            /**
+             * Format: double
+             * @description null where a battery is not known
+             */
+            energy_wh: number | null;
+            /**
+             * Format: double
+             * @description in the air without reports, of all UAVs together
+             */
+            unreported_s: number;
+            /**
+             * Format: double
+             * @description of the routes, flown then: not in length_m
+             */
+            unreported_m: number;
         };
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         FollowUpRequest: {
@@ -1671,8 +1742,11 @@ export interface components {
         };
         InvitationInputRequest: {
             role: components["schemas"]["Role"];
-            /** @description where the link is sent, if mail leaves here */
-            email?: string;
+            /**
+             * @description where the link is sent, if mail leaves here
+             * @default
+             */
+            email: string;
             /** @default 7 */
             days: number;
         };
@@ -2038,6 +2112,8 @@ export interface components {
             mission: string;
             code: string;
             state: components["schemas"]["OfferState"];
+            /** @description its ETag, for If-Match */
+            revision: number;
             cause: unknown;
             difference: unknown;
             /** Format: uuid */
@@ -2458,6 +2534,8 @@ export interface components {
             uav_count: number;
             /** @description one of its UAVs is no real aircraft */
             is_simulated: boolean;
+            /** @description made with the demo data, and goes with them */
+            is_demo: boolean;
             /** Format: double */
             total_length_m: number | null;
             /** Format: double */
@@ -2626,6 +2704,11 @@ export interface components {
             created_by: string | null;
             /** Format: date-time */
             last_used_at: string | null;
+            /**
+             * Format: date-time
+             * @description a newer one was made; it counts until that was used
+             */
+            replaced_at: string | null;
             /** Format: date-time */
             revoked_at: string | null;
             /** @description the token, or the 32 bytes of the key in hexadecimal; it cannot be read again */
@@ -2659,6 +2742,7 @@ export interface components {
         NewToken: {
             readonly id: number;
             readonly name: string;
+            readonly scopes: components["schemas"]["TokenScope"][];
             /** Format: date-time */
             readonly created_at: string;
             /** Format: date-time */
@@ -2754,6 +2838,11 @@ export interface components {
         PasswordChangeRequest: {
             old_password: string;
             new_password: string;
+            /**
+             * @description revoke all own tokens as well
+             * @default false
+             */
+            end_tokens: boolean;
         };
         /** @description Only what is to change. */
         PatchedAccountChangeRequest: {
@@ -3719,7 +3808,7 @@ export interface components {
             targets: components["schemas"]["RecordTargetCounts"];
             alerts: components["schemas"]["AlertCounts"];
             planned: components["schemas"]["Totals"];
-            flown: components["schemas"]["Totals"];
+            flown: components["schemas"]["FlownTotals"];
             /**
              * Format: double
              * @description off the route, sideways
@@ -4302,6 +4391,8 @@ export interface components {
             safe_height_m: number | null;
             /** Format: date-time */
             read_at: string | null;
+            /** @description that its autopilot ignores the fence of the mission; empty: it does not, or is not known to */
+            fence_warning: string;
         };
         /**
          * @description * `clear` - clear
@@ -5330,6 +5421,7 @@ export interface components {
         Token: {
             readonly id: number;
             readonly name: string;
+            readonly scopes: components["schemas"]["TokenScope"][];
             /** Format: date-time */
             readonly created_at: string;
             /** Format: date-time */
@@ -5347,10 +5439,21 @@ export interface components {
             name: string;
             /** @default 90 */
             days: number;
+            /** @description what it may be used for, within one's role; all that the role has unless told */
+            scopes?: components["schemas"]["TokenScope"][];
         };
         TokenList: {
             results: components["schemas"]["Token"][];
         };
+        /**
+         * @description * `read` - Read
+         *     * `plan` - Plan
+         *     * `fly` - Fly
+         *     * `curate` - Curate
+         *     * `administer` - Administer
+         * @enum {string}
+         */
+        TokenScope: "read" | "plan" | "fly" | "curate" | "administer";
         Told: {
             /** Format: date-time */
             at: string;
@@ -5479,11 +5582,24 @@ export interface components {
             address: string;
             autopilot: string;
             firmware: string;
+            /** @description as its autopilot says: quadrotor, fixed wing, … */
+            vehicle_type: string;
+            /** @description what keeps it from missions or from a fence */
+            warnings: string[];
             mode: string;
             is_armed: boolean | null;
             is_in_air: boolean | null;
             /** Format: double */
             battery_percent: number | null;
+            /** @description as the vehicle itself has it: ok, low, critical, … */
+            battery_state: string;
+            /**
+             * Format: double
+             * @description of its frames, by MAVLink only
+             */
+            received_bytes_s: number | null;
+            /** Format: double */
+            received_messages_s: number | null;
             /** @description of its approved route that it flies to, or is at */
             waypoint_sequence: number | null;
             /**
@@ -5977,6 +6093,7 @@ export interface components {
         UndoRepairRequest: {
             entries: number[];
         };
+        UndoneFeature: components["schemas"]["AssetDetailFeature"] | components["schemas"]["ZoneDetailFeature"];
         /**
          * @description * `metric` - Metres, kilometres, metres per second
          *     * `imperial` - Feet, miles, miles per hour
@@ -6595,6 +6712,7 @@ export type ChangeFeature = components['schemas']['ChangeFeature'];
 export type ChangeProperties = components['schemas']['ChangeProperties'];
 export type Charging = components['schemas']['Charging'];
 export type Circle = components['schemas']['Circle'];
+export type ClosingInputRequest = components['schemas']['ClosingInputRequest'];
 export type Command = components['schemas']['Command'];
 export type CommandDetail = components['schemas']['CommandDetail'];
 export type CommandEvent = components['schemas']['CommandEvent'];
@@ -6615,6 +6733,7 @@ export type CredentialPage = components['schemas']['CredentialPage'];
 export type DayEnum = components['schemas']['DayEnum'];
 export type DaylightEvent = components['schemas']['DaylightEvent'];
 export type DeckSourceEnum = components['schemas']['DeckSourceEnum'];
+export type DemoData = components['schemas']['DemoData'];
 export type DismissRequest = components['schemas']['DismissRequest'];
 export type DispatchInputRequest = components['schemas']['DispatchInputRequest'];
 export type DrawnAreaRequest = components['schemas']['DrawnAreaRequest'];
@@ -6646,9 +6765,11 @@ export type FlightEnergy = components['schemas']['FlightEnergy'];
 export type FlightLog = components['schemas']['FlightLog'];
 export type FlightLogPage = components['schemas']['FlightLogPage'];
 export type Flights = components['schemas']['Flights'];
+export type FlownGap = components['schemas']['FlownGap'];
 export type FlownLeg = components['schemas']['FlownLeg'];
 export type FlownRoute = components['schemas']['FlownRoute'];
 export type FlownStage = components['schemas']['FlownStage'];
+export type FlownTotals = components['schemas']['FlownTotals'];
 export type FollowUpRequest = components['schemas']['FollowUpRequest'];
 export type FormEnum = components['schemas']['FormEnum'];
 export type GapAsset = components['schemas']['GapAsset'];
@@ -6943,6 +7064,7 @@ export type TimedWaypointRequest = components['schemas']['TimedWaypointRequest']
 export type Token = components['schemas']['Token'];
 export type TokenInputRequest = components['schemas']['TokenInputRequest'];
 export type TokenList = components['schemas']['TokenList'];
+export type TokenScope = components['schemas']['TokenScope'];
 export type Told = components['schemas']['Told'];
 export type Totals = components['schemas']['Totals'];
 export type TrackFlight = components['schemas']['TrackFlight'];
@@ -6970,6 +7092,7 @@ export type UavWriteRequest = components['schemas']['UavWriteRequest'];
 export type Unassigned = components['schemas']['Unassigned'];
 export type UnassignedReasonEnum = components['schemas']['UnassignedReasonEnum'];
 export type UndoRepairRequest = components['schemas']['UndoRepairRequest'];
+export type UndoneFeature = components['schemas']['UndoneFeature'];
 export type Units = components['schemas']['Units'];
 export type UnknownVehicle = components['schemas']['UnknownVehicle'];
 export type UnknownVehiclePage = components['schemas']['UnknownVehiclePage'];

@@ -3,7 +3,7 @@
 import math
 from collections import Counter, defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,12 +22,16 @@ MOST_BOUND_M = 10.0  # of each; a UAV that may be anywhere would meet everyone
 DEGREE_M = 111_195.0
 MOST_MET = 8  # others that each is told of: in a crowd more would say nothing new
 SAME_RATE = 0.1  # of clocks: by which what was learnt of two that are the same may differ
+FAR_M, FAR_HEIGHT_M = 15.0, 8.0  # by which metres across the ground and in height are weighed against each other
+SLOWEST_CLIMB_MPS = 1.0  # from the ground; who climbs faster is taken to go on so
 NEAR_M, NEAR_HEIGHT_M = 150.0, 60.0  # farther ones are not told: no limit reaches so far beyond
 
 
 @dataclass(frozen=True, slots=True)
 class Moving:
-    """A UAV in the air. `ahead` is where it will be each STEP_S, now first, in lon/lat; `height_m` counts from sea level, None: not known.
+    """A UAV in the air on one of the ways that it may take. `ahead` is where it will be each STEP_S, now first, in lon/lat.
+
+    `height_m` counts from sea level, None: not known; `heights_m` has it for each step, where it is not just `climb_mps` from now on.
 
     Bounds hold 95 of 100 times. UAVs of different `organisation`s are told of each other nothing; nor are those whose clocks run at
     different rates, which are not in the air at the same time: seconds are the UAVs' own.
@@ -42,6 +46,46 @@ class Moving:
     bound_m: float
     bound_height_m: float
     clock_rate: float = 1.0
+    heights_m: tuple[float, ...] | None = None
+
+    def heights_at(self, steps: int) -> FloatArray:
+        """At each of so many steps (steps,); NaN: not known."""
+        if self.height_m is None:
+            return np.full(steps, math.nan)
+        if self.heights_m is not None:
+            return np.array(self.heights_m[:steps], dtype=np.float64)
+        return np.asarray(self.height_m + self.climb_mps * STEP_S * np.arange(steps), dtype=np.float64)
+
+
+def ways_of(situation: Situation, within_s: float) -> list[Moving]:
+    """The ways that a UAV in flight may take: as it moves now, and as its approved route has it, its climb from the ground included."""
+    moving = moving_of(situation, within_s)
+    if moving is None:
+        return []
+    planned = _as_planned(situation, moving)
+    return [moving] if planned is None else [moving, planned]
+
+
+def _as_planned(situation: Situation, moving: Moving) -> Moving | None:
+    place, model, newest = situation.place, situation.model, situation.uav.newest
+    if place is None or model is None or newest is None or not situation.flies_mission or place.across_m > situation.limits.off_route_m:
+        return None
+    told, line = newest.measurement, model.line
+    if told.altitude_relative_m is None or moving.height_m is None:
+        return None
+    seconds = [STEP_S * step for step in range(len(moving.ahead))]
+    points = line.planned_ahead(place, told.altitude_relative_m, max(moving.climb_mps, SLOWEST_CLIMB_MPS), seconds)
+    if points is None:
+        return None
+    origin = line.frame.origin
+    return replace(
+        moving,
+        ahead=tuple(
+            (origin.lon + east / line.frame.metres_per_degree_east, origin.lat + north / line.frame.metres_per_degree_north)
+            for east, north, _ in points
+        ),
+        heights_m=tuple(moving.height_m + height_m - told.altitude_relative_m for _, _, height_m in points),
+    )
 
 
 def moving_of(situation: Situation, within_s: float) -> Moving | None:
@@ -77,7 +121,10 @@ def moving_of(situation: Situation, within_s: float) -> Moving | None:
 
 
 def meetings(moving: Sequence[Moving], within_s: float) -> dict[int, list[Meeting]]:
-    """By the UAV with the smaller key of each pair: how near they come within so many seconds; of a crowd those that come nearest."""
+    """By the UAV with the smaller key of each pair: how near they come within so many seconds; of a crowd those that come nearest.
+
+    Of a pair there is a meeting for each two of their ways that come near, the nearest first.
+    """
     found: dict[int, list[Meeting]] = defaultdict(list)
     if len(moving) < 2:
         return found
@@ -86,22 +133,26 @@ def meetings(moving: Sequence[Moving], within_s: float) -> dict[int, list[Meetin
     middle_lat = math.radians(float(way[:, 0, 1].mean()))
     way = way * (DEGREE_M * math.cos(middle_lat), DEGREE_M)
     group = np.array([one.organisation for one in moving])
+    heights = np.array([one.heights_at(steps) for one in moving])
     ones, others = _pairs(way)
-    rate = np.array([one.clock_rate for one in moving])
+    rate, key = np.array([one.clock_rate for one in moving]), np.array([one.uav_id for one in moving])
     near = (group[ones] == group[others]) & (np.abs(rate[ones] - rate[others]) <= SAME_RATE * np.maximum(rate[ones], rate[others]))
-    near &= ~(_least_apart_m(moving, within_s, ones, others) > NEAR_HEIGHT_M)  # NaN: not known
+    near &= key[ones] != key[others]
+    near &= ~(_least_apart_m(heights, ones, others) > NEAR_HEIGHT_M)  # NaN: not known
     ones, others = ones[near], others[near]
-    lateral_m, in_s = _closest(way[ones] - way[others])
+    lateral_m, height_m, in_s = _closest(way[ones] - way[others], heights[ones] - heights[others])
     met = Counter[int]()
-    for pair in np.argsort(lateral_m, kind="stable").tolist():
-        if lateral_m[pair] > NEAR_M:
-            break
-        first, second = sorted((moving[ones[pair]], moving[others[pair]]), key=lambda uav: uav.uav_id)
-        if met[first.uav_id] >= MOST_MET and met[second.uav_id] >= MOST_MET:
+    told: set[tuple[int, int]] = set()
+    for pair in np.lexsort((in_s, np.maximum(lateral_m / FAR_M, height_m / FAR_HEIGHT_M))).tolist():
+        if lateral_m[pair] > NEAR_M or height_m[pair] > NEAR_HEIGHT_M:
             continue
-        meeting = _meeting(first, second, float(lateral_m[pair]), float(in_s[pair]))
-        if meeting.height_m <= NEAR_HEIGHT_M:
-            found[first.uav_id].append(meeting)
+        first, second = sorted((moving[ones[pair]], moving[others[pair]]), key=lambda uav: uav.uav_id)
+        is_new = (first.uav_id, second.uav_id) not in told
+        if is_new and met[first.uav_id] >= MOST_MET and met[second.uav_id] >= MOST_MET:
+            continue
+        found[first.uav_id].append(_meeting(first, second, float(lateral_m[pair]), float(height_m[pair]), float(in_s[pair])))
+        if is_new:
+            told.add((first.uav_id, second.uav_id))
             met.update((first.uav_id, second.uav_id))
     return found
 
@@ -115,27 +166,32 @@ def _pairs(way: FloatArray) -> tuple[IntArray, IntArray]:
     return ones[once], others[once]
 
 
-def _least_apart_m(moving: Sequence[Moving], within_s: float, ones: IntArray, others: IntArray) -> FloatArray:
-    """In height, of each pair (p,), at any time."""
-    height_m = np.array([math.nan if one.height_m is None else one.height_m for one in moving])
-    reach_m = within_s * np.abs([one.climb_mps for one in moving])
-    apart_m: FloatArray = np.abs(height_m[ones] - height_m[others]) - reach_m[ones] - reach_m[others]
+def _least_apart_m(heights: FloatArray, ones: IntArray, others: IntArray) -> FloatArray:
+    """In height, of each pair (p,), at any time; heights (n, steps)."""
+    low, high = heights.min(axis=1), heights.max(axis=1)
+    apart_m: FloatArray = np.maximum(low[ones] - high[others], low[others] - high[ones])
     return apart_m
 
 
-def _closest(between: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """How near (p,) [m], and in how many seconds; between (p, steps, 2) [m] leads from the one to the other at each step."""
+def _closest(between: FloatArray, above: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """How near across the ground and in height (p,) [m], and in how many seconds, at the step at which both are least.
+
+    between (p, steps, 2) and above (p, steps) [m] lead from the one to the other at each step. Heights that are not known count as the
+    same; who climbs or sinks past the other within a step is at its height.
+    """
     here, on = between[:, :-1], np.diff(between, axis=1)
     square = (on * on).sum(axis=2)
     share = np.clip(-(here * on).sum(axis=2) / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
     metres = np.hypot(*(here + share[:, :, None] * on).transpose(2, 0, 1))
-    step = metres.argmin(axis=1)
+    before, after = above[:, :-1], above[:, 1:]
+    height = np.where(before * after < 0.0, 0.0, np.minimum(np.abs(before), np.abs(after)))
+    height = np.where(np.isnan(height), 0.0, height)
+    step = np.maximum(metres / FAR_M, height / FAR_HEIGHT_M).argmin(axis=1)
     rows = np.arange(len(between))
-    return metres[rows, step], (step + share[rows, step]) * STEP_S
+    return metres[rows, step], height[rows, step], (step + share[rows, step]) * STEP_S
 
 
-def _meeting(first: Moving, second: Moving, lateral_m: float, in_s: float) -> Meeting:
-    height_m = _height_between_m(first, second, in_s)
+def _meeting(first: Moving, second: Moving, lateral_m: float, height_m: float, in_s: float) -> Meeting:
     bound_m = math.hypot(min(first.bound_m, MOST_BOUND_M), min(second.bound_m, MOST_BOUND_M))
     bound_height_m = math.hypot(min(first.bound_height_m, MOST_BOUND_M), min(second.bound_height_m, MOST_BOUND_M))
     return Meeting(
@@ -147,15 +203,6 @@ def _meeting(first: Moving, second: Moving, lateral_m: float, in_s: float) -> Me
         least_lateral_m=max(0.0, lateral_m - bound_m),
         least_height_m=max(0.0, height_m - bound_height_m),
     )
-
-
-def _height_between_m(first: Moving, second: Moving, at_s: float) -> float:
-    """Heights that are not known count as the same. Who climbs or sinks passes all heights on its way."""
-    if first.height_m is None or second.height_m is None:
-        return 0.0
-    now_m = first.height_m - second.height_m
-    then_m = now_m + (first.climb_mps - second.climb_mps) * at_s
-    return 0.0 if now_m * then_m < 0.0 else min(abs(now_m), abs(then_m))
 
 
 def elsewhere(uav_id: int, name: str, organisation: int, estimated: dict[str, Any], within_s: float, clock_rate: float = 1.0) -> Moving:

@@ -42,6 +42,8 @@ class Memory:
     progress: deque[Progress] = field(default_factory=deque)
     jumped_s: float | None = None
     jump_m: float = 0.0
+    was_in_flight: bool = False  # on this line
+    mode_words: tuple[str, str] = ("", "")  # a mode, and what the vehicle said about the time at which it changed to it
     drained: deque[tuple[float, float]] = field(default_factory=lambda: deque(maxlen=BATTERY_STEPS_KEPT + 1))
     causes: dict[tuple[str, str], Cause] = field(default_factory=dict)
     _intervals_s: deque[float] = field(default_factory=lambda: deque(maxlen=INTERVALS_KEPT))
@@ -50,6 +52,7 @@ class Memory:
         """Whether it is a new one."""
         if line is not self.line:
             self.line, self.place = line, None
+            self.was_in_flight = False
             self.drained.clear()
             self.progress.clear()
         if report is None or (self.newest is not None and report.measured_s <= self.newest.measured_s):

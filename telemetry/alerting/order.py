@@ -4,6 +4,7 @@ from telemetry.alerting.detector import Detector
 from telemetry.alerting.detectors import (
     battery,
     converging,
+    down,
     gps,
     height_off,
     link,
@@ -17,6 +18,6 @@ from telemetry.alerting.detectors import (
 
 DETECTORS: tuple[Detector, ...] = tuple(
     module.DETECTOR
-    for module in (link, gps, mode_changed, other_mission, zone, converging, off_route, height_off, no_progress, battery, weather)
+    for module in (link, gps, down, mode_changed, other_mission, zone, converging, off_route, height_off, no_progress, battery, weather)
 )
 CODES = tuple(detector.code for detector in DETECTORS)

@@ -2,7 +2,9 @@
 
 import math
 from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import accumulate, pairwise
 
 import numpy as np
@@ -14,7 +16,11 @@ from missions.mavlink.frozen import HOVER, Flight
 NEAR_VERTEX_M = 15.0  # an autopilot takes a waypoint for reached before it is there, and climbs or sinks beside it
 LEGS_BACK, LEGS_ON = 2, 1  # of the leg to the waypoint that is told, which may be some seconds old
 LEG_OFF_M = 15.0  # for each leg that it would be from the one that is expected
+NEAR_HEIGHT_M = 2.0  # below its first waypoint it is still climbing to it
+SINK_MPS = 1.0  # of a landing
 BACK_M, ON_M = 60.0, 600.0  # of where it was before, where no waypoint is told
+
+Point = tuple[float, float, float]  # east, north, height above take-off [m]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +53,7 @@ class RouteLine:
         self.sequences = [waypoint.sequence for waypoint in waypoints]
         self.charges_at = {place for place, sequence in enumerate(self.sequences) if sequence in charging}
         self.lands = flight.end_action != HOVER
+        self.arrival_s = [waypoint.arrival_s for waypoint in waypoints]
 
     @property
     def length_m(self) -> float:
@@ -82,6 +89,12 @@ class RouteLine:
         found = [self._beside(leg, east, north) for leg in range(first, last + 1)]
         nearest = min(found, key=lambda place: place.across_m + (0.0 if expected is None else LEG_OFF_M * abs(place.leg - expected)))
         return replace(nearest, across_m=min(place.across_m for place in found))
+
+    def place_from(self, position: LonLat, before: Place) -> Place:
+        """The nearest point of all legs from where it was before; of equals the first."""
+        east, north = self.east_north(position)
+        last = max(len(self.vertices) - 2, 0)
+        return min((self._beside(leg, east, north) for leg in range(min(before.leg, last), last + 1)), key=lambda place: place.across_m)
 
     def _beside(self, leg: int, east: float, north: float) -> Place:
         (east_1, north_1), (east_2, north_2) = self.vertices[leg], self.vertices[min(leg + 1, len(self.vertices) - 1)]
@@ -124,6 +137,56 @@ class RouteLine:
         length_m = self.along_m[min(leg + 1, len(self.vertices) - 1)] - self.along_m[leg]
         share = 0.0 if length_m <= 0.0 else min(1.0, max(0.0, (along_m - self.along_m[leg]) / length_m))
         return east_1 + share * (east_2 - east_1), north_1 + share * (north_2 - north_1)
+
+    def planned_ahead(self, place: Place, height_m: float, climb_mps: float, seconds: Sequence[float]) -> list[Point] | None:
+        """Where the plan has it after so many seconds from a place and a height [m above take-off]; None where its times are not known.
+
+        From the ground it first climbs straight up to its first waypoint. At a waypoint it goes on at once, and at the end it sinks. None
+        also of one that is at the end, or where it charges: how long it is there is not planned.
+        """
+        moments, points = self._timetable
+        if not moments or self.length_m - place.along_m <= NEAR_VERTEX_M < self.length_m or self._charges_near(place):
+            return None
+        start_s, climbs_s = self._planned_s(place), 0.0
+        if place.along_m <= NEAR_VERTEX_M and height_m < self.heights_m[0] - NEAR_HEIGHT_M:
+            climbs_s = (self.heights_m[0] - height_m) / climb_mps
+        found = []
+        for after_s in seconds:
+            if after_s < climbs_s:
+                found.append((*self.vertices[0], height_m + climb_mps * after_s))
+            else:
+                moment_s = start_s + after_s - climbs_s
+                east, north, up = (float(np.interp(moment_s, moments, column)) for column in points)
+                sinks_m = max(moment_s - moments[-1], 0.0) * SINK_MPS if self.lands else 0.0
+                found.append((east, north, max(up - sinks_m, min(up, self.grounds_m[-1]))))
+        return found
+
+    @cached_property
+    def _timetable(self) -> tuple[list[float], tuple[list[float], list[float], list[float]]]:
+        """When it comes to and leaves each waypoint, and where it is then (east, north, height); empty where that is not known."""
+        arrival_s = [moment for moment in self.arrival_s if moment is not None]
+        if len(arrival_s) < len(self.vertices):
+            return [], ([], [], [])
+        moments: list[float] = []
+        for vertex, arrives_s in enumerate(arrival_s):
+            moments += [arrives_s, arrives_s + self.hold_s[vertex]]
+        twice = [vertex for vertex in range(len(self.vertices)) for _ in range(2)]
+        points = (
+            [self.vertices[vertex][0] for vertex in twice], [self.vertices[vertex][1] for vertex in twice],
+            [self.heights_m[vertex] for vertex in twice],
+        )  # fmt: skip
+        return list(accumulate(moments, max)), points
+
+    def _charges_near(self, place: Place) -> bool:
+        return any(abs(self.along_m[vertex] - place.along_m) <= NEAR_VERTEX_M for vertex in self.charges_at)
+
+    def _planned_s(self, place: Place) -> float:
+        moments, _ = self._timetable
+        end = min(place.leg + 1, len(self.vertices) - 1)
+        leaves_s, arrives_s = moments[2 * place.leg + 1], moments[2 * end]
+        if self.along_m[end] - place.along_m <= NEAR_VERTEX_M and place.share > 0.5:
+            return moments[2 * end + 1]
+        return leaves_s + place.share * max(arrives_s - leaves_s, 0.0)
 
     def agl_between(self, from_m: float, to_m: float) -> list[float]:
         """Heights above ground of the waypoints from one length along it to another."""

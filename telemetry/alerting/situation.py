@@ -7,6 +7,7 @@ from telemetry.alerting.limits import Limits
 from telemetry.alerting.memory import Memory
 from telemetry.alerting.modes import ModeKind, mode_kind
 from telemetry.alerting.route_line import Place
+from telemetry.alerting.said import Said
 from telemetry.alerting.surroundings import FlightModel, Held, LinkFacts, Meeting, NearZone, Order
 from telemetry.alerting.watched import WatchedUav
 from telemetry.estimation.report import Report
@@ -32,6 +33,7 @@ class Situation:
     order: Order | None = None
     zones: tuple[NearZone, ...] = ()
     meetings: tuple[Meeting, ...] = ()
+    said: tuple[Said, ...] = ()
 
     def is_open(self, code: str, subject: str = "") -> bool:
         return (code, subject) in self.open_levels
@@ -88,6 +90,12 @@ class Situation:
         if is_armed is not None:
             return is_armed
         return told is not None and (told.altitude_relative_m or 0.0) > AIRBORNE_M
+
+    @property
+    def is_known_down(self) -> bool:
+        """On the ground by its own word, not by silence."""
+        told = None if self.uav.newest is None else self.uav.newest.measurement.is_in_air
+        return not self.is_in_flight and (self.link.is_in_air is False or told is False)
 
     @property
     def agl_m(self) -> float | None:

@@ -13,6 +13,7 @@ class LinkFacts:
     """What is known of the UAV's link. `heard_s` is when anything was last received, by the server's clock.
 
     `clock_rate`: the vehicle's seconds a second of the server's; not 1 where it is flown faster than real time.
+    `battery_state`: as the vehicle itself has it, a name of ground_station/vehicle_state.py; empty: it does not tell.
     """
 
     heard_s: float | None = None
@@ -20,6 +21,7 @@ class LinkFacts:
     is_armed: bool | None = None
     is_in_air: bool | None = None
     clock_rate: float = 1.0
+    battery_state: str = ""
 
 
 @dataclass(frozen=True, slots=True)

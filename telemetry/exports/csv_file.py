@@ -1,6 +1,7 @@
 """Records as comma-separated values (RFC 4180), one line each, units in the names of the columns."""
 
 import csv
+import re
 from collections.abc import Iterable, Iterator
 from io import StringIO
 
@@ -11,7 +12,8 @@ COLUMNS = (
     *REPORTED, *FLAGS,
 )  # fmt: skip
 LINES_A_PIECE = 500
-READ_AS_FORMULAS = ("=", "+", "-", "@", "\t", "\r")  # by spreadsheets, at the start of a cell
+# Spreadsheets read a cell as a formula that begins so, behind blanks and full-width as well; a semicolon begins one where it separates.
+_FORMULA = re.compile(r"^(?=[\t\r])|(?:^|(?<=[;\t\r\n]))(?=[\s\u200b\ufeff]*[=+\-@\uff1d\uff0b\uff0d\uff20])")
 
 
 def csv_pieces(records: Iterable[LoggedRecord]) -> Iterator[str]:
@@ -37,4 +39,4 @@ def _cell(value: Value) -> Value:
 
 
 def _text(value: str) -> str:
-    return f"'{value}" if value.startswith(READ_AS_FORMULAS) else value
+    return _FORMULA.sub("'", value)

@@ -1,78 +1,133 @@
 """Which frames are believed to be a UAV's: signed with its key, or, where that is allowed, from the sender that had its system id first."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 from missions.mavlink.frames import Frame
-from missions.mavlink.signing import Refusal, SignatureCheck
+from missions.mavlink.signing import Refusal, SignatureCheck, stream_of, timestamp_at, unix_s_of
+from telemetry.gateway.addresses import Addresses
 from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.peers import Peer
 
 SENDER_SILENT_S = 5.0  # after which another sender may have the system id, where nothing is signed
 SECOND_SENDER = "second-sender"
+LATE_BY_S = 1.0  # that a frame may have been under way for longer than others before it
+COPIED = "copied"  # taken before, and brought by a second address
 
 
 @dataclass
 class Belief:
-    """Times are seconds since 1970. `peer` is who was believed last, at `heard_s`."""
+    """Times are seconds since 1970. The last frame was believed at `heard_s`, of `addresses.main` unless it was a second one's.
+
+    `credential_id` is that of the key by which the last one was signed, `used` those since somebody asked last, and `ahead_s` by how much
+    the UAV's signing clock was ahead of ours then.
+    """
 
     uav: KnownUav
-    peer: Peer | None = None
+    addresses: Addresses = field(default_factory=Addresses)
     heard_s: float = 0.0
     second_sender: tuple[str, float] | None = None  # who, and when last
-    has_signed: bool = False  # since somebody asked last
-    _check: SignatureCheck | None = field(default=None, repr=False)
+    credential_id: int | None = None
+    used: set[int] = field(default_factory=set)
+    ahead_s: float = 0.0
+    _checks: dict[int, SignatureCheck] = field(default_factory=dict, repr=False)  # by credential, the newest first
 
     def __post_init__(self) -> None:
-        self._check = SignatureCheck(self.uav.key) if self.uav.key else None
+        self._checks = {credential_id: SignatureCheck(key) for credential_id, key in self.uav.keys}
+
+    @property
+    def peer(self) -> Peer | None:
+        return self.addresses.main
+
+    @property
+    def key(self) -> bytes | None:
+        """That the UAV signs with, as far as it is known: ours to sign with, too."""
+        keys = dict(self.uav.keys)
+        return self.uav.key if self.credential_id is None else keys.get(self.credential_id, self.uav.key)
 
     def refusal(self, frame: Frame, peer: Peer, now_s: float) -> str | None:
         """None: it is believed."""
         refused = self._refusal(frame, peer, now_s)
         if refused is None:
-            self.peer, self.heard_s = peer, now_s
+            self.heard_s = now_s
         return refused
 
     def could_be(self, frame: Frame, now_s: float) -> bool:
         """Of a frame that waits to be received: whether it is worth keeping."""
-        if self.uav.key is not None and frame.is_signed:
-            return SignatureCheck(self.uav.key).refusal(frame, now_s) in (None, Refusal.TOO_OLD)
+        if self._checks and frame.is_signed:
+            fresh = (SignatureCheck(check.key) for check in self._checks.values())
+            return any(check.refusal(frame, now_s) in (None, Refusal.TOO_OLD) for check in fresh)
         return self.uav.allows_unsigned
 
+    def key_of(self, frame: Frame) -> bytes | None:
+        """By which it was signed, if by one of the UAV's."""
+        return next((check.key for check in self._checks.values() if check.is_signed_right(frame)), None)
+
     def change(self, uav: KnownUav) -> None:
-        """The UAV's row or key was changed. Who was believed by another key is not believed, nor answered, any more."""
-        if uav.credential_id != self.uav.credential_id:
-            self._check = SignatureCheck(uav.key) if uav.key else None
-            self.peer = None
-        elif self.uav.allows_unsigned and not uav.allows_unsigned:
-            self.peer = None
+        """The UAV's row or key was changed. Who was believed by a key that counts no more is not believed, nor answered, any more."""
+        self._checks = {number: self._checks.get(number) or SignatureCheck(key) for number, key in uav.keys}
+        is_by_other_key = self.credential_id not in self._checks if self.credential_id is not None else uav.keys != self.uav.keys
+        if is_by_other_key or (self.uav.allows_unsigned and not uav.allows_unsigned and self.credential_id is None):
+            self.credential_id = None
+            self.addresses.forget()
         self.uav = uav
 
-    def take_up(self, received: dict[str, int]) -> None:
-        """The newest timestamps of streams, as `received` was when another gateway served it."""
-        if self._check is not None:
-            self._check.last = dict(received)
+    def take_up(self, signing: dict[str, Any], since_s: float) -> None:
+        """What another gateway left of the times of signatures (`to_json`); what was signed before since_s was not sent to this one.
 
-    @property
-    def received(self) -> dict[str, Any] | None:
-        return None if self._check is None else dict(self._check.last)
+        A clock that was late then may be so still. One that was ahead may have been set since, and is not waited for.
+        """
+        since = timestamp_at(since_s - LATE_BY_S + min(float(signing.get("ahead_s", 0.0)), 0.0))
+        for credential_id, check in self._checks.items():
+            if credential_id == signing.get("credential"):
+                check.last = dict(signing.get("received", {}))
+                self.credential_id = credential_id
+            if signing:
+                check.since = since
+
+    def to_json(self) -> dict[str, Any]:
+        """Empty where there is no key."""
+        if not self._checks:
+            return {}
+        credential_id = self.credential_id if self.credential_id in self._checks else next(iter(self._checks))
+        return {"credential": credential_id, "received": dict(self._checks[credential_id].last), "ahead_s": round(self.ahead_s, 3)}
 
     @property
     def _has_shown_its_key(self) -> bool:
         """To this gateway or one before it: who speaks without it now is somebody else, though unsigned frames be allowed."""
-        return self._check is not None and bool(self._check.last)
+        return any(check.last for check in self._checks.values())
 
     def _refusal(self, frame: Frame, peer: Peer, now_s: float) -> str | None:
-        if self._check is not None and frame.is_signed:
-            refusal = self._check.refusal(frame, now_s)
-            self.has_signed |= refusal is None
-            return refusal
+        if self._checks and frame.timestamp is not None:
+            return self._signed_refusal(frame, frame.timestamp, peer, now_s)
         if not self.uav.allows_unsigned or self._has_shown_its_key:
             return Refusal.NO_KEY if frame.is_signed else Refusal.UNSIGNED
         if self.peer is None or peer == self.peer or not is_within(self.heard_s, now_s, SENDER_SILENT_S):
+            self.addresses.believe(peer)
             return None
         self.second_sender = (peer.name, now_s)
         return SECOND_SENDER
+
+    def _signed_refusal(self, frame: Frame, timestamp: int, peer: Peer, now_s: float) -> str | None:
+        credential_id, refusal = next(self._by_key(frame, now_s), (None, Refusal.WRONG_SIGNATURE))
+        if credential_id is None:
+            return refusal
+        if refusal is Refusal.REPLAYED and self.addresses.copy(stream_of(frame), timestamp, peer, now_s):
+            self.second_sender = self.addresses.copied
+            return COPIED
+        if refusal is None:
+            self.credential_id, self.ahead_s = credential_id, unix_s_of(timestamp) - now_s
+            self.used.add(credential_id)
+            self.addresses.take(stream_of(frame), timestamp, peer, now_s)
+        return refusal
+
+    def _by_key(self, frame: Frame, now_s: float) -> Iterator[tuple[int, Refusal | None]]:
+        """The key that signed it, and what speaks against it all the same."""
+        for credential_id, check in self._checks.items():
+            refusal = check.refusal(frame, now_s)
+            if refusal is not Refusal.WRONG_SIGNATURE:
+                yield credential_id, refusal
 
 
 def is_within(at_s: float, now_s: float, span_s: float) -> bool:

@@ -30,7 +30,7 @@ from telemetry.gateway.blind import send_blind
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import CannotCarry, Task, as_begun, reason_not_to, task_of
-from telemetry.gateway.reading import ask_for_the_present, read_aboard
+from telemetry.gateway.reading import OTHER_LIST_READ, ask_for_the_present, read_aboard
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
 from telemetry.gateway.vehicle_limits import reason_not_to_load, warnings_of
 from telemetry.ground_station.command import CommandEnd, CommandOutcome
@@ -40,7 +40,7 @@ from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState
 from telemetry.ground_station.mission_keeper import MissionKeeper
 from telemetry.ground_station.orders import Order
 from telemetry.services.loads import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading
-from telemetry.services.mission_alerts import tell_of_mission
+from telemetry.services.mission_alerts import tell_of_mission, tell_of_other_list
 
 logger = logging.getLogger(__name__)
 
@@ -119,7 +119,7 @@ class Carriage:
         if reason.is_for_good or self.command.attempts >= MOST_ATTEMPTS:
             await self._end(note_failed, reason.code, reason.words)
         else:
-            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reason.words)
+            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reason.words, code=reason.code)
 
     async def _reason_against(self, task: Task) -> CannotCarry | None:
         if task.aboard is not None:
@@ -176,14 +176,17 @@ class Carriage:
         if reading is None:
             await self._end(note_released)
         elif reading.is_aboard:
+            await self._surely(tell_of_other_list, self.command)
             if before is not None:
                 await self._surely(confirm_loaded, self.carried, before)
             if await self._surely(note_read_back, self.command.pk, done=total, total=total, **self._fence):
                 return True
             await self._end(note_released)
         elif reading.code in UNHEARD:
-            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reading.words)
+            await self._end(note_released, retry_in_s=TRY_AGAIN_IN_S, note=reading.words, code=reading.code)
         else:
+            if reading.code == OTHER_LIST_READ:
+                await self._surely(tell_of_other_list, self.command, reading.words)
             await self._end_with(fail_loading, None, reading.code, reading.words)
         return False
 
@@ -230,6 +233,7 @@ class Carriage:
         await self._surely(tell_of_mission, self.command, is_mixed=still_mixed, words=outcome.words)
         before = task.before if outcome.state is KeeperState.INTACT else None
         if outcome.state is KeeperState.READY:
+            await self._surely(tell_of_other_list, self.command)
             warnings = warnings_of(task.load, self.session) if task.load is not None and task.load.mission else ""
             told = " ".join(filter(None, [outcome.left_alone, warnings]))
             beside = {kind.name.lower(): sha256 for kind, sha256 in outcome.left_sha256.items()}

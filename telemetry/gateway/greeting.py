@@ -1,5 +1,7 @@
 """What a gateway says to a vehicle by itself: that it is there, and which messages it wants."""
 
+from collections.abc import Mapping
+
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.frames import Message
@@ -23,25 +25,40 @@ WIND = {Flavour.PX4: mavlink.MAVLINK_MSG_ID_WIND_COV, Flavour.ARDUPILOT: mavlink
 WIND_INTERVAL_S = 2.0
 ONCE = (mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION, mavlink.MAVLINK_MSG_ID_HOME_POSITION)
 STREAM_HZ = 4  # of all data streams, for autopilots that know no intervals
+FRAME_BYTES = 25  # of a signed frame of MAVLink 2 beside its payload
+LONGEST_STRETCH = 5.0  # by which a position comes once a second
 
 
 def heartbeat() -> Message:
     return mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_GCS, mavlink.MAV_AUTOPILOT_INVALID, 0, 0, mavlink.MAV_STATE_ACTIVE, 3)
 
 
-def requests(system: int, flavour: Flavour) -> list[Message]:
-    """For the messages that telemetry is made of."""
-    intervals_s = INTERVALS_S | ({WIND[flavour]: WIND_INTERVAL_S} if flavour in WIND else {})
-    wanted = [_command(system, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, every_s * 1e6) for number, every_s in intervals_s.items()]
-    if flavour is not Flavour.PX4:
-        stream = mavlink.MAVLink_request_data_stream_message(system, AUTOPILOT, mavlink.MAV_DATA_STREAM_ALL, STREAM_HZ, 1)
-        wanted.insert(0, stream)
-    return wanted
+def intervals_s(flavour: Flavour, budget_bytes_s: float) -> dict[int, float]:
+    """For the messages that telemetry is made of, by their ids; stretched alike, to LONGEST_STRETCH at most, to fit a budget (0: none)."""
+    wanted = INTERVALS_S | ({WIND[flavour]: WIND_INTERVAL_S} if flavour in WIND else {})
+    load_bytes_s = sum((mavlink.mavlink_map[number].unpacker.size + FRAME_BYTES) / every_s for number, every_s in wanted.items())
+    stretch = 1.0 if budget_bytes_s <= 0.0 else min(max(load_bytes_s / budget_bytes_s, 1.0), LONGEST_STRETCH)
+    return {number: every_s * stretch for number, every_s in wanted.items()}
+
+
+def interval_requests(system: int, wanted_s: Mapping[int, float]) -> list[Message]:
+    return [_command(system, mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, number, every_s * 1e6) for number, every_s in wanted_s.items()]
+
+
+def streams(system: int, *, is_on: bool) -> Message:
+    """All data streams: on for an autopilot that knows no intervals, else off, as what they bring is asked for by intervals."""
+    hz = STREAM_HZ if is_on else 0
+    return mavlink.MAVLink_request_data_stream_message(system, AUTOPILOT, mavlink.MAV_DATA_STREAM_ALL, hz, int(is_on))
 
 
 def questions(system: int) -> list[Message]:
     """For what is told once."""
     return [_command(system, mavlink.MAV_CMD_REQUEST_MESSAGE, number) for number in ONCE]
+
+
+def position_request(system: int) -> Message:
+    """Of a vehicle that tells where it is only to whoever asks."""
+    return _command(system, mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT)
 
 
 def limit_questions(system: int) -> list[Message]:

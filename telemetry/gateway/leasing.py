@@ -3,7 +3,6 @@
 import asyncio
 import logging
 import time
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -74,7 +73,5 @@ class Leasing:
         for lease in leases:
             session = wanted[lease.uav_id]
             logger.info("serves %s", session.uav.name, extra={"uav": session.uav.uav_id})
-            waiting, session.waiting = session.waiting, deque(maxlen=session.waiting.maxlen)
-            session.serve(lease, served_until_s(asked_s, self.options.lease_s))
-            for frame, peer, at_s in waiting:
+            for frame, peer, at_s in session.serve(lease, served_until_s(asked_s, self.options.lease_s)):
                 self.receive(session, frame, peer, at_s)

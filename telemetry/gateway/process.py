@@ -14,11 +14,9 @@ from datetime import UTC, datetime
 from typing import Any
 
 from django.conf import settings
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from missions.mavlink.frames import Frame, message_of
+from missions.mavlink.frames import Frame
 from operation import pulse
-from telemetry.decoding.report import is_vehicle
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.desk import Desk
 from telemetry.gateway.fleet import KnownUav, known_uavs
@@ -30,10 +28,9 @@ from telemetry.gateway.peers import Listeners, Peer
 from telemetry.gateway.session import RADIO, Session
 from telemetry.gateway.store import Store
 from telemetry.gateway.telling import Telling
-from telemetry.ground_station.flavour import flavour_of
+from telemetry.gateway.unknown_senders import UnknownSenders
 from telemetry.services.heard_by_gateway import HeardText
 from telemetry.services.links import LinkState, release_leases
-from telemetry.services.sightings import Sighting
 
 logger = logging.getLogger(__name__)
 
@@ -63,6 +60,7 @@ class Gateway:
         self.database = DatabaseThread("gateway-store")
         self.telling = Telling(self._all)
         self.store = Store(self.database, self.options.holder, self.options.most_records, self._link_states, self._mark_unsaved)
+        self.unknown = UnknownSenders(self.store.note_sighting)
         self.flights = Flights(self.options)
         self.desk = Desk(self.options.holder, self.options.lease_s, self._all)
         self.leasing = Leasing(self.options, self.database, self._all, self._receive_known, self.flights.end)
@@ -94,7 +92,8 @@ class Gateway:
                 continue
             uav = self._uavs.get(frame.system)
             if uav is None:
-                self._receive_unknown(frame, peer, now_s)
+                self.damages["unknown-system"] += 1
+                self.unknown.receive(frame, peer, now_s)
             else:
                 session = self.sessions.get(frame.system) or self._new_session(uav)
                 self._receive_known(session, frame, peer, now_s)
@@ -112,22 +111,8 @@ class Gateway:
             if session.peer == peer:
                 session.receive_radio(frame, now_s)
 
-    def _receive_unknown(self, frame: Frame, peer: Peer, now_s: float) -> None:
-        self.damages["unknown-system"] += 1
-        if frame.message_id != mavlink.MAVLINK_MSG_ID_HEARTBEAT or not 1 <= frame.system <= 254:
-            return
-        message = message_of(frame)
-        if message is not None and is_vehicle(message):
-            self.store.sightings[frame.system] = Sighting(
-                system=frame.system,
-                autopilot=flavour_of(message.autopilot),
-                vehicle_type=_type_name(message.type),
-                address=peer.name[:100],
-                is_signed=frame.is_signed,
-                heard_at=datetime.fromtimestamp(now_s, UTC),
-            )
-
     def _new_session(self, uav: KnownUav) -> Session:
+        self.unknown.forget(uav.system)
         session = self.sessions[uav.system] = Session(
             uav, self.store.records, link_id=_link_id(self.options.name), lost_here=self.lost_here
         )
@@ -277,11 +262,6 @@ async def _cancel(tasks: Collection[asyncio.Task[None]]) -> None:
         for task in pending:
             task.cancel()
         await asyncio.wait(pending, timeout=CANCEL_AGAIN_S)
-
-
-def _type_name(number: int) -> str:
-    entry = mavlink.enums["MAV_TYPE"].get(number)
-    return entry.name.removeprefix("MAV_TYPE_").replace("_", " ").lower() if entry else f"type {number}"
 
 
 def _link_id(name: str) -> int:

@@ -3,6 +3,9 @@
 import math
 from dataclasses import dataclass, field
 
+from django.conf import settings
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from missions.mavlink.frames import Message
 from telemetry.gateway import greeting
 from telemetry.gateway.own_return import OwnReturn
@@ -10,7 +13,9 @@ from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.limits import PARAMETERS
 from telemetry.ground_station.vehicle_state import VehicleState
 
-ASK_AGAIN_S = 5.0  # for positions that do not come; for what is told once after ever longer
+ASK_AGAIN_S = 5.0  # for positions that do not come; for other messages, and what is told once, after ever longer
+MISSING_INTERVALS = 3.0  # of a message, after which it does not come
+UNANSWERED_ROUNDS = 2  # of asking for intervals without a position, before streams are asked for
 ASK_SELDOM_S = 60.0
 LIMIT_QUESTIONS = 3  # a vehicle that has no such parameters says nothing
 
@@ -22,17 +27,24 @@ class Questions:
     limits_left: int = LIMIT_QUESTIONS
     own_return: OwnReturn = field(default_factory=OwnReturn)
     _asked_s: float = -math.inf
+    _ask_again_s: float = ASK_AGAIN_S
+    _rounds: int = 0  # of asking for intervals since positions came last
+    _are_intervals_refused: bool = False
+    _heard_s: dict[int, float] = field(default_factory=dict)  # messages by their ids
     _questioned_s: float = -math.inf
     _question_again_s: float = ASK_AGAIN_S
+
+    def receive(self, message: Message, now_s: float) -> None:
+        """Every message of the autopilot."""
+        self._heard_s[message.get_msgId()] = now_s
+        if message.get_type() == "COMMAND_ACK" and message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
+            self._are_intervals_refused |= message.result == mavlink.MAV_RESULT_UNSUPPORTED
 
     def due(self, state: VehicleState, now_s: float, *, has_position: bool) -> list[Message]:
         """Of a vehicle that is heard; `has_position`: it has told where it is a moment ago."""
         if state.flavour is None:
             return []
-        wanted = []
-        if not has_position and now_s - self._asked_s >= ASK_AGAIN_S:
-            self._asked_s = now_s
-            wanted += greeting.requests(state.system, state.flavour)
+        wanted = self._telemetry(state.system, state.flavour, now_s, has_position=has_position)
         wanted += self.own_return.questions(state, now_s)
         once = self._once(state)
         if once and now_s - self._questioned_s >= self._question_again_s:
@@ -41,6 +53,31 @@ class Questions:
             self.limits_left -= self.may_ask_limits(state)
             wanted += once
         return wanted
+
+    def _telemetry(self, system: int, flavour: Flavour, now_s: float, *, has_position: bool) -> list[Message]:
+        """Messages that do not come, by intervals. Streams bring many that nobody reads: only where intervals bring no position."""
+        if has_position:
+            self._rounds = 0
+        if now_s - self._asked_s < (self._ask_again_s if has_position else ASK_AGAIN_S):
+            return []
+        is_first = self._asked_s == -math.inf
+        wanted_s = greeting.intervals_s(flavour, settings.LINK_BUDGET_BYTES_S)
+        missing_s = {number: every_s for number, every_s in wanted_s.items() if is_first or self._is_missing(number, every_s, now_s)}
+        if not missing_s and has_position:
+            return []
+        self._asked_s = now_s
+        self._ask_again_s = min(2 * self._ask_again_s, ASK_SELDOM_S)
+        self._rounds += not has_position
+        asked = greeting.interval_requests(system, missing_s)
+        if flavour is Flavour.PX4:
+            return asked
+        needs_streams = not has_position and (self._are_intervals_refused or self._rounds > UNANSWERED_ROUNDS)
+        if needs_streams:
+            return [*asked, greeting.streams(system, is_on=True)]
+        return [greeting.streams(system, is_on=False), *asked] if is_first else asked
+
+    def _is_missing(self, number: int, every_s: float, now_s: float) -> bool:
+        return now_s - self._heard_s.get(number, -math.inf) > max(MISSING_INTERVALS * every_s, ASK_AGAIN_S)
 
     def may_ask_limits(self, state: VehicleState) -> bool:
         return state.flavour is Flavour.PX4 and self.limits_left > 0 and any(name not in state.parameters for name in PARAMETERS)

@@ -21,6 +21,7 @@ from telemetry.ground_station.parameters import ParameterReading
 from telemetry.ground_station.transfer import TransferState
 from telemetry.ground_station.wire import held_list, held_sha256
 
+OTHER_LIST_READ = "other-list"  # a code: what is on board is known, and is not the approved list
 READINGS = 2  # a difference counts when a second reading shows it: the first may have been a late answer
 
 
@@ -91,4 +92,4 @@ async def _read(
     if not found or (not load.of(kind) and beside.get(name) == held_sha256(held)):
         return Reading(True)
     more = f" and {len(found) - 1} more" if len(found) > 1 else ""
-    return Reading(False, "other-list", f"Nothing was sent: the {name} on the vehicle is not the approved one ({found[0]}{more}).")
+    return Reading(False, OTHER_LIST_READ, f"Nothing was sent: the {name} on the vehicle is not the approved one ({found[0]}{more}).")

@@ -18,14 +18,16 @@ from telemetry.decoding.link_quality import LinkQuality
 from telemetry.decoding.report import Flown, Reporter, is_place, is_vehicle
 from telemetry.decoding.status_texts import StatusText, TextCollector
 from telemetry.gateway import greeting
+from telemetry.gateway.addresses import MAX_ADDRESSES
 from telemetry.gateway.belief import SENDER_SILENT_S, Belief, is_within
 from telemetry.gateway.fleet import KnownUav
+from telemetry.gateway.link_rate import LinkRate
 from telemetry.gateway.list_watch import ListWatch
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.questions import Questions
 from telemetry.ground_station.ends import AUTOPILOT
-from telemetry.ground_station.flavour import COMMANDED, MISSION_MODES, Flavour
+from telemetry.ground_station.flavour import MISSION_MODES, Flavour
 from telemetry.ground_station.flown import FlightWatch
 from telemetry.ground_station.flown import Flown as FlownItem
 from telemetry.ground_station.limits import PARAMETERS
@@ -38,6 +40,7 @@ logger = logging.getLogger(__name__)
 MOST_WAITING = 5_000  # frames of a vehicle that is not served yet
 HEARD_WITHIN_S = 5.0  # else what is not urgent waits for it, or for another gateway
 GREET_AGAIN_S = 1.0
+LATE = frozenset({Refusal.TOO_OLD, Refusal.BEFORE_START})
 POSITIONS_MISSING_S = 3.0
 RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
 TELL_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
@@ -66,6 +69,7 @@ class Session:
     is_unsaved: bool = False
     questions: Questions = field(default_factory=Questions)
     lists: ListWatch = field(default_factory=ListWatch)
+    rate: LinkRate = field(default_factory=LinkRate)
     commanded_s: float | None = None  # monotonic: when a command was last under way
     waiting: deque[tuple[Frame, Peer, float]] = field(default_factory=lambda: deque(maxlen=MOST_WAITING))
     _writer: FrameWriter = field(init=False, repr=False)
@@ -74,7 +78,7 @@ class Session:
     _quality: LinkQuality = field(default_factory=LinkQuality)
     _flight: FlightWatch = field(default_factory=FlightWatch)
     _position_s: float = 0.0
-    _greeted_s: float = 0.0
+    _greeted: dict[str, float] = field(default_factory=dict)  # when each address was greeted last
 
     def __post_init__(self) -> None:
         self.state = VehicleState(self.uav.system)
@@ -92,11 +96,12 @@ class Session:
         refusal = self.belief.refusal(frame, peer, now_s)
         if refusal is not None:
             self._count_loss(refusal)
-            if refusal is Refusal.TOO_OLD:
-                self._greet_late_clock(peer, now_s)
+            if refusal in LATE:
+                self._greet_late_clock(frame, peer, now_s)
             return
         self.is_unsaved = True
         self._quality.count(frame.component, frame.sequence)
+        self.rate.count(len(frame.raw), now_s)
         if self.log is not None:
             self.log(frame.raw, frame.message_id, now_s)
         message = message_of(frame)
@@ -117,21 +122,21 @@ class Session:
         if message is not None:
             self._quality.receive_radio(message, now_s)
 
-    def serve(self, lease: Lease, held_until_s: float) -> None:
-        """From now on, with what the gateway before has left. `waiting` is for the caller to receive again."""
+    def serve(self, lease: Lease, held_until_s: float) -> deque[tuple[Frame, Peer, float]]:
+        """From now on, with what the gateway before has left. Returns what has waited, for the caller to receive again."""
+        waiting, self.waiting = self.waiting, deque(maxlen=self.waiting.maxlen)
         self.lease, self.held_until_s = lease, held_until_s
         self.losses = Counter(lease.losses)
-        self._flight.has_flown_list |= lease.mode_in_air in MISSION_MODES  # and may be down by now
+        self._flight.take_up(was_in_mission=lease.mode_in_air in MISSION_MODES, mission_item=lease.mission_item)
         if not self.time.boots:
             self.time = VehicleTime.from_json(lease.boots)
-        if self.uav.key is not None and lease.signing.get("credential") == self.uav.credential_id:
-            self.belief.take_up(lease.signing.get("received", {}))
-            self._writer.last_timestamp = max(self._writer.last_timestamp, lease.signing.get("sent", 0))
+        self.belief.take_up(lease.signing, waiting[0][2] if waiting else time.time())
+        self._writer.last_timestamp = max(self._writer.last_timestamp, lease.signing.get("sent", 0))
+        return waiting
 
     def change(self, uav: KnownUav) -> None:
         """The UAV's row or key was changed."""
         self.belief.change(uav)
-        self._writer.key = uav.key
         self.uav = uav
 
     def lose(self) -> None:
@@ -157,7 +162,7 @@ class Session:
 
     def may_hear(self, now_s: float) -> bool:
         """Whether it is ours and can be spoken to, though perhaps nothing is heard of it: it was believed from an address not long ago."""
-        return self.is_held and self._has_address(now_s) and self.state.flavour in COMMANDED
+        return self.is_held and self._has_address(now_s) and self.state.can_be_stopped
 
     def _has_address(self, now_s: float) -> bool:
         return self.peer is not None and is_within(self.heard_s, now_s, ADDRESS_GOOD_S)
@@ -174,13 +179,16 @@ class Session:
             self._send(messages, time.time() if now_s is None else now_s)
 
     def _send(self, messages: list[Message], now_s: float) -> None:
-        if self.peer is None:
+        peers = self.belief.addresses.answered(now_s)
+        if not peers:
             return
+        self._writer.key = self.belief.key
         for message in messages:
             raw = self._writer.frame_of(message, now_s)
             if self.log is not None:
                 self.log(raw, message.get_msgId(), now_s)
-            self.peer.send(raw)
+            for peer in peers:
+                peer.send(raw)
             self.lists.note_sent(message, time.monotonic())
         self.is_unsaved |= bool(messages)
 
@@ -204,13 +212,14 @@ class Session:
 
     def link_state(self) -> LinkState:
         state, clock = self.state, self.time.clock
-        home = state.home
+        home, rate = state.home, self.rate.at(time.time())
         return LinkState(
             uav_id=self.uav.uav_id,
             heard_ago_s=max(time.time() - self.heard_s, 0.0),
             address=self.peer.name[:100] if self.peer else "",
             autopilot=state.flavour or "",
             firmware=".".join(map(str, state.firmware)) if state.firmware else "",
+            vehicle_type=state.vehicle_type,
             mode=state.mode[:30],
             is_armed=state.is_armed,
             is_in_air=state.is_in_air,
@@ -224,18 +233,21 @@ class Session:
             signing=self._signing(),
             losses=dict(self.losses),
             limits=(self.lease.limits if self.lease else {}) | self.limits,
+            battery_state=state.battery_state,
+            received_bytes_s=rate.bytes_s,
+            received_messages_s=rate.messages_s,
         )
 
     def _signing(self) -> dict[str, Any]:
-        received = self.belief.received
-        if received is None:
-            return {}
-        return {"credential": self.uav.credential_id, "received": received, "sent": self._writer.last_timestamp}
+        signing = self.belief.to_json()
+        return signing and signing | {"sent": self._writer.last_timestamp}
 
-    def _greet_late_clock(self, peer: Peer, now_s: float) -> None:
-        """Whoever knows the key but not the time sets its clock by a signed frame of ours."""
-        if not is_within(self._greeted_s, now_s, GREET_AGAIN_S):
-            self._greeted_s = now_s
+    def _greet_late_clock(self, frame: Frame, peer: Peer, now_s: float) -> None:
+        """Whoever knows the key but not the time sets its clock by a signed frame of ours, whoever else sends its frames."""
+        self._greeted = {name: at_s for name, at_s in self._greeted.items() if is_within(at_s, now_s, GREET_AGAIN_S)}
+        if peer.name not in self._greeted and len(self._greeted) < MAX_ADDRESSES:
+            self._greeted[peer.name] = now_s
+            self._writer.key = self.belief.key_of(frame)
             peer.send(self._writer.frame_of(greeting.heartbeat(), now_s))
 
     def _take(self, message: Message, now_s: float) -> None:
@@ -245,6 +257,7 @@ class Session:
         stamp = self._stamp(message, now_s) if kind in TELL_TIME else None
         self._reporter.receive(message, now_s)
         monotonic_s = time.monotonic()
+        self.questions.receive(message, monotonic_s)
         if not _tells_no_place(message):
             self.state.receive(message, monotonic_s)
             self._note_flown(self._flight.look(self.state, kind))

@@ -34,6 +34,10 @@ class Store:
     lost: int = 0  # for want of room, or because they could not be stored at all
     is_away: bool = False
 
+    def note_sighting(self, sighting: Sighting) -> None:
+        """The newest of each system id."""
+        self.sightings[sighting.system] = sighting
+
     async def flush(self) -> bool:
         """Stores what there is, at most so much at once. Returns whether more waits; while the database is away, False."""
         self._drop_overflow()

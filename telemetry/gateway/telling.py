@@ -1,6 +1,7 @@
 """What vehicles were heard to do, told on to the missions, the fleet and whoever looks: what is not stored with the records."""
 
 import logging
+import math
 import time
 from collections.abc import Callable, Coroutine
 from dataclasses import dataclass, field
@@ -18,7 +19,8 @@ logger = logging.getLogger(__name__)
 
 SECOND_SENDER_GONE_S = 60.0
 FLOWN_EVERY_S = 0.2
-KEYS_EVERY_S = 30.0
+KEYS_EVERY_S = 1.0
+KEY_AGAIN_S = 30.0
 SENDERS_EVERY_S = 2.0
 
 
@@ -28,6 +30,7 @@ class Telling:
 
     sessions: Callable[[], list[Session]]
     database: DatabaseThread = field(default_factory=lambda: DatabaseThread("gateway-tells"))
+    _keys_noted_s: dict[int, float] = field(default_factory=dict)  # by credential, monotonic
 
     def loops(self) -> dict[str, tuple[float, Callable[[], Coroutine[Any, Any, None]]]]:
         """By name: how often [s], and what."""
@@ -40,14 +43,17 @@ class Telling:
         }
 
     async def second_senders(self) -> None:
-        """Two who bear one system id, where nothing is signed: which of them is the UAV nobody can know."""
+        """Two who bear one system id, or bring the same signed frames: which of them is the UAV nobody can know."""
         now_s = time.time()
         for session in self.sessions():
             if session.belief.second_sender is None or session.peer is None:
                 continue
             other, last_s = session.belief.second_sender
             if now_s - last_s < SECOND_SENDER_GONE_S:
-                await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id, believed=session.peer.name, other=other)
+                is_signed = session.belief.addresses.copied is not None
+                await self.database.run(
+                    tell_of_second_sender, uav_id=session.uav.uav_id, believed=session.peer.name, other=other, is_signed=is_signed
+                )
             else:
                 session.belief.second_sender = None
                 await self.database.run(tell_of_second_sender, uav_id=session.uav.uav_id)
@@ -78,11 +84,14 @@ class Telling:
                     session.lists.found.pop(0)
 
     async def keys(self) -> None:
-        signed = [session for session in self.sessions() if session.belief.has_signed]
-        for session in signed:
-            session.belief.has_signed = False
-        if used := [session.uav.credential_id for session in signed if session.uav.credential_id is not None]:
+        """A key's first use at once, as it ends those before it; later ones now and then."""
+        now_s, used = time.monotonic(), set()
+        for session in self.sessions():
+            used |= {key for key in session.belief.used if now_s - self._keys_noted_s.get(key, -math.inf) >= KEY_AGAIN_S}
+            session.belief.used = set()
+        if used:
             await self.database.run(note_mavlink_key_use, credential_ids=used)
+            self._keys_noted_s |= dict.fromkeys(used, now_s)
 
     async def _tell(self, session: Session, what: str, note: Callable[..., Any], **values: Any) -> None:
         """What cannot be told of one UAV holds up no other."""

@@ -1,11 +1,12 @@
 """What a vehicle would not fly by its own parameters: asked for, and told before anything of a mission is sent."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from django.conf import settings
 
 from missions.mavlink.content import FlightLoad
+from missions.mavlink.own_return import fence_off_by
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.preparation import CannotCarry
 from telemetry.gateway.session import Session
@@ -19,20 +20,27 @@ ADVICE = {
     "far-first-waypoint": f"Bring the UAV to where its flight begins, or raise {FIRST_LEG} on it.",
     "long-leg": "Revoke, and approve it again with points put in on longer legs.",
 }
+FENCE_PARAMETERS = ("FENCE_ENABLE", "FENCE_AUTOENABLE", "FENCE_TYPE")
+FENCE_OFF = "The fence on the UAV does nothing: {parameter}."
 UNTOLD = "The UAV has not told how far apart waypoints may be."
 
 
 async def reason_not_to_load(load: FlightLoad, session: Session, *, is_wanted: Callable[[], bool]) -> CannotCarry | None:
     """Legs that the vehicle would refuse. It is asked if it has not told, and again before it is refused: it may have been set anew."""
+    if session.flavour is Flavour.ARDUPILOT and load.fence and FENCE_PARAMETERS[0] not in session.state.parameters:
+        await _read(FENCE_PARAMETERS, session, is_wanted)  # for warnings_of
     if session.flavour is not Flavour.PX4:
         return None
     if not session.limits or session.questions.may_ask_limits(session.state) or leg_warnings(load, session.limits, session.state.position):
         session.questions.limits_left = 0
-        rules = replace(settings.TRANSFER_RULES, retries=RETRIES)
-        reading = ParameterReading(PARAMETERS, session.state, Ends(session.uav.system), rules)
-        await Conversation(session, reading, is_wanted).run(on_change=lambda: None)
+        await _read(PARAMETERS, session, is_wanted)
     refused = leg_warnings(load, session.limits, session.state.position)
     return _refusal(refused) if refused else None
+
+
+async def _read(names: Sequence[str], session: Session, is_wanted: Callable[[], bool]) -> None:
+    reading = ParameterReading(names, session.state, Ends(session.uav.system), replace(settings.TRANSFER_RULES, retries=RETRIES))
+    await Conversation(session, reading, is_wanted).run(on_change=lambda: None)
 
 
 def warnings_of(load: FlightLoad, session: Session) -> str:
@@ -42,6 +50,9 @@ def warnings_of(load: FlightLoad, session: Session) -> str:
     words = [warning.words for warning in count_warnings(load, session.flavour)]
     if session.flavour is Flavour.PX4 and not session.limits:
         words.append(UNTOLD)
+    off_by = fence_off_by(session.flavour, session.state.parameters) if load.fence else ""
+    if off_by:
+        words.append(FENCE_OFF.format(parameter=off_by))
     return " ".join(words)
 
 

@@ -4,20 +4,20 @@ from collections.abc import Mapping
 
 from telemetry.ground_station.command import CommandEnd, CommandMachine, CommandOutcome
 from telemetry.ground_station.ends import Ends, Message, Messages
-from telemetry.ground_station.orders import CannotOrder, Order, OrderPlan, plan_of
+from telemetry.ground_station.orders import STOPS, CannotOrder, Order, OrderPlan, plan_of
 from telemetry.ground_station.rules import CommandRules
-from telemetry.ground_station.steps import Course, Pause, Steps
+from telemetry.ground_station.steps import Course, NextHeartbeat, Pause, Steps
 from telemetry.ground_station.vehicle_state import VehicleState
 
-STOPS = frozenset({Order.ABORT, Order.LAND, Order.RETURN, Order.HOLD, Order.PAUSE})
 UNDONE_ROUNDS = 3
 
 
 class CommandKeeper:
     """Drives an order to its goal. `state` is to have taken each message before the keeper gets it.
 
-    Where the vehicle is already so, it ends at once as applied, and nothing is sent. That is told by its last heartbeat; it must be younger
-    than `fresh_s` and, where something else was sent to the vehicle shortly before, received after `unsettled_until_s`. What makes a UAV
+    Where the vehicle is already so, it ends as applied, and nothing is sent. That is told by a heartbeat that came after the order was
+    given, within `fresh_s`, and, where something else was sent to the vehicle shortly before, after `unsettled_until_s`: one of before the
+    order may be of before somebody else told the vehicle otherwise. What makes a UAV
     safe must still show then: a start that was sent before it, and arrives after it, would take it back.
     """
 
@@ -38,6 +38,7 @@ class CommandKeeper:
         self._rules = rules
         self._parameters = dict(parameters or {})
         self._unsettled_until_s = unsettled_until_s
+        self._begun_s = 0.0
         self._now_s = 0.0
         self._steps = Steps(self._course())
 
@@ -50,7 +51,7 @@ class CommandKeeper:
         return self._steps.wake_at_s
 
     def start(self, now_s: float) -> Messages:
-        self._now_s = now_s
+        self._begun_s = self._now_s = now_s
         return self._steps.start(now_s)
 
     def receive(self, message: Message, now_s: float) -> Messages:
@@ -67,13 +68,17 @@ class CommandKeeper:
         return messages
 
     def _course(self) -> Course[CommandOutcome]:
-        done = 0
+        done, has_waited = 0, False
         while True:
             try:
                 plan = plan_of(self.order, self._state, self._parameters)
             except CannotOrder as refusal:
                 return CommandOutcome(CommandEnd.FAILED, refusal.code, str(refusal))
-            if self._is_already(plan):
+            if self._is_already(plan) and not has_waited:
+                has_waited = True
+                yield NextHeartbeat(self._state, self._begun_s, self._begun_s + self._rules.fresh_s)
+                continue
+            if self._is_already(plan) and (self._state.heartbeat_at_s or 0.0) > self._begun_s:
                 return CommandOutcome(CommandEnd.APPLIED, "already", "The UAV is so already.")
             if plan.goal is None and self._unsettled_until_s is not None:
                 yield Pause(self._unsettled_until_s)  # else a late yes to an earlier one would be taken for the answer

@@ -2,8 +2,10 @@
 
 What a flavour is known to change is no difference; everything else is, and is named. ArduPilot (seen in ArduCopter 4.6.0-dev and read in
 its AP_Mission.cpp) cuts an altitude to whole centimetres and some parameters to whole numbers, gives items without a place the frame
-GLOBAL, and forgets parameters: that is no difference where 0 or "as you choose" was asked for, but one where a figure was. PX4 (read in
-its mavlink_mission.cpp) forgets some of them likewise and keeps a yaw in radians. On the wire all figures are 32 bits long.
+GLOBAL, and forgets parameters: that is no difference where 0 or "as you choose" was asked for, but one where a figure was. It may have
+been given DO_SET_ROI in place of newer commands (see known_items). PX4 (read in its mavlink_mission.cpp) forgets some of them likewise and
+keeps a yaw in radians. Fence and rally items have no `autocontinue`: ArduPilot gives them back with 0. On the wire all figures are 32 bits
+long.
 """
 
 import math
@@ -16,6 +18,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.content import MissionItem
 from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.known_items import as_old_roi
 from telemetry.ground_station.wire import Held, HeldItem
 
 CENTIMETRE_M = 0.01
@@ -43,6 +46,7 @@ ARDUPILOT_KEEPS = {
     mavlink.MAV_CMD_DO_CHANGE_SPEED: (WHOLE, ALL, ALL, NOTHING),
     mavlink.MAV_CMD_DO_SET_ROI_LOCATION: (WHOLE, NOTHING, NOTHING, NOTHING),
     mavlink.MAV_CMD_DO_SET_ROI_NONE: (WHOLE, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_DO_SET_ROI: (WHOLE, NOTHING, NOTHING, NOTHING),
     mavlink.MAV_CMD_IMAGE_START_CAPTURE: (WHOLE, ALL, WHOLE, WHOLE),
     mavlink.MAV_CMD_DO_SET_SERVO: (WHOLE, WHOLE, NOTHING, NOTHING),
     mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION: (WHOLE, NOTHING, NOTHING, NOTHING),
@@ -60,6 +64,11 @@ PX4_KEEPS = {
 }
 KEEPS = {Flavour.ARDUPILOT: ARDUPILOT_KEEPS, Flavour.PX4: PX4_KEEPS}
 
+NOT_FLOWN = frozenset({
+    mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT, mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION,
+    mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION,
+    mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION, mavlink.MAV_CMD_NAV_RALLY_POINT,
+})  # fmt: skip
 PLACELESS_ON_ARDUPILOT = frozenset({mavlink.MAV_FRAME_MISSION, mavlink.MAV_FRAME_GLOBAL})
 SAME_FRAME: dict[int, int] = {
     mavlink.MAV_FRAME_GLOBAL_INT: mavlink.MAV_FRAME_GLOBAL,
@@ -91,7 +100,7 @@ def _differences(wanted: Sequence[MissionItem], held: Held, flavour: Flavour) ->
     for place, (item, there) in enumerate(zip(wanted, held, strict=False)):
         for name, asked_for, found in _of_item(item, there.item, flavour):
             yield Difference(place, name, asked_for, found, item.waypoint)
-        if not there.goes_on:
+        if not there.goes_on and item.command not in NOT_FLOWN:
             yield Difference(place, "going on afterwards", "yes", "no", item.waypoint)
     for place in range(len(held), len(wanted)):
         yield Difference(place, "command", str(wanted[place].command), "missing", wanted[place].waypoint)
@@ -119,6 +128,8 @@ def is_same(wanted: MissionItem, held: MissionItem, flavour: Flavour) -> bool:
 
 
 def _of_item(wanted: MissionItem, held: MissionItem, flavour: Flavour) -> Iterator[tuple[str, str, str]]:
+    if flavour is Flavour.ARDUPILOT and held.command == mavlink.MAV_CMD_DO_SET_ROI:
+        wanted = as_old_roi(wanted)
     if wanted.command != held.command:
         yield "command", str(wanted.command), str(held.command)
         return

@@ -4,6 +4,8 @@ from enum import StrEnum
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from telemetry.ground_station.vehicle_class import ARDUPILOT_NAMES, VehicleClass
+
 
 class Flavour(StrEnum):
     PX4 = "px4"
@@ -49,6 +51,7 @@ COPTER_HOLDING = frozenset({4, 5, 16, 17})  # the list is not flown: GUIDED, LOI
 COPTER_NOT_ARMABLE = frozenset({3, 6, 9, 17, 21, 27})  # from which a start begins by GUIDED
 RESTARTS = "MIS_RESTART"  # ArduPilot: unless 0, each change to AUTO begins the list anew
 COPTER_RETURNING = frozenset({6, 21, 27})
+OTHERS_NAMES = {Mode.MISSION: "AUTO", Mode.RETURN: "RTL", Mode.GUIDED: "GUIDED"}  # of ArduPilot's planes and rovers, which are only watched
 
 
 MISSION_MODES = frozenset({PX4_AUTO_NAMES[PX4_SUB_MODES[Mode.MISSION]], COPTER_NAMES[COPTER_MODES[Mode.MISSION]]})  # by their names
@@ -59,18 +62,21 @@ def px4_mode(custom_mode: int) -> tuple[int, int]:
     return custom_mode >> 16 & 0xFF, custom_mode >> 24 & 0xFF
 
 
-def mode_name(flavour: Flavour, custom_mode: int) -> str:
+def mode_name(flavour: Flavour, custom_mode: int, vehicle_class: VehicleClass = VehicleClass.COPTER) -> str:
     if flavour is Flavour.PX4:
         main, sub = px4_mode(custom_mode)
         return PX4_AUTO_NAMES.get(sub, f"AUTO {sub}") if main == PX4_AUTO else PX4_MAIN_NAMES.get(main, f"MODE {main}")
     if flavour is Flavour.ARDUPILOT:
-        return COPTER_NAMES.get(custom_mode, f"MODE {custom_mode}")
+        names = COPTER_NAMES if vehicle_class is VehicleClass.COPTER else ARDUPILOT_NAMES.get(vehicle_class, {})
+        return names.get(custom_mode, f"MODE {custom_mode}")
     return f"MODE {custom_mode}"
 
 
-def is_in_mode(flavour: Flavour, custom_mode: int, mode: Mode) -> bool:
+def is_in_mode(flavour: Flavour, custom_mode: int, mode: Mode, vehicle_class: VehicleClass = VehicleClass.COPTER) -> bool:
     if flavour is Flavour.PX4:
         return px4_mode(custom_mode) == (PX4_AUTO, PX4_SUB_MODES.get(mode))
+    if flavour is Flavour.ARDUPILOT and vehicle_class is not VehicleClass.COPTER:
+        return mode_name(flavour, custom_mode, vehicle_class) == OTHERS_NAMES.get(mode)
     if flavour is Flavour.ARDUPILOT:
         if mode is Mode.HOLD:
             return custom_mode in COPTER_HOLDING - {COPTER_MODES[Mode.GUIDED]}

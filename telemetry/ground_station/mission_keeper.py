@@ -10,14 +10,16 @@ from telemetry.ground_station.download import Download
 from telemetry.ground_station.ends import Ends, Message, Messages
 from telemetry.ground_station.flavour import Flavour, Mode
 from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState, Mix, Progress
+from telemetry.ground_station.known_items import command_words, firmware_words, unknown_items
 from telemetry.ground_station.limits import too_many
 from telemetry.ground_station.mix import Found, found, mix_in_words
 from telemetry.ground_station.rules import TransferRules
 from telemetry.ground_station.steps import Course, Machine, Steps
-from telemetry.ground_station.transfer import TransferState
+from telemetry.ground_station.transfer import TransferOutcome, TransferState
 from telemetry.ground_station.upload import REQUESTS, Upload
+from telemetry.ground_station.vehicle_class import VehicleClass, refusal_words
 from telemetry.ground_station.vehicle_state import VehicleState
-from telemetry.ground_station.wire import Held, held_list, held_sha256, sent_list
+from telemetry.ground_station.wire import Held, has_home, held_list, held_sha256, sent_list
 
 ORDER = (MissionType.FENCE, MissionType.MISSION, MissionType.RALLY)  # never a new mission under an old fence
 SENDING, READING, CLEARING, RESTORING = "sending", "reading", "clearing", "restoring"
@@ -55,6 +57,7 @@ class MissionKeeper:
         self._sent: dict[MissionType, Upload] = {}
         self._touched: list[MissionType] = []
         self._reason = ""
+        self._why = ""  # in words: what the vehicle refused, or keeps otherwise than it was sent
         self._is_cancelled = self._is_restoring = False
         self._kind = MissionType.FENCE
         self._stage = READING
@@ -144,12 +147,18 @@ class MissionKeeper:
             code, words = "not-heard", "The vehicle has not said what it is."
         elif state.flavour is Flavour.OTHER:
             code, words = "autopilot", "Missions are sent to PX4 and ArduPilot only: how this autopilot keeps them is not known."
+        elif state.vehicle_class is not VehicleClass.COPTER:
+            code, words = "vehicle-class", refusal_words(state.vehicle_class)
         elif state.is_armed and not state.is_held:
             code, words = "not-held", f"The vehicle is armed and in mode {state.mode}: it must be disarmed or held first."
         else:
             limit = too_many(self.load, state.flavour)
+            unknown = unknown_items(self.load.mission, state.flavour, state.firmware)
             if limit is not None:
                 code, words = limit.code, limit.words
+            elif unknown:
+                autopilot, first = firmware_words(state.flavour, state.firmware), unknown[0]
+                code, words = "unknown-command", f"Not known to {autopilot}: item {first.place}, {command_words(first.item.command)}."
         return KeeperOutcome(KeeperState.INTACT, code, f"Nothing was sent. {words}") if code else None
 
     @property
@@ -176,6 +185,7 @@ class MissionKeeper:
                 return True
             if held is not None:
                 self._note_mix(kind, held)
+                self._why = self._why if state is TransferState.REFUSED else self._difference_in_words(kind)
             if self._is_cancelled or state is TransferState.REFUSED:
                 return False
             self._reason = self._reason or "differs"
@@ -204,12 +214,31 @@ class MissionKeeper:
         self._kind, self._stage = kind, SENDING if items else CLEARING
         step: Upload | Clear
         if items:
-            step = self._sent[kind] = Upload(sent_list(items, kind, self._flavour), kind, self._ends, self._rules)
+            step = self._sent[kind] = Upload(sent_list(items, kind, self._flavour, self._state.firmware), kind, self._ends, self._rules)
         else:
             self._sent.pop(kind, None)
             step = Clear(kind, self._ends, self._rules)
         yield step
+        if isinstance(step, Upload) and not self._is_restoring:
+            self._why = self._refusal_in_words(step)
         return self._ended(step.outcome)
+
+    def _refusal_in_words(self, upload: Upload) -> str:
+        """Which item, by its command, which firmware would not take; empty where none was refused."""
+        ended: TransferOutcome | None = upload.outcome
+        if ended is None or ended.state is not TransferState.REFUSED or ended.item is None:
+            return ""
+        autopilot, command = firmware_words(self._state.flavour, self._state.firmware), command_words(upload.items[ended.item].command)
+        place = ended.item - has_home(upload.kind, self._flavour)
+        return f"Refused by {autopilot}: item {place} of the {_name(upload.kind)}, {command} ({ended.code})."
+
+    def _difference_in_words(self, kind: MissionType) -> str:
+        found = self._differences(kind)
+        if not found:
+            return ""
+        first, name = found[0], _name(kind)
+        words = f"Of the {name}, item {first.item}: {first.field} was sent as {first.wanted} and came back as {first.held}."
+        return f"{words} There are {len(found) - 1} more differences." if len(found) > 1 else words
 
     def _read(self, kind: MissionType) -> Generator[Machine, None, Held | None]:
         """As often as there are attempts. A list that the vehicle does not have at all is empty."""
@@ -270,16 +299,19 @@ class MissionKeeper:
             words = " ".join(self._left_in_words(kind, self._now[kind] or ()) for kind in mixed)
             lost = " ".join(f"Its {_name(kind)} could not be read." for kind in unread)
             shown = self._differences(mixed[0])
-            return KeeperOutcome(KeeperState.MIXED, reason, f"{words} {lost}".strip(), "", True, mixes, shown)
+            return KeeperOutcome(KeeperState.MIXED, reason, self._with_why(f"{words} {lost}".strip()), "", True, mixes, shown)
         if unread:
             is_critical = self._flavour is Flavour.ARDUPILOT
             may = "part of the new one and part of the old" if is_critical else "the old one or the new one, whole"
             words = f"The vehicle fell silent while its {_name(unread[0])} was sent: it may hold {may}. Read it back before any flight."
-            return KeeperOutcome(KeeperState.UNREAD, reason, words, "", is_critical, mixes)
+            return KeeperOutcome(KeeperState.UNREAD, reason, self._with_why(words), "", is_critical, mixes)
         if MissionType.MISSION in self._touched and MissionType.MISSION not in kept:
             words = "The mission could not be sent whole, and what was there of it was taken off: the vehicle holds none."
-            return KeeperOutcome(KeeperState.CLEARED, reason, words, mixes=mixes)
-        return KeeperOutcome(KeeperState.INTACT, reason, "The vehicle holds what it held before.", mixes=mixes)
+            return KeeperOutcome(KeeperState.CLEARED, reason, self._with_why(words), mixes=mixes)
+        return KeeperOutcome(KeeperState.INTACT, reason, self._with_why("The vehicle holds what it held before."), mixes=mixes)
+
+    def _with_why(self, words: str) -> str:
+        return f"{self._why} {words}".strip()
 
     def _differs(self, kind: MissionType, held: Held) -> bool:
         return bool(differences(self.load.of(kind), held, self._flavour))

@@ -9,6 +9,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from telemetry.ground_station.command import CommandStep, Effect, Seven
 from telemetry.ground_station.flavour import COMMANDED, COPTER_MODES, COPTER_NOT_ARMABLE, PX4_AUTO, PX4_SUB_MODES, Flavour, Mode
+from telemetry.ground_station.vehicle_class import VehicleClass, refusal_words
 from telemetry.ground_station.vehicle_state import VehicleState
 
 OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
@@ -31,6 +32,9 @@ class Order(StrEnum):
     LAND = "land"
     ABORT = "abort"
     CHANGE_SPEED = "change-speed"
+
+
+STOPS = frozenset({Order.ABORT, Order.LAND, Order.RETURN, Order.HOLD, Order.PAUSE})
 
 
 class CannotOrder(ValueError):
@@ -61,6 +65,8 @@ def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) 
     """
     if state.flavour not in COMMANDED:
         raise CannotOrder("autopilot", "Only PX4 and ArduPilot are commanded: what another autopilot does is not known.")
+    if state.vehicle_class is not VehicleClass.COPTER and not (order in STOPS and state.can_be_stopped):
+        raise CannotOrder("vehicle-class", refusal_words(state.vehicle_class))
     if order in (Order.PAUSE, Order.HOLD):
         return OrderPlan(_or_on_ground(_is_in(Mode.HOLD)), ((_mode(state, Mode.HOLD),),))
     if order is Order.RETURN:

@@ -4,6 +4,7 @@ from collections.abc import Generator
 from typing import Any, Generic, Protocol, TypeVar
 
 from telemetry.ground_station.ends import Message, Messages
+from telemetry.ground_station.vehicle_state import VehicleState
 
 Result = TypeVar("Result")
 
@@ -41,6 +42,31 @@ class Pause:
 
     def tick(self, now_s: float) -> Messages:
         if self.wake_at_s is not None and now_s >= self.wake_at_s:
+            self.outcome, self.wake_at_s = True, None
+        return []
+
+
+class NextHeartbeat:
+    """Nothing is sent until the vehicle's state took a heartbeat after `since_s`, or until a time; `outcome` is True then.
+
+    `state` is to have taken a message before this gets it.
+    """
+
+    def __init__(self, state: VehicleState, since_s: float, until_s: float) -> None:
+        self.outcome: bool | None = None
+        self.wake_at_s: float | None = until_s
+        self._state = state
+        self._since_s = since_s
+
+    def start(self, now_s: float) -> Messages:
+        return self.tick(now_s)
+
+    def receive(self, message: Message, now_s: float) -> Messages:
+        return self.tick(now_s)
+
+    def tick(self, now_s: float) -> Messages:
+        heard_s = self._state.heartbeat_at_s
+        if (heard_s is not None and heard_s > self._since_s) or (self.wake_at_s is not None and now_s >= self.wake_at_s):
             self.outcome, self.wake_at_s = True, None
         return []
 

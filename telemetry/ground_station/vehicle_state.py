@@ -8,8 +8,9 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from telemetry.ground_station.ends import AUTOPILOT, Message
-from telemetry.ground_station.flavour import COPTER_HOLDING, Flavour, Mode, flavour_of, is_in_mode, mode_name
+from telemetry.ground_station.flavour import COMMANDED, COPTER_HOLDING, Flavour, Mode, flavour_of, is_in_mode, mode_name
 from telemetry.ground_station.rules import CommandRules
+from telemetry.ground_station.vehicle_class import VehicleClass, class_of
 
 TEXTS_KEPT = 10
 MOST_PARAMETERS = 4_000  # more than any autopilot has
@@ -17,6 +18,7 @@ WHOLE_TYPES = frozenset({
     mavlink.MAV_PARAM_TYPE_INT8, mavlink.MAV_PARAM_TYPE_UINT8, mavlink.MAV_PARAM_TYPE_INT16, mavlink.MAV_PARAM_TYPE_UINT16,
     mavlink.MAV_PARAM_TYPE_INT32, mavlink.MAV_PARAM_TYPE_UINT32,
 })  # fmt: skip
+BATTERY_STATES = {1: "ok", 2: "low", 3: "critical", 4: "emergency", 5: "failed", 6: "unhealthy", 7: "charging"}  # MAV_BATTERY_CHARGE_STATE
 IN_AIR = frozenset({mavlink.MAV_LANDED_STATE_IN_AIR, mavlink.MAV_LANDED_STATE_TAKEOFF, mavlink.MAV_LANDED_STATE_LANDING})
 
 
@@ -34,6 +36,7 @@ class VehicleState:
     vehicle_type: int | None = None
     custom_mode: int | None = None
     system_status: int | None = None
+    battery_state: str = ""
     is_armed: bool | None = None
     landed_state: int | None = None
     position: LonLat | None = None
@@ -69,10 +72,23 @@ class VehicleState:
     @property
     def mode(self) -> str:
         """In the autopilot's own words; empty before the first heartbeat."""
-        return "" if self.flavour is None or self.custom_mode is None else mode_name(self.flavour, self.custom_mode)
+        return "" if self.flavour is None or self.custom_mode is None else mode_name(self.flavour, self.custom_mode, self.vehicle_class)
+
+    @property
+    def vehicle_class(self) -> VehicleClass:
+        return class_of(self.vehicle_type)
+
+    @property
+    def can_be_stopped(self) -> bool:
+        """Whether the modes that hold it, bring it back and land it are known."""
+        if self.flavour is Flavour.ARDUPILOT:
+            return self.vehicle_class is VehicleClass.COPTER
+        return self.flavour in COMMANDED
 
     def is_in(self, mode: Mode) -> bool:
-        return self.flavour is not None and self.custom_mode is not None and is_in_mode(self.flavour, self.custom_mode, mode)
+        if self.flavour is None or self.custom_mode is None:
+            return False
+        return is_in_mode(self.flavour, self.custom_mode, mode, self.vehicle_class)
 
     @property
     def is_in_air(self) -> bool | None:
@@ -156,6 +172,12 @@ def _health(state: VehicleState, message: Message, now_s: float) -> None:
         state.is_ready_to_arm = bool(message.onboard_control_sensors_health & check)
 
 
+def _battery(state: VehicleState, message: Message, now_s: float) -> None:
+    """Of the first battery; empty: not told."""
+    if message.id == 0:
+        state.battery_state = BATTERY_STATES.get(getattr(message, "charge_state", 0), "")
+
+
 def _parameter(state: VehicleState, message: Message, now_s: float) -> None:
     """PX4 sends the bits of a whole number in place of the figure (MAVLink's "bytewise" encoding)."""
     value = float(message.param_value)
@@ -180,6 +202,7 @@ _TAKES = {
     "MISSION_ITEM_REACHED": _reached,
     "AUTOPILOT_VERSION": _version,
     "SYS_STATUS": _health,
+    "BATTERY_STATUS": _battery,
     "PARAM_VALUE": _parameter,
     "STATUSTEXT": _text,
 }

@@ -11,6 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from missions.mavlink.content import MissionItem, MissionType
 from telemetry.ground_station.ends import Ends, Message
 from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.known_items import Version, as_known
 
 NOTHING = MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_FRAME_GLOBAL_INT, (0.0, 0.0, 0.0, 0.0))
 
@@ -31,10 +32,13 @@ def has_home(kind: MissionType, flavour: Flavour) -> bool:
     return kind is MissionType.MISSION and flavour is Flavour.ARDUPILOT
 
 
-def sent_list(items: Sequence[MissionItem], kind: MissionType, flavour: Flavour) -> tuple[MissionItem, ...]:
-    """What is sent for a list; nothing for an empty one."""
+def sent_list(
+    items: Sequence[MissionItem], kind: MissionType, flavour: Flavour, firmware: Version | None = None
+) -> tuple[MissionItem, ...]:
+    """What is sent for a list, by commands that the firmware knows; nothing for an empty one."""
+    items = as_known(items, flavour, firmware)
     if not items or not has_home(kind, flavour):
-        return tuple(items)
+        return items
     placed = next((item for item in items if item.longitude_e7 or item.latitude_e7), NOTHING)
     home = MissionItem(NOTHING.command, NOTHING.frame, NOTHING.parameters, placed.longitude_e7, placed.latitude_e7)
     return (home, *items)

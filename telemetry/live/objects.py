@@ -10,7 +10,7 @@ from django.utils import translation
 
 from missions.models import ReplanOffer, UavCommand
 from missions.serializers.commands import command_json
-from missions.serializers.replan_offers import difference_in_words
+from missions.serializers.replan_offers import difference_in_words, revision_of_offer
 from telemetry.live.missions import missions_json
 from telemetry.live.uavs import uavs_json
 from telemetry.models import Alert
@@ -55,6 +55,7 @@ def _offers(ids: list[str]) -> list[dict[str, Any]]:
             "mission": offer.mission_id,
             "code": offer.code,
             "state": offer.state,
+            "revision": revision_of_offer(offer),
             "cause": offer.cause,
             "difference": difference_in_words(offer.difference),
             "continuation": offer.continuation_id,

@@ -45,8 +45,17 @@ class FlownStage:
 
 
 @dataclass(frozen=True, slots=True)
+class Gap:
+    """A time in the air without reports for longer than LONGEST_GAP_S; length_m: how much of the route lies between its ends."""
+
+    began_s: float
+    ended_s: float
+    length_m: float
+
+
+@dataclass(frozen=True, slots=True)
 class FlownRoute:
-    """A whole route. flown_m is the length of the track as it was reported; reports are those in the air."""
+    """A whole route. flown_m is the length of the track as it was reported, without gaps; reports are those in the air."""
 
     legs: tuple[FlownLeg, ...]
     stages: tuple[FlownStage, ...]
@@ -60,6 +69,7 @@ class FlownRoute:
     height_max_m: float | None
     battery_lowest_percent: float | None
     battery_used_percent: float | None
+    gaps: tuple[Gap, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,10 +85,12 @@ def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> FlownRoute:
     legs: list[FlownLeg] = []
     stages: list[FlownStage] = []
     seen: list[_Seen] = []
+    gaps: list[Gap] = []
     for flight, own in zip(route.flights, _by_flight(route.flights, in_air), strict=True):
         line = RouteLine(flight, route.charging_stops)
         on_line = _on_line(line, own)
         seen += on_line
+        gaps += _gaps(on_line)
         by_leg = [[one for one in on_line if one.place.leg == number] for number in range(len(line.vertices) - 1)]
         legs += [_between(line, number, number + 1, own) for number, own in enumerate(by_leg)]
         stages += _stages(flight, line, by_leg)
@@ -97,7 +109,14 @@ def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> FlownRoute:
         height_max_m=max(height_m, default=None),
         battery_lowest_percent=min(batteries, default=None),
         battery_used_percent=sum(max(a - b, 0.0) for a, b in pairwise(batteries)) if batteries else None,
+        gaps=tuple(gaps),
     )
+
+
+def _gaps(seen: Sequence[_Seen]) -> Iterator[Gap]:
+    for one, after in pairwise(seen):
+        if after.fix.at_s - one.fix.at_s > LONGEST_GAP_S:
+            yield Gap(one.fix.at_s, after.fix.at_s, max(after.place.along_m - one.place.along_m, 0.0))
 
 
 def _by_flight(flights: Sequence[Flight], fixes: Sequence[Fix]) -> list[list[Fix]]:
@@ -114,10 +133,21 @@ def _by_flight(flights: Sequence[Flight], fixes: Sequence[Fix]) -> list[list[Fix
 
 
 def _on_line(line: RouteLine, fixes: Sequence[Fix]) -> list[_Seen]:
+    """Each fix with its place on the line.
+
+    The waypoint that is told right after a gap may be the one from before it, until another one is told: till then any leg from there on
+    may be the one that is flown.
+    """
     seen: list[_Seen] = []
     before: Place | None = None
+    before_s, is_old = math.inf, False
+    old_sequence: int | None = None
     for fix in fixes:
-        place = line.place(fix.position, fix.waypoint_sequence, before)
+        if fix.at_s - before_s > LONGEST_GAP_S:
+            is_old = fix.waypoint_sequence == old_sequence
+        is_old = is_old and fix.waypoint_sequence == old_sequence
+        before_s, old_sequence = fix.at_s, fix.waypoint_sequence
+        place = line.place_from(fix.position, before) if is_old and before else line.place(fix.position, fix.waypoint_sequence, before)
         if before is not None and line.length_m - before.along_m <= PASSED_END_M and place.along_m <= before.along_m:
             break
         before = place

@@ -5,7 +5,6 @@ decides. Between two reports it can have been anywhere that its speed allows: a 
 passed, is taken for reached. One that it cannot have been at was not, whatever is said.
 """
 
-from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -18,6 +17,8 @@ from telemetry.mission_report.fix import Fix, own_s
 
 REACHED_M = 15.0  # across: an autopilot takes a waypoint for reached some metres before it, and GPS errs by some more
 HOLD_SLACK_S = 3.0  # slowing down and setting out are part of a hold
+
+Pass = tuple[Sequence[Fix], int]  # reports, and how many of them are from before it flew to the waypoint
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,29 +45,48 @@ class Visit:
 
 def visits_of(route: FrozenRoute, fixes: Sequence[Fix], *, fastest_mps: float) -> list[Visit]:
     """Of each waypoint with a target, in the order of the route. fixes: in order, of one UAV; fastest_mps: over ground, wind and all."""
-    return [_visit(waypoint, fixes, fastest_mps) for waypoint in route.waypoints if waypoint.target is not None]
+    in_air, told = _with_waypoints([fix for fix in fixes if fix.is_in_air is not False])
+    found = []
+    for place, waypoint in enumerate(route.waypoints):
+        if waypoint.target is None:
+            continue
+        following = route.waypoints[place + 1 : place + 2]
+        is_followed_here = any(_apart_m(waypoint, other) <= REACHED_M for other in following)
+        passes = [(in_air, 0)] if told is None else _passes(waypoint.sequence, in_air, told, is_followed_here=is_followed_here)
+        found.append(_best([_visit(waypoint, own, before, fastest_mps) for own, before in passes or [([], 0)]]))
+    return found
 
 
-def _visit(waypoint: FrozenWaypoint, fixes: Sequence[Fix], fastest_mps: float) -> Visit:
+def _best(visits: Sequence[Visit]) -> Visit:
+    """Of several passes, as of a mission that was begun anew: the first that was long enough, else the longest."""
+    done = next((visit for visit in visits if visit.is_done), None)
+    return done or max(visits, key=lambda visit: (visit.can_have_reached, visit.held_s))
+
+
+def _apart_m(one: FrozenWaypoint, other: FrozenWaypoint) -> float:
+    return float(distance_m(np.array([one.position]), np.array([other.position]))[0])
+
+
+def _visit(waypoint: FrozenWaypoint, near: Sequence[Fix], before: int, fastest_mps: float) -> Visit:
+    """before: how many of the reports are from before it flew to the waypoint."""
     hold_s = 0.0 if waypoint.task is None else waypoint.task.hold_s
     target = -1 if waypoint.target is None else waypoint.target
-    near = _about(waypoint, fixes)
     if not near:
         return Visit(target, waypoint.sequence, hold_s)
     here = np.broadcast_to(np.array(waypoint.position), (len(near), 2))
     away_m = distance_m(np.array([fix.position for fix in near]), here).tolist()
-    seen = [fix.at_s for fix, metres in zip(near, away_m, strict=True) if metres <= REACHED_M]
+    seen = [fix.at_s for fix, metres in zip(near[before:], away_m[before:], strict=True) if metres <= REACHED_M]
     held_s, first_between_s = 0.0, None
-    for (before, before_m), (after, after_m) in pairwise(zip(near, away_m, strict=True)):
-        to_fly_m = max(before_m - REACHED_M, 0.0) + max(after_m - REACHED_M, 0.0)
-        between_s = own_s(before, after)
+    for (earlier, earlier_m), (later, later_m) in pairwise(zip(near, away_m, strict=True)):
+        to_fly_m = max(earlier_m - REACHED_M, 0.0) + max(later_m - REACHED_M, 0.0)
+        between_s = own_s(earlier, later)
         spare_s = between_s - to_fly_m / fastest_mps
         if spare_s < 0.0:
             continue
         held_s += spare_s
         if first_between_s is None:
-            share = (max(before_m - REACHED_M, 0.0) / fastest_mps + spare_s / 2.0) / between_s
-            first_between_s = before.at_s + share * (after.at_s - before.at_s)
+            share = (max(earlier_m - REACHED_M, 0.0) / fastest_mps + spare_s / 2.0) / between_s
+            first_between_s = earlier.at_s + share * (later.at_s - earlier.at_s)
     return Visit(
         target=target,
         waypoint_sequence=waypoint.sequence,
@@ -78,17 +98,33 @@ def _visit(waypoint: FrozenWaypoint, fixes: Sequence[Fix], fastest_mps: float) -
     )
 
 
-def _about(waypoint: FrozenWaypoint, fixes: Sequence[Fix]) -> Sequence[Fix]:
-    """From the last report on the leg before it to the first on the leg after it, where the UAV tells; else all.
+def _with_waypoints(fixes: Sequence[Fix]) -> tuple[Sequence[Fix], list[int] | None]:
+    """The reports with the waypoint that each flies to; one that tells none flies to that of the one before. None: none tells it."""
+    if all(fix.waypoint_sequence is None for fix in fixes):
+        return fixes, None
+    told: list[int] = []
+    for fix in fixes:
+        before = told[-1] if told else -1
+        told.append(before if fix.waypoint_sequence is None else fix.waypoint_sequence)
+    return fixes, told
 
-    A route may pass one place twice: what it was seen doing there on another leg does not count.
+
+def _passes(sequence: int, fixes: Sequence[Fix], told: Sequence[int], *, is_followed_here: bool) -> list[Pass]:
+    """The reports of each time at which the UAV was on its way to a waypoint, at it and on the leg after it, one more at either end.
+
+    A route may pass one place several times, and a vehicle may count from the begin again: what it was seen doing there while it flew to
+    another waypoint does not count. is_followed_here: the next waypoint is at the same place, so that being there is no sign.
     """
-    told = [fix.waypoint_sequence for fix in fixes]
-    if any(sequence is None for sequence in told):
-        return fixes
-    sequences = [sequence for sequence in told if sequence is not None]
-    if any(after < before for before, after in pairwise(sequences)):
-        return fixes
-    first = bisect_left(sequences, waypoint.sequence)
-    last = bisect_left(sequences, waypoint.sequence + 2)
-    return fixes[max(first - 1, 0) : last + 1]
+    last = sequence if is_followed_here else sequence + 1
+    found: list[Pass] = []
+    begin: int | None = None
+    for place, number in enumerate(told):
+        is_on_it = sequence <= number <= last
+        if is_on_it and begin is None:
+            begin = max(place - 1, 0)
+        elif not is_on_it and begin is not None:
+            found.append((fixes[begin : place + 1], int(told[begin] < sequence)))
+            begin = None
+        elif not is_on_it and place > 0 and told[place - 1] < sequence and number > last:  # passed between two reports
+            found.append((fixes[place - 1 : place + 1], 1))
+    return found if begin is None else [*found, (fixes[begin:], int(told[begin] < sequence))]

@@ -30,7 +30,9 @@ class Alert(models.Model):
     opened_at = models.DateTimeField()
     written_at = models.DateTimeField(db_default=Now(), help_text="when its words were written")
     closed_at = models.DateTimeField(null=True, blank=True)
-    close_reason = models.CharField(max_length=30, blank=True, db_default="", default="", help_text="cleared, landed, mission-ended")
+    close_reason = models.CharField(
+        max_length=30, blank=True, db_default="", default="", help_text="cleared, landed, mission-ended, by-person"
+    )
     acknowledged_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     acknowledged_at = models.DateTimeField(null=True, blank=True)
     course = models.JSONField(default=list, db_default=[], blank=True, help_text="what became of it: at, what, level, by, reason")

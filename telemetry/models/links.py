@@ -19,6 +19,7 @@ class UavLink(models.Model):
     address = models.CharField(max_length=100, blank=True, help_text="whence it was received: transport, host and port")
     autopilot = models.CharField(max_length=20, blank=True, help_text="px4, ardupilot or other")
     firmware = models.CharField(max_length=50, blank=True)
+    vehicle_type = models.PositiveSmallIntegerField(null=True, blank=True, help_text="MAV_TYPE of its heartbeat")
     mode = models.CharField(max_length=30, blank=True)
     is_armed = models.BooleanField(null=True, blank=True)
     is_in_air = models.BooleanField(null=True, blank=True)
@@ -55,6 +56,12 @@ class UavLink(models.Model):
         blank=True,
         help_text="what it would not fly, by its parameters' names [m]; see ground_station/limits.py",
     )
+
+    battery_state = models.CharField(
+        max_length=20, default="", db_default="", blank=True, help_text="as the vehicle itself has it: ok, low, critical, …"
+    )
+    received_bytes_s = models.FloatField(null=True, blank=True, help_text="bytes a second of its frames, of late")
+    received_messages_s = models.FloatField(null=True, blank=True)
 
     class Meta:
         verbose_name = "UAV's link"

@@ -4,16 +4,20 @@ import json
 from collections import defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
 from typing import Any
 from uuid import UUID
 
 from django.db import connection
 
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandState, Mission, Uav
+from telemetry.alerting.said import KEPT_S, Said
 from telemetry.alerting.surroundings import LinkFacts, Order
 from telemetry.estimation.own_time import believed_rate
-from telemetry.models import UavLink
+from telemetry.models import Alert, UavLink, VehicleText
+from telemetry.selectors.alerts import BY_PERSON
+
+WARNING_SEVERITY, MOST_SAID = 4, 30  # MAV_SEVERITY_WARNING
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,14 +35,30 @@ def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
     """A clock that runs at another rate is believed of a simulated UAV alone: a real one's only seems to, while its link lags."""
     rows = UavLink.objects.filter(uav__in=uav_ids).values_list(
         "uav_id", "heard_at", "mode", "is_armed", "is_in_air", "uav__is_simulated", "clock_rate",
-        "loaded_sha256", "loaded_approval", "loaded_flight", "loaded_doubt", "autopilot",
+        "loaded_sha256", "loaded_approval", "loaded_flight", "loaded_doubt", "autopilot", "battery_state",
     )  # fmt: skip
     found = {}
-    for uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate, sha256, approval, flight, doubt, autopilot in rows:
+    for uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate, sha256, approval, flight, doubt, autopilot, battery in rows:
         rate = believed_rate(clock_rate if is_simulated else None)
         heard_s = None if heard_at is None else heard_at.timestamp()
-        found[uav_id] = (LinkFacts(heard_s, mode, is_armed, is_in_air, rate), Loaded(sha256, approval, flight, doubt, autopilot))
+        found[uav_id] = (LinkFacts(heard_s, mode, is_armed, is_in_air, rate, battery), Loaded(sha256, approval, flight, doubt, autopilot))
     return found
+
+
+def said_by(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[Said, ...]]:
+    """Warnings and worse of UAVs in their own words of late, the newest last."""
+    since = datetime.fromtimestamp(now_s - KEPT_S, UTC)
+    rows = VehicleText.objects.filter(uav__in=uav_ids, received_at__gt=since, severity__lte=WARNING_SEVERITY).order_by("received_at", "pk")
+    found: dict[int, list[Said]] = defaultdict(list)
+    for uav_id, received_at, text in rows.values_list("uav_id", "received_at", "text"):
+        found[uav_id].append(Said(received_at.timestamp(), text))
+    return {uav_id: tuple(words[-MOST_SAID:]) for uav_id, words in found.items()}
+
+
+def closed_by_people(pairs: Collection[tuple[int, UUID]], code: str) -> set[tuple[int, UUID, str]]:
+    """UAVs, missions and subjects whose alert of a code a person has closed."""
+    rows = Alert.objects.filter(code=code, uav__in={uav for uav, _ in pairs}, close_reason=BY_PERSON, mission__isnull=False)
+    return {(uav, mission, subject) for uav, mission, subject in rows.values_list("uav_id", "mission_id", "subject") if uav and mission}
 
 
 _ORDERS = """

@@ -38,6 +38,18 @@ TEMPLATES = (
     gettext_noop("%(uav)s may hold another mission than the approved one: it changed after it was read back."),
     gettext_noop("%(uav)s is at item %(item)s of its mission; the approved one has %(items)s."),
     gettext_noop("The wind at %(uav)s is %(wind)s m/s; %(limit)s m/s are allowed."),
+    gettext_noop("%(uav)s returns (%(mode)s) without a command of ours. It says: %(words)s"),
+    gettext_noop("%(uav)s lands (%(mode)s) without a command of ours. It says: %(words)s"),
+    gettext_noop("%(uav)s is flown by somebody else: its mode is %(mode)s. It says: %(words)s"),
+    gettext_noop("%(uav)s has stopped its mission (%(mode)s) without a command of ours. It says: %(words)s"),
+    gettext_noop("%(uav)s flies a mission again (%(mode)s), though it was told otherwise. It says: %(words)s"),
+    gettext_noop("%(uav)s itself reports its battery as %(state)s."),
+    gettext_noop("%(uav)s itself reports its battery as %(state)s: %(words)s"),
+    gettext_noop(
+        "%(uav)s is on the ground %(metres)s m from where its flight begins or ends, last at %(place)s:"
+        " it has crashed, or landed by itself."
+    ),
+    gettext_noop("%(uav)s was not started: another list than the approved one is on board. %(words)s"),
     gettext_noop("%(uav)s holds a mix of missions. %(words)s"),
     gettext_noop("The UAV %(uav)s holds something else than what was approved."),
     gettext_noop("The UAV %(uav)s does not say what it holds."),
@@ -46,14 +58,22 @@ TEMPLATES = (
         " Send it its mission again and start it, or tell it to return."
     ),
     gettext_noop("Two senders say that they are %(uav)s: %(believed)s, which is believed, and %(other)s."),
+    gettext_noop(
+        "The signed frames of %(uav)s come from two addresses, %(believed)s and %(other)s. Both are answered; one may belong to a listener."
+    ),
 )
+
+STATES = (gettext_noop("low"), gettext_noop("critical"), gettext_noop("emergency"), gettext_noop("failed"), gettext_noop("unhealthy"))
 
 
 def alert_words(message: str, values: Mapping[str, Any]) -> str:
     """What was stored without values, or does not fit its template, is as it was stored."""
     if not values:
         return message
-    read = {name: outcome_in_words(value) if name == "words" else _(value) if name == "step" else value for name, value in values.items()}
+    read = {
+        name: outcome_in_words(value) if name == "words" else _(value) if name in ("step", "state") else value
+        for name, value in values.items()
+    }
     try:
         return _(message) % read
     except (KeyError, TypeError, ValueError):

@@ -12,7 +12,8 @@ from django.db.models import Count, QuerySet
 from telemetry.models import Alert
 from workspace.models import Organisation
 
-MIXED = "mission-mixed"  # a code
+MIXED, OTHER_LIST = "mission-mixed", "other-list-on-board"  # codes
+BY_PERSON = "by-person"  # why an alert is closed
 
 
 @dataclass(frozen=True, slots=True)

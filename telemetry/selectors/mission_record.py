@@ -146,6 +146,8 @@ def _summary(mission: Mission, routes: Sequence[RouteOnRecord], targets: Sequenc
             "length_m": sum(route.flown_m for route in flown),
             "duration_s": _duration_s(flown),
             "energy_wh": _sum([_used_wh(route) for route in routes]),
+            "unreported_m": sum(gap.length_m for route in flown for gap in route.gaps),
+            "unreported_s": sum(gap.ended_s - gap.began_s for route in flown for gap in route.gaps),
         },
         "across_rms_m": _rms([(route.across_rms_m, route.reports) for route in flown]),
         "height_rms_m": _rms([(route.height_rms_m, route.reports) for route in flown]),
@@ -201,7 +203,7 @@ def _route(route: RouteOnRecord, mission: Mission) -> dict[str, Any]:
         "name": route.name,
         "departs_at": None if mission.departs_at is None else mission.departs_at + timedelta(seconds=route.route.departs_s),
         "planned": {name: route.planned[name] for name in ("length_m", "duration_s", "energy_wh")},
-        "flown": _with_times(flown) | {"energy_wh": _used_wh(route)},
+        "flown": _with_times(flown) | {"energy_wh": _used_wh(route), "gaps": [_with_times(gap) for gap in flown["gaps"]]},
         "legs": [_with_times(leg) for leg in legs],
         "stages": [{"flight": stage["flight"], "target": stage["target"], **_with_times(stage["whole"])} for stage in stages],
         "waypoints": [

@@ -22,7 +22,7 @@ class AlertSerializer(serializers.Serializer):
     details = serializers.JSONField(help_text="figures of the cause")
     opened_at = serializers.DateTimeField()
     closed_at = serializers.DateTimeField(allow_null=True)
-    close_reason = serializers.CharField(allow_blank=True, help_text="cleared, landed or mission-ended")
+    close_reason = serializers.CharField(allow_blank=True, help_text="cleared, landed, mission-ended or by-person")
     acknowledged_at = serializers.DateTimeField(allow_null=True)
     acknowledged_by = serializers.CharField(allow_null=True)
     revision = serializers.IntegerField(help_text="counts the changes")
@@ -56,6 +56,10 @@ class AlertDetailSerializer(AlertSerializer):
 
 class AcknowledgementInputSerializer(KnownFieldsSerializer):
     note = serializers.CharField(required=False, allow_blank=True, max_length=1_000, default="")
+
+
+class ClosingInputSerializer(KnownFieldsSerializer):
+    reason = serializers.CharField(max_length=1_000, help_text="what became of the UAV; kept as a note")
 
 
 class AlertNoteInputSerializer(KnownFieldsSerializer):

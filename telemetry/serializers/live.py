@@ -175,6 +175,7 @@ class LiveOfferSerializer(serializers.Serializer):
     mission = serializers.UUIDField()
     code = serializers.CharField()
     state = serializers.ChoiceField(choices=OfferState.choices)
+    revision = serializers.IntegerField(help_text="its ETag, for If-Match")
     cause = serializers.JSONField()
     difference = serializers.JSONField()
     continuation = serializers.UUIDField(allow_null=True)

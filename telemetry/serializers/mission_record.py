@@ -45,6 +45,11 @@ class TotalsSerializer(serializers.Serializer):
     energy_wh = serializers.FloatField(allow_null=True, help_text="null where a battery is not known")
 
 
+class FlownTotalsSerializer(TotalsSerializer):
+    unreported_s = serializers.FloatField(help_text="in the air without reports, of all UAVs together")
+    unreported_m = serializers.FloatField(help_text="of the routes, flown then: not in length_m")
+
+
 class EstimatesSerializer(serializers.Serializer):
     """How good the estimates between reports were, by what was measured of the same moments."""
 
@@ -61,7 +66,7 @@ class RecordSummarySerializer(serializers.Serializer):
     targets = RecordTargetCountsSerializer()
     alerts = AlertCountsSerializer()
     planned = TotalsSerializer()
-    flown = TotalsSerializer()
+    flown = FlownTotalsSerializer()
     across_rms_m = serializers.FloatField(allow_null=True, help_text="off the route, sideways")
     height_rms_m = serializers.FloatField(allow_null=True, help_text="outside of the heights that the plan has there")
     lowest_battery_percent = serializers.FloatField(allow_null=True)
@@ -91,8 +96,17 @@ class FlownStageSerializer(FlownLegSerializer):
     target = serializers.IntegerField(allow_null=True, help_text="its place in the mission; null: the way back, or down")
 
 
+class FlownGapSerializer(serializers.Serializer):
+    """A time in the air without reports for over 60 s. No other figure speaks of it."""
+
+    began_at = serializers.DateTimeField()
+    ended_at = serializers.DateTimeField()
+    length_m = serializers.FloatField(help_text="of the route between its ends")
+
+
 class FlownRouteSerializer(FlownSerializer):
-    flown_m = serializers.FloatField(help_text="length of the track as it was reported")
+    flown_m = serializers.FloatField(help_text="length of the track as it was reported, without gaps")
+    gaps = FlownGapSerializer(many=True)
     battery_lowest_percent = serializers.FloatField(allow_null=True)
     battery_used_percent = serializers.FloatField(allow_null=True, help_text="of all batteries of the route together")
     energy_wh = serializers.FloatField(allow_null=True)

@@ -8,7 +8,9 @@ from rest_framework import serializers
 from missions.fields import PositionField
 from missions.models import LinkKind, Uav
 from missions.serializers.known_fields import KnownFieldsSerializer
+from telemetry.ground_station.vehicle_class import type_name
 from telemetry.models import UavLink, UnknownVehicle, UnknownVehicleState
+from telemetry.services.approved_vehicles import connection_warnings
 from telemetry.services.loads import Doubt
 
 
@@ -75,10 +77,15 @@ class UavConnectionSerializer(serializers.Serializer):
     address = serializers.CharField(allow_blank=True)
     autopilot = serializers.CharField(allow_blank=True)
     firmware = serializers.CharField(allow_blank=True)
+    vehicle_type = serializers.CharField(allow_blank=True, help_text="as its autopilot says: quadrotor, fixed wing, …")
+    warnings = serializers.ListField(child=serializers.CharField(), help_text="what keeps it from missions or from a fence")
     mode = serializers.CharField(allow_blank=True)
     is_armed = serializers.BooleanField(allow_null=True)
     is_in_air = serializers.BooleanField(allow_null=True)
     battery_percent = serializers.FloatField(allow_null=True)
+    battery_state = serializers.CharField(allow_blank=True, help_text="as the vehicle itself has it: ok, low, critical, …")
+    received_bytes_s = serializers.FloatField(allow_null=True, help_text="of its frames, by MAVLink only")
+    received_messages_s = serializers.FloatField(allow_null=True)
     waypoint_sequence = serializers.IntegerField(allow_null=True, help_text="of its approved route that it flies to, or is at")
     loaded_approval = serializers.UUIDField(allow_null=True, help_text="of the mission that is on it, as it was seen")
     loaded_flight = serializers.IntegerField(allow_null=True)
@@ -98,10 +105,15 @@ def connection_json(uav: Uav, link: UavLink, now: datetime) -> dict[str, Any]:
         "address": link.address,
         "autopilot": link.autopilot,
         "firmware": link.firmware,
+        "vehicle_type": "" if link.vehicle_type is None else type_name(link.vehicle_type),
+        "warnings": connection_warnings(uav, link),
         "mode": link.mode,
         "is_armed": link.is_armed,
         "is_in_air": link.is_in_air,
         "battery_percent": uav.battery_percent,
+        "battery_state": link.battery_state,
+        "received_bytes_s": link.received_bytes_s,
+        "received_messages_s": link.received_messages_s,
         "waypoint_sequence": link.waypoint_sequence,
         "loaded_approval": link.loaded_approval,
         "loaded_flight": link.loaded_flight,

@@ -6,17 +6,26 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 
 from telemetry.alerting.book import Closed, Opened, changes
+from telemetry.alerting.detectors import down
 from telemetry.alerting.finding import Finding
 from telemetry.alerting.limits import Limits, sound_limits
-from telemetry.alerting.meetings import elsewhere, meetings, moving_of
+from telemetry.alerting.meetings import elsewhere, meetings, ways_of
 from telemetry.alerting.memory import Memory, position_of
 from telemetry.alerting.order import CODES, DETECTORS
 from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import Held, LinkFacts, NearZone
 from telemetry.alerting.watched import WatchedUav
 from telemetry.ground_station.flavour import Flavour
-from telemetry.selectors.alert_facts import Loaded, estimated_by_other_watches, links_of, orders_to, stated_limits
-from telemetry.selectors.alerts import MIXED, open_alerts_of
+from telemetry.selectors.alert_facts import (
+    Loaded,
+    closed_by_people,
+    estimated_by_other_watches,
+    links_of,
+    orders_to,
+    said_by,
+    stated_limits,
+)
+from telemetry.selectors.alerts import MIXED, OTHER_LIST, open_alerts_of
 from telemetry.services.alert_rows import close_alerts_of_ended_missions, settle
 from telemetry.services.approved_flights import approved_content, flight_model
 from telemetry.services.replan_hooks import suggest_for_findings
@@ -44,7 +53,7 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
     """Opens, raises and closes alerts of UAVs that this process watches. Called once a second; safe to call again."""
     memories = _OF_THIS_PROCESS if memories is None else memories
     memories.keep_only(uav.uav_id for uav in watched)
-    told = close_alerts_of_ended_missions(codes=CODES, but=[uav.uav_id for uav in watched], now=now)
+    told = close_alerts_of_ended_missions(codes={*CODES, OTHER_LIST} - {down.CODE}, but=[uav.uav_id for uav in watched], now=now)
     if watched:
         open_rows = open_alerts_of([uav.uav_id for uav in watched], (*CODES, MIXED))
         levels = {uav_id: {(row.code, row.subject): row.level for row in rows} for uav_id, rows in open_rows.items()}
@@ -52,6 +61,7 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
         found: list[tuple[WatchedUav, Opened | Closed]] = [
             (situation.uav, change) for situation in situations for change in changes(situation, DETECTORS)
         ]
+        found = _without_what_people_closed(found)
         told |= settle(found, open_rows=open_rows, now=now)
         suggest_for_findings(
             (uav.mission_id, uav.uav_id, change.finding)
@@ -60,6 +70,19 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
         )
     for organisation_id in told:
         publish_live(organisation_id)
+
+
+def _without_what_people_closed(found: list[tuple[WatchedUav, Opened | Closed]]) -> list[tuple[WatchedUav, Opened | Closed]]:
+    """A UAV that still lies where somebody knows of it is not reported again."""
+    pairs = [(uav.uav_id, uav.mission_id) for uav, change in found if isinstance(change, Opened) and change.finding.code == down.CODE]
+    known = closed_by_people(pairs, down.CODE) if pairs else set()
+    return [
+        (uav, change)
+        for uav, change in found
+        if not isinstance(change, Opened)
+        or change.finding.code != down.CODE
+        or (uav.uav_id, uav.mission_id, change.finding.subject) not in known
+    ]
 
 
 def _is_new(finding: Finding, levels: Mapping[tuple[str, str], str]) -> bool:
@@ -72,13 +95,14 @@ def _situations(
 ) -> Iterator[Situation]:
     flying = [(uav.uav_id, uav.mission_id) for uav in watched]
     links, orders, stated, zones = links_of([uav_id for uav_id, _ in flying]), orders_to(flying), stated_limits(flying), zones_about(now_s)
+    said = said_by([uav_id for uav_id, _ in flying], now_s)
     for uav in watched:
         memory, model = memories.of_uav[uav.uav_id], flight_model(uav.approval_id, uav.uav_id, uav.flight)
         memory.take(uav.newest, None if model is None else model.line)
         link, loaded = links.get(uav.uav_id, (LinkFacts(), Loaded()))
         order, is_changing = orders.get(uav.uav_id, (None, False))
         limits = sound_limits(stated[uav.uav_id])
-        yield Situation(
+        situation = Situation(
             now_s=now_s,
             uav=uav,
             limits=limits,
@@ -89,12 +113,15 @@ def _situations(
             held=_held(uav, loaded, is_changing=is_changing),
             order=order,
             zones=_zones(uav, limits, zones),
+            said=said.get(uav.uav_id, ()),
         )
+        memory.was_in_flight |= situation.is_in_flight and model is not None
+        yield situation
 
 
 def _with_meetings(situations: list[Situation]) -> list[Situation]:
     within_s = max(situation.limits.converging_s for situation in situations)
-    moving = [moved for situation in situations if (moved := moving_of(situation, within_s)) is not None]
+    moving = [way for situation in situations for way in ways_of(situation, within_s)]
     if not moving:
         return situations
     organisations = {situation.uav.organisation_id for situation in situations}

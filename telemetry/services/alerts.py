@@ -15,6 +15,9 @@ from workspace.services import record_change
 
 SECOND_SENDER = "second-sender"
 SENDERS = "Two senders say that they are %(uav)s: %(believed)s, which is believed, and %(other)s."
+COPIES = (
+    "The signed frames of %(uav)s come from two addresses, %(believed)s and %(other)s. Both are answered; one may belong to a listener."
+)
 OPENED, ROSE, ACKNOWLEDGED, CLOSED = "opened", "rose", "acknowledged", "closed"
 
 
@@ -32,6 +35,7 @@ def open_alert(
     values: dict[str, Any] | None = None,
     mission: Mission | None = None,
     details: dict[str, Any] | None = None,
+    subject: str = "",
 ) -> Alert:
     """Of one cause there is one open alert: opened again, it says the newer words. `message` is a template for the values.
 
@@ -39,12 +43,12 @@ def open_alert(
     """
     now = timezone.now()
     alert = Alert(
-        organisation_id=uav.organisation_id, uav=uav, mission=mission, level=level, code=code, message=message[:500], values=values or {},
-        details=details or {}, opened_at=now, written_at=now, course=[step(OPENED, now, level=str(level))],
+        organisation_id=uav.organisation_id, uav=uav, mission=mission, level=level, code=code, subject=subject, message=message[:500],
+        values=values or {}, details=details or {}, opened_at=now, written_at=now, course=[step(OPENED, now, level=str(level))],
     )  # fmt: skip
     with transaction.atomic():
         inserted = Alert.objects.bulk_create([alert], ignore_conflicts=True)
-        open_one = Alert.objects.select_for_update().filter(uav=uav, code=code, subject="", closed_at=None).first()
+        open_one = Alert.objects.select_for_update().filter(uav=uav, code=code, subject=subject, closed_at=None).first()
         if open_one is None:  # closed in this moment
             return inserted[0]
         said = (alert.message, alert.values, alert.details, alert.level)
@@ -101,14 +105,19 @@ def note_alert(*, alert: Alert, actor: User, text: str) -> AlertNote:
     return note
 
 
-def tell_of_second_sender(*, uav_id: int, believed: str = "", other: str = "") -> None:
+def alert_was_closed(alert: Alert, actor: User, reason: str) -> None:
+    """Written to the audit log, for an alert that a person closes."""
+    _record(alert, actor, "close", {"code": alert.code, "level": alert.level, "uav": alert.uav_id, "reason": reason})
+
+
+def tell_of_second_sender(*, uav_id: int, believed: str = "", other: str = "", is_signed: bool = False) -> None:
     """Without another one it is over."""
     uav = Uav.objects.filter(pk=uav_id).first()
     if uav is None:
         return
     if other:
         values = {"uav": uav.name, "believed": believed, "other": other}
-        open_alert(uav=uav, level=AlertLevel.WARNING, code=SECOND_SENDER, message=SENDERS, values=values)
+        open_alert(uav=uav, level=AlertLevel.WARNING, code=SECOND_SENDER, message=COPIES if is_signed else SENDERS, values=values)
     else:
         close_alert(uav=uav, code=SECOND_SENDER)
 

@@ -23,7 +23,8 @@ UNHEARD_S = 5.0  # a holder that has not heard the vehicle for so long need not 
 class Lease:
     """What the gateway before has left: `signing`, `boots`, `losses` and `limits` as in UavLink.
 
-    `mode_in_air` is the one in which it saw the vehicle last, armed and in the air; empty: it did not.
+    `mode_in_air` is the one in which it saw the vehicle last, armed and in the air; empty: it did not. `mission_item` is the one that the
+    vehicle's list was at then, as the vehicle counts.
     """
 
     uav_id: int
@@ -33,6 +34,7 @@ class Lease:
     loaded_sha256: str
     limits: dict[str, float] = field(default_factory=dict)
     mode_in_air: str = ""
+    mission_item: int | None = None
 
 
 @dataclass(frozen=True)
@@ -61,6 +63,10 @@ class LinkState:
     losses: dict[str, int] = field(default_factory=dict)
     limits: dict[str, float] = field(default_factory=dict)
     waypoint_sequence: int | None = None
+    vehicle_type: int | None = None
+    battery_state: str = ""
+    received_bytes_s: float | None = None
+    received_messages_s: float | None = None
 
 
 TAKE = """
@@ -74,7 +80,7 @@ WHERE telemetry_uavlink.holder IN ('', excluded.holder)
         AND telemetry_uavlink.lease_expires_at < now() + make_interval(secs => %(lease_s)s - %(namesake_s)s))
     OR telemetry_uavlink.lease_expires_at IS NULL OR telemetry_uavlink.lease_expires_at < now()
     OR telemetry_uavlink.heard_at < now() - make_interval(secs => %(unheard_s)s)
-RETURNING uav_id, signing, boots, losses, loaded_sha256, limits, CASE WHEN is_armed AND is_in_air THEN mode ELSE '' END
+RETURNING uav_id, signing, boots, losses, loaded_sha256, limits, CASE WHEN is_armed AND is_in_air THEN mode ELSE '' END, mission_item
 """
 
 
@@ -88,8 +94,8 @@ def take_leases(*, uav_ids: Collection[int], holder: str, lease_s: float) -> lis
         rows = cursor.fetchall()
     release_claims_of_others(uav_ids=[uav_id for uav_id, *_ in rows], holder=holder)
     return [
-        Lease(uav_id, _json(signing), _json(boots), _json(losses), sha256, _json(limits), mode)
-        for uav_id, signing, boots, losses, sha256, limits, mode in rows
+        Lease(uav_id, _json(signing), _json(boots), _json(losses), sha256, _json(limits), mode, item)
+        for uav_id, signing, boots, losses, sha256, limits, mode, item in rows
     ]
 
 
@@ -110,9 +116,9 @@ def release_leases(*, holder: str) -> None:
 
 
 _TYPES = {
-    "uav_id": "int8", "is_armed": "bool", "is_in_air": "bool", "mission_item": "int4", "waypoint_sequence": "int4",
+    "uav_id": "int8", "is_armed": "bool", "is_in_air": "bool", "mission_item": "int4", "waypoint_sequence": "int4", "vehicle_type": "int2",
     "boots": "jsonb", "signing": "jsonb", "losses": "jsonb", "limits": "jsonb",
-    "address": "text", "autopilot": "text", "firmware": "text", "mode": "text",
+    "address": "text", "autopilot": "text", "firmware": "text", "mode": "text", "battery_state": "text",
 }  # fmt: skip
 _COLUMNS = {column.name: _TYPES.get(column.name, "float8") for column in fields(LinkState)}
 _MADE = ("uav_id", "heard_ago_s", "home_longitude_deg", "home_latitude_deg")

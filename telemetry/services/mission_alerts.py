@@ -1,11 +1,12 @@
-"""A vehicle that holds part of one mission and part of another must not fly: said at once, until it is over."""
+"""A vehicle that holds something else than what was approved must not fly: reported at once, until it is over."""
 
 from missions.models import UavCommand
 from telemetry.models import AlertLevel
-from telemetry.selectors.alerts import MIXED
+from telemetry.selectors.alerts import MIXED, OTHER_LIST
 from telemetry.services.alerts import close_alert, open_alert
 
 IS_MIXED = "%(uav)s holds a mix of missions. %(words)s"
+HOLDS_OTHER = "%(uav)s was not started: another list than the approved one is on board. %(words)s"
 
 
 def tell_of_mission(command: UavCommand, *, is_mixed: bool, words: str) -> None:
@@ -15,5 +16,16 @@ def tell_of_mission(command: UavCommand, *, is_mixed: bool, words: str) -> None:
         return
     open_alert(
         uav=command.uav, level=AlertLevel.CRITICAL, code=MIXED, message=IS_MIXED, values={"uav": command.uav.name, "words": words},
+        mission=command.mission, details={"command": str(command.pk)},
+    )  # fmt: skip
+
+
+def tell_of_other_list(command: UavCommand, words: str = "") -> None:
+    """After the list on board was read before a start or resume. Without words it is the approved one, and the alert is over."""
+    if not words:
+        close_alert(uav=command.uav, code=OTHER_LIST)
+        return
+    open_alert(
+        uav=command.uav, level=AlertLevel.CRITICAL, code=OTHER_LIST, message=HOLDS_OTHER, values={"uav": command.uav.name, "words": words},
         mission=command.mission, details={"command": str(command.pk)},
     )  # fmt: skip

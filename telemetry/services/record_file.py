@@ -14,6 +14,7 @@ from missions.command_selectors import commands_of_mission
 from missions.models import Mission
 from telemetry.exports.csv_file import csv_pieces
 from telemetry.exports.geojson_file import geojson_pieces
+from telemetry.exports.thinning import rounded
 from telemetry.models import Alert, FlightLog, PositionEstimate
 from telemetry.selectors.columns import latitude, longitude
 from telemetry.selectors.log import LogFilter, logged, records_that_match
@@ -25,7 +26,7 @@ CONTENTS = """What this file holds, of one mission.
 
 record.json       what was planned and flown, by leg and target, and what UAVs found
 approval.json     the plan as it was approved: routes, zones, conditions; content_sha256 names it
-telemetry.csv     every record of every UAV, units in the names of the columns
+telemetry.csv     every record of every UAV, units in the names of the columns, rounded to the resolution of the sensors
 telemetry.geojson the same as GeoJSON
 estimates.jsonl   where UAVs were estimated to be between reports, one JSON object a line
 alerts.json       with their notes
@@ -51,8 +52,8 @@ def record_file(organisation: Organisation, mission: Mission) -> IO[bytes]:
         packed.writestr("record.json", _json(mission_record(mission)))
         if approval is not None:
             packed.writestr("approval.json", _json({"content_sha256": approval.content_sha256, "document": approval.document}))
-        _write(packed, "telemetry.csv", csv_pieces(logged(records, "measured_at", "pk")))
-        _write(packed, "telemetry.geojson", geojson_pieces(logged(records, "measured_at", "pk")))
+        _write(packed, "telemetry.csv", csv_pieces(map(rounded, logged(records, "measured_at", "pk"))))
+        _write(packed, "telemetry.geojson", geojson_pieces(map(rounded, logged(records, "measured_at", "pk"))))
         _write(packed, "estimates.jsonl", _estimates(mission))
         packed.writestr("alerts.json", _json(_alerts(mission)))
         packed.writestr("commands.json", _json(_commands(mission)))

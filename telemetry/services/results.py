@@ -14,6 +14,7 @@ from missions.models import Approval, InspectionTarget, LinkKind, TargetState, U
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_target
 from missions.services.replanning import suggest
 from telemetry.models import InspectionResult, TelemetryStream
+from telemetry.services.down_alerts import tell_of_failed_flight
 from telemetry.services.heard import note_on_ground_over_http
 from telemetry.services.replan_hooks import UAV_OUT
 
@@ -75,6 +76,7 @@ def take_results(
             mission_id = approval.mission_id
             mark_flight_ended(mission_id=mission_id, uav_id=uav_id, flight=flight.flight, end=flight.end)
             if flight.end is FlightEnd.FAILED:
+                tell_of_failed_flight(uav_id=uav_id, approval_id=approval.pk, flight=flight.flight)
                 suggest(mission_id=mission_id, code=UAV_OUT, cause={"uav": uav_id, "flight": flight.flight})
     return TakenResults(
         stored=stored,

@@ -1,7 +1,8 @@
 """Alerts: listed, looked at, acknowledged, noted."""
 
 from django.shortcuts import get_object_or_404
-from drf_spectacular.utils import OpenApiParameter, extend_schema
+from django.utils.translation import gettext as _
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
@@ -11,9 +12,12 @@ from telemetry.models import Alert, AlertLevel
 from telemetry.selectors.alerts import AlertFilter, alerts_of_organisation, alerts_that_match
 from telemetry.serializers import alerts as shapes
 from telemetry.services.alerts import acknowledge_alert, note_alert
+from telemetry.services.down_alerts import ClosedByItself, close_down_alert
 from telemetry.views.log_filters import mission_of, time_of, uav_of
+from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.paging import page_of
+from workspace.permissions import FLYING
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
@@ -49,6 +53,8 @@ class AlertDetail(APIView):
 
 
 class AlertAcknowledgement(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="acknowledge_alert",
         summary="Say that somebody knows: it goes on, and is silent",
@@ -66,6 +72,8 @@ class AlertAcknowledgement(APIView):
 
 
 class AlertNotes(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="note_alert", summary="Write a note to an alert; it is never changed", request=shapes.AlertNoteInputSerializer,
         responses={201: shapes.AlertNoteSerializer},
@@ -79,6 +87,26 @@ class AlertNotes(APIView):
             raise invalid("text", f"An alert takes {MOST_NOTES} notes.")
         note = note_alert(alert=alert, actor=request.user, text=body.validated_data["text"])
         return Response(shapes.note_json(note), status=201)
+
+
+class AlertClosing(APIView):
+    @extend_schema(
+        operation_id="close_alert",
+        summary="Close the alert of a UAV that is down where its flight does not end, with what became of it",
+        description="Other alerts are over when their cause is gone: they are answered by 409.",
+        request=shapes.ClosingInputSerializer,
+        responses={200: shapes.AlertDetailSerializer, 409: OpenApiResponse(description="Nobody closes this alert.")},
+    )
+    @idempotent
+    def post(self, request: SignedInRequest, alert_id: int) -> Response:
+        alert = _alert(request, alert_id)
+        body = shapes.ClosingInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        try:
+            close_down_alert(alert=alert, actor=request.user, reason=body.validated_data["reason"])
+        except ClosedByItself as error:
+            raise ApiProblem(409, "closed_by_itself", _("This alert is over when its cause is gone.")) from error
+        return Response(_detail(_alert(request, alert_id)))
 
 
 def _alert(request: SignedInRequest, alert_id: int) -> Alert:

@@ -1,5 +1,6 @@
 """Flown tracks as files, written while they are sent."""
 
+import math
 import re
 from collections.abc import Callable, Iterable, Iterator
 from typing import NamedTuple
@@ -7,10 +8,12 @@ from uuid import UUID
 
 from django.db.models import QuerySet
 from django.http import Http404, StreamingHttpResponse
+from django.utils.translation import gettext as _
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.views import APIView
 
+from inspection.views.parameters import invalid
 from missions.models import Mission
 from missions.views.uavs import uav_or_404
 from telemetry.exports.csv_file import csv_pieces
@@ -18,6 +21,7 @@ from telemetry.exports.geojson_file import geojson_pieces
 from telemetry.exports.gpx_file import gpx_pieces
 from telemetry.exports.kml_file import kml_pieces
 from telemetry.exports.logged_record import LoggedRecord
+from telemetry.exports.thinning import EVERY_S, for_files
 from telemetry.models import TelemetryRecord
 from telemetry.selectors.log import LogFilter, logged, records_that_match
 from telemetry.views.log_filters import TIMES, time_of
@@ -42,9 +46,12 @@ KINDS = {
     "geojson": FileKind("application/geo+json", BY_TIME, lambda records, name: geojson_pieces(records)),
 }
 ABOUT = (
-    "Each record has the times of measurement, receipt and storage. CSV and GeoJSON have every record, flagged where its time is wrong; "
-    "the tracks of GPX and KML leave out those without a place and those from the future."
+    "One record a second of each UAV, and each with which its mode or waypoint changes; `every_s` asks for more or fewer. Values are "
+    "rounded to the resolution of their sensors. Each record has the times of measurement, receipt and storage, and in CSV and GeoJSON "
+    "a flag where its time is wrong; the tracks of GPX and KML leave out those without a place and those from the future."
 )
+EVERY = OpenApiParameter("every_s", float, description="of each UAV one record in so many seconds; 0 for all", default=EVERY_S)
+MOST_S = 3_600.0
 KIND = OpenApiParameter("kind", str, OpenApiParameter.PATH, enum=[*KINDS], description="how the file ends")
 FILES = {(200, kind.media_type.partition(";")[0]): OpenApiTypes.STR for kind in KINDS.values()}
 
@@ -54,7 +61,7 @@ class MissionTelemetryFile(APIView):
 
     @extend_schema(
         operation_id="export_mission_telemetry", summary="What was flown in a mission, as CSV, GPX, KML or GeoJSON", description=ABOUT,
-        parameters=[KIND, *TIMES], responses=FILES,
+        parameters=[KIND, *TIMES, EVERY], responses=FILES,
     )  # fmt: skip
     def get(self, request: SignedInRequest, mission_id: UUID, kind: str) -> StreamingHttpResponse:
         organisation = request.user.organisation
@@ -62,7 +69,7 @@ class MissionTelemetryFile(APIView):
         if mission is None:
             raise Http404
         wanted = LogFilter(None, mission_id, time_of(request, "from"), time_of(request, "to"))
-        return _file(records_that_match(organisation, wanted), kind, mission.name)
+        return _file(records_that_match(organisation, wanted), kind, mission.name, _every_s(request))
 
 
 class UavTelemetryFile(APIView):
@@ -70,12 +77,12 @@ class UavTelemetryFile(APIView):
 
     @extend_schema(
         operation_id="export_uav_telemetry", summary="What a UAV has flown, as CSV, GPX, KML or GeoJSON", description=ABOUT,
-        parameters=[KIND, *TIMES], responses=FILES,
+        parameters=[KIND, *TIMES, EVERY], responses=FILES,
     )  # fmt: skip
     def get(self, request: SignedInRequest, uav_id: int, kind: str) -> StreamingHttpResponse:
         uav = uav_or_404(request.user, uav_id)
         wanted = LogFilter(uav.pk, None, time_of(request, "from"), time_of(request, "to"))
-        return _file(records_that_match(request.user.organisation, wanted), kind, uav.name)
+        return _file(records_that_match(request.user.organisation, wanted), kind, uav.name, _every_s(request))
 
 
 def file_stem(name: str) -> str:
@@ -83,9 +90,21 @@ def file_stem(name: str) -> str:
     return UNSAFE.sub("-", name).strip("-") or "flight"
 
 
-def _file(records: QuerySet[TelemetryRecord], kind: str, name: str) -> StreamingHttpResponse:
+def _every_s(request: SignedInRequest) -> float:
+    text = request.query_params.get("every_s", "")
+    try:
+        value = float(text) if text else EVERY_S
+    except ValueError:
+        value = math.nan
+    if not 0.0 <= value <= MOST_S:
+        raise invalid("every_s", _("A number of seconds from 0 to %(most)s is needed.") % {"most": f"{MOST_S:.0f}"})
+    return value
+
+
+def _file(records: QuerySet[TelemetryRecord], kind: str, name: str, every_s: float) -> StreamingHttpResponse:
     wanted = KINDS[kind]
-    response = StreamingHttpResponse(wanted.pieces(logged(records, *wanted.order), name), content_type=wanted.media_type)
+    chosen = for_files(logged(records, *wanted.order), every_s=every_s)
+    response = StreamingHttpResponse(wanted.pieces(chosen, name), content_type=wanted.media_type)
     response["Content-Disposition"] = f'attachment; filename="{file_stem(name)}-telemetry.{kind}"'
     response["Cache-Control"] = "private, no-cache"
     return response

@@ -31,7 +31,7 @@ from telemetry.services.heard import note_heard_over_http
 from telemetry.services.results import EndedFlight, take_results
 from telemetry.services.uav_outbox import Acknowledgement, handed_to, note_acknowledgements
 from telemetry.views.uav_authentication import UavRate, UavsAlone, UavTokenAuthentication, uav_access
-from workspace.parsers import MeasuredJSONParser
+from workspace.parsers import MeasuredJSONParser, UavJSONParser
 from workspace.renderers import FastJSONRenderer
 from workspace.sign_in_attempts import address_of
 
@@ -40,6 +40,7 @@ class UavView(APIView):
     """An address for UAVs alone. Whatever a UAV asks here, it has been heard."""
 
     authentication_classes = [UavTokenAuthentication]
+    parser_classes = [UavJSONParser]
     permission_classes = [UavsAlone]
     throttle_classes = [UavRate]
     throttle_scope = "uav-link"

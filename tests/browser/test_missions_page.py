@@ -177,3 +177,17 @@ def test_viewers_open_missions_and_change_none(visitor: Visitor) -> None:
     row(page, "Only to look at").get_by_role("button", name="More for Only to look at").click()
     expect(page.get_by_role("button", name="Open", exact=True)).to_be_visible()
     expect(page.get_by_role("button", name="Delete")).to_have_count(0)
+
+
+def test_the_tour_is_walked_by_keyboard_ended_by_escape_and_remembered(visitor: Visitor) -> None:
+    page = opens_list(visitor.signs_in("opal"), "/?tour")
+    for title in ("Missions", "Plan", "Live", "Assets and zones"):
+        expect(page.get_by_role("dialog", name=title, exact=True)).to_be_visible()
+        expect(page.locator(".tour-target")).to_have_count(1)
+        page.keyboard.press("ArrowRight")
+    expect(page.get_by_role("dialog", name="UAVs", exact=True)).to_contain_text("5 of 5")
+    page.keyboard.press("ArrowLeft")
+    expect(page.get_by_role("dialog", name="Assets and zones", exact=True)).to_be_visible()
+    page.keyboard.press("Escape")
+    expect(page.locator(".tour, .tour-target")).to_have_count(0)
+    assert page.evaluate("Object.keys(localStorage).some((key) => key.startsWith('tour-seen-'))")

@@ -1,5 +1,6 @@
 """Curators draw, correct and take back: nothing is overwritten that somebody has not seen, and everything can be brought back."""
 
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -10,6 +11,7 @@ from rest_framework.test import APIClient
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import ground_revision
 from inspection.services import import_osm
+from tests.workspace.described_answers import openapi_document, validate
 from workspace.models import AuditEntry, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
@@ -240,6 +242,18 @@ def test_a_zone_is_reverted_and_a_deleted_one_restored(cora: APIClient, carl: AP
     gone = AuditEntry.objects.order_by("-pk").first()
     assert cora.post(f"/api/v1/history/{gone.pk}/undo").data["id"] == zone
     assert NoFlyZone.objects.get().name == "Works"
+
+
+@pytest.mark.parametrize("new", [new_tower, new_zone])
+def test_what_undo_answers_is_what_the_openapi_document_says(new: Callable[[APIClient], Any], cora: APIClient) -> None:
+    address = f"/api/v1/{'assets' if new is new_tower else 'zones'}/{new(cora).data['id']}"
+    cora.delete(address, headers={"If-Match": "*"})
+    entry = AuditEntry.objects.order_by("-pk").first()
+    assert entry is not None
+    undone = cora.post(f"/api/v1/history/{entry.pk}/undo")
+    document = openapi_document()
+    described = document["paths"]["/api/v1/history/{entry_id}/undo"]["post"]["responses"]["200"]["content"]["application/json"]["schema"]
+    validate(json.loads(undone.content), described, document)
 
 
 def test_the_history_of_all_tells_who_did_what(cora: APIClient, carl: APIClient) -> None:

@@ -19,7 +19,7 @@ from inspection.services.uploads import (
     upload_folder,
 )
 from tests.workspace.people import client_of, somebody
-from workspace.models import Role
+from workspace.models import Organisation, Role
 
 pytestmark = pytest.mark.django_db
 
@@ -35,6 +35,18 @@ def begin(client: Client, size_bytes: int, file_name: str = "zones.json"):
 
 def send(client: Client, upload: str, first_byte: int, content: bytes):
     return client.put(f"/api/v1/uploads/{upload}/bytes/{first_byte}", content, content_type="application/octet-stream")
+
+
+def test_files_of_one_organisation_take_no_more_room_than_they_may(client: Client, settings: Any) -> None:
+    settings.UPLOADS_BYTES = 1_000
+    first = begin(client, 600).json()["id"]
+    refused = begin(client_of(somebody(Role.CURATOR)), 401)
+    assert (refused.status_code, refused.json()["error"]["code"]) == (409, "too_many_uploads")
+    assert begin(client, 400).status_code == 201
+    other = client_of(somebody(Role.CURATOR, Organisation.objects.create(name="Other")))
+    assert begin(other, 1_000).status_code == 201
+    assert client.delete(f"/api/v1/uploads/{first}").status_code == 204
+    assert begin(client, 600).status_code == 201
 
 
 def test_a_file_arrives_whole_in_parts(client: Client) -> None:

@@ -173,7 +173,8 @@ def test_a_zone_that_is_edited_while_a_file_waits_for_the_ground_is_not_overwrit
 
 
 @pytest.mark.django_db(transaction=True)
-def test_two_files_for_one_set_are_applied_one_after_the_other_and_the_second_is_looked_at_again(tmp_path: Path) -> None:
+def test_two_files_for_one_set_are_applied_one_after_the_other_and_the_second_is_looked_at_again(tmp_path: Path, settings: Any) -> None:
+    settings.DATA_WORKERS = 3  # both jobs of the organisation run at once
     cora, carl = somebody(Role.CURATOR), somebody(Role.CURATOR)
     import_zones(path=written(tmp_path, ("A", 9.0)))
     proposals = [proposed(zone_file(("A", 9.05)), cora), proposed(zone_file(("A", 9.1)), carl)]

@@ -202,6 +202,15 @@ test("a zone in the way keeps an approved mission from being sent, a change else
   );
 });
 
+test("a change of the map data that touches nothing of the mission is not told", () => {
+  const causes = (...what) =>
+    flying.groundCauses({ is_stale: what.length > 0, stale_causes: what.map((one) => ({ what: one })) });
+  assert.deepEqual(causes(), []);
+  assert.deepEqual(causes("elsewhere"), []);
+  assert.deepEqual(causes("uav"), []);
+  assert.deepEqual(causes("zone", "uav"), [{ what: "zone" }]);
+});
+
 test("the stage is said in a sentence", () => {
   assert.match(
     flying.stageWords(mission("approved")),

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
+import { questionOf } from "../../static/js/domain/command_questions.js";
 import { returnLines, returnOf, returnSaid } from "../../static/js/domain/own_return.js";
 
 const check = (state, warnings = []) => ({ place: 1, state, warnings, height_m: 30, read_at: "2027-05-04T09:00:00Z" });
@@ -25,6 +26,18 @@ test("what is in the way is a warning, what is not known is said", () => {
     [returnSaid(check("unknown", ["Not read."])).level, returnSaid(check("clear")).level, returnSaid(undefined)],
     [null, null, null],
   );
+});
+
+test("a fence that the autopilot ignores is a warning under its name and before a start", () => {
+  const fence_warning = "Tern ignores the fence that goes with the mission: its autopilot has FENCE_ENABLE 0.";
+  const said = returnSaid({ ...check("clear"), fence_warning });
+  assert.deepEqual([said.level, said.image], ["warning", "triangle-alert"]);
+  assert.match(said.words, /nothing in the way home.*FENCE_ENABLE 0\.$/);
+  const flyer = { name: "Tern", route: { length_m: 900, duration_s: 120 }, speed_mps: 8 };
+  assert.ok(
+    questionOf("start", { ...flyer, returns: { ...check("clear"), fence_warning } }).lines.includes(fence_warning),
+  );
+  assert.deepEqual(questionOf("start", flyer).lines.filter(Boolean).length, 2);
 });
 
 test("each UAV has its own", () => {

@@ -340,6 +340,16 @@ test("figures are compared where both are known, and only once it is over", () =
   assert.equal(figuresOf(record("planned", { reports: 0 }))[0].flown, "—");
 });
 
+test("a time without reports is told, and is no difference to the plan", () => {
+  const found = record("completed");
+  found.summary.flown = { ...found.summary.flown, length_m: 90_200, unreported_m: 4_400, unreported_s: 180 };
+  const rows = figuresOf(found);
+  assert.equal(rows[0].more, "+700\u00a0m");
+  const gap = rows.find(({ words }) => words.startsWith("Without reports"));
+  assert.equal(gap.flown, "3\u00a0min, 4.4\u00a0km");
+  assert.ok(!figuresOf(record("completed")).some(({ words }) => words.startsWith("Without reports")));
+});
+
 test("targets are named by letter and place on the route, ends of legs by what they are", () => {
   const waypoints = [
     { sequence: 0, kind: "start", target: null, position: [10, 56] },

@@ -72,7 +72,10 @@ def watts(performance: Performance, air_mps: float, climb_mps: float, air_densit
 
 @lru_cache(maxsize=50_000)
 def _power_w(performance: Performance, air_mps: float, climb_mps: float, air_density: float) -> float:
-    weight_n, drag_n_per_mps = performance.mass_kg * 9.80665, 0.5 * air_density * performance.drag_area_m2 * math.hypot(air_mps, climb_mps)
+    weight_n, drag_n_per_mps = (
+        performance.mass_kg * 9.80665,
+        0.5 * air_density * performance.body_drag_area_m2 * math.hypot(air_mps, climb_mps),
+    )
 
     def flow(tilt: float) -> tuple[float, float, float]:
         along_axis = air_mps * math.sin(tilt) + climb_mps * math.cos(tilt)
@@ -81,7 +84,7 @@ def _power_w(performance: Performance, air_mps: float, climb_mps: float, air_den
 
     def pull(tilt: float) -> float:
         _axis, in_plane, thrust_n = flow(tilt)
-        return weight_n * math.sin(tilt) - (performance.rotor_drag * thrust_n + drag_n_per_mps) * in_plane
+        return weight_n * math.sin(tilt) - (performance.disk_drag * thrust_n + drag_n_per_mps) * in_plane
 
     along_axis, in_plane, thrust_n = flow(brentq(pull, -1.5, 1.5))
     hover_mps = math.sqrt(thrust_n / (2.0 * air_density * performance.rotor_disk_m2))

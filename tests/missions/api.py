@@ -13,11 +13,14 @@ TERN = {"name": "Tern", "position": list(UAV_AT)}
 
 
 def post(client: Client, path: str, body: Any = None, **headers: str) -> HttpResponse:
-    return client.post(f"/api/v1/{path}", json.dumps(body or {}), content_type="application/json", headers=headers)
+    """Of whatever is there, unless an ETag is given."""
+    sent = {"If-Match": "*"} | headers
+    return client.post(f"/api/v1/{path}", json.dumps(body or {}), content_type="application/json", headers=sent)
 
 
 def patch(client: Client, path: str, body: Any, **headers: str) -> HttpResponse:
-    return client.patch(f"/api/v1/{path}", json.dumps(body), content_type="application/json", headers=headers)
+    sent = {"If-Match": "*"} | headers
+    return client.patch(f"/api/v1/{path}", json.dumps(body), content_type="application/json", headers=sent)
 
 
 def plan_body(*targets: Asset | dict[str, Any], **more: Any) -> dict[str, Any]:

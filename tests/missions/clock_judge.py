@@ -130,7 +130,7 @@ def _height_m(tower: Asset | None) -> float:
 
 
 def clock_of(request: PlanRequest, uav: Any, route: dict[str, Any]) -> Clock:
-    """Seconds after take-off at each waypoint and in all, and watt-hours: each leg level first, then straight up or down; and each stop."""
+    """Seconds after take-off at each waypoint and in all, and watt-hours: each leg straight; and each stop."""
     points = route["waypoints"]
     stops = [place for place, point in enumerate(points) if point["kind"] == "base"]
     charging = {stop["waypoint"]: stop for stop in route["charging"]}
@@ -170,11 +170,17 @@ def _fly(
     for number, (length_m, way, middle_m, rise_m, point) in enumerate(steps):
         wind = wind_mps(request, middle_m)
         air = density(point["altitude_amsl_m"] or 0.0, request.conditions.temperature_c)
+        # A leg is straight. As far as the level flight takes, it rises in flight; what the rise takes longer is flown up or down in place.
+        left_s, lift_mps = abs(rise_m) / CLIMB_MPS, CLIMB_MPS if rise_m > 0.0 else 0.0
         if length_m > 0.01:
             flown = speeds_mps(uav, way, wind, point.get("speed_mps"))
             ground_mps, air_mps = flown or (1e-6, 0.0)  # no headway: it takes for ever, and the clock is seen to be wrong
-            spend(length_m / ground_mps, air_mps, 0.0, air)
-        spend(abs(rise_m) / CLIMB_MPS, math.hypot(*wind), CLIMB_MPS if rise_m > 0 else 0.0, air)
+            level_s = length_m / ground_mps
+            sloped_s = min(left_s, level_s)
+            spend(sloped_s, air_mps, lift_mps, air)
+            spend(level_s - sloped_s, air_mps, 0.0, air)
+            left_s -= sloped_s
+        spend(left_s, math.hypot(*wind), lift_mps, air)
         hold_s, here_mps = (point["task"] or {}).get("hold_s", 0.0), math.hypot(*wind_mps(request, point["altitude_agl_m"]))
         if number == 0:
             spend(LIFTS_S + brakes_s(uav.cruise_speed_mps), math.hypot(*wind), 0.0, air)

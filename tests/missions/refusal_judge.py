@@ -104,7 +104,7 @@ class RefusalJudge:
             ).values_list("centre", flat=True)[:500]  # fmt: skip
             places = self.zones.metres(np.array([tower.coords for tower in towers]).reshape(-1, 2))
             free = np.ones(len(places), dtype=bool)
-            free[self.zones.tree.query(shapely.points(places), predicate="dwithin", distance=10.0)[0]] = False
+            free[self.zones.tree.query(shapely.points(places), predicate="dwithin", distance=24.0)[0]] = False
             away_m = np.hypot(*(places - self.zones.metres((lon, lat))).T)
             self._free_towers[lon, lat] = bool((away_m[free] < ACCESS_M).any())
         return self._free_towers[lon, lat]

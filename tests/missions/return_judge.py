@@ -20,7 +20,7 @@ from tests.missions.zone_judge import Leg, Margins, ZoneJudge
 
 TRANSIT_M, HIGHEST_M = 60.0, 120.0
 CLEARLY_M = 1.5
-LESS, MORE = Margins(4.7, 18.4, 290.0), Margins(5.5, 21.6, 820.0)  # the sun counts as 4 min uncertain
+LESS, MORE = Margins(11.3, 18.4, 290.0), Margins(13.2, 21.6, 820.0)  # the sun counts as 4 min uncertain
 SHARE, WH = 0.015, 0.1
 
 

@@ -298,7 +298,14 @@ def test_what_is_not_on_one_route_with_others_is_not_put_down_to_the_wind() -> N
 
 def test_what_can_be_done_alone_on_other_ways_is_told_so() -> None:
     by_battery, alone = LeftOut(0, "beyond_energy", "It takes 9 Wh more", 9.0), LeftOut(0, "beyond_range", "It is within range alone", 0.0)
-    assert least_missing([by_battery], [alone]) == least_missing([alone], [by_battery]) == [alone]
+    assert least_missing([by_battery], [alone], {}) == least_missing([alone], [by_battery], {}) == [alone]
+
+
+def test_what_another_plan_flies_is_within_reach_alone() -> None:
+    left_out = LeftOut(0, "beyond_range", "It is 9 km there, 1 km more", 1_000.0)
+    (told,) = least_missing([left_out], [], {0: uav(max_range_m=9_000.0)})
+    assert (told.reason, told.missing, told.message[:24]) == ("beyond_range", 0.0, "It is within range alone")
+    assert least_missing([left_out], [], {1: uav()}) == [left_out]
 
 
 def test_of_targets_that_are_come_to_one_from_the_other_the_farther_is_left_out_if_charging_does_not_suffice() -> None:

@@ -8,7 +8,7 @@ from django.test import Client
 from inspection.models import NoFlyZone
 from missions.models import Waypoint
 from tests.inspection import ground
-from tests.missions.api import mission_body, post
+from tests.missions.api import mission_body, patch, post
 from tests.missions.worlds import World, power_line, rebuild, world, zone_around
 from tests.workspace.people import client_of, somebody
 
@@ -324,7 +324,7 @@ def test_with_another_target_the_leg_by_hand_stays_where_its_ends_do(here: World
 
     def with_targets(*assets: Any) -> dict[str, Any]:
         body = {"targets": mission_body(*assets)["targets"], "plan": True}
-        return client.patch(f"/api/v1/missions/{mission['id']}", body, content_type="application/json").json()
+        return patch(client, f"missions/{mission['id']}", body).json()
 
     more = with_targets(here.towers[5], here.towers[4], here.towers[3])
     assert by_hand(more) == [PUT_IN]

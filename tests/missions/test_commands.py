@@ -311,6 +311,28 @@ def test_an_arm_that_could_not_be_delivered_does_not_arm_the_uav_an_hour_later()
     assert steps(arm) == [("queued", 0), ("expired", 0)]
 
 
+def test_a_start_that_had_to_wait_and_was_not_sent_keeps_the_reason() -> None:
+    uav, words = a_uav(), "The UAV does not tell where it stands."
+    start = give(uav, CommandKind.START)
+    (held,) = claim(uav)
+    note_released(held.pk, **fence(held), note=words, code="no-position")
+    assert (now(start).state, start.outcome_code, start.outcome) == (CommandState.QUEUED, "no-position", words)
+    grow_old(start)
+    assert expire_overdue() == 1
+    assert (now(start).state, start.outcome_code) == (CommandState.EXPIRED, "no-position")
+    assert start.outcome == f"It was not sent in time. {words}"
+    assert start.events.order_by("pk").last().note == start.outcome
+
+
+def test_a_start_that_was_sent_after_all_has_no_reason_to_wait_any_more() -> None:
+    start = give(a_uav(), CommandKind.START)
+    (held,) = claim(start.uav)
+    note_released(held.pk, **fence(held), note="The UAV does not tell where it stands.", code="no-position")
+    (held,) = claim(start.uav)
+    assert note_sent(held.pk, **fence(held))
+    assert (now(start).outcome_code, start.outcome) == ("", "")
+
+
 def test_what_is_carried_is_left_to_its_carrier_beyond_its_time() -> None:
     uav = a_uav()
     give(uav, CommandKind.ARM)

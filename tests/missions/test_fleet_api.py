@@ -1,13 +1,12 @@
-"""Types, bases, states and credentials of the fleet."""
+"""Types, bases and states of the fleet."""
 
-import hashlib
 from typing import Any
 
 import pytest
 from django.test import Client
 
-from missions.models import Base, Mission, Uav, UavCredential, UavState, UavType
-from missions.services import mavlink_signing_key
+from missions.models import Base, CommandKind, Mission, Uav, UavState, UavType
+from missions.services.commands import queue_command
 from tests.missions.api import mission_body, patch, post
 from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Organisation, Role
@@ -209,7 +208,7 @@ def test_names_and_system_ids_are_given_once(client: Client) -> None:
 def test_who_is_second_overwrites_nothing(client: Client, path: str, body: dict[str, Any]) -> None:
     address = f"{path}/{made(client, path, body)['id']}"
     seen = client.get(f"/api/v1/{address}")["ETag"]
-    assert patch(client, address, {"name": "First"}).status_code == 428
+    assert client.patch(f"/api/v1/{address}", {"name": "First"}, content_type="application/json").status_code == 428
     assert patch(client, address, {"name": "First"}, **{"If-Match": seen}).status_code == 200
     response = patch(client, address, {"name": "Second"}, **{"If-Match": seen})
     assert response.status_code == 412
@@ -281,6 +280,36 @@ def test_a_uav_that_was_deleted_before_there_were_types_and_bases_comes_back(cli
     assert (properties["name"], properties["base_name"], properties["base"], properties["state"]) == ("Tern", "West", None, "active")
 
 
+def test_of_several_organisations_none_takes_all_system_ids(client: Client, settings: Any) -> None:
+    settings.MAX_SYSTEM_IDS = 2
+    for number in (7, 8, 9):
+        uav_of(client, f"Alone {number}", mavlink_system_id=number)
+    other = client_of(somebody(organisation=Organisation.objects.create(name="Other")))
+    ids = [uav_of(other, f"Other {number}", mavlink_system_id=number)["id"] for number in (17, 18)]
+    refused = post(other, "uavs", {"name": "Third", "position": [10, 56], "mavlink_system_id": 19})
+    assert (refused.status_code, refused.json()["error"]["code"]) == (409, "system_id_quota")
+    third = uav_of(other, "Third")["id"]
+    assert patch(other, f"uavs/{third}", {"mavlink_system_id": 19}, **ANY).json()["error"]["code"] == "system_id_quota"
+    assert patch(other, f"uavs/{ids[0]}", {"mavlink_system_id": 20}, **ANY).status_code == 200
+    assert patch(other, f"uavs/{ids[0]}", {"state": "retired"}, **ANY).status_code == 200
+    assert patch(other, f"uavs/{third}", {"mavlink_system_id": 19}, **ANY).status_code == 200
+
+
+def test_a_retired_uav_gives_its_system_id_back(client: Client) -> None:
+    uav = uav_of(client, mavlink_system_id=7)["id"]
+    retired = patch(client, f"uavs/{uav}", {"state": "retired"}, **ANY).json()["properties"]
+    assert (retired["state"], retired["mavlink_system_id"]) == ("retired", None)
+    assert uav_of(client, "Kite", mavlink_system_id=7)
+    assert patch(client, f"uavs/{uav}", {"state": "active"}, **ANY).json()["properties"]["mavlink_system_id"] is None
+
+
+def test_a_uav_with_a_command_on_its_way_is_not_retired(client: Client) -> None:
+    uav = uav_of(client, mavlink_system_id=7)["id"]
+    queue_command(uav=Uav.objects.get(pk=uav), kind=CommandKind.HOLD, actor=None)
+    refused = patch(client, f"uavs/{uav}", {"state": "retired"}, **ANY)
+    assert (refused.status_code, refused.json()["error"]["code"]) == (409, "commands_waiting")
+
+
 def test_a_retired_uav_keeps_its_missions_and_can_come_back(client: Client) -> None:
     uav = uav_of(client)["id"]
     made(client, "missions", mission_body() | {"uavs": [{"id": uav}]})
@@ -300,51 +329,6 @@ def test_the_missions_of_a_uav_are_listed_without_the_deleted(client: Client) ->
     Mission.objects.filter(pk=gone).update(deleted_at="2026-01-01T00:00:00Z")
     assert [mission["id"] for mission in client.get(f"/api/v1/uavs/{uav}/missions").json()["results"]] == [kept]
     assert client.get(f"/api/v1/uavs/{uav}").json()["properties"]["mission_count"] == 1
-
-
-def test_a_token_is_shown_once_and_only_its_hash_is_kept(client: Client) -> None:
-    uav = uav_of(client)["id"]
-    answer = post(client, f"uavs/{uav}/credentials", {"kind": "link-token"})
-    assert (answer.status_code, answer["Cache-Control"]) == (201, "no-store")
-    secret = answer.json()["secret"]
-    row = UavCredential.objects.get()
-    assert row.token_sha256 == hashlib.sha256(secret.encode()).hexdigest()
-    listed = client.get(f"/api/v1/uavs/{uav}/credentials").content.decode()
-    history = str(list(AuditEntry.objects.values_list("before", "after")))
-    assert secret not in listed + history
-    assert row.token_sha256 not in listed + history
-    assert client.get(f"/api/v1/uavs/{uav}").json()["properties"]["credentials"] == ["link-token"]
-
-
-def test_a_key_has_32_bytes_and_can_be_made_again_from_what_is_kept(client: Client, settings: Any) -> None:
-    uav = uav_of(client)["id"]
-    secret = made(client, f"uavs/{uav}/credentials", {"kind": "mavlink-key"})["secret"]
-    row = UavCredential.objects.get()
-    assert bytes.fromhex(secret) == mavlink_signing_key(credential=row)
-    assert len(mavlink_signing_key(credential=row)) == 32
-    assert secret not in row.key_salt
-    settings.SECRET_KEY = "another installation"
-    assert mavlink_signing_key(credential=row).hex() != secret
-
-
-def test_a_new_credential_takes_the_place_of_the_one_before(client: Client) -> None:
-    uav = uav_of(client)["id"]
-    first, second = (made(client, f"uavs/{uav}/credentials", {"kind": "mavlink-key"}) for _ in range(2))
-    assert first["secret"] != second["secret"]
-    listed = client.get(f"/api/v1/uavs/{uav}/credentials").json()["results"]
-    assert [(row["id"], row["revoked_at"] is None) for row in listed] == [(second["id"], True), (first["id"], False)]
-    assert [entry.action for entry in AuditEntry.objects.filter(subject_type="uav_credential").order_by("pk")] == ["create", "rotate"]
-
-
-def test_a_revoked_credential_stays_in_the_list_and_counts_no_more(client: Client) -> None:
-    uav = uav_of(client)["id"]
-    token = made(client, f"uavs/{uav}/credentials", {"kind": "link-token"})["id"]
-    for _ in range(2):
-        assert client.delete(f"/api/v1/uavs/{uav}/credentials/{token}").status_code == 204
-    assert client.get(f"/api/v1/uavs/{uav}").json()["properties"]["credentials"] == []
-    assert len(client.get(f"/api/v1/uavs/{uav}/credentials").json()["results"]) == 1
-    assert AuditEntry.objects.filter(subject_type="uav_credential", action="revoke").count() == 1
-    assert client.delete(f"/api/v1/uavs/{uav_of(client, 'Kite')['id']}/credentials/{token}").status_code == 404
 
 
 def test_the_fleet_of_another_organisation_does_not_exist(client: Client) -> None:

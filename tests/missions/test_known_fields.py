@@ -38,7 +38,7 @@ def test_a_mistyped_field_is_named_with_the_one_that_is_meant() -> None:
 def test_a_patch_of_an_unknown_field_changes_nothing() -> None:
     here, client = world(), client_of(somebody())
     mission = post(client, "missions", mission_body(here.towers[1])).json()
-    answer = client.patch(f"/api/v1/missions/{mission['id']}", {"nmae": "North"}, content_type="application/json")
+    answer = patch(client, f"missions/{mission['id']}", {"nmae": "North"})
     assert answer.status_code == 400
     assert answer.json()["error"]["details"] == {"nmae": ["There is no such field; is name meant?"]}
 

@@ -34,11 +34,13 @@ def test_four_uavs_stand_at_two_bases() -> None:
     assert Uav.objects.values("base_name", "location").distinct().count() == 2
 
 
-def test_each_uav_has_a_type_with_its_range_and_sensors_and_a_base() -> None:
+def test_each_uav_has_a_complete_type_and_a_base() -> None:
     load_demo()
     assert (UavType.objects.count(), Base.objects.count()) == (2, 2)
     kestrel = Uav.objects.get(name="Kestrel 1")
-    assert (kestrel.range_m, kestrel.speed_mps, kestrel.sensors) == (60_000.0, 14.0, ["RGB camera", "Thermal camera"])
+    assert (kestrel.range_m, kestrel.speed_mps, kestrel.sensors) == (24_000.0, 12.0, ["RGB camera", "Thermal camera"])
+    assert all(None not in (row.battery_wh, row.mass_kg, row.max_airspeed_mps, row.hover_power_w) for row in UavType.objects.all())
+    assert kestrel.is_simulated and kestrel.is_demo
     assert kestrel.base is not None
     assert kestrel.location == kestrel.base.location
 

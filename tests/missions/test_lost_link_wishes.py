@@ -116,7 +116,8 @@ def test_a_route_changed_by_hand_is_checked_anew(here: World, client: Client) ->
     first, second = points[0]["position"], points[1]["position"]
     between = {"position": [(a + b) / 2 for a, b in zip(first, second, strict=True)], "altitude_agl_m": 60.0, "was": None}
     address = f"/api/v1/missions/{mission['id']}/routes/0/waypoints"
-    answer = client.put(address, {"waypoints": [points[0], between, *points[1:]]}, content_type="application/json")
+    body = {"waypoints": [points[0], between, *points[1:]]}
+    answer = client.put(address, body, content_type="application/json", headers={"If-Match": "*"})
     assert answer.status_code == 200, answer.content
     now = answer.json()["plan"]["lost_link"]["failed"]
     assert {one["waypoint"] for one in now} == {one["waypoint"] + 1 for one in failed}

@@ -223,7 +223,7 @@ def test_a_mission_that_is_as_it_was_is_not_sent_again(here: World, client: Clie
     patch(client, f"missions/{mission['id']}", {"name": "Changed"})
     changed = client.get(path, headers={"If-None-Match": etag})
     assert (changed.status_code, changed.json()["name"]) == (200, "Changed")
-    client.delete(path)
+    client.delete(path, headers={"If-Match": "*"})
     assert client.get(path, headers={"If-None-Match": changed["ETag"]}).status_code == 404
 
 

@@ -147,7 +147,7 @@ def test_the_list_says_how_many_targets_a_plan_leaves_out(here: World, client: C
 def test_a_deleted_mission_is_gone_and_can_be_brought_back(here: World, client: Client) -> None:
     mission = created(client, here)
     path = f"/api/v1/missions/{mission['id']}"
-    assert client.delete(path).status_code == 204
+    assert client.delete(path, headers={"If-Match": "*"}).status_code == 204
     assert client.get(path).status_code == 404
     assert client.get("/api/v1/missions").json()["results"] == []
     assert len(client.get("/api/v1/missions?deleted=true").json()["results"]) == 1
@@ -161,7 +161,7 @@ def test_the_history_says_who_did_what(here: World, client: Client) -> None:
     path = f"missions/{mission['id']}"
     patch(client, path, {"name": "Renamed"})
     patch(client, path, {"objective": "makespan"})
-    client.delete(f"/api/v1/{path}")
+    client.delete(f"/api/v1/{path}", headers={"If-Match": "*"})
     post(client, f"{path}/restore")
     entries = client.get(f"/api/v1/{path}/history").json()["results"]
     assert [entry["action"] for entry in entries] == ["restore", "delete", "change", "rename", "plan", "create"]
@@ -175,7 +175,8 @@ def test_missions_of_another_organisation_do_not_exist(here: World, client: Clie
     stranger = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))
     path = f"missions/{mission['id']}"
     answers = [
-        stranger.get(f"/api/v1/{path}"), patch(stranger, path, {"name": "Taken"}), stranger.delete(f"/api/v1/{path}"),
+        stranger.get(f"/api/v1/{path}"), patch(stranger, path, {"name": "Taken"}),
+        stranger.delete(f"/api/v1/{path}", headers={"If-Match": "*"}),
         post(stranger, f"{path}/plan"), post(stranger, f"{path}/restore"), stranger.get(f"/api/v1/{path}/history"),
         stranger.get(f"/api/v1/{path}/legal-windows"),
     ]  # fmt: skip
@@ -191,7 +192,7 @@ def test_viewers_read_missions_and_change_nothing(here: World, client: Client) -
     answers = [
         post(viewer, "missions", mission_body()),
         patch(viewer, path, {}),
-        viewer.delete(f"/api/v1/{path}"),
+        viewer.delete(f"/api/v1/{path}", headers={"If-Match": "*"}),
         post(viewer, f"{path}/plan"),
     ]
     assert {answer.status_code for answer in answers} == {403}

@@ -105,6 +105,23 @@ def test_a_height_alone_does_not_say_that_it_flies_straight(mission, uav):
     assert told(mission)["state"] == "clear"
 
 
+@pytest.mark.parametrize(
+    ("facts", "warning"),
+    [
+        ({"FENCE_ENABLE": 0.0}, "Tern ignores the fence that goes with the mission: its autopilot has FENCE_ENABLE 0."),
+        ({"FENCE_ENABLE": 1.0, "FENCE_TYPE": 3.0}, "Tern ignores the fence that goes with the mission: its autopilot has FENCE_TYPE 3."),
+        ({"FENCE_ENABLE": 0.0, "FENCE_AUTOENABLE": 1.0}, ""),
+        ({"FENCE_ENABLE": 1.0, "FENCE_TYPE": 7.0}, ""),
+        ({}, ""),
+    ],
+)
+def test_a_fence_that_the_autopilot_ignores_is_told(facts, warning, mission, uav):
+    read(uav, **facts)
+    assert told(mission)["fence_warning"] == "", "there is no fence"
+    zone_around((10.010, 56.02), 0.001, name="Airport")
+    assert told(mission)["fence_warning"] == warning
+
+
 def test_a_companions_return_is_its_own(mission, uav):
     Uav.objects.filter(pk=uav.pk).update(link=LinkKind.HTTP)
     found = told(mission)

@@ -305,7 +305,8 @@ def test_when_no_uav_can_take_off_every_target_says_so() -> None:
     here = world()
     zone_around(UAV_AT)
     plan = make_plan(request=request(here.towers[0]))
-    assert plan["unassigned"] == [{"target": 0, "reason": "no_path", "message": "There is no UAV that can take off.", **NO_SHORTFALL}]
+    message = "There is no UAV that can take off. Tern stands inside Airport and cannot take off."
+    assert plan["unassigned"] == [{"target": 0, "reason": "no_path", "message": message, **NO_SHORTFALL}]
 
 
 @pytest.mark.parametrize("action", list(EndAction))

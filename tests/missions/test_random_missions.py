@@ -63,7 +63,7 @@ def _fly(path: Any, *, missions: int, seed: int) -> None:
             plan = make_plan(request=request)
             _assert_no_leg_meets_a_zone(plan, rings)
             _assert_ranges_and_lengths(request, plan)
-            model = _Model(request, scene)
+            model = MissionModel(request, scene)
             _assert_reasons_are_true(request, plan, scene, model, shortest)
             if number % NETWORKX_EVERY == 0:
                 model.assert_distances_are_networkxs(network)
@@ -117,7 +117,7 @@ def _assert_ranges_and_lengths(request: PlanRequest, plan: dict[str, Any]) -> No
     assert sorted(done) == list(range(len(request.targets)))
 
 
-class _Model:
+class MissionModel:
     """The mission as terminals and ways, put together here once more from the request, without the planner's own assembly."""
 
     def __init__(self, request: PlanRequest, scene: Scene) -> None:
@@ -183,7 +183,7 @@ def _is_in_zone(place: Place, scene: Scene) -> bool:
     return bool(scene.zones.meets(line[:-1], line[1:], near).any())
 
 
-def _assert_reasons_are_true(request: PlanRequest, plan: dict[str, Any], scene: Scene, model: _Model, shortest: Scene) -> None:
+def _assert_reasons_are_true(request: PlanRequest, plan: dict[str, Any], scene: Scene, model: MissionModel, shortest: Scene) -> None:
     reason_of = {item["target"]: item["reason"] for item in plan["unassigned"]}
     for place in model.places:
         reason = reason_of.get(place.target)
@@ -205,7 +205,7 @@ def _assert_reasons_are_true(request: PlanRequest, plan: dict[str, Any], scene: 
         return
     left_out, least = len(reason_of) - (len(model.places) - len(model.open)), best_merit(model.problem)[0]
     if "beyond_range" in reason_of.values() or is_on_shortest_ways(plan):
-        on_shortest = best_merit(_Model(request, shortest).problem)[0]
+        on_shortest = best_merit(MissionModel(request, shortest).problem)[0]
         assert is_on_shortest_ways(plan) == (on_shortest < least)
         least = min(least, on_shortest)
     assert left_out == least
@@ -216,13 +216,13 @@ def is_on_shortest_ways(plan: dict[str, Any]) -> bool:
     return any(warning["code"] == "shortest_ways" for warning in plan["warnings"])
 
 
-def _fits_beside_the_others(model: _Model, plan: dict[str, Any]) -> bool:
+def _fits_beside_the_others(model: MissionModel, plan: dict[str, Any]) -> bool:
     """Whether a better plan would have visited more."""
     visited = sum(len(route["targets"]) for route in plan["routes"])
     return bool(model.uavs) and len(model.open) - best_merit(model.problem)[0] > visited
 
 
-def _can_be_reached(target: int, model: _Model, scene: Scene) -> bool:
+def _can_be_reached(target: int, model: MissionModel, scene: Scene) -> bool:
     """By components alone: whether access legs and direct legs join the target to a UAV, perhaps by way of other targets."""
     network = _component_of(scene.graph)
     joined = nx.Graph()

@@ -102,7 +102,7 @@ def test_who_comes_second_overwrites_nothing_and_sees_what_is_there(client: Clie
     late = patch(client, address, {"name": "late"}, **{"If-Match": '"1"'})
     assert (late.status_code, late.json()["error"]["details"]["current"]["revision"]) == (412, 2)
     assert client.delete(f"/api/v1/{address}", headers={"If-Match": '"1"'}).status_code == 412
-    assert patch(client, address, {"name": "no precondition"}).status_code == 428
+    assert client.patch(f"/api/v1/{address}", {"name": "none"}, content_type="application/json").status_code == 428
     now = client.get(f"/api/v1/{address}").json()
     assert (now["name"], [target["label"] for target in now["targets"]]) == ("South belt", ["two"])
 

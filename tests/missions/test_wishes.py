@@ -73,7 +73,7 @@ def test_a_tie_to_a_uav_without_the_sensor_names_both(here: World) -> None:
 def test_a_tie_to_a_uav_in_a_zone_names_the_uav(here: World) -> None:
     zone_around((10.02, 55.995), half_deg=0.0005)
     plan = make_plan(request=request(*towers(here, 0, uav="East"), uavs=(WEST, EAST)))
-    assert reasons(plan) == {0: ("not_allowed", "It is tied to East, which cannot take off.")}
+    assert reasons(plan) == {0: ("not_allowed", "It is tied to East. East stands inside Airport and cannot take off.")}
 
 
 def test_a_uav_does_no_more_targets_than_it_may_and_low_ones_are_left_out(here: World) -> None:
@@ -94,7 +94,7 @@ def test_who_has_enough_is_named_and_that_the_others_lack_the_range(here: World)
     short = replace(EAST, name="Charlie", max_range_m=50.0)
     plan = make_plan(request=request(*towers(here, 0, 1), uavs=(replace(WEST, name="Alpha", most_targets=1), short)))
     ((reason, message),) = reasons(plan).values()
-    assert (reason, message) == ("most_targets", "Alpha has as many targets as it may have (1), and no other UAV has the range for it.")
+    assert (reason, message) == ("most_targets", "Alpha has as many targets as it may have (1). Other UAVs: range too short (Charlie).")
 
 
 def test_two_that_have_enough_are_both_named(here: World) -> None:
@@ -189,7 +189,7 @@ def test_a_run_of_a_uav_that_cannot_take_off_is_left_out_as_a_whole(here: World)
     zone_around((10.02, 55.995), half_deg=0.0005)
     plan = make_plan(request=request(*towers(here, 0, 1, 2), uavs=(WEST, EAST), locks=(LockRequest("East", (0, 1)),)))
     assert targets_of(plan) == [[2], []]
-    assert reasons(plan) == dict.fromkeys((0, 1), ("not_allowed", "It is locked to East, which cannot take off."))
+    assert reasons(plan) == dict.fromkeys((0, 1), ("not_allowed", "It is locked to East. East stands inside Airport and cannot take off."))
     assert (plan["wish"]["left_out"], plan["wish"]["cost_m"]) == (2, None)
 
 

@@ -25,8 +25,8 @@ class Margins(NamedTuple):
     time_s: float
 
 
-KEPT = Margins(4.7, 19.9, 299.0)  # of 5 m, of 10 m and 10 m that a height may stray, of 5 min; the rest is what the plane is wrong by
-WIDER = Margins(5.5, 20.2, 800.0)  # what keeps off may be as wide as that, as another formula of the sun is 4 min off at both ends
+KEPT = Margins(11.3, 19.9, 299.0)  # of 12 m, of 10 m and 10 m that a height may stray, of 5 min; the rest is what the plane is wrong by
+WIDER = Margins(13.2, 20.2, 800.0)  # what keeps off may be as wide as that, as another formula of the sun is 4 min off at both ends
 
 
 class Leg(NamedTuple):

@@ -27,6 +27,13 @@ def _make_state(path: Path) -> Path:
     return path
 
 
+def test_a_state_is_closed_to_other_users(tmp_path: Path) -> None:
+    path = tmp_path / "var"
+    path.mkdir(mode=0o755)
+    mode = stat.S_IMODE(_make_state(path).stat().st_mode)
+    assert mode == (0o711 if os.geteuid() == 0 else 0o700), "as root, PostgreSQL's own user has to pass through it, and sees no list"
+
+
 def test_the_socket_folder_is_closed_to_others_and_noted_for_every_shell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     state = _make_state(tmp_path / "var")
     sockets = prepare_sockets(state)

@@ -8,7 +8,7 @@ import pytest
 from scripts.page_headers import content_security_policy
 from scripts.places import TELLING_PROGRAMS, CannotStart, Places
 from scripts.programs import web_programs
-from scripts.proxy import configuration
+from scripts.proxy import BASE_MAP_TILES, configuration
 from scripts.system_packages import find_program
 
 
@@ -36,10 +36,22 @@ def test_pages_may_run_no_script_that_stands_in_the_page() -> None:
     assert rules["object-src"] == rules["frame-ancestors"] == "'none'"
 
 
-def test_a_tile_server_without_tls_is_allowed_by_name_alone() -> None:
-    policy = content_security_policy(["http://tiles.example:8080/{z}/{x}/{y}.png", "https://tiles.example/{z}", ""])
-    assert "connect-src 'self' https: http://tiles.example:8080;" in policy
-    assert content_security_policy(["http://evil;script-src/*"]) == content_security_policy()
+def test_tile_servers_that_the_settings_name_are_allowed_and_no_others() -> None:
+    policy = content_security_policy(["http://tiles.example:8080/{z}/{x}/{y}.png", "https://{s}.tiles.example/{z}", ""])
+    assert "connect-src 'self' http://tiles.example:8080 https://*.tiles.example;" in policy
+    assert "img-src 'self' data: blob: http://tiles.example:8080 https://*.tiles.example;" in policy
+    assert "connect-src 'self';" in content_security_policy()
+    for wrong in ("http://evil;script-src/*", "https://*/{z}", "https://{s}./{z}", "https://a@b{z}/", "javascript://x"):
+        assert content_security_policy([wrong]) == content_security_policy(), wrong
+
+
+def test_the_base_map_is_the_one_that_pages_ask_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("SPANWISE_BASE_MAP_TILES", raising=False)
+    origin = "https://tile.openstreetmap.org"
+    assert BASE_MAP_TILES in (Path(__file__).parents[2] / "config" / "settings.py").read_text()
+    assert f"connect-src 'self' {origin};" in configuration(Places(tmp_path), tmp_path, 8000)
+    monkeypatch.setenv("SPANWISE_BASE_MAP_TILES", "")
+    assert "connect-src 'self';" in configuration(Places(tmp_path), tmp_path, 8000)
 
 
 def test_behind_a_tls_proxy_its_word_on_the_scheme_is_passed_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

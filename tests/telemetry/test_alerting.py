@@ -4,14 +4,17 @@ import math
 from datetime import timedelta
 
 import pytest
+from django.utils.translation import override
 
 from missions.models import Approval, CommandKind, Mission, Uav, UavCommand, UavType
 from missions.services.outbox import queue_command
 from telemetry.alerting.watched import WatchedUav
 from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.report import Report
-from telemetry.models import Alert, UavLink
+from telemetry.models import Alert, UavLink, VehicleText
+from telemetry.selectors.alert_words import alert_words
 from telemetry.services.alerting import Memories, look
+from telemetry.services.down_alerts import close_down_alert
 from tests.missions.flights import an_operator, approved, fleet
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.records import at
@@ -183,3 +186,89 @@ def test_limits_of_the_mission_go_before_those_of_the_type(uav, approval):
     Mission.objects.update(alert_limits={"link_late_s": 10.0})
     look(watched=[seen(uav, approval)], now=at(26), memories=memories)
     assert open_ones() == [("link-lost", "warning")]
+
+
+def says(uav: Uav, second: float, text: str, severity: int = 4) -> None:
+    VehicleText.objects.create(uav=uav, severity=severity, text=text, received_at=at(second))
+
+
+@pytest.mark.parametrize(("state", "level"), [("low", "warning"), ("critical", "critical"), ("unhealthy", "critical")])
+def test_a_battery_that_the_vehicle_itself_calls_low_is_told_however_full_it_says_it_is(state, level, uav, approval):
+    memories = watching(uav, approval)
+    UavLink.objects.update(battery_state=state)
+    for second in range(1, 9):
+        in_flight(second, uav, approval, memories, battery_percent=95.0)
+    assert open_ones() == [("battery-short", level)]
+
+
+def test_words_of_the_vehicle_about_its_battery_count_until_it_says_that_it_is_well(uav, approval):
+    memories = watching(uav, approval)
+    says(uav, 0, "Battery 1 is low 10.5V used 1200 mAh")
+    says(uav, 0, "Battery calibrated", severity=6)
+    for second in range(1, 9):
+        in_flight(second, uav, approval, memories, battery_percent=95.0)
+    alert = Alert.objects.get()
+    assert (alert.code, alert.level, alert.values["words"]) == ("battery-short", "warning", "Battery 1 is low 10.5V used 1200 mAh")
+    UavLink.objects.update(battery_state="ok")
+    for second in range(9, 45):
+        in_flight(second, uav, approval, memories, battery_percent=95.0)
+    alert.refresh_from_db()
+    assert alert.close_reason == "cleared"
+
+
+def test_a_mode_that_nobody_asked_for_is_told_with_what_the_vehicle_said(uav, approval):
+    memories = watching(uav, approval)
+    says(uav, -60, "EKF3 lane switch 1")
+    says(uav, 1, "Battery Failsafe - RTL", severity=2)
+    for second in range(1, 12):
+        in_flight(second, uav, approval, memories, mode="RTL")
+    alert = Alert.objects.get(code="mode-changed")
+    assert alert_words(alert.message, alert.values).endswith("It says: Battery Failsafe - RTL")
+    with override("de"):
+        assert "Battery Failsafe - RTL" in alert_words(alert.message, alert.values) != alert_words(alert.message, {})
+    for second in range(12, 700, 10):
+        in_flight(second, uav, approval, memories, mode="RTL")
+    alert.refresh_from_db()
+    assert alert.values["words"] == "Battery Failsafe - RTL", "it is quoted as long as the mode lasts"
+
+
+def test_a_uav_that_came_down_beside_its_route_is_told_until_a_person_closes_it(uav, approval):
+    memories = watching(uav, approval)
+    place = seen(uav, approval).newest.measurement
+    fallen = {"longitude_deg": place.longitude_deg + 0.01, "altitude_relative_m": 8.0, "is_armed": False, "is_in_air": False}
+    UavLink.objects.update(is_in_air=False, is_armed=False)
+    for second in range(1, 6):
+        in_flight(second, uav, approval, memories, **fallen)
+    alert = Alert.objects.get()
+    assert (alert.code, alert.level, alert.mission_id) == ("down-off-plan", "critical", approval.mission_id)
+    assert alert.details["position"] == pytest.approx([place.longitude_deg + 0.01, place.latitude_deg])
+    Mission.objects.update(state="failed")
+    look(watched=[], now=at(60), memories=Memories())
+    assert open_ones() == [("down-off-plan", "critical")], "the end of its mission does not end it"
+    person = an_operator()
+    close_down_alert(alert=alert, actor=person, reason="Brought back; motor 3 had failed")
+    alert.refresh_from_db()
+    assert (alert.close_reason, alert.notes.get().text, alert.course[-1]["what"]) == (
+        "by-person",
+        "Brought back; motor 3 had failed",
+        "closed",
+    )
+    Mission.objects.update(state="active")
+    for second in range(61, 66):
+        in_flight(second, uav, approval, memories, **fallen)
+    assert open_ones() == [], "nobody is told again of what somebody has closed"
+
+
+def test_a_uav_that_was_told_to_land_or_has_not_started_is_not_missed(uav, approval):
+    place = seen(uav, approval).newest.measurement
+    away = {"longitude_deg": place.longitude_deg + 0.01, "is_armed": False, "is_in_air": False}
+    heard(uav, 0)
+    UavLink.objects.update(is_in_air=False)
+    for second in range(1, 6):
+        in_flight(second, uav, approval, Memories(), **away)
+    memories = watching(uav, approval)
+    command = queue_command(uav=uav, kind=CommandKind.LAND, actor=an_operator(), mission=Mission.objects.get(pk=approval.mission_id))
+    UavCommand.objects.filter(pk=command.pk).update(state="applied", finished_at=at(0))
+    for second in range(1, 6):
+        in_flight(second, uav, approval, memories, **away)
+    assert open_ones() == []

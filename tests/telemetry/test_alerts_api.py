@@ -135,3 +135,20 @@ def test_two_senders_are_told_and_over(uav):
     tell_of_second_sender(uav_id=uav.pk)
     assert Alert.objects.get().close_reason == "cleared"
     assert not close_alert(uav=uav, code="second-sender")
+
+
+def test_only_the_alert_of_a_uav_that_is_down_is_closed_by_people_and_with_a_reason(uav, operator):
+    other, alert = an_alert(uav), an_alert(uav, "down-off-plan", AlertLevel.CRITICAL)
+    answer = post(operator, f"{other.pk}/close", reason="Seen")
+    assert (answer.status_code, answer.json()["error"]["code"]) == (409, "closed_by_itself")
+    assert post(operator, f"{alert.pk}/close").status_code == 400
+    assert post(client_of(somebody(Role.VIEWER)), f"{alert.pk}/close", reason="Seen").status_code == 403
+    shown = post(operator, f"{alert.pk}/close", reason="Found in a field").json()
+    assert (shown["close_reason"], shown["written"][0]["text"], shown["course"][-1]["reason"]) == (
+        "by-person",
+        "Found in a field",
+        "by-person",
+    )
+    assert AuditEntry.objects.filter(subject_type="alert", action="close", subject_id=str(alert.pk)).count() == 1
+    again = post(operator, f"{alert.pk}/close", reason="Again").json()
+    assert (again["closed_at"], len(again["written"])) == (shown["closed_at"], 1)

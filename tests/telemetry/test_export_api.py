@@ -1,6 +1,7 @@
 """Flown tracks of missions and UAVs, downloaded."""
 
 import json
+from datetime import timedelta
 from io import BytesIO
 from typing import Any
 
@@ -62,6 +63,19 @@ def test_a_uavs_log_is_downloaded_for_a_span_of_time(client: Client, mission: Mi
     query = "from=2026-11-22T12:00:03Z&to=2026-11-22T13:00:00Z"
     read = json.loads(body_of(client.get(f"/api/v1/uavs/{tern.pk}/telemetry.geojson?{query}")))
     assert [feature["properties"]["sequence"] for feature in read["features"]] == [3, 4, 99]
+
+
+def test_a_file_has_one_record_a_second_unless_more_are_asked_for(client: Client, mission: Mission) -> None:
+    tern = Uav.objects.get(name="Tern")
+    first = TelemetryRecord.objects.filter(uav=tern).order_by("measured_at")[0]
+    for number, row in enumerate(TelemetryRecord.objects.filter(uav=tern, sequence__lt=5).order_by("sequence")):
+        row.measured_at, row.altitude_amsl_m = first.measured_at + timedelta(milliseconds=200 * number), 120.000000024
+        row.save()
+    address = f"/api/v1/uavs/{tern.pk}/telemetry.csv"
+    assert [len(body_of(client.get(address + query)).splitlines()) - 1 for query in ("", "?every_s=0", "?every_s=0.2")] == [3, 6, 6]
+    assert b"120.0," in body_of(client.get(address))
+    for wrong in ("-1", "nan", "inf", "x", "3601"):
+        assert client.get(f"{address}?every_s={wrong}").status_code == 400
 
 
 def test_what_is_not_there_is_not_found(client: Client, mission: Mission) -> None:

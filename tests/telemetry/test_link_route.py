@@ -170,9 +170,9 @@ def test_a_uav_that_holds_something_else_is_not_ready(here: World, person: User,
 def test_a_refusal_is_kept_in_the_uavs_words(kite: UavClient) -> None:
     command = give(kite, CommandKind.ARM)
     kite.get("route")
-    acknowledge(kite, command.pk, "failed", reason="Compass not calibrated")
+    acknowledge(kite, command.pk, "failed", reason="Compass not calibrated\x07")  # garbled, and it counts all the same
     command.refresh_from_db()
-    assert (command.state, command.outcome_code, command.outcome) == (CommandState.FAILED, "refused-by-uav", "Compass not calibrated")
+    assert (command.state, command.outcome_code, command.outcome) == (CommandState.FAILED, "refused-by-uav", "Compass not calibrated\x07")
 
 
 def test_an_acknowledgement_that_is_sent_again_changes_nothing(kite: UavClient) -> None:

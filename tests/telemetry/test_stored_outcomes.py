@@ -13,7 +13,10 @@ from telemetry.ground_station.orders import Order
 ROOT = Path(__file__).resolve().parents[2] / "telemetry"
 MAKERS = [
     *(ROOT / "gateway" / f"{name}.py" for name in ("carriage", "preparation", "reading", "vehicle_limits")),
-    *(ROOT / "ground_station" / f"{name}.py" for name in ("command", "command_keeper", "limits", "mission_keeper", "orders")),
+    *(
+        ROOT / "ground_station" / f"{name}.py"
+        for name in ("command", "command_keeper", "limits", "mission_keeper", "orders", "vehicle_class")
+    ),
 ]
 # Of these a part that is put in makes another sentence; each is looked at below as it comes out.
 VARIANTS = {"The {} {} m from", "The {} {} m {} the", "The UAV is {} m {} the", "The {} has {} items; {} {} {}."}
@@ -58,6 +61,13 @@ def test_every_sentence_that_a_gateway_makes_is_foreseen(path):
         " Revoke, and approve it again with points put in on longer legs.",
         "The mission has 700 items; px4 on most boards takes 500. The UAV has not told how far apart waypoints may be.",
         "The fence has 70 items; ardupilot takes 64.",
+        "Nothing was sent. The vehicle is a plane: Spanwise plans for and commands multicopters only.",
+        "Nothing was sent. Not known to ArduPilot 4.3.0: item 7, IMAGE_START_CAPTURE (2000).",
+        "Refused by ArduPilot 4.6.0: item 3 of the mission, NAV_WAYPOINT (16) (invalid-param7). The vehicle holds what it held before.",
+        "Of the fence, item 3: latitude was sent as 55.4 and came back as 55.5. There are 4 more differences."
+        " The vehicle holds what it held before.",
+        "It was not sent in time. The UAV does not tell where its home is, from which it counts its heights.",
+        "The fence on the UAV does nothing: FENCE_ENABLE 0.",
     ],
 )
 def test_what_is_put_together_is_foreseen(stored):

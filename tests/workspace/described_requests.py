@@ -27,7 +27,7 @@ class Request:
     headers: dict[str, str]
     body: str | bytes | None
     media_type: str
-    described: frozenset[int]  # statuses
+    described: Mapping[int, frozenset[str]]  # the headers of each status
 
 
 class Maker:
@@ -69,7 +69,7 @@ class Maker:
         if content:
             media_type = self._chance.choice(sorted(content))
             body = self._body(content[media_type].get("schema", {}), media_type)
-        described = frozenset(int(status) for status in operation["responses"])
+        described = {int(status): frozenset(response.get("headers", {})) for status, response in operation["responses"].items()}
         address = path + (f"?{urlencode(query)}" if query else "")
         return Request(
             method, template, address, {k: v.replace("\n", "").replace("\x00", "") for k, v in headers.items()}, body, media_type, described

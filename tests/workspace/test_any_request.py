@@ -20,6 +20,7 @@ from workspace.models import Organisation, Role
 pytestmark = pytest.mark.django_db(transaction=True)
 
 SEED = 11
+HEADERS = ("ETag", "Location", "Retry-After", "RateLimit", "RateLimit-Policy", "Idempotency-Replayed", "WWW-Authenticate")
 
 
 class Known:
@@ -64,6 +65,7 @@ def test_every_request_is_answered_as_it_is_described(number: int, record_proper
     client, uav_link = client_of(somebody(Role.ADMINISTRATOR)), Client(raise_request_exception=False)
     statuses: Counter[int] = Counter()
     faults: list[str] = []
+    undescribed: set[str] = set()
     with mock.patch("workspace.tasks.current_app.send_task"):
         for request in maker.requests(number):
             answer = answered(uav_link if "/uav-link/" in request.path else client, request)
@@ -71,8 +73,12 @@ def test_every_request_is_answered_as_it_is_described(number: int, record_proper
                 client = client_of(somebody(Role.ADMINISTRATOR))
                 answer = answered(client, request)
             statuses[answer.status_code] += 1
+            described_headers = request.described.get(answer.status_code, frozenset())
+            if hidden := [name for name in HEADERS if name in answer and name not in described_headers]:
+                undescribed.add(f"{answer.status_code} {request.method} {request.template} {hidden}")
             if (answer.status_code >= 500 and answer.status_code != 503) or answer.status_code not in request.described:
                 faults.append(f"{answer.status_code} {request.method} {request.template} {request.path[:200]} {str(request.body)[:500]}")
     record_property("figure", f"{number:,} requests to {maker.operations} operations: {dict(sorted(statuses.items()))}")
     assert not faults, "\n".join(faults[:40])
+    assert not undescribed, "\n".join(sorted(undescribed))
     assert sum(count for status, count in statuses.items() if status < 300) > number // 10, "most would be refused at the door"

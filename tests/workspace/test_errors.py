@@ -10,6 +10,7 @@ from rest_framework import serializers
 from tests.workspace.people import client_of, somebody
 from workspace import selectors
 from workspace.errors import ApiProblem, error_response
+from workspace.throttling import ScopedRate
 
 ECHO = "/api/v1/echo"
 pytestmark = [pytest.mark.django_db, pytest.mark.urls("tests.workspace.echo_urls")]
@@ -30,6 +31,45 @@ def code(answer: Any, status: int) -> str:
     assert set(error) == {"code", "message", "details"}
     assert error["message"]
     return error["code"]
+
+
+@pytest.mark.parametrize(
+    ("accept", "content_type"),
+    [
+        ("*/*", "application/json"),
+        ("application/json", "application/json"),
+        ("application/problem+json", "application/problem+json"),
+        ("application/json, application/problem+json;q=0.9", "application/problem+json"),
+    ],
+)
+def test_an_error_is_also_a_problem_of_rfc_9457(client: Client, accept: str, content_type: str) -> None:
+    addresses = {
+        "/api/v1/jobs?limit=0": (400, "invalid"),
+        "/api/v1/missions?cursor=x": (400, "invalid_cursor"),
+        "/api/v1/n": (404, "not_found"),
+    }
+    for address, (status, kind) in addresses.items():
+        answer = client.get(address, headers={"Accept": accept})
+        assert code(answer, status) == kind
+        assert answer["Content-Type"] == content_type
+        problem = answer.json()
+        assert problem.pop("error")["message"] == problem["detail"]
+        titles = {400: "Bad Request", 404: "Not Found"}
+        assert (problem["type"], problem["title"]) == (f"urn:problem-type:spanwise:{kind}", titles[status])
+        assert (problem["status"], problem["instance"]) == (status, address.partition("?")[0])
+
+
+def test_who_takes_only_problems_is_answered_all_the_same(client: Client) -> None:
+    answer = client.get("/api/v1/jobs", headers={"Accept": "application/problem+json"})
+    assert (answer.status_code, answer["Content-Type"]) == (200, "application/json")
+
+
+def test_a_limit_that_is_reached_is_told_in_headers(client: Client, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ScopedRate, "THROTTLE_RATES", {"plans": "2/minute"})
+    answers = [send(client, "{}") for _ in range(5)]
+    assert code(answers[-1], 429) == "throttled"
+    assert answers[-1]["RateLimit-Policy"] == '"plans";q=2;w=60'
+    assert answers[-1]["RateLimit"] == f'"plans";r=0;t={answers[-1]["Retry-After"]}'
 
 
 def test_json_comes_back_as_it_was_sent(client: Client) -> None:
@@ -62,6 +102,15 @@ def test_json_comes_back_as_it_was_sent(client: Client) -> None:
 )
 def test_what_is_not_strict_json_is_refused(client: Client, body: bytes | str) -> None:
     assert code(send(client, body), 400) == "parse_error"
+
+
+@pytest.mark.parametrize("character", ["\\u0007", "\\b", "\\u001b", "\x7f", "\x85", "\\u202e", "\u2066"])
+def test_control_characters_and_turned_writing_are_refused_in_any_text(client: Client, character: str) -> None:
+    assert code(send(client, f'{{"name": "Tern{character}x"}}'), 400) == "parse_error"
+
+
+def test_lines_tabs_and_all_scripts_are_texts(client: Client) -> None:
+    assert send(client, '{"why": "Zürich\\n\\tΑθήνα שלום 東京 \\\\u0007"}').status_code == 200
 
 
 def test_32_levels_are_not_too_deep(client: Client) -> None:

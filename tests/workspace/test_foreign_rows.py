@@ -68,7 +68,7 @@ def rows_of(home: Organisation) -> dict[str, Model]:
         "base_id": Base.objects.create(organisation=home, name="Yard", location=at),
         "type_id": UavType.objects.create(organisation=home, name="Quad"),
         "command_id": give(uav, CommandKind.HOLD, keeper),
-        "credential_id": UavCredential.objects.create(uav=uav, kind=CredentialKind.LINK_TOKEN, token_sha256="0" * 64),
+        "credential_id": UavCredential.objects.create(uav=uav, kind=CredentialKind.LINK_TOKEN, token_sha256=f"{home.pk:064}"),
         "log_id": FlightLog.objects.create(organisation=home, uav=uav, path="tern.tlog", started_at=timezone.now()),
         "selection_id": SavedSelection.objects.create(organisation=home, name="South", targets=[]),
         "alert_id": Alert.objects.create(organisation=home, uav=uav, level=AlertLevel.WARNING, code="link-late", opened_at=timezone.now()),
@@ -82,11 +82,11 @@ def rows_of(home: Organisation) -> dict[str, Model]:
             simulation=simulation, sequence=0, uav=uav, name="Tern", system_id=7, airframe="iris", position=at, conditions={}
         ),
         "user_id": keeper,
-        "invitation_id": Invitation.objects.create(organisation=home, role=Role.VIEWER, token_sha256="0" * 64, expires_at=soon),
+        "invitation_id": Invitation.objects.create(organisation=home, role=Role.VIEWER, token_sha256=f"{home.pk:064}", expires_at=soon),
         "session_id": BrowserSession.objects.create(
             session=session_of(keeper), user=keeper, began_at=timezone.now(), acted_at=timezone.now(), present_at=timezone.now()
         ),
-        "token_id": ApiToken.objects.create(user=keeper, token_sha256="0" * 64, expires_at=soon),
+        "token_id": ApiToken.objects.create(user=keeper, token_sha256=f"{home.pk:064}", expires_at=soon),
     }
 
 

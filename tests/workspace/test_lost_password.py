@@ -127,3 +127,30 @@ def test_a_wrong_mail_address_is_refused_without_repeating_it(address: str) -> N
     with pytest.raises(WrongMailAddress) as refused:
         mail_settings(address)
     assert "secret" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("public", "host", "link"),
+    [
+        ("https://spanwise.example", "testserver:6666", "https://spanwise.example/new-password/"),
+        ("", "testserver:6666", "http://testserver/new-password/"),
+        ("", "127.0.0.1:8000", "http://127.0.0.1:8000/new-password/"),
+    ],
+)
+def test_the_link_leads_to_the_sites_own_address(client: Client, vera: User, settings: Any, public: str, host: str, link: str) -> None:
+    settings.PUBLIC_ADDRESS, settings.ALLOWED_HOSTS = public, ["testserver", "127.0.0.1"]
+    client.post("/lost-password", {"email": "vera@example.org"}, headers={"Host": host})
+    assert mails(1)
+    assert link in mail.outbox[-1].body
+    assert "6666" not in mail.outbox[-1].body
+
+
+def test_without_a_way_for_mail_no_link_is_written_into_a_log(
+    client: Client, vera: User, settings: Any, capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
+) -> None:
+    settings.EMAIL_BACKEND = "django.core.mail.backends.console.EmailBackend"
+    assert "Look into your mail" in ask(client, "vera@example.org")
+    time.sleep(0.3)  # a mail would leave beside the answer
+    written = "".join(capfd.readouterr())
+    assert "new-password/" not in written + caplog.text
+    assert "SPANWISE_EMAIL_URL names no way for mail" in caplog.text

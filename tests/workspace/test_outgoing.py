@@ -155,6 +155,14 @@ def test_no_spelling_of_this_machine_is_connected_to(host: str, servers: Callabl
     assert server.asked == []
 
 
+def test_a_name_that_is_not_known_is_answered_as_one_of_this_network(settings: Any, tmp_path: Path) -> None:
+    """Else the answers tell which names the network behind the machine has."""
+    settings.OUTGOING_ALLOWED_HOSTS = []
+    unknown = refused("https://no-such-host.invalid/zones.json", tmp_path, OutgoingFailed)
+    inside = refused("https://localhost/zones.json", tmp_path, OutgoingRefused)
+    assert unknown.replace("no-such-host.invalid", "localhost") == inside
+
+
 def test_a_host_is_allowed_with_its_port_alone(servers: Callable[[], Server], settings: Any, tmp_path: Path) -> None:
     allowed, other = servers(), servers()
     settings.OUTGOING_ALLOWED_HOSTS = [f"127.0.0.1:{allowed.server_port}"]

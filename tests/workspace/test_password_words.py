@@ -19,6 +19,12 @@ REFUSED = [
     "h4velnetz!!x",
     "BridgeTower#1",
     "operator operator 12",
+    "Stromleitung2026!",
+    "Freileitung-123",
+    "Drohne2026",
+    "Geheim-1234",
+    "Willkommen1",
+    "Br\u00fccke-2026",
 ]
 
 
@@ -55,7 +61,7 @@ def test_a_site_names_words_of_its_own(settings: Any) -> None:
 
 def test_an_invitation_counts_the_words_of_the_organisation_that_invites(client: Any) -> None:
     boss = somebody(Role.ADMINISTRATOR, Organisation.objects.create(name="Havel Netz"))
-    _, token = invite(actor=boss, role=Role.VIEWER, email="", days=1)
+    _, token = invite(organisation=boss.organisation, actor=boss, role=Role.VIEWER, email="", days=1)
     answers = {"username": "newcomer", "password1": "Havel-Netz-2026", "password2": "Havel-Netz-2026"}
     assert client.post(f"/invitation/{token}", answers).status_code == 200
     assert not User.objects.filter(username="newcomer").exists()

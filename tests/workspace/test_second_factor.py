@@ -188,6 +188,18 @@ def test_a_recovery_code_lets_in_once_however_it_is_typed(ida: User) -> None:
     assert first.get("/account").content.decode().count("7 recovery codes are left") == 1
 
 
+def test_wrong_codes_of_a_stranger_do_not_lock_out_whoever_has_a_recovery_code(ida: User) -> None:
+    codes = with_app(ida)
+    stranger, owner = Client(), Client()
+    for client in (stranger, owner):
+        type_password(client, ida, PASSWORD)
+    for _ in range(TRIES):
+        assert not answer_code(stranger, "000000")
+    assert not answer_code(owner, code_now())
+    assert answer_code(owner, codes[0])
+    assert not answer_code(stranger, codes[0])
+
+
 def test_recovery_codes_are_made_of_118_random_bits() -> None:
     codes = {bare(code) for _ in range(20) for code in new_recovery_codes()}
     assert len(codes) == 160

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 from django.core.cache import cache
+from django.core.cache.backends.redis import RedisCache
 from django.http import HttpRequest
 from django.test import Client
 
@@ -41,6 +42,15 @@ def hammer(name: str) -> None:
     """From so many places that each alone stays below its limit."""
     for address in many_places(TRIES_BEFORE_A_NAME_IS_SLOW + 5):
         sign_in(Client(), name, "wrong", address)
+
+
+def test_guessing_is_limited_while_redis_is_away(owner: User, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sign_in_attempts, "cache", RedisCache("redis://127.0.0.1:1", {}))
+    sign_in_attempts._of_process.clear()
+    for _ in range(TRIES):
+        assert not sign_in(Client(), owner.username, "wrong")
+    assert not sign_in(Client(), owner.username, PASSWORD), "held back, though the password is right"
+    assert sign_in(Client(), owner.username, PASSWORD, "203.0.113.77"), "whoever guesses elsewhere keeps nobody out"
 
 
 def test_a_known_browser_signs_in_while_strangers_hammer_the_name_from_everywhere(client: Client, owner: User) -> None:

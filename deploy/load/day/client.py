@@ -174,7 +174,7 @@ class Browser(Client):
     def delete_mission(self, mission: str) -> bool:
         """Whether it is deleted. One that is not there any more was deleted by a try whose answer was lost."""
         self.book.note(kinds.ASKED, thing=mission)
-        answer = self.ask("DELETE", f"/api/v1/missions/{mission}", "mission: delete", ok=(204, 404, 409))
+        answer = self.ask("DELETE", f"/api/v1/missions/{mission}", "mission: delete", ok=(204, 404, 409), **{"If-Match": "*"})
         if answer.status_code != 409:
             self.book.note(kinds.DELETION, mission=mission)
         return bool(answer.status_code != 409)

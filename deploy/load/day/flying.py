@@ -99,7 +99,7 @@ class FlyingOperator(Browser):
                 self.book.note(kinds.APPROVAL, mission=mission, approval=approval["id"], sha256=approval["content_sha256"])
                 return str(answer.headers["ETag"])
             if again:
-                self.ask("POST", f"{path}/plan", "mission: plan again", ok=(200, 409, 503))
+                self.ask("POST", f"{path}/plan", "mission: plan again", ok=(200, 409, 503), **{"If-Match": "*"})
                 tag = str(self.ask("GET", path, "mission: open").headers["ETag"])
         self.delete_mission(mission)
         return ""

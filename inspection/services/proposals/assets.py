@@ -12,7 +12,7 @@ from inspection.asset_files.mapping import Tally
 from inspection.asset_files.rows import AssetFileError
 from inspection.asset_files.suggestion import suggested_mapping
 from inspection.asset_files.survey import Survey, survey_of
-from inspection.models import Asset, AssetSet, ChangeAction, DataImport
+from inspection.models import ROW_ACTIONS, Asset, AssetSet, DataImport
 from inspection.services.asset_import import (
     EXPLANATIONS,
     UNCHANGED,
@@ -32,7 +32,7 @@ from inspection.services.proposals.reading import Change, Fault, FileRefused, Pr
 from workspace.models import User
 
 MOST_CHANGES = 2_000  # of each action
-NOTHING = dict.fromkeys((*ChangeAction.values, UNCHANGED), 0)
+NOTHING = dict.fromkeys((*ROW_ACTIONS, UNCHANGED), 0)
 
 
 def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenance, progress: Progress) -> Reading:
@@ -123,7 +123,7 @@ def _first_cell(file: AssetFile, name: str) -> list[str]:
 
 
 def _changes(found: Difference) -> Iterator[Change]:
-    for action in ChangeAction:
+    for action in ROW_ACTIONS:
         for asset, stated in found.pairs(action, MOST_CHANGES):
             before, after = differing(_shown(asset) if asset else None, _shown(stated) if stated else None)
             one = stated or asset

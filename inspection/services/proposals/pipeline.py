@@ -30,6 +30,7 @@ READ_TASK = "inspection.tasks.read_proposal"
 APPLY_TASK = "inspection.tasks.apply_proposal"
 MOST_CHANGES_KEPT = 2_000  # of each action; a person looks at a sample of more, the numbers are of all
 MOST_FAULTS_KEPT = 50
+DECISIONS = {"replace_edited", "seen"}  # parameters of the one who applies: the difference is the same with them
 _BATCH = 500
 
 
@@ -39,6 +40,14 @@ class WrongState(Exception):
     def __init__(self, proposal: ImportProposal) -> None:
         super().__init__(f"The proposal is {proposal.get_state_display().lower()}.")
         self.proposal = proposal
+
+
+class NotSeen(Exception):
+    """Records of the file could not be read, and nobody has said to have seen them; `places` are theirs in the file."""
+
+    def __init__(self, places: list[str]) -> None:
+        super().__init__(f"{len(places)} records of the file are not read. See each of them first.")
+        self.places = places
 
 
 def start_proposal(
@@ -78,12 +87,19 @@ def read_again(*, proposal: ImportProposal, parameters: dict[str, Any], actor: U
 
 
 def ask_to_apply(*, proposal: ImportProposal, parameters: dict[str, Any], actor: User) -> ImportProposal:
-    """Somebody has looked at the difference and wants it. Raises WrongState.
+    """Somebody has looked at the difference and wants it; of records that are not read, `seen` names the place of each. Raises WrongState,
+    NotSeen.
 
     What was looked at was taken with the parameters as they were: with others than that the difference is taken anew before it counts.
     """
     with _held(proposal, {ProposalState.READY}) as held:
-        if any(held.parameters.get(name) != value for name, value in parameters.items() if name != "replace_edited"):
+        seen = parameters.get("seen")
+        unseen = [
+            record["place"] for record in held.summary.get("not_read", ()) if not isinstance(seen, list) or record["place"] not in seen
+        ]
+        if unseen:
+            raise NotSeen(unseen)
+        if any(held.parameters.get(name) != value for name, value in parameters.items() if name not in DECISIONS):
             held.ground_revision = None
         held.parameters = held.parameters | parameters
         held.state = ProposalState.APPLYING
@@ -102,6 +118,12 @@ def discard_proposal(*, proposal: ImportProposal, actor: User | None) -> ImportP
         held.save()
         held.changes.all().delete()
     return held
+
+
+def size_mib_of(*, job: Job) -> float:
+    """Of the file that the job's proposal is about; 0 where there is none yet."""
+    proposal = ImportProposal.objects.select_related("upload").filter(pk=job.parameters["proposal"]).first()
+    return 0.0 if proposal is None or proposal.upload is None else proposal.upload.size_bytes / 1024**2
 
 
 def read_proposal(*, job: Job, progress: Progress) -> None:

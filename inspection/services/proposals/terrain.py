@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from django.contrib.gis.geos import MultiPolygon, Polygon
 
-from inspection.models import ChangeAction, DataImport, TerrainTile
+from inspection.models import ROW_ACTIONS, ChangeAction, DataImport, TerrainTile
 from inspection.selectors.terrain import ground_truth
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
 from inspection.services.terrain_import import facts_of, import_terrain, imports_of_name, same_import, sha256_of
@@ -43,7 +43,7 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
     except TerrainFileError as error:
         raise _refusal(error) from error
     if same_import(provenance.file_name, sha256_of(path), datum) is not None:
-        return Reading(summary, dict.fromkeys(ChangeAction.values, 0) | {"unchanged": survey.blocks})
+        return Reading(summary, dict.fromkeys([*ROW_ACTIONS, "unchanged"], 0) | {"unchanged": survey.blocks})
     comparison.finish()
     summary["notes"] = [*summary["notes"], *comparison.notes()]
     return Reading(summary, comparison.numbers, tuple(comparison.changes))
@@ -65,7 +65,7 @@ class _Comparison:
     """Compares the posts of blocks with the ground as it is."""
 
     def __init__(self, file_name: str, datum: str) -> None:
-        self.numbers: dict[str, int] = dict.fromkeys([*ChangeAction.values, "unchanged"], 0)
+        self.numbers: dict[str, int] = dict.fromkeys([*ROW_ACTIONS, "unchanged"], 0)
         self.changes: list[Change] = []
         self._file_name = file_name
         self._datum = datum

@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from django.contrib.gis.geos import GEOSGeometry
+from django.contrib.gis.geos import GEOSGeometry, Polygon
 
 from inspection.models import ChangeAction, DataImport, ImportKind, NoFlyZone, ZoneSet, ZoneSetVersion
 from inspection.services.facts import differing, zone_facts
@@ -20,10 +20,11 @@ from inspection.services.zone_import import (
     zone_counts,
 )
 from inspection.services.zone_sets import ZoneDifference, difference_of, record_facts, records_of_version
-from inspection.zones.records import ZoneRecord
+from inspection.zones.records import UnreadRecord, ZoneRecord
 from inspection.zones.zone_file import ZoneFileError
 from workspace.models import User
 
+LEAST_DEG = 0.0005
 ALL_ELSEWHERE = "say that all of them are to be replaced, or use another name"
 
 
@@ -38,15 +39,16 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
         return Reading(summary, found.numbers, tuple(_changes(found)))
     progress("reading the zones", 0.1)
     with _faults_as_refusal():
-        content, _ = read_zone_file(path, source_format=_source_format(parameters))
+        content, _ = read_zone_file(path, source_format=_source_format(parameters), leave_out_faulty=_leaves_out(parameters))
         name = set_name_of(path, _set_name(parameters))
         zone_set = ZoneSet.objects.filter(name=name).first()
         if not parameters.get("replace_all"):
             refuse_if_elsewhere(zone_set, content, ALL_ELSEWHERE)
     progress("comparing", 0.6)
-    found = difference_of(zone_set, content.zones, replace_edited=replace_edited)
+    found = difference_of(zone_set, content.zones, replace_edited=replace_edited, unread=content.unread)
+    numbers = found.numbers | ({ChangeAction.NOT_READ.value: len(content.unread)} if content.unread else {})
     summary = zone_counts(content) | {"set": name, "is_new_set": zone_set is None or not zone_set.zones.exists()}
-    return Reading(summary, found.numbers, tuple(_changes(found)))
+    return Reading(summary, numbers, (*_changes(found), *map(_not_read, content.unread)))
 
 
 def apply(
@@ -60,7 +62,7 @@ def apply(
         return import_zones(
             path=path, set_name=set_name_of(path, _set_name(parameters)), imported_by=applied_by,
             replace_edited=bool(parameters.get("replace_edited")), replace_all=bool(parameters.get("replace_all")),
-            source_format=_source_format(parameters), provenance=provenance,
+            source_format=_source_format(parameters), leave_out_faulty=_leaves_out(parameters), provenance=provenance,
         )  # fmt: skip
 
 
@@ -104,6 +106,10 @@ def _set_name(parameters: dict[str, Any]) -> str | None:
     raise FileRefused([Fault("set_name", "the name of the set is a text")])
 
 
+def _leaves_out(parameters: dict[str, Any]) -> bool:
+    return parameters.get("leave_out_faulty") is True
+
+
 def _source_format(parameters: dict[str, Any]) -> str:
     stated = parameters.get("format") or ""
     if stated and (not isinstance(stated, str) or stated not in FORMAT_NAMES):
@@ -132,6 +138,17 @@ def _changes(found: ZoneDifference) -> Iterator[Change]:
         yield Change(ChangeAction.VANISHED, "zone", _label(zone), zone.pk, zone.geometry, before=_shown(zone_facts(zone)))
     for zone, kept in found.kept:
         yield _kept(zone, kept)
+
+
+def _not_read(record: UnreadRecord) -> Change:
+    """Where a record with a fault lies: the box around those of its positions that can be read, at least some metres wide."""
+    box = None
+    if record.bbox is not None:
+        west, south, east, north = record.bbox
+        box = Polygon.from_bbox((west - LEAST_DEG, south - LEAST_DEG, east + LEAST_DEG, north + LEAST_DEG))
+        box.srid = 4326
+    after = {"fault": record.fault.message, "place": record.fault.place}
+    return Change(ChangeAction.NOT_READ, "zone", record.name or record.fault.place, geometry=box, after=after)
 
 
 def _kept(zone: NoFlyZone, record: ZoneRecord | None) -> Change:

@@ -3,15 +3,12 @@
 from pathlib import Path
 from typing import Any
 
-from django.contrib.gis.geos import Point
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 from django.db import transaction
-from django.utils import timezone
 
-from inspection.demo_region import BASES, BasedUav
-from inspection.demo_region import Base as PlannedBase
-from missions.models import Base, Uav, UavType
-from workspace.models import DEFAULT_ORGANISATION_ID, Role, User
+from inspection.demo_region import BASES
+from missions.services.demo_uavs import create_demo_uavs
+from workspace.models import DEFAULT_ORGANISATION_ID, Organisation, Role, User
 
 
 class Command(BaseCommand):
@@ -28,39 +25,10 @@ class Command(BaseCommand):
             raise CommandError("--user and --password-file go together.")
         with transaction.atomic():
             if not no_uavs:
-                created = sum(_create_uavs())
+                created = create_demo_uavs(organisation=Organisation.objects.get(pk=DEFAULT_ORGANISATION_ID))
                 self.stdout.write(f"{created} UAVs created at {len(BASES)} bases.")
             if user is not None and password_file is not None:
                 self.stdout.write(_create_first_administrator(user, _first_line(password_file)))
-
-
-def _create_uavs() -> list[bool]:
-    """What is there already stays as it is, a UAV wherever it stands now."""
-    return [_create_uav(uav, _base(base)) for base in BASES for uav in base.uavs]
-
-
-def _base(planned: PlannedBase) -> Base:
-    location = Point(*planned.position, srid=4326)
-    return Base.objects.get_or_create(organisation_id=DEFAULT_ORGANISATION_ID, name=planned.name, defaults={"location": location})[0]
-
-
-def _create_uav(uav: BasedUav, base: Base) -> bool:
-    """Range, speed and sensors are its type's: the UAV's name without its number."""
-    facts = {"max_range_m": uav.max_range_m, "cruise_speed_mps": uav.cruise_speed_mps, "sensors": list(uav.sensors)}
-    uav_type, _ = UavType.objects.get_or_create(organisation_id=DEFAULT_ORGANISATION_ID, name=uav.type_name, defaults=facts)
-    _, is_new = Uav.objects.get_or_create(
-        organisation_id=DEFAULT_ORGANISATION_ID,
-        name=uav.name,
-        defaults={
-            "uav_type": uav_type,
-            "base": base,
-            "base_name": base.name,
-            "location": base.location,
-            "located_at": timezone.now(),
-            "battery_percent": 100.0,
-        },
-    )
-    return is_new
 
 
 def _create_first_administrator(name: str, password: str) -> str:

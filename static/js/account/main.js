@@ -79,8 +79,8 @@ function showZone() {
 }
 showZone();
 
-mountPassword({ tell, settle });
 const tokens = mountTokens({ tell, settle });
+mountPassword({ tell, settle }, () => void tokens.load());
 const sessions = mountSessions({ tell, settle });
 
 /** @type {string | null} */

@@ -28,8 +28,8 @@ function forgetFaults() {
   }
 }
 
-/** @param {Reporter} reporter */
-export function mountPassword({ tell, settle }) {
+/** @param {Reporter} reporter @param {() => void} onChange tokens may have ended with it */
+export function mountPassword({ tell, settle }, onChange) {
   const form = byId("password-form", HTMLFormElement);
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
@@ -38,10 +38,10 @@ export function mountPassword({ tell, settle }) {
     if (!old_password) fault("old_password", t("Type the password that you have now."));
     else if (!new_password) fault("new_password", t("Type a new password."));
     else if (new_password !== once_more) fault("once_more", t("The two are not the same."));
-    else await change({ old_password, new_password });
+    else await change({ old_password, new_password, end_tokens: byId("end_tokens", HTMLInputElement).checked });
   });
 
-  /** @param {{ old_password: string, new_password: string }} passwords */
+  /** @param {{ old_password: string, new_password: string, end_tokens: boolean }} passwords */
   async function change(passwords) {
     try {
       await post("/account/password", passwords);
@@ -54,6 +54,7 @@ export function mountPassword({ tell, settle }) {
     }
     settle();
     form.reset();
+    onChange();
     toast(t("The password is changed. Other browsers are signed out."));
   }
 }

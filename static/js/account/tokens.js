@@ -1,6 +1,6 @@
 /** Tokens: made with a name and an end, shown once, revoked. */
 
-import { get, post, remove } from "../api.js";
+import { ApiError, get, post, remove } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { shownOnce } from "../page/shown_once.js";
 import { toast } from "../page/toast.js";
@@ -11,6 +11,9 @@ import { proved } from "./proof.js";
 /** @import { Answer } from "../api.js" */
 /** @import { NewToken, Token, TokenList } from "../api_types.d.ts" */
 /** @import { Reporter } from "../page/problem.js" */
+
+/** @type {Record<Token["scopes"][number], string>} */
+const SCOPES = { read: t("Read"), plan: t("Plan"), fly: t("Fly"), curate: t("Curate"), administer: t("Administer") };
 
 /** @param {Reporter} reporter */
 export function mountTokens({ tell, settle }) {
@@ -49,8 +52,9 @@ export function mountTokens({ tell, settle }) {
     const name = nameField.value.trim();
     document.getElementById("name-fault")?.remove();
     nameField.removeAttribute("aria-invalid");
-    if (name) await make(name);
-    else askForName();
+    if (!name) askForName();
+    else if (new FormData(form).has("scope")) await make(name);
+    else tell(t("No token is made."), new ApiError(t("Choose what it may be used for."), { status: 400 }));
   });
 
   function askForName() {
@@ -65,9 +69,10 @@ export function mountTokens({ tell, settle }) {
   /** @param {string} name */
   async function make(name) {
     const days = Number(byId("token_days", HTMLSelectElement).value);
+    const scopes = new FormData(form).getAll("scope");
     try {
       const answer = /** @type {Answer<NewToken> | null} */ (
-        await proved(() => post("/account/tokens", { name, days }))
+        await proved(() => post("/account/tokens", { name, days, scopes }))
       );
       if (answer === null) return;
       settle();
@@ -95,7 +100,7 @@ function row(token, revoke) {
   const facts = h(
     "span",
     { class: "caption", title: exactText(token.created_at) },
-    `${t("made {when}", { when: whenText(token.created_at) })} · ${used} · `,
+    `${token.scopes.map((scope) => SCOPES[scope]).join(", ")} · ${t("made {when}", { when: whenText(token.created_at) })} · ${used} · `,
     ending(token),
   );
   const what = h("div", { class: token.is_valid ? "what" : "what ended" }, h("strong", {}, token.name), facts);

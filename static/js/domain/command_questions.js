@@ -48,13 +48,14 @@ export const WHY = { name: "why", label: t("Why (kept in the history)") };
 
 /** @type {Record<AskedKind, (flyer: AskedFlyer) => Omit<Question, "opener">>} */
 const ASKED = {
-  start: ({ name, route }) => ({
+  start: ({ name, route, returns }) => ({
     title: t("Start {name}?", { name }),
     lines: [
       t("It takes off and flies its approved route: {length}, {time}.", {
         length: lengthText(route.length_m),
         time: durationText(route.duration_s),
       }),
+      returns?.fence_warning,
       LATE,
     ],
     act: t("Start {name}", { name }),

@@ -303,6 +303,14 @@ export function stageWords(mission) {
 }
 
 /**
+ * What of a change of the map data speaks against the routes; none where all that changed lies elsewhere. UAVs are told of apart.
+ *
+ * @param {Pick<Mission, "is_stale" | "stale_causes">} mission
+ */
+export const groundCauses = ({ is_stale, stale_causes }) =>
+  is_stale ? (stale_causes ?? []).filter(({ what }) => what !== "uav" && what !== "elsewhere") : [];
+
+/**
  * Which buttons of the mission there are: { send, revoke, abort } with true, false, or the reason why not now.
  *
  * @param {Mission} mission

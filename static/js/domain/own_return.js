@@ -26,11 +26,13 @@ export function returnLines(check) {
  */
 export function returnSaid(check) {
   if (!check) return null;
-  if (check.state === "clear") return { words: clearText(check), image: "rotate-ccw", level: null };
+  const { state, warnings, fence_warning } = check;
+  const isGood = state === "clear" && !fence_warning;
+  const isWarning = state === "in_the_way" || Boolean(fence_warning);
   return {
-    words: check.warnings.join(" "),
-    image: check.state === "in_the_way" ? "triangle-alert" : "info",
-    level: check.state === "in_the_way" ? "warning" : null,
+    words: [...(state === "clear" ? [clearText(check)] : warnings), fence_warning].filter(Boolean).join(" "),
+    image: isGood ? "rotate-ccw" : isWarning ? "triangle-alert" : "info",
+    level: isWarning ? "warning" : null,
   };
 }
 

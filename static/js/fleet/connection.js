@@ -56,16 +56,27 @@ export function loadedText({ loaded_flight, loaded_read_at, loaded_doubt, server
 /** @param {UavConnection} connection */
 function drawing(connection) {
   const { words, isHeard } = heardWords(connection);
-  const { mode, autopilot, firmware, battery_percent, loaded_approval } = connection;
+  const { mode, autopilot, firmware, vehicle_type, warnings, battery_percent, loaded_approval } = connection;
+  const { received_bytes_s, received_messages_s } = connection;
   return [
     h("p", { class: isHeard ? "" : "quiet-text" }, words),
+    ...warnings.map((warning) => h("p", { class: "notice warning" }, warning)),
     h(
       "dl",
       { class: "facts" },
       term(t("Told by"), LINKS[connection.link].words),
       term(t("Mode"), [mode, flightWords(connection)].filter(Boolean).join(", ")),
       term(t("Charge now"), battery_percent === null ? "" : percentText(battery_percent)),
-      term(t("Autopilot"), [autopilot, firmware].filter(Boolean).join(" ")),
+      term(t("Autopilot"), [[autopilot, firmware].filter(Boolean).join(" "), vehicle_type].filter(Boolean).join(", ")),
+      term(
+        t("Received"),
+        received_bytes_s === null
+          ? ""
+          : t("{bytes} bytes/s in {messages} messages/s", {
+              bytes: Math.round(received_bytes_s),
+              messages: Math.round(received_messages_s ?? 0),
+            }),
+      ),
       term(t("On it"), loaded_approval ? loadedText(connection) : ""),
     ),
   ];

@@ -1,5 +1,6 @@
 /** What a UAV proves itself with: one token and one key, made, replaced and revoked; a secret is shown once. */
 
+import { proved } from "../account/proof.js";
 import { ApiError, get, post, remove } from "../api.js";
 import { find, h, icon } from "../dom.js";
 import { say, toast } from "../page/toast.js";
@@ -20,14 +21,21 @@ const SECRET_WORDS = {
   ),
 };
 
-/** @param {Credential | undefined} credential */
-function factsOf(credential) {
+const NEEDED_NOW = ["in_flight", "commands_waiting", "mission_on_its_way"]; // an administrator may insist
+
+/** @param {Credential | undefined} credential @param {Credential | undefined} earlier */
+function factsOf(credential, earlier) {
   if (!credential) return t("None: it cannot connect this way.");
   const made = t("Made {when} by {who}", {
     when: whenText(credential.created_at),
     who: credential.created_by ?? t("somebody who has left"),
   });
-  return `${made} · ${credential.last_used_at ? t("used {when}", { when: whenText(credential.last_used_at) }) : t("not used yet")}`;
+  const used = credential.last_used_at
+    ? t("used {when}", { when: whenText(credential.last_used_at) })
+    : earlier
+      ? t("not used yet: the one before it still works until then")
+      : t("not used yet");
+  return `${made} · ${used}`;
 }
 
 /** @param {string} text */
@@ -70,13 +78,44 @@ const revokeQuestion = (name, { keep, revoke }) =>
     ),
   );
 
+/** @param {string} why not now @param {{ keep: () => unknown, insist: (reason: string) => unknown }} acts */
+function insistQuestion(why, { keep, insist }) {
+  const reason = h("input", {
+    class: "input",
+    id: "insist-reason",
+    maxlength: 300,
+    required: true,
+    autocomplete: "off",
+  });
+  return h(
+    "form",
+    {
+      class: "secret",
+      /** @param {SubmitEvent} event */
+      onsubmit: (event) => {
+        event.preventDefault();
+        insist(reason.value);
+      },
+    },
+    h("p", {}, why),
+    h("div", { class: "field" }, h("label", { for: "insist-reason" }, t("Reason to do it all the same")), reason),
+    h(
+      "div",
+      { class: "acts" },
+      h("button", { type: "button", class: "button", onclick: keep }, t("Leave it")),
+      h("button", { class: "button danger filled" }, t("Do it all the same")),
+    ),
+  );
+}
+
 /**
  * @param {CredentialKind} kind
  * @param {Credential | undefined} credential
+ * @param {Credential | undefined} earlier that counts until the newest was used
  * @param {{ make?: (() => unknown) | null, ask?: (() => unknown) | null }} acts null: there is no such button
  * @param {...Child} below
  */
-const credentialRow = (kind, credential, { make, ask }, ...below) =>
+const credentialRow = (kind, credential, earlier, { make, ask }, ...below) =>
   h(
     "li",
     {},
@@ -84,7 +123,11 @@ const credentialRow = (kind, credential, { make, ask }, ...below) =>
       "div",
       { class: "what" },
       h("strong", {}, CREDENTIALS[kind]),
-      h("span", { class: "caption", title: credential && exactText(credential.created_at) }, factsOf(credential)),
+      h(
+        "span",
+        { class: "caption", title: credential && exactText(credential.created_at) },
+        factsOf(credential, earlier),
+      ),
     ),
     (make || ask) &&
       h(
@@ -122,44 +165,65 @@ const credentialRow = (kind, credential, { make, ask }, ...below) =>
  *
  * @param {HTMLElement} place
  * @param {Uav} uav
- * @param {{ canPlan: boolean, onChange: () => unknown }} how
+ * @param {{ canPlan: boolean, isAdministrator: boolean, onChange: () => unknown }} how
  */
-export async function mountCredentials(place, uav, { canPlan, onChange }) {
+export async function mountCredentials(place, uav, { canPlan, isAdministrator, onChange }) {
   const path = `/uavs/${uav.id}/credentials`;
   /** @type {{ kind: CredentialKind, secret: string } | null} */
   let shown = null;
   /** @type {CredentialKind | null} */
   let asking = null; // which kind is about to be revoked
+  /** @type {{ kind: CredentialKind, why: string, again: (reason: string) => unknown } | null} */
+  let insisting = null; // what was refused for now
 
-  /** @param {() => Promise<unknown>} change */
-  async function attempt(change) {
+  /**
+   * @template Result
+   * @param {CredentialKind} kind
+   * @param {() => Promise<Result>} send
+   * @param {(answer: Result) => Promise<unknown>} then
+   * @param {(reason: string) => unknown} again
+   */
+  async function attempt(kind, send, then, again) {
+    insisting = null;
     try {
-      await change();
+      const answer = await proved(send);
+      if (answer === null) return;
+      await then(answer);
       onChange();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      toast(error.message);
+      if (!isAdministrator || !NEEDED_NOW.includes(error.code)) return toast(error.message);
+      insisting = { kind, why: error.message, again };
+      asking = null;
+      await draw();
+      find(place, "#insist-reason", HTMLElement).focus();
     }
   }
 
-  /** @param {CredentialKind} kind */
-  const make = (kind) =>
-    attempt(async () => {
-      const { data } = /** @type {Answer<NewCredential>} */ (await post(path, { kind }));
+  /** @param {CredentialKind} kind @param {string} [reason] @returns {Promise<unknown>} */
+  const make = (kind, reason) => {
+    const send = () => post(path, reason ? { kind, insist_reason: reason } : { kind });
+    /** @param {Answer<NewCredential>} answer */
+    const show = async ({ data }) => {
       shown = { kind, secret: data.secret };
       await draw();
       find(place, ".secret button", HTMLElement).focus();
-    });
+    };
+    return attempt(kind, /** @type {() => Promise<Answer<NewCredential>>} */ (send), show, (why) => make(kind, why));
+  };
 
-  /** @param {Credential} credential */
-  const revoke = (credential) =>
-    attempt(async () => {
-      await remove(`${path}/${credential.id}`);
+  /** @param {Credential} credential @param {string} [reason] @returns {Promise<unknown>} */
+  const revoke = (credential, reason) => {
+    const query = reason ? `?insist_reason=${encodeURIComponent(reason)}` : "";
+    const send = () => remove(`${path}/${credential.id}${query}`);
+    const show = async () => {
       if (shown?.kind === credential.kind) shown = null;
       asking = null;
       toast(t("Revoked. {name} cannot connect with it any more.", { name: uav.name }));
       await draw();
-    });
+    };
+    return attempt(credential.kind, send, show, (why) => revoke(credential, why));
+  };
 
   /** @param {CredentialKind | null} kind null: no longer */
   async function ask(kind) {
@@ -168,8 +232,8 @@ export async function mountCredentials(place, uav, { canPlan, onChange }) {
     if (kind) /** @type {HTMLElement | null} */ (place.querySelector(".secret .button"))?.focus();
   }
 
-  /** @param {CredentialKind} kind @param {Credential | undefined} credential */
-  function row(kind, credential) {
+  /** @param {CredentialKind} kind @param {Credential[]} inForce the newest first */
+  function row(kind, [credential, earlier]) {
     const acts = {
       make: canPlan && uav.state !== "retired" ? () => make(kind) : null,
       ask: canPlan && credential ? () => ask(kind) : null,
@@ -178,13 +242,19 @@ export async function mountCredentials(place, uav, { canPlan, onChange }) {
       shown = null;
       return draw();
     };
+    const leave = () => {
+      insisting = null;
+      return draw();
+    };
     return credentialRow(
       kind,
       credential,
+      earlier,
       acts,
       asking === kind &&
         credential &&
         revokeQuestion(uav.name, { keep: () => ask(null), revoke: () => revoke(credential) }),
+      insisting?.kind === kind && insistQuestion(insisting.why, { keep: leave, insist: insisting.again }),
       shown?.kind === kind && secretBox(shown, putAway),
     );
   }
@@ -192,7 +262,7 @@ export async function mountCredentials(place, uav, { canPlan, onChange }) {
   async function draw() {
     const { data } = /** @type {Answer<CredentialPage>} */ (await get(path));
     /** @param {CredentialKind} kind */
-    const inForce = (kind) => data.results.find((credential) => credential.kind === kind && !credential.revoked_at);
+    const inForce = (kind) => data.results.filter((credential) => credential.kind === kind && !credential.revoked_at);
     place.replaceChildren(...KINDS.map((kind) => row(kind, inForce(kind))));
   }
 

@@ -63,6 +63,7 @@ const table = mountTable({
 });
 const panel = mountPanel({
   canPlan: page.canPlan,
+  isAdministrator: page.role === "administrator",
   acts: {
     back: close,
     edit: () => editing.start(chosenRow()),

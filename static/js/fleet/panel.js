@@ -26,7 +26,7 @@ import { MISSION_STATES, stateChip } from "./words.js";
  * @property {(error: unknown) => void} failed
  * @property {(tab: Tab, id: number) => unknown} showUavs
  */
-/** @typedef {{ canPlan: boolean, acts: PanelActs }} How */
+/** @typedef {{ canPlan: boolean, isAdministrator: boolean, acts: PanelActs }} How */
 /** @typedef {ReturnType<typeof mountPanel>} Panel */
 
 /** @param {string} image @param {string} words @param {() => unknown} act */
@@ -81,13 +81,13 @@ async function fillMissions(list, none, address) {
 }
 
 /** What there is below the facts of a UAV; it fills itself. @param {Uav} uav @param {How} how @returns {Child} */
-function partsOfUav(uav, { canPlan, acts }) {
+function partsOfUav(uav, { canPlan, isAdministrator, acts }) {
   const connection = h("div", { class: "connection" });
   const credentials = h("ul", { class: "plain-list" });
   const missions = h("ul", { class: "plain-list" });
   const none = h("p", { class: "quiet-text", hidden: true }, t("No mission uses it yet."));
   mountConnection(connection, uav).catch(acts.failed);
-  mountCredentials(credentials, uav, { canPlan, onChange: acts.refresh }).catch(acts.failed);
+  mountCredentials(credentials, uav, { canPlan, isAdministrator, onChange: acts.refresh }).catch(acts.failed);
   fillMissions(missions, none, `/uavs/${uav.id}/missions`).catch(acts.failed);
   return [h("h3", {}, t("Link")), connection, credentials, h("h3", {}, t("Missions")), missions, none];
 }

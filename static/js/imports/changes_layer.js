@@ -44,6 +44,7 @@ function colours() {
       changed: readToken("--warning"),
       vanished: readToken("--critical"),
       kept: readToken("--advisory"),
+      not_read: readToken("--critical"),
     },
     before: readToken("--ink"),
   };
@@ -54,7 +55,7 @@ const baseFilters = {
   "import-fill": isShape("Polygon"),
   "import-casing": ["!", isShape("Point")],
   "import-line": ["all", ["!", isShape("Point")], actionIs("new", "changed")],
-  "import-line-vanished": ["all", ["!", isShape("Point")], actionIs("vanished")],
+  "import-line-vanished": ["all", ["!", isShape("Point")], actionIs("vanished", "not_read")],
   "import-line-kept": ["all", ["!", isShape("Point")], actionIs("kept")],
   "import-before-line": ["!", isShape("Point")],
   "import-before-dot": isShape("Point"),

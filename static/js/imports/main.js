@@ -270,9 +270,9 @@ const acts = {
       throw error;
     }
   },
-  apply: (overwrites) =>
+  apply: (overwrites, seen) =>
     decide("apply", t("Not applied."), (id) =>
-      post(`/imports/${id}/apply`, { parameters: { replace_edited: overwrites } }),
+      post(`/imports/${id}/apply`, { parameters: { replace_edited: overwrites, ...(seen.length ? { seen } : {}) } }),
     ),
   async discard() {
     const { current } = store.state;

@@ -7,6 +7,7 @@ import { coordinateText, countText, numberText, whenText } from "../units.js";
 import { columnMapping } from "./column_mapping.js";
 import { jobLine } from "./job_line.js";
 import { stateChip, titleOf } from "./list.js";
+import { notRead } from "./not_read.js";
 import { otherSystem } from "./other_system.js";
 import {
   differenceSentence,
@@ -38,6 +39,8 @@ class ProposalPanel {
   /** @type {ReturnType<typeof jobLine> | null} */
   #line = null;
   #overwrites = false;
+  /** places in the file of records that are not read @type {Set<string>} */
+  #seen = new Set();
 
   /** @param {Store<ImportsState>} store @param {ProposalActs} acts */
   constructor(store, acts) {
@@ -58,7 +61,10 @@ class ProposalPanel {
     const { job, ...rest } = current;
     const shape = JSON.stringify([rest, busy, job?.id, isOpen(current) ? 0 : job?.message]);
     if (shape !== this.#drawn) {
-      if (JSON.parse(this.#drawn || "[{}]")[0].id !== current.id) this.#overwrites = false;
+      if (JSON.parse(this.#drawn || "[{}]")[0].id !== current.id) {
+        this.#overwrites = false;
+        this.#seen = new Set();
+      }
       this.#drawn = shape;
       this.#draw(current, busy);
     }
@@ -104,6 +110,7 @@ class ProposalPanel {
       kind === "assets" && Array.isArray(summary.columns) && columnMapping(proposal, readAgain),
       regionChoice(proposal, readAgain),
       this.#overwriteChoice(proposal),
+      this.#notRead(proposal),
       facts(proposal),
       kind === "zones" && state === "applied" && summary.set && versions(summary.set, this.#acts),
       Object.values(difference).some((count) => count > MOST_LISTED) &&
@@ -124,6 +131,13 @@ class ProposalPanel {
     return h("label", { class: "overwrite" }, box, h("span", {}, words));
   }
 
+  /** Records with a fault: each is to be seen before the rest counts. @param {Proposal} proposal */
+  #notRead(proposal) {
+    const records = proposal.summary.not_read ?? [];
+    const changed = () => this.#drawDecision(proposal, null);
+    return notRead(records, { seen: proposal.state === "ready" ? this.#seen : null, changed, acts: this.#acts });
+  }
+
   /** The buttons. @param {Proposal} proposal @param {string | null} busy */
   #decision(proposal, busy) {
     const { state, difference, summary, kind } = proposal;
@@ -137,24 +151,35 @@ class ProposalPanel {
     const count = touched(difference, { overwrites: this.#overwrites });
     const needsMapping = Boolean(summary.needs_mapping);
     const isIdle = needsMapping || (count === 0 && Object.keys(difference).length > 0);
+    const unseen = (summary.not_read ?? []).filter(({ place }) => !this.#seen.has(place)).length;
     const isCounted = count > 0 && kind !== "terrain";
     const words = isCounted ? tn(count, "Apply {count} change", "Apply {count} changes") : t("Apply");
-    const reason = needsMapping ? t("Say first what the columns are") : isIdle ? t("Nothing would change") : null;
+    const reason = needsMapping
+      ? t("Say first what the columns are")
+      : isIdle
+        ? t("Nothing would change")
+        : unseen
+          ? tn(
+              unseen,
+              "{count} record that is not read is to be seen first",
+              "{count} records that are not read are to be seen first",
+            )
+          : null;
     const apply = h(
       "button",
       {
         type: "button",
         class: needsMapping ? "button" : "button primary",
         id: "apply",
-        disabled: isIdle || Boolean(busy),
+        disabled: isIdle || unseen > 0 || Boolean(busy),
         "aria-busy": String(busy === "apply"),
         title: reason,
       },
       busy === "apply" ? t("Applying") : words,
     );
     apply.addEventListener("click", () => {
-      if (this.#overwrites) askToOverwrite(difference.kept, () => this.#acts.apply(true));
-      else this.#acts.apply(false);
+      if (this.#overwrites) askToOverwrite(difference.kept, () => this.#acts.apply(true, [...this.#seen]));
+      else this.#acts.apply(false, [...this.#seen]);
     });
     return [h("div", { class: "foot-buttons" }, discard, apply)];
   }
@@ -185,12 +210,13 @@ function askToOverwrite(kept, apply) {
 
 /** @param {Proposal} proposal @param {ProposalActs["readAgain"]} readAgain */
 function leaveOut({ kind, faults, parameters, size_bytes }, readAgain) {
-  if (kind !== "assets" || parameters.leave_out_faulty || size_bytes === null || !faults.length) return null;
+  if (!["assets", "zones"].includes(kind) || parameters.leave_out_faulty || size_bytes === null || !faults.length)
+    return null;
   const again = () => readAgain({ leave_out_faulty: true });
   return h(
     "button",
     { type: "button", class: "button", id: "leave-out", onclick: again },
-    t("Read again without the faulty rows"),
+    kind === "zones" ? t("Read again without the faulty records") : t("Read again without the faulty rows"),
   );
 }
 

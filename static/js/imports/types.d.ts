@@ -39,7 +39,18 @@ export interface Summary {
   lowest_m?: number;
   highest_m?: number;
   vertical_datum?: string;
+  not_read?: UnreadRecord[];
   [name: string]: unknown;
+}
+
+/** A record of a zone file with a fault. */
+export interface UnreadRecord {
+  place: string;
+  message: string;
+  name: string;
+  position: number[] | null;
+  /** west, south, east, north of what can be read of it */
+  bbox: number[] | null;
 }
 
 export interface Mapping {
@@ -78,7 +89,8 @@ export interface ImportsState {
 export interface ProposalActs {
   back(): void;
   cancel(proposal: Proposal): Promise<void>;
-  apply(overwrites: boolean): Promise<void>;
+  /** seen: places of the records that are not read */
+  apply(overwrites: boolean, seen: string[]): Promise<void>;
   discard(): Promise<void>;
   readAgain(parameters: Parameters): Promise<void>;
   place(position: number[]): void;

@@ -32,6 +32,7 @@ export const ACTIONS = {
   changed: { words: t("changed"), short: t("Changed"), sign: "≠" },
   vanished: { words: t("vanished"), short: t("Vanished"), sign: "−" },
   kept: { words: t("kept as edited by hand"), short: t("Kept"), sign: "=" },
+  not_read: { words: t("not read"), short: t("Not read"), sign: "?" },
 };
 
 /** @type {Record<Proposal["origin"], string>} */

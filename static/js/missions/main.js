@@ -8,8 +8,10 @@ import { t, tn } from "../text.js";
 import { numberText } from "../units.js";
 import { copyAddress, createActs } from "./acts.js";
 import { countOfFields, isFiltered, nextOrder, PAGE_SIZE } from "./asked.js";
+import { createDemo } from "./demo.js";
 import { createList } from "./list.js";
 import { missionRow, STATES } from "./rows.js";
+import { isTourSeen, startTour } from "./tour.js";
 
 /** @import { TextName } from "./asked.js" */
 /** @import { ListState } from "./list.js" */
@@ -54,13 +56,15 @@ const CHANGED = [
 ];
 const TYPING_MS = 250;
 
-/** @type {{ canPlan: boolean }} */
+/** @type {{ canPlan: boolean, canCurate: boolean, role: string, userId: number }} */
 const page = readPage();
+const isAdministrator = page.role === "administrator";
 const parameters = new URLSearchParams(location.search);
 const justDeleted = parameters.get("gone");
 const list = createList();
 const { store, load, ask, choose } = list;
 const { rename, duplicate, removeAll, bringBack } = createActs(list);
+const demo = createDemo({ reload: list.reload, showProblem: list.showProblem, canChange: isAdministrator });
 const filter = byId("filter", HTMLInputElement);
 
 startChrome({ bindings: [{ keys: ["/"], words: t("Find a mission"), act: () => filter.focus() }] });
@@ -209,11 +213,7 @@ function drawRest({ missions, next, total, pages, asked, filters, isBusy }) {
   for (const part of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(".filters, .more-filters")))
     part.hidden = isNone && !filters.authors.length && !asked.deleted;
   if (isNone) {
-    drawEmpty(
-      h("strong", {}, t("No missions yet")),
-      h("span", {}, t("Pick what to inspect and plan the first one.")),
-      page.canPlan && h("a", { class: "button", href: "/missions/new" }, t("New mission")),
-    );
+    drawFirst();
   } else if (!missions.length) {
     const what = asked.text.trim()
       ? t("No mission matches “{text}”", { text: asked.text.trim() })
@@ -235,6 +235,30 @@ function drawRest({ missions, next, total, pages, asked, filters, isBusy }) {
   byId("page-before", HTMLButtonElement).disabled = !pages.length;
   byId("page-after", HTMLButtonElement).disabled = next === null;
   find(document, ".pager-buttons", HTMLElement).hidden = !pages.length && next === null;
+}
+
+/** Of an installation without missions: what can be done first. */
+function drawFirst() {
+  drawEmpty(
+    h("strong", {}, t("No missions yet")),
+    h("span", {}, t("Pick what to inspect and plan the first one.")),
+    h(
+      "div",
+      { class: "first-steps" },
+      page.canPlan && h("a", { class: "button", href: "/missions/new" }, icon("plus", "small"), t("New mission")),
+      isAdministrator &&
+        demo.known()?.can_be_made &&
+        h(
+          "button",
+          { type: "button", class: "button", onclick: demo.make },
+          icon("play", "small"),
+          t("Show demo missions"),
+        ),
+      page.canCurate &&
+        h("a", { class: "button", href: "/imports" }, icon("upload", "small"), t("Import your network")),
+      isAdministrator && h("a", { class: "button", href: "/uavs" }, icon("radio", "small"), t("Connect a UAV")),
+    ),
+  );
 }
 
 /** @param {...(HTMLElement | false)} parts */
@@ -356,8 +380,13 @@ store.listen(["missions", "next", "total", "asked", "isBusy", "filters"], drawRe
 store.listen(["byState", "asked"], drawStates);
 store.listen(["asked", "filters"], drawFields);
 
-Promise.all([load(), list.loadFilters()]).then(() => {
+demo.listen(() => drawRest(store.state));
+Promise.all([load(), list.loadFilters(), demo.load()]).then(() => {
   document.documentElement.dataset.loaded = "true";
+  const isAsked = parameters.has("tour");
+  if (isAsked || (demo.known()?.missions && !isTourSeen(page.userId)))
+    startTour({ userId: page.userId, takesFocus: isAsked });
+  if (isAsked) history.replaceState(null, "", "/");
   if (!justDeleted) return;
   toast(t("“{name}” is deleted.", { name: parameters.get("was") ?? "" }), {
     label: t("Undo"),

@@ -78,6 +78,9 @@ function editName(cell, mission, rename) {
   field.select();
 }
 
+const demoMark = () =>
+  h("span", { class: "simulated-mark", title: t("Demo data, flown by simulated UAVs") }, t("Demo"));
+
 /** @param {MissionSummary} mission */
 function staleMark({ has_other_uavs }) {
   const [words, title] = has_other_uavs
@@ -136,7 +139,7 @@ function nameCell(mission, address) {
       "span",
       { class: "caption" },
       mission.author ?? "",
-      mission.is_simulated && simulatedMark(),
+      mission.is_demo ? demoMark() : mission.is_simulated && simulatedMark(),
       mission.is_stale && staleMark(mission),
     ),
   );

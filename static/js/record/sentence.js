@@ -79,22 +79,35 @@ const signed = (value, text) => `${value < 0 ? "−" : "+"}${text(Math.abs(value
 export function figuresOf(record) {
   const { planned, flown, across_rms_m, height_rms_m, estimates } = record.summary;
   const hasFlown = wasFlown(record);
-  /** @param {string} words @param {keyof Totals} name @param {(value: number | null) => string} text */
-  const compared = (words, name, text) => {
+  /** @param {string} words @param {keyof Totals} name @param {(value: number | null) => string} text @param {number} [unreported] */
+  const compared = (words, name, text, unreported = 0) => {
     const [plan, flight] = [planned[name], flown[name]];
     return {
       words,
       planned: text(plan),
       flown: hasFlown ? text(flight) : "—",
-      more: hasFlown && !isUnderWay(record) && plan !== null && flight !== null ? signed(flight - plan, text) : "",
+      more:
+        hasFlown && !isUnderWay(record) && plan !== null && flight !== null
+          ? signed(flight + unreported - plan, text)
+          : "",
     };
   };
   /** @param {number | null} value */
   const metres = (value) => (value === null ? "—" : exactHeightText(value));
   return [
-    compared(t("Distance"), "length_m", lengthText),
+    compared(t("Distance"), "length_m", lengthText, flown.unreported_m),
     compared(t("Until the last landing"), "duration_s", durationText),
     ...(planned.energy_wh === null && flown.energy_wh === null ? [] : [compared(t("Energy"), "energy_wh", energyText)]),
+    ...(flown.unreported_s > 0
+      ? [
+          {
+            words: t("Without reports, not in these figures"),
+            planned: "",
+            flown: `${durationText(flown.unreported_s)}, ${lengthText(flown.unreported_m)}`,
+            more: "",
+          },
+        ]
+      : []),
     { words: t("Off route, RMS"), planned: "", flown: metres(across_rms_m), more: "" },
     { words: t("Height error, RMS"), planned: "", flown: metres(height_rms_m), more: "" },
     ...(estimates.compared >= ENOUGH_TO_SHARE

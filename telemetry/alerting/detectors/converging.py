@@ -12,7 +12,8 @@ CRITICAL_WITHIN_S = 12.0
 
 
 def detect(situation: Situation) -> list[Finding]:
-    limits, found = situation.limits, []
+    limits = situation.limits
+    found: dict[str, Finding] = {}
     for meeting in situation.meetings:
         subject = str(meeting.other_id)
         share = CLEAR_SHARE if situation.is_open(CODE, subject) else 1.0
@@ -24,17 +25,15 @@ def detect(situation: Situation) -> list[Finding]:
         in_s = meeting.in_s / situation.link.clock_rate  # for those who look at the server's clock
         if in_s >= 1.0:
             values["seconds"] = round(in_s)
-        found.append(
-            Finding(
-                CODE, CRITICAL if is_near and meeting.in_s <= CRITICAL_WITHIN_S else WARNING, WORDS if in_s >= 1.0 else NOW, values,
-                subject=subject,
-                details={
-                    "other": meeting.other_id, "in_s": round(in_s, 1), "lateral_m": round(meeting.lateral_m, 1),
-                    "height_m": round(meeting.height_m, 1), "least_lateral_m": round(meeting.least_lateral_m, 1),
-                },
-            )
-        )  # fmt: skip
-    return found
+        level = CRITICAL if is_near and meeting.in_s <= CRITICAL_WITHIN_S else WARNING
+        if subject in found and (level == WARNING or found[subject].level == CRITICAL):
+            continue
+        details = {
+            "other": meeting.other_id, "in_s": round(in_s, 1), "lateral_m": round(meeting.lateral_m, 1),
+            "height_m": round(meeting.height_m, 1), "least_lateral_m": round(meeting.least_lateral_m, 1),
+        }  # fmt: skip
+        found[subject] = Finding(CODE, level, WORDS if in_s >= 1.0 else NOW, values, subject=subject, details=details)
+    return list(found.values())
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=2.0, clear_after_s=5.0)

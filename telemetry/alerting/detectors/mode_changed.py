@@ -3,6 +3,7 @@
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.modes import AT_THE_END, LEADS_TO, WITHOUT_ORDER, ModeKind
+from telemetry.alerting.said import AFTER_S, BEFORE_S, quoted
 from telemetry.alerting.situation import Situation
 
 CODE = "mode-changed"
@@ -11,12 +12,20 @@ LANDS = "%(uav)s lands (%(mode)s) without a command of ours: by its own failsafe
 FLOWN = "%(uav)s is flown by somebody else: its mode is %(mode)s."
 HOLDS = "%(uav)s has stopped its mission (%(mode)s) without a command of ours."
 FLIES = "%(uav)s flies a mission again (%(mode)s), though it was told otherwise."
+RETURNS_SAYING = "%(uav)s returns (%(mode)s) without a command of ours. It says: %(words)s"
+LANDS_SAYING = "%(uav)s lands (%(mode)s) without a command of ours. It says: %(words)s"
+FLOWN_SAYING = "%(uav)s is flown by somebody else: its mode is %(mode)s. It says: %(words)s"
+HOLDS_SAYING = "%(uav)s has stopped its mission (%(mode)s) without a command of ours. It says: %(words)s"
+FLIES_SAYING = "%(uav)s flies a mission again (%(mode)s), though it was told otherwise. It says: %(words)s"
 SETTLES_S = 4.0  # after a command of ours was carried out, until modes are compared again
 AT_END_M = 40.0
 
 _WORDS = {
     ModeKind.RETURN: RETURNS, ModeKind.LAND: LANDS, ModeKind.HOLD: HOLDS, ModeKind.MISSION: FLIES, ModeKind.TAKE_OFF: FLIES,
     ModeKind.GUIDED: FLOWN, ModeKind.BY_HAND: FLOWN,
+}  # fmt: skip
+_SAYING = {
+    RETURNS: RETURNS_SAYING, LANDS: LANDS_SAYING, FLOWN: FLOWN_SAYING, HOLDS: HOLDS_SAYING, FLIES: FLIES_SAYING,
 }  # fmt: skip
 
 
@@ -26,6 +35,8 @@ def detect(situation: Situation) -> list[Finding] | None:
         return None
     if order is not None and (order.done_s is None or newest.received_s < order.done_s + SETTLES_S):
         return None
+    if situation.memory.mode_words[0] and kind is ModeKind.MISSION:
+        situation.memory.mode_words = ("", "")
     if kind in (WITHOUT_ORDER if order is None else LEADS_TO.get(order.kind, WITHOUT_ORDER)):
         return []
     if kind in AT_THE_END and _is_at_end(situation) and (order is None or order.kind in {"start", "resume", "take-off", "arm"}):
@@ -33,7 +44,22 @@ def detect(situation: Situation) -> list[Finding] | None:
     level = CRITICAL if kind in (ModeKind.RETURN, ModeKind.LAND) else WARNING
     mode = newest.measurement.mode or situation.link.mode
     details = {"mode": mode, "order": None if order is None else order.kind}
-    return [Finding(CODE, level, _WORDS[kind], {"uav": situation.uav.name, "mode": mode}, details=details)]
+    template, values = _WORDS[kind], {"uav": situation.uav.name, "mode": mode}
+    words = _words_about(situation, mode)
+    if words:
+        template, values = _SAYING[template], values | {"words": words}
+    return [Finding(CODE, level, template, values, details=details)]
+
+
+def _words_about(situation: Situation, mode: str) -> str:
+    """What the vehicle said when it changed to this mode, kept as long as it is in it."""
+    cause, (of_mode, words) = situation.memory.causes.get((CODE, "")), situation.memory.mode_words
+    if of_mode == mode and words:
+        return words
+    since_s = situation.now_s if cause is None else min(cause.since_s.values(), default=situation.now_s)
+    words = quoted(situation.said, since_s - BEFORE_S, since_s + AFTER_S)
+    situation.memory.mode_words = (mode, words)
+    return words
 
 
 def _is_at_end(situation: Situation) -> bool:

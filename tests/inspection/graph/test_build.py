@@ -11,7 +11,7 @@ from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKin
 from inspection.graph.rules import LinkingRules
 from tests.inspection.graph.drawn_ground import ground, lonlat, places, square, ways, zone
 
-RULES = LinkingRules()
+RULES = LinkingRules(zone_clearance_m=5.0)
 ROW = [(0, 0), (200, 0), (400, 0)]
 
 

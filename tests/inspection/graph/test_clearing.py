@@ -20,7 +20,7 @@ from inspection.graph.rules import LinkingRules
 from inspection.graph.zone_index import ZoneIndex
 from tests.inspection.graph.drawn_ground import ground, places, square, ways, zone
 
-RULES = LinkingRules(detour_m=0.0)
+RULES = LinkingRules(detour_m=0.0, zone_clearance_m=5.0)
 HEIGHTS = FlownHeights(transit_agl_m=60.0, clearance_m=15.0, tolerance_m=10.0, margin_m=5.0)
 STEP_M = 400.0
 

@@ -14,7 +14,7 @@ from inspection.graph.rules import LinkingRules
 from inspection.graph.zone_index import ZoneIndex, zones_of_graph
 from tests.inspection.graph.drawn_ground import Spot, ground, lonlat, places, square, ways, zone
 
-RULES, HEIGHTS = LinkingRules(), FlownHeights()
+RULES, HEIGHTS = LinkingRules(zone_clearance_m=5.0), FlownHeights()
 
 
 def clear_of(*zones, rules: LinkingRules = RULES, **drawn) -> ClearedGraph:

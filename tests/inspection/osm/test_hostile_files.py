@@ -2,6 +2,7 @@
 
 import bz2
 import gzip
+import random
 import resource
 import struct
 import zlib
@@ -38,6 +39,10 @@ def other_blob(packed):
     return struct.pack(">I", len(header)) + header + body
 
 
+def plain_blob(data):
+    return other_blob(field(1, data))
+
+
 HEADER = blob(b"OSMHeader", field(4, b"OsmSchema-V0.6") + field(4, b"DenseNodes"))
 
 HOSTILE = {
@@ -50,6 +55,11 @@ HOSTILE = {
     "blob of noise": HEADER + blob(b"OSMData", bytes(range(256)) * 40),
     "tag with a null character": HEADER + blob(b"OSMData", field(1, field(1, b"") + field(1, b"po\0er") + field(1, b"tower"))),
     "blob packed with another method": HEADER + other_blob(field(4, b"lzma")),
+    "30 kB of millions of empty fields": HEADER + blob(b"OSMData", b"\x0a\x00" * 15_000_000),
+    "30 kB of one table of millions of empty texts": HEADER + blob(b"OSMData", field(1, b"\x0a\x00" * 15_000_000)),
+    "millions of empty fields, not packed": HEADER + plain_blob(b"\x0a\x00" * 15_000_000),
+    "one table of millions of empty texts, not packed": HEADER + plain_blob(field(1, b"\x0a\x00" * 15_000_000)),
+    "blob of millions of fields": HEADER + other_blob(b"\x10\x00" * 15_000_000),
     "header alone cut off": HEADER[:10],
     "only nulls": b"\0" * 1_000_000,
     "gzip bomb": gzip.compress(b"<osm version='0.6'>" + b" " * 200_000_000),
@@ -74,7 +84,7 @@ def test_a_hostile_file_is_refused_before_it_costs_much(name, tmp_path):
 
 def test_an_honest_blob_of_the_largest_size_passes_the_gate(tmp_path):
     path = tmp_path / "large.osm.pbf"
-    path.write_bytes(HEADER + blob(b"OSMData", field(2, b"x" * (MAX_BLOB_BYTES - 5))))
+    path.write_bytes(HEADER + blob(b"OSMData", field(2, random.Random(1).randbytes(MAX_BLOB_BYTES // 2 - 3).hex().encode())))
     assert examine(path) == "pbf"
 
 

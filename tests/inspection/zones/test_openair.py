@@ -184,7 +184,7 @@ def test_a_slip_that_makes_a_border_cross_itself_is_read_on_the_safe_side() -> N
         ("AC R\nV X=50:00:00 N 014:00:00 E\nDC nan\n", "line 3: 'nan' is no radius"),
         ("AC R\nV X=50:00:00 N 014:00:00 E\nDC 99999\n", "line 3: a radius is a number of metres above 0"),
         ("AC R\nV X=89:59:00 N 014:00:00 E\nDC 20\n", "line 3: the arc comes too near to a pole"),
-        ("AC R\nDP 50:61:00 N 014:00:00 E\n", "line 2: minutes and seconds are below 60"),
+        ("AC R\nDP 50:61:00 N 014:00:00 E\n", "line 2: minutes and seconds are at most 60"),
         ("AC R\nDP 95:00:00 N 014:00:00 E\n", "line 2: latitude 95.0 is beyond"),
         ("AC R\nAH high\n", "line 2: 'high' is no height"),
         (f"AC R\nAL 5000 MSL\nAH 1000 MSL\n{TRIANGLE}", "line 1: the upper limit 1000 MSL"),
@@ -220,3 +220,64 @@ def test_mutated_files_raise_nothing_but_the_named_error(name: str, zone_file: C
         except ZoneFileError:
             continue
         assert all(zone.geometry.is_valid for zone in zones)
+
+
+# --- coordinates of 60, and records with faults ------------------------------------------------------------------------------------
+
+
+def test_seconds_and_minutes_of_60_are_carried_over_with_a_note() -> None:
+    found = read("AC R\nAN Carried\n" + TRIANGLE.replace("50:10:00 N 014:20:00", "50:09:60.0 N 013:79:60").replace("013:79", "014:60"))
+    assert shapely.get_coordinates(found.zones[0].geometry).max(axis=0).tolist() == pytest.approx([15 + 1 / 60, 50 + 10 / 60])
+    assert found.notes == ("Minutes or seconds of 60 were read as the next degree or minute: line 5.",)
+
+
+@pytest.mark.parametrize("text", ["50:60.1 N 014:00 E", "50:00:60.01 N 014:00:00 E", "50:00:61 N 014:00:00 E"])
+def test_more_than_60_is_no_position(text: str) -> None:
+    assert "minutes and seconds are at most 60" in refusal(f"AC R\nDP {text}\n")
+
+
+FAULTY = "AC R\nAN Broken\nAL GND\nDP 50:00:00 N 014:00:00 E\nDP 50:99:00 N 014:00:00 E\nDP 50:10:00 N 014:20:00 E\n"
+
+
+def without_faulty(text: str) -> ZoneFile:
+    return read_zones(text.encode(), leave_out_faulty=True)
+
+
+def test_a_file_with_a_faulty_record_is_read_without_it_where_that_is_asked_for() -> None:
+    text = f"AC D\nAN Sound\n{TRIANGLE}{FAULTY}AC R\nAN Other\nV X=50:00:00 N 014:30:00 E\nDC 2\n"
+    assert "line 10: minutes and seconds are at most 60" in refusal(text)
+    found = without_faulty(text)
+    assert [zone.name for zone in found.zones] == ["Sound", "Other"]
+    (unread,) = found.unread
+    assert (unread.name, unread.identifier, unread.fault.place) == ("Broken", "Broken", "line 10")
+    assert unread.bbox == pytest.approx((14.0, 50.0, 14 + 20 / 60, 50 + 10 / 60))
+
+
+def test_what_is_too_much_for_one_file_is_refused_whatever_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("inspection.zones.openair.MAX_POLYGONS", 2)
+    with pytest.raises(ZoneFileError, match="more than 2 records"):
+        without_faulty(FAULTY + f"AC D\nAN Sound\n{TRIANGLE}" * 4)
+    with pytest.raises(ZoneFileError, match="characters"):
+        without_faulty(f"AC D\nAN Sound\n{TRIANGLE}AC R\nDP {'9' * 3_000} N\n")
+
+
+def test_a_file_of_faults_alone_and_one_with_too_many_are_refused() -> None:
+    with pytest.raises(ZoneFileError, match="no zones"):
+        without_faulty(FAULTY)
+    with pytest.raises(ZoneFileError):
+        without_faulty(f"AC D\nAN Sound\n{TRIANGLE}" + FAULTY * 60)
+
+
+def test_a_fault_outside_of_all_records_refuses_the_file() -> None:
+    with pytest.raises(ZoneFileError, match="stands before the first AC"):
+        without_faulty(f"DP 50:00 N 014:00 E\nAC D\nAN Sound\n{TRIANGLE}")
+
+
+def test_a_crossing_ring_is_left_out_with_the_box_around_it() -> None:
+    rng = random.Random(3)
+    points = "".join(f"DP {rng.uniform(40, 41):.5f} N {rng.uniform(9, 10):.5f} E\n" for _ in range(400))
+    found = without_faulty(f"AC D\nAN Sound\n{TRIANGLE}AC R\nAN Tangle\n{points}")
+    (unread,) = found.unread
+    assert unread.name == "Tangle"
+    assert unread.bbox is not None
+    assert 9.0 <= unread.bbox[0] < unread.bbox[2] <= 10.0

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat, distance_m
-from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind
+from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs, without_idle_points
+from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.routing.problem import Task, TaskKind
 from tests.missions.flight_plan.plain_route import plain_route
 
@@ -213,3 +213,42 @@ def test_points_that_are_near_enough_stay_as_they_are() -> None:
         RoutePoint(at(5), WaypointKind.END, 60.0),
     ]
     assert list(with_short_legs(RoutePoints.of(points), 900.0)[0]) == points
+
+
+def stacked(*heights_m: float, target: int | None = 1) -> Waypoints:
+    """A start, points one above another, the one at `target` with a task, and an end."""
+    above = [
+        RoutePoint(at(1), WaypointKind.TARGET if place == target else WaypointKind.PASS, agl_m, 7, 0 if place == target else None,
+                   PHOTO if place == target else None)
+        for place, agl_m in enumerate(heights_m)
+    ]  # fmt: skip
+    points = RoutePoints.of([RoutePoint(at(0), WaypointKind.START, 60.0), *above, RoutePoint(at(2), WaypointKind.END, 60.0)])
+    return Waypoints(points, points.agl_m + 100.0, points.agl_m + 1.0)
+
+
+def heights_of(waypoints: Waypoints) -> list[float]:
+    assert waypoints.amsl_m is not None
+    assert np.allclose(waypoints.amsl_m, waypoints.points.agl_m + 100.0) and np.allclose(waypoints.relative_m, waypoints.points.agl_m + 1.0)
+    return waypoints.points.agl_m[1:-1].tolist()
+
+
+def test_nothing_is_flown_up_and_down_at_one_place_for_nothing() -> None:
+    """As a plan had it: down to the target, and then up and down again."""
+    flown = without_idle_points(stacked(69.4, 65.5, 65.5, 69.4, 65.5))
+    assert heights_of(flown) == [69.4, 65.5]
+    assert flown.points.task == {2: PHOTO} and flown.points[2].kind is WaypointKind.TARGET
+
+
+def test_a_climb_that_a_leg_needs_stays() -> None:
+    assert heights_of(without_idle_points(stacked(69.4, 40.0, 69.4))) == [69.4, 40.0, 69.4]
+    assert heights_of(without_idle_points(stacked(60.0, 70.0, 80.0, target=None))) == [60.0, 80.0]
+    waypoints = stacked(60.0, 80.0)
+    assert without_idle_points(waypoints) is waypoints
+
+
+@given(st.lists(st.sampled_from([40.0, 65.5, 69.4]), min_size=1, max_size=8), st.integers(0, 7))
+def test_what_is_left_comes_to_the_place_and_leaves_it_as_high_as_before(heights_m: list[float], target: int) -> None:
+    flown = heights_of(without_idle_points(stacked(*heights_m, target=target)))
+    assert (flown[0], flown[-1]) == (heights_m[0], heights_m[-1])
+    assert set(flown) <= set(heights_m) and len(flown) <= 3
+    assert target >= len(heights_m) or heights_m[target] in flown

@@ -26,7 +26,7 @@ def flight(tmp_path) -> Flight:
 
 
 def post(client: Client, path: str, **headers: str) -> Any:
-    return client.post(f"/api/v1{path}", content_type="application/json", headers=headers)
+    return client.post(f"/api/v1{path}", content_type="application/json", headers={"If-Match": "*"} | headers)
 
 
 def offers_of(client: Client, flight: Flight) -> list[dict[str, Any]]:

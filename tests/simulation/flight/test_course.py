@@ -76,8 +76,8 @@ def test_sharper_turns_are_flown_slower() -> None:
     assert speeds == sorted(speeds, reverse=True)
     assert speeds[0] == speeds[1] == 5.0
     assert speeds[-1] == 0.0
-    # By hand, 90 degrees: radius 0.4 / (sqrt(2) - 1) = 0.966 m, sqrt(2.5 * 0.966) = 1.554 m/s.
-    assert speeds[4] == pytest.approx(1.554, abs=1e-3)
+    # By hand, 90 degrees: radius 1.3 / (sqrt(2) - 1) = 3.138 m, sqrt(2.5 * 3.138) = 2.801 m/s.
+    assert speeds[4] == pytest.approx(2.801, abs=1e-3)
 
 
 def test_short_legs_are_slowed_down_for_in_time() -> None:

@@ -79,10 +79,16 @@ def test_flight_that_ends_hovering_hovers() -> None:
     assert off_m(flown.end.position, place(45.0, 20.0)) < 0.3
 
 
-def test_look_turns_the_uav_to_its_target_before_it_holds() -> None:
+@pytest.mark.parametrize(
+    ("command", "none"),
+    [
+        (mavlink.MAV_CMD_DO_SET_ROI_LOCATION, plain(mavlink.MAV_CMD_DO_SET_ROI_NONE)),
+        (mavlink.MAV_CMD_DO_SET_ROI, MissionItem(mavlink.MAV_CMD_DO_SET_ROI, 6, (0.0, 0.0, 0.0, 0.0))),
+    ],
+)
+def test_look_turns_the_uav_to_its_target_before_it_holds(command: int, none: MissionItem) -> None:
     """The target is 40 m north of the waypoint; the course leads east."""
-    look = at(mavlink.MAV_CMD_DO_SET_ROI_LOCATION, 30.0, 40.0, 0.0)
-    none = plain(mavlink.MAV_CMD_DO_SET_ROI_NONE)
+    look = at(command, 30.0, 40.0, 0.0)
     uav = uav_with([take_off(), waypoint(5.0, 0.0), look, waypoint(30.0, 0.0, 10.0, 4.0), none, waypoint(50.0, 0.0)])
     begin(uav)
     facing, courses = [], []

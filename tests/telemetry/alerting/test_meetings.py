@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 
 from inspection.geodesy import LonLat
+from inspection.geodesy.local_frame import LocalFrame
+from missions.flight_plan.waypoints import WaypointKind
+from missions.mavlink.frozen import LAND, Flight, FrozenWaypoint, TakeOff
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
 from telemetry.alerting.finding import CRITICAL, WARNING
-from telemetry.alerting.meetings import MOST_MET, NEAR_M, STEP_S, Moving, meetings, moving_of
+from telemetry.alerting.meetings import MOST_MET, NEAR_M, STEP_S, Moving, meetings, ways_of
+from telemetry.alerting.route_line import RouteLine
+from telemetry.alerting.surroundings import FlightModel
 from telemetry.alerting.watched import WatchedUav
 from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.estimate import Ellipse, Estimate
@@ -46,7 +51,7 @@ def look(flight: TrueFlight, watches: list[Watch], told: list[dict], second: int
         report = Report(now_s, now_s, Measurement(**values))
         uav = WatchedUav(number, 1, "Tern" if number == 0 else "Kite", MISSION, MISSION, newest=report, estimate=estimate(report))
         situations.append(watch.situation(now_s, uav, **({"model": flight.model} if number == 0 else {})))
-    moving = [moving_of(situation, LIMITS.converging_s) for situation in situations]
+    moving = [way for situation in situations for way in ways_of(situation, LIMITS.converging_s)]
     met = meetings(moving, LIMITS.converging_s)
     for number, (watch, situation) in enumerate(zip(watches, situations, strict=True)):
         around = {name: getattr(situation, name) for name in ("model", "held")}
@@ -127,3 +132,71 @@ def test_in_a_crowd_each_is_told_of_those_that_come_nearest():
     told = {(key, meeting.other_id) for key, meetings_of in met.items() for meeting in meetings_of}
     assert len(told) <= 40 * MOST_MET
     assert {(key, key + 1) for key in range(39)} <= told
+
+
+LEG_M, CRUISE_MPS, LEVEL_M = 300.0, 10.0, 30.0
+HERE = LonLat(10.0, 56.0)
+FRAME = LocalFrame.around(HERE.lon, HERE.lat)
+
+
+def a_line(*, from_east_m: float = 0.0, arrives_s: float = 14.0) -> RouteLine:
+    """To the east along a straight leg, planned to be at its begin, LEVEL_M high, so long after take-off."""
+    waypoints = tuple(
+        FrozenWaypoint(
+            sequence=place, position=at(from_east_m + east, 0.0), kind=WaypointKind.START if place == 0 else WaypointKind.END,
+            altitude_agl_m=LEVEL_M, altitude_relative_m=LEVEL_M, altitude_amsl_m=LEVEL_M + 100.0, arrival_s=arrives_s + east / CRUISE_MPS,
+        )
+        for place, east in enumerate((0.0, LEG_M))
+    )  # fmt: skip
+    return RouteLine(Flight(0, TakeOff(waypoints[0].position, 100.0), waypoints, LAND))
+
+
+def at(east: float, north: float) -> LonLat:
+    return LonLat(*FRAME.to_degrees(np.array([[east, north]]))[0].tolist())
+
+
+def told(position: LonLat, height_m: float, *, north_mps: float = 0.0, climb_mps: float = 0.0) -> Measurement:
+    return Measurement(
+        longitude_deg=position.lon, latitude_deg=position.lat, altitude_relative_m=height_m, altitude_amsl_m=height_m + 100.0,
+        velocity_north_mps=north_mps, velocity_east_mps=0.0, velocity_down_mps=-climb_mps, is_armed=True, is_in_air=True, mode="AUTO",
+        waypoint_sequence=0,
+    )  # fmt: skip
+
+
+def ways(key: int, measured: Measurement, line: RouteLine | None) -> list[Moving]:
+    report = Report(START_S, START_S, measured)
+    uav = WatchedUav(key, 1, f"UAV {key}", MISSION, MISSION, newest=report, estimate=estimate(report))
+    model = None if line is None else FlightModel(line, None, 15.0, 20.0)
+    return ways_of(Watch().situation(START_S, uav, model=model), LIMITS.converging_s)
+
+
+def test_one_that_takes_off_is_seen_to_meet_another_on_its_leg_before_it_moves_there():
+    """It stands 20 m high at the begin of its leg, at rest but for its climb; after 4 s of that and 8 s of its leg it is at the other."""
+    climbing = ways(1, told(at(0.0, 0.0), 20.0, climb_mps=2.5), a_line())
+    crossing = ways(2, told(at(80.0, -60.0), LEVEL_M, north_mps=5.0), None)
+    nearest = meetings([*climbing, *crossing], LIMITS.converging_s)[1][0]
+    assert (nearest.in_s, nearest.lateral_m, nearest.height_m) == (pytest.approx(12.0, abs=1.0), pytest.approx(0.0, abs=3.0), 0.0)
+
+
+def test_one_that_takes_off_under_the_others_way_is_seen_to_come_up_to_it():
+    climbing = ways(1, told(at(0.0, 0.0), 2.0, climb_mps=2.5), a_line())
+    above = ways(2, told(at(-110.0, 0.0), LEVEL_M), a_line(from_east_m=-200.0, arrives_s=0.0))
+    nearest = meetings([*climbing, *above], LIMITS.converging_s)[1][0]
+    assert (nearest.in_s, nearest.lateral_m) == (pytest.approx(11.0, abs=2.0), pytest.approx(0.0, abs=3.0)) and nearest.height_m < 8.0
+
+
+def test_a_pair_with_several_ways_has_one_alert():
+    both = [*ways(1, told(at(0.0, 0.0), 29.0, climb_mps=1.0), a_line()), *ways(2, told(at(5.0, 3.0), 29.0), a_line())]
+    assert len(both) == 4
+    met = tuple(meetings(both, LIMITS.converging_s)[1])
+    assert len(met) > 1
+    report = Report(START_S, START_S, told(at(0.0, 0.0), 29.0))
+    uav = WatchedUav(1, 1, "UAV 1", MISSION, MISSION, newest=report)
+    found = DETECTOR.detect(Watch().situation(START_S, uav, meetings=met))
+    assert [(finding.subject, finding.level) for finding in found] == [("2", CRITICAL)]
+
+
+def test_one_that_lands_is_not_taken_to_stay_at_the_end_of_its_route():
+    line = a_line()
+    landing = ways(1, told(at(LEG_M, 0.0), 6.0, climb_mps=-1.0), line)
+    assert len(landing) == 1

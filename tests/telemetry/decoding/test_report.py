@@ -89,6 +89,12 @@ def test_wind_goes_where_the_air_moves():
     assert measured(mavlink.MAVLink_wind_message(nan, 5.0, 0.0)).wind_north_mps is None
 
 
+def test_wind_of_exactly_nothing_from_exactly_north_is_no_measured_calm():
+    """ArduCopter without an airspeed sensor or an estimate, in whatever wind."""
+    assert measured(mavlink.MAVLink_wind_message(0.0, 0.0, 0.0)).wind_north_mps is None
+    assert measured(mavlink.MAVLink_wind_message(31.0, 0.0, 0.0)).wind_north_mps == pytest.approx(0.0)
+
+
 def heartbeat(kind, autopilot):
     return mavlink.MAVLink_heartbeat_message(kind, autopilot, 0, 0, 0, 3)
 

@@ -2,11 +2,13 @@
 
 import csv
 import json
+import random
 import tracemalloc
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from io import StringIO
+from itertools import pairwise
 from xml.etree import ElementTree
 
 import pytest
@@ -17,6 +19,7 @@ from telemetry.exports.gpx_file import NAMESPACE, OWN_NAMESPACE, gpx_pieces
 from telemetry.exports.kml_file import GX_NAMESPACE, POINTS_A_PART, kml_pieces
 from telemetry.exports.kml_file import NAMESPACE as KML_NAMESPACE
 from telemetry.exports.logged_record import FLAGS, PLACES, REPORTED, LoggedRecord, Value
+from telemetry.exports.thinning import for_files, rounded
 
 START = datetime(2026, 11, 22, 12, tzinfo=UTC)
 Pieces = Callable[[Iterable[LoggedRecord]], Iterator[str]]
@@ -118,6 +121,24 @@ def test_what_a_uav_says_is_no_formula_in_a_spreadsheet(mode: str) -> None:
     assert row["heading_deg"] == "-0.5"
 
 
+@pytest.mark.parametrize(
+    ("mode", "shown"),
+    [
+        (" =1+1", "' =1+1"),
+        ("\u00a0=1", "'\u00a0=1"),
+        ("\uff1d1+1", "'\uff1d1+1"),
+        ("\uff20SUM", "'\uff20SUM"),
+        ("Hold;=1+1", "Hold;'=1+1"),
+        ("Hold; +1", "Hold;' +1"),
+        ("Hold; then 1+1", "Hold; then 1+1"),
+        ("a=b", "a=b"),
+    ],
+)
+def test_a_formula_behind_blanks_semicolons_or_in_full_width_is_none_either(mode: str, shown: str) -> None:
+    (row,) = csv.DictReader(StringIO(text("csv", logged(mode=mode))))
+    assert row["mode"] == shown
+
+
 def test_geojson_has_every_record_also_those_without_a_place() -> None:
     read = json.loads(text("geojson", logged(0, **FULL), logged(1, position=None)))
     assert read["type"] == "FeatureCollection"
@@ -210,3 +231,68 @@ def test_many_records_take_no_more_memory_than_a_few(kind: str, number: int) -> 
 
     few = peak_bytes(2_000)
     assert peak_bytes(number) < few * 1.2 + 50_000
+
+
+# --- what is left out --------------------------------------------------------------------------------------------------------------
+
+
+def at(second: float, **values: Value) -> LoggedRecord:
+    return replace(logged(**values), measured_at=START + timedelta(seconds=second))
+
+
+def seconds_of(records: Iterable[LoggedRecord]) -> list[float]:
+    return [round((record.measured_at - START).total_seconds(), 2) for record in records]
+
+
+@pytest.mark.parametrize("kind", [*KINDS])
+def test_no_file_has_digits_below_the_resolution_of_a_sensor(kind: str) -> None:
+    noisy = {name: 2.4046354241136214e-08 for name in REPORTED if name.endswith(("_mps", "_deg", "_m", "_v", "_a", "_percent"))}
+    record = replace(logged(**noisy, hdop=0.8000000119), position=(10.123456789012, -56.987654321098))
+    written = text(kind, *for_files([record]))
+    assert "e-" not in written.replace("urn:spanwise:telemetry", "")
+    assert "0.8000" not in written
+    assert "10.1234568" in written
+    assert "-56.9876543" in written
+    assert "-0.0" not in text(kind, *for_files([at(0, velocity_north_mps=-1e-9, altitude_amsl_m=1.0)]))
+
+
+def test_values_keep_what_their_sensor_can_tell() -> None:
+    told = rounded(
+        logged(altitude_amsl_m=123.456, velocity_down_mps=-1.234, heading_deg=359.96, battery_v=22.246, mode="AUTO", satellites=11)
+    )
+    wanted = {
+        "altitude_amsl_m": 123.46,
+        "velocity_down_mps": -1.23,
+        "heading_deg": 0.0,
+        "battery_v": 22.25,
+        "mode": "AUTO",
+        "satellites": 11,
+    }
+    assert {name: told.value(name) for name in wanted} == wanted
+
+
+def test_one_record_a_second_is_left_of_ten() -> None:
+    ten_a_second = [at(number / 10) for number in range(601)]
+    kept = seconds_of(for_files(ten_a_second))
+    assert 60 <= len(kept) <= 62
+    assert all(0.7 <= after - before <= 1.3 for before, after in pairwise(kept))
+    assert len(list(for_files(ten_a_second, every_s=0.0))) == 601
+    assert len(list(for_files(ten_a_second, every_s=10.0))) == 7
+
+
+def test_reports_of_one_a_second_are_all_kept_though_they_do_not_come_on_the_second() -> None:
+    draw = random.Random(4)
+    assert len(list(for_files([at(number + draw.uniform(-0.12, 0.12)) for number in range(300)]))) == 300
+
+
+def test_a_record_with_which_something_begins_is_never_left_out() -> None:
+    records = [at(number / 10, mode="AUTO" if number < 14 else "RTL", is_in_air=number < 27) for number in range(40)]
+    kept = seconds_of(for_files(records))
+    assert {1.4, 2.7} <= set(kept)
+
+
+def test_streams_and_uavs_are_thinned_each_for_itself_and_gaps_do_not_matter() -> None:
+    at_once = [at(number / 10) for number in range(20)]
+    mixed = [one for record in at_once for one in (record, replace(record, uav=2), replace(record, stream="next"))]
+    assert len(list(for_files(mixed))) == 3 * len(list(for_files(at_once)))
+    assert seconds_of(for_files([at(0), at(0.5), at(100.3), at(100.9), at(101.3), at(5.0)])) == [0.0, 100.3, 101.3, 5.0]

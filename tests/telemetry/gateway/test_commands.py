@@ -13,6 +13,7 @@ from telemetry.ground_station.compare import differences
 from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.wire import held_list
 from telemetry.models import Alert, UavLink
+from telemetry.selectors.alert_words import alert_words
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.flyer import Flyer
@@ -117,7 +118,7 @@ def test_a_mission_is_flown_by_what_the_vehicle_tells(flavour, uav, mission, tmp
         wait_for(lambda: mission.records.filter(**last).exists(), "a record at the last waypoint")
         wait_for(lambda: UavLink.objects.filter(uav=uav, **last).exists(), "the link at the last waypoint")
         assert mission.routes.get().flights_flown == 0
-        vehicle.is_in_air = vehicle.is_armed = False
+        vehicle.touch_down()
         wait_for(lambda: mission.routes.get().flights_flown == 1, "the flight's end")
     mission.refresh_from_db()
     assert mission.state == MissionState.COMPLETED
@@ -192,6 +193,13 @@ def test_a_list_that_somebody_else_has_put_there_is_not_flown(flavour, uav, miss
         start = ended(begin(uav, mission, upload.approval))
         assert (start.state, start.outcome_code) == (CommandState.FAILED, "other-list"), start.outcome
         assert not vehicle.is_armed and UavLink.objects.get(uav=uav).loaded_sha256 == ""
+        alert = Alert.objects.get(code="other-list-on-board")
+        assert (alert.uav, alert.mission, alert.level, alert.closed_at) == (uav, mission, "critical", None)
+        assert "another list than the approved one" in alert_words(alert.message, alert.values)
+        (again,) = dispatch_mission(mission=mission, actor=mission.author, place=0)
+        assert ended(again).state == CommandState.APPLIED
+        alert.refresh_from_db()
+        assert alert.close_reason == "cleared", "the approved one is on board"
 
 
 def test_a_list_that_nobody_approved_is_not_resumed(uav, mission, tmp_path):

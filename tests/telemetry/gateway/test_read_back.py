@@ -9,12 +9,15 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from missions.command_rules import CommandRules
 from missions.mavlink.content import MissionItem, MissionType
 from missions.models import CommandState, Mission, Uav
+from missions.serializers.commands import command_json
 from missions.services.dispatch import dispatch_mission
+from telemetry.ground_station.rules import TransferRules
 from telemetry.models import UavLink
 from telemetry.services.loads import Doubt
 from tests.missions.flights import approved, ground
-from tests.missions.worlds import world
-from tests.telemetry.gateway.station import gateway_at_work, unsigned_uav, wait_for
+from tests.missions.worlds import UAV_AT, world
+from tests.telemetry.gateway.flyer import Flyer
+from tests.telemetry.gateway.station import gateway_at_work, port_of, unsigned_uav, wait_for
 from tests.telemetry.gateway.test_commands import begin, dispatch, ended, flyer
 from tests.telemetry.vehicles.px4 import Px4
 from tests.workspace.people import somebody
@@ -117,6 +120,42 @@ def test_a_start_waits_for_the_reading_as_long_as_that_goes_on_and_is_allowed(re
         assert start.expires_at > first_until and start.progress["total"] > start.progress.get("done", 0) - 1
         if state == CommandState.APPLIED:
             assert (start.sent_at - given).total_seconds() > 1.5
+
+
+class Homeless(Flyer):
+    def _reports(self, now_s: float) -> list[Any]:
+        return super()._reports(now_s)[:1]
+
+
+def test_a_start_that_waited_for_home_in_vain_ends_with_that_reason(uav, mission, settings, tmp_path):
+    settings.COMMAND_RULES = CommandRules(motion_s=1.5)
+    with gateway_at_work(tmp_path) as gateway, Homeless(Px4(), port_of(gateway), at=UAV_AT, altitude_amsl_m=101.0):
+        upload = ended(dispatch(mission))
+        start = ended(begin(uav, mission, upload.approval))
+    assert (start.state, start.outcome_code) == (CommandState.EXPIRED, "no-home"), start.outcome
+    assert start.outcome == ("It was not sent in time. The UAV does not tell where its home is, from which it counts its heights.")
+    assert command_json(start)["outcome"] == start.outcome
+
+
+class Unreadable(Px4):
+    """Lets its lists be read no more once it holds them."""
+
+    is_unreadable = False
+
+    def _mission_request_list(self, message: Any, now_s: float) -> list[Any]:
+        return [] if self.is_unreadable else super()._mission_request_list(message, now_s)
+
+
+def test_a_start_that_waited_for_the_reading_in_vain_ends_with_that_reason(uav, mission, settings, tmp_path):
+    settings.COMMAND_RULES = CommandRules(motion_s=5.0)
+    vehicle = Unreadable()
+    with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway):
+        upload = ended(dispatch(mission))
+        vehicle.is_unreadable = True
+        settings.TRANSFER_RULES = TransferRules(timeout_s=0.3, item_timeout_s=0.1, retries=2)
+        start = ended(begin(uav, mission, upload.approval))
+    assert (start.state, start.outcome_code) == (CommandState.EXPIRED, "silent"), start.outcome
+    assert start.outcome == "It was not sent in time. Nothing was sent: the mission on the vehicle could not be read."
 
 
 def test_a_start_does_not_wait_for_a_vehicle_that_falls_silent(uav, mission, settings, tmp_path):

@@ -7,7 +7,7 @@ import pytest
 from django.contrib.gis.geos import Point
 
 from missions.mavlink.signing import FrameWriter
-from missions.models import CredentialKind, Uav
+from missions.models import CredentialKind, Uav, UavCredential
 from missions.services.credentials import make_credential
 from telemetry.gateway import belief
 from telemetry.models import TelemetryRecord, UavLink
@@ -83,12 +83,18 @@ def test_a_vehicle_whose_clock_is_late_is_told_the_time(uav_and_key, tmp_path):
     assert not TelemetryRecord.objects.exists()
 
 
-def test_a_new_key_counts_at_once(uav_and_key, tmp_path):
+def test_the_key_before_counts_until_the_new_one_was_used(uav_and_key, tmp_path):
     uav, key = uav_and_key
     with gateway_at_work(tmp_path) as gateway, Link(port_of(gateway), 3, key) as vehicle:
         vehicle.send(heartbeat(), position(1_000))
-        wait_for(lambda: TelemetryRecord.objects.count() == 1)
+        wait_for(lambda: UavCredential.objects.filter(last_used_at__isnull=False).exists())
         new_key = _rotated(uav)
+        wait_for(lambda: len(gateway.sessions[3].uav.keys) == 2)
+        vehicle.send(position(2_000))
+        wait_for(lambda: TelemetryRecord.objects.filter(sequence=2_000).exists(), "the UAV has its old key still")
+        vehicle.received()
+        (beat, *_) = wait_for(vehicle.received)
+        assert beat.get_type()
         with Link(port_of(gateway), 3, new_key) as renewed:
 
             def stored() -> bool:
@@ -96,6 +102,9 @@ def test_a_new_key_counts_at_once(uav_and_key, tmp_path):
                 return TelemetryRecord.objects.filter(sequence=3_000).exists()
 
             wait_for(stored)
+            wait_for(lambda: len(gateway.sessions[3].uav.keys) == 1)
+            renewed.received()
+            assert wait_for(renewed.received)
             vehicle.send(position(4_000))
             wait_for(lambda: losses(uav).get("wrong-signature"))
     assert not TelemetryRecord.objects.filter(sequence=4_000).exists()

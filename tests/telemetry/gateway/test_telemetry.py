@@ -7,9 +7,14 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.mavlink.signing import FrameWriter
 from telemetry.models import TelemetryRecord, UavLink, UnknownVehicle, VehicleText
+from telemetry.services.unknown_vehicles import NewUav, adopt_vehicle
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, unsigned_uav, wait_for
+from tests.workspace.people import somebody
+from workspace.models import Role
 
 pytestmark = pytest.mark.django_db(transaction=True)
+
+POSITION_ID = mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT
 
 
 def sequences(**of) -> list[int]:
@@ -92,6 +97,22 @@ def test_ground_stations_and_strangers_are_no_uavs(tmp_path):
     assert UnknownVehicle.objects.count() == 1
     assert (unknown.mavlink_system_id, unknown.autopilot, unknown.vehicle_type, unknown.is_signed) == (77, "px4", "quadrotor", False)
     assert not TelemetryRecord.objects.exists()
+
+
+def test_a_stranger_is_asked_where_it_is_and_can_then_be_adopted_by_name(tmp_path):
+    with gateway_at_work(tmp_path) as gateway, Link(port_of(gateway), 77) as stranger:
+
+        def is_placed() -> bool:
+            stranger.send(heartbeat())
+            asked = [message for message in stranger.received() if message.get_type() == "COMMAND_LONG"]
+            if any((message.command, message.param1) == (mavlink.MAV_CMD_REQUEST_MESSAGE, POSITION_ID) for message in asked):
+                stranger.send(position(1_000))
+            return UnknownVehicle.objects.filter(location__isnull=False).exists()
+
+        wait_for(is_placed)
+        assert not stranger.received(), "it is asked no more"
+    adopted = adopt_vehicle(vehicle=UnknownVehicle.objects.get(), actor=somebody(Role.ADMINISTRATOR), uav=NewUav("Kite"))
+    assert adopted.location.coords == pytest.approx((position(1_000).lon / 1e7, position(1_000).lat / 1e7))
 
 
 def test_nobody_can_fill_the_table_of_strangers(tmp_path):

@@ -2,8 +2,7 @@
 
 import time
 from collections import Counter, deque
-from dataclasses import replace
-from types import SimpleNamespace
+from dataclasses import dataclass, replace
 
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
@@ -111,7 +110,9 @@ def test_a_uav_that_was_never_heard_here_is_not_addressed(uav, tmp_path):
         other.send(heartbeat(is_armed=True))
         command = queue_command(uav=uav, kind=CommandKind.ABORT, actor=None)
         time.sleep(2.5)
-        assert (other.received(), unasked.received()) == ([], [])
+        asked = [(message.command, message.param1) for message in other.received()]
+        assert asked == [(mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT)], "where it is, and nothing else"
+        assert unasked.received() == []
     command.refresh_from_db()
     assert (command.state, command.attempts) == (CommandState.QUEUED, 0)
 
@@ -120,12 +121,21 @@ KEY, OTHER_KEY = b"k" * 32, b"o" * 32
 SIGNED = KnownUav(1, 1, "Tern", 7, False, 1, KEY)
 
 
+@dataclass(eq=False)
+class Sender:
+    sent: list[bytes]
+    name: str = "udp"
+
+    def send(self, frame: bytes) -> None:
+        self.sent.append(frame)
+
+
 def heard(uav: KnownUav, at_s: float) -> tuple[Session, list[bytes]]:
     session, sent = Session(uav, deque(), link_id=1), []
     session.serve(Lease(1, {}, [], {}, ""), time.monotonic() + 60.0)
     frame = FrameWriter(7, 1, key=uav.key).frame_of(heartbeat(is_armed=True), at_s)
     for one in frames_of_datagram(frame, Counter()):
-        session.receive(one, SimpleNamespace(name="udp", send=sent.append), at_s)
+        session.receive(one, Sender(sent), at_s)
     return session, sent
 
 

@@ -314,6 +314,26 @@ def test_old_heartbeat_is_no_proof_of_being_so_already():
     assert len(keeper.start(RULES.fresh_s + 0.1)) == 1
 
 
+def test_heartbeat_of_before_the_order_is_no_proof_of_being_so_already():
+    """It held, and was told otherwise by somebody else before it could report again."""
+    state = VehicleState(7)
+    state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129, custom_mode=4 << 16 | 3 << 24), 0.0)
+    keeper = CommandKeeper(Order.HOLD, state, ENDS, RULES)
+    assert keeper.start(0.5) == []
+    assert keeper.outcome is None
+    flies = heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129, custom_mode=4 << 16 | 4 << 24)
+    state.receive(flies, 1.0)
+    assert [message.command for message in keeper.receive(flies, 1.0)] == [SET_MODE]
+
+
+def test_order_is_sent_where_no_heartbeat_shows_that_it_is_needless():
+    state = VehicleState(7)
+    state.receive(heartbeat(mavlink.MAV_AUTOPILOT_PX4, base_mode=129, custom_mode=4 << 16 | 3 << 24), 0.0)
+    keeper = CommandKeeper(Order.HOLD, state, ENDS, RULES)
+    assert keeper.start(0.5) == []
+    assert [message.command for message in keeper.tick(0.5 + RULES.fresh_s)] == [SET_MODE]
+
+
 @pytest.mark.parametrize(
     ("order", "parameters", "code"),
     [

@@ -77,3 +77,31 @@ def test_each_flight_of_a_route_is_told_by_itself() -> None:
 def test_of_a_route_under_way_the_first_flight_is_told_and_the_second_is_not() -> None:
     found = flown_route(route_of_two_flights(), flown())
     assert [bool(stage.whole.reports) for stage in found.stages] == [True, True, True, False, False, False]
+
+
+def test_a_gap_is_told_and_left_out_of_distance_and_errors() -> None:
+    """Reports of 80 s are lost; the first ones after it still name the waypoint of before."""
+    long_route = replace(route(), waypoints=tuple(replace(point, position=place(*LONG_M[point.sequence])) for point in route().waypoints))
+    fixes = [
+        Fix(1_000.0 + second, place(*east_north), 30.0 if second < 60 else 60.0, 90.0, sequence, is_in_air=True)
+        for second, east_north, sequence in along_with_a_gap()
+    ]
+    found = flown_route(long_route, fixes)
+    (gap,) = found.gaps
+    assert (gap.began_s, gap.ended_s) == (1_020.0, 1_100.0)
+    assert gap.length_m == pytest.approx(800.0, abs=1.0)
+    assert found.flown_m == pytest.approx(1_500.0 - 800.0, abs=2.0)
+    assert found.across_max_m == pytest.approx(0.0, abs=0.5)
+
+
+LONG_M = ((0.0, 0.0), (300.0, 0.0), (600.0, 0.0), (600.0, 900.0))
+
+
+def along_with_a_gap() -> list[tuple[int, tuple[float, float], int]]:
+    """At 10 m/s: the seconds, east and north, and the waypoint that is told."""
+    found = []
+    for second in [*range(21), *range(100, 151)]:
+        along_m = 10.0 * second
+        told = 1 if second <= 110 else 3
+        found.append((second, (along_m, 0.0) if along_m <= 600.0 else (600.0, along_m - 600.0), told))
+    return found

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from telemetry.mission_report.fix import Fix, in_order
 from telemetry.mission_report.visits import visits_of
-from tests.telemetry.mission_report.flights import HOLD_S, flown, flown_twice, route, route_of_two_flights
+from tests.telemetry.mission_report.flights import HOLD_S, flown, flown_twice, place, route, route_of_two_flights
 
 FASTEST_MPS = 15.0
 
@@ -74,3 +74,28 @@ def test_targets_of_the_second_flight_are_looked_for_in_the_second_flight() -> N
     assert both[2].reached_s == pytest.approx((both[0].reached_s or 0.0) + 1_800.0, abs=2.0)
     under_way = visits_of(route_of_two_flights(), flown(), fastest_mps=FASTEST_MPS)
     assert [visit.is_done for visit in under_way] == [True, True, False, False]
+
+
+def test_an_earlier_pass_over_the_same_place_does_not_count() -> None:
+    """A route that comes over its target twice before its item, 90 s earlier, and lands there when its list counts from 1 again."""
+    fixes = flown(every_s=1)
+    early = [Fix(fix.at_s - 90.0, place(300.0, 0.0), 30.0, None, 0, is_in_air=True) for fix in fixes[:25]]
+    early.append(Fix(fixes[0].at_s - 1.0, place(0.0, 0.0), 30.0, None, 0, is_in_air=True))
+    none = [replace(early[0], at_s=early[0].at_s - 5.0, waypoint_sequence=None)]
+    after = [Fix(fixes[-1].at_s + 10.0 + second, place(300.0, 0.0), 0.0, None, 1, is_in_air=False) for second in range(40)]
+    first, second = visits_of(route(), [*none, *early, *fixes, *after], fastest_mps=FASTEST_MPS)
+    alone, _ = visits_of(route(), fixes, fastest_mps=FASTEST_MPS)
+    assert first.reached_s == alone.reached_s == pytest.approx(1_030.0, abs=3.0)
+    assert first.held_s == pytest.approx(alone.held_s, abs=1.0) and first.held_s < HOLD_S + 5.0
+    assert first.is_done and second.is_done
+
+
+def test_two_targets_at_one_place_are_held_each_by_itself() -> None:
+    way, waypoints = route(), list(route().waypoints)
+    waypoints[2] = replace(waypoints[2], position=waypoints[1].position, task=waypoints[1].task)
+    fixes = [Fix(1_000.0 + second, place(min(10.0 * second, 300.0), 0.0), 30.0, None, 1, is_in_air=True) for second in range(50)]
+    fixes += [replace(fixes[-1], at_s=1_050.0 + second, waypoint_sequence=2) for second in range(10)]
+    fixes += [Fix(1_060.0 + second, place(300.0 + 10.0 * second, 0.0), 30.0, None, 3, is_in_air=True) for second in range(1, 30)]
+    first, second = visits_of(replace(way, waypoints=tuple(waypoints)), fixes, fastest_mps=FASTEST_MPS)
+    assert first.held_s == pytest.approx(21.0, abs=2.5) and first.is_done
+    assert second.held_s == pytest.approx(11.0, abs=2.5) and not second.is_done

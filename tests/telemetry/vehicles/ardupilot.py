@@ -22,9 +22,10 @@ DISARMS_AFTER_S = 10.0
 LARGEST_ALTITUDE_M = 83_000.0
 HOME = MissionItem(16, mavlink.MAV_FRAME_GLOBAL, (0.0, 0.0, 0.0, 0.0), 98000100, 554000100, 20.0)
 FRAMES = {0: 0, 2: 0, 3: 3, 5: 0, 6: 3, 10: 10, 11: 10}
-PLACED = frozenset({16, 17, 18, 19, 21, 22, 31, 82, 195})
-KNOWN = PLACED | {20, 93, 112, 114, 115, 177, 178, 181, 183, 197, 201, 203, 206, 2000, 2001}
-INTEGERS = {16: 1, 19: 1, 21: 1, 22: 1, 195: 1, 197: 1}  # how many parameters are kept, as whole numbers
+PLACED = frozenset({16, 17, 18, 19, 21, 22, 31, 82, 195, 201})
+KNOWN = PLACED | {20, 93, 112, 114, 115, 177, 178, 181, 183, 197, 203, 206, 2000, 2001}
+KNOWN_SINCE = {195: (4, 7, 0), 197: (4, 7, 0), 2000: (4, 4, 0), 2001: (4, 4, 0)}  # as mission items
+INTEGERS = {16: 1, 19: 1, 21: 1, 22: 1, 195: 1, 197: 1, 201: 1}  # how many parameters are kept, as whole numbers
 
 
 def float32(value: float) -> float:
@@ -36,6 +37,10 @@ class ArduPilot(Vehicle):
     refuses: dict[int, int] = field(default_factory=dict)  # number of a mission item: the result it is refused with
     has_fence: bool = True  # else fence and rally points are answered by 0 items
     heard_items: int = 0
+    firmware: tuple[int, int, int] | None = (4, 6, 0)
+    parameters: dict[str, float] = field(default_factory=lambda: {"MIS_RESTART": 0.0, "FENCE_ENABLE": 0.0})
+    item_after_landing: int = 1  # 0 in other builds
+    landed_told_after_s: float = 1.0  # its messages of the touch-down come at 1 Hz each, in any order
     autopilot = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
     upload_kind: MissionType | None = None
     _at: int = 0
@@ -44,6 +49,7 @@ class ArduPilot(Vehicle):
     _got_s: float = 0.0
     _armed_s: float = 0.0
     _now_s: float = 0.0
+    _touched_down_s: float = -math.inf
 
     def __post_init__(self) -> None:
         self.lists[MissionType.MISSION] = [HOME]
@@ -90,7 +96,8 @@ class ArduPilot(Vehicle):
     def _checked(self, item: MissionItem, kind: MissionType) -> int:
         if kind is not MissionType.MISSION:
             return int(mavlink.MAV_MISSION_ACCEPTED)
-        if item.command not in KNOWN:
+        firmware = self.firmware or (0, 0, 0)
+        if item.command not in KNOWN or firmware < KNOWN_SINCE.get(item.command, firmware):
             return int(mavlink.MAV_MISSION_UNSUPPORTED)
         if math.isnan(item.parameters[0]):
             return int(mavlink.MAV_MISSION_INVALID_PARAM1)
@@ -141,9 +148,9 @@ class ArduPilot(Vehicle):
         one, two, three, four = (0.0 if math.isnan(value) else value for value in item.parameters)
         frame, altitude_m = FRAMES.get(item.frame, 0), 0.0
         if kind is MissionType.FENCE:
-            return item_int(number, kind, item, (float(int(one)), 0.0, 0.0, 0.0), 0, 0.0)
+            return item_int(number, kind, item, (float(int(one)), 0.0, 0.0, 0.0), 0, 0.0, 0)
         if kind is MissionType.RALLY:
-            return item_int(number, kind, item, (0.0, 0.0, 0.0, 0.0), 3, float(int(item.altitude_m)))
+            return item_int(number, kind, item, (0.0, 0.0, 0.0, 0.0), 3, float(int(item.altitude_m)), 0)
         if item.command in PLACED:
             altitude_m = math.trunc(float32(float32(item.altitude_m) * 100.0)) / 100.0
         if item.command in INTEGERS:
@@ -179,6 +186,14 @@ class ArduPilot(Vehicle):
         if self.upload_kind is not None:
             times += [self._got_s + GIVE_UP_S, self._asked_s + REQUEST_S]
         return min(times, default=None)
+
+    def says_in_air(self) -> bool:
+        return self.is_in_air or self._now_s < self._touched_down_s + self.landed_told_after_s
+
+    def touch_down(self) -> None:
+        """It disarms by itself, its list is at the beginning again, and no item of LAND is told as reached."""
+        super().touch_down()
+        self.current_item, self._touched_down_s = self.item_after_landing, self._now_s
 
     def restart(self) -> None:
         self.is_alive = True

@@ -25,6 +25,8 @@ class Vehicle:
     is_in_air: bool = False
     current_item: int = 0  # on ArduPilot item 0 is home
     knows_set_current: bool = True  # the command; else only the older message
+    vehicle_type: int = mavlink.MAV_TYPE_QUADROTOR
+    firmware: tuple[int, int, int] | None = None  # None: it does not tell its version
     heartbeats: bool = False
     deaf_commands: int = 0  # so many commands are answered by yes, and nothing is done
     is_mute: bool = False  # commands are carried out and never answered
@@ -67,12 +69,20 @@ class Vehicle:
     def reports(self) -> list[Any]:
         base_mode = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED | (mavlink.MAV_MODE_FLAG_SAFETY_ARMED if self.is_armed else 0)
         status = mavlink.MAV_STATE_ACTIVE if self.is_in_air else mavlink.MAV_STATE_STANDBY
-        landed = mavlink.MAV_LANDED_STATE_IN_AIR if self.is_in_air else mavlink.MAV_LANDED_STATE_ON_GROUND
+        landed = mavlink.MAV_LANDED_STATE_IN_AIR if self.says_in_air() else mavlink.MAV_LANDED_STATE_ON_GROUND
         return [
-            mavlink.MAVLink_heartbeat_message(mavlink.MAV_TYPE_QUADROTOR, self.autopilot, base_mode, self.custom_mode, status, 3),
+            mavlink.MAVLink_heartbeat_message(self.vehicle_type, self.autopilot, base_mode, self.custom_mode, status, 3),
             mavlink.MAVLink_extended_sys_state_message(0, landed),
             mavlink.MAVLink_mission_current_message(self.current_item),
         ]
+
+    def says_in_air(self) -> bool:
+        """By EXTENDED_SYS_STATE."""
+        return self.is_in_air
+
+    def touch_down(self) -> None:
+        """At the end of its mission."""
+        self.is_armed = self.is_in_air = False
 
     def _plan_wake(self) -> None:
         times = [self._next_heartbeat_s] if self.heartbeats else []
@@ -89,6 +99,8 @@ class Vehicle:
         def ack(result: int) -> Any:
             return mavlink.MAVLink_command_ack_message(message.command, result, 0, 0, *GROUND)
 
+        if message.command == mavlink.MAV_CMD_REQUEST_MESSAGE and self.firmware is not None:
+            return [ack(mavlink.MAV_RESULT_ACCEPTED), *self._version(int(message.param1))]
         if message.command in self.denied:
             words = mavlink.MAVLink_statustext_message(mavlink.MAV_SEVERITY_CRITICAL, self.says.encode())
             return [*([words] if self.says else []), ack(self.denied[message.command])]
@@ -103,6 +115,13 @@ class Vehicle:
         if result == mavlink.MAV_RESULT_ACCEPTED:
             self.taken.append((message.command, values))
         return [*([] if self.is_mute else [ack(result)]), *(self.reports() if self.heartbeats else [])]
+
+    def _version(self, asked_for: int) -> list[Any]:
+        if asked_for != mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION or self.firmware is None:
+            return []
+        major, minor, patch = self.firmware
+        version = major << 24 | minor << 16 | patch << 8
+        return [mavlink.MAVLink_autopilot_version_message(0, version, 0, 0, 0, [0] * 8, [0] * 8, [0] * 8, 0, 0, 0)]
 
     def _mission_set_current(self, message: Any, now_s: float) -> list[Any]:
         self._set_current(message.seq)
@@ -135,9 +154,11 @@ class Vehicle:
         return mavlink.MAVLink_mission_ack_message(*ends, result, kind)
 
 
-def item_int(number: int, kind: int, item: MissionItem, parameters: tuple[float, ...], frame: int, altitude_m: float) -> Any:
+def item_int(
+    number: int, kind: int, item: MissionItem, parameters: tuple[float, ...], frame: int, altitude_m: float, autocontinue: int = 1
+) -> Any:
     return mavlink.MAVLink_mission_item_int_message(
-        *GROUND, number, frame, item.command, 0, 1, *parameters, item.latitude_e7, item.longitude_e7, altitude_m, kind
+        *GROUND, number, frame, item.command, 0, autocontinue, *parameters, item.latitude_e7, item.longitude_e7, altitude_m, kind
     )
 
 

@@ -1,4 +1,4 @@
-"""Makes a bearer token for a user: manage.py api_token USER [--days 90] [--name api]."""
+"""Makes a bearer token for a user: manage.py api_token USER [--days 90] [--name api] [--scope read]."""
 
 from argparse import ArgumentParser
 from datetime import timedelta
@@ -7,10 +7,10 @@ from typing import Any
 from django.core.management.base import BaseCommand, CommandError
 from django.utils import timezone
 
-from workspace.models import User
+from workspace.models import TokenScope, User
 from workspace.services import create_api_token
 
-LONGEST_DAYS = 3_650
+LONGEST_DAYS = 365
 
 
 class Command(BaseCommand):
@@ -20,6 +20,7 @@ class Command(BaseCommand):
         parser.add_argument("user", help="user name")
         parser.add_argument("--days", type=int, default=90, help="how long it is valid (90)")
         parser.add_argument("--name", default="api", help="what it is for, shown in the admin")
+        parser.add_argument("--scope", action="append", choices=TokenScope.values, help="may be repeated; all of the role unless told")
 
     def handle(self, *args: Any, **options: Any) -> None:
         if not 1 <= options["days"] <= LONGEST_DAYS:
@@ -29,6 +30,6 @@ class Command(BaseCommand):
         except User.DoesNotExist as error:
             raise CommandError(f"no active user is called {options['user']}") from error
         expires_at = timezone.now() + timedelta(days=options["days"])
-        token = create_api_token(user=user, name=options["name"][:100], expires_at=expires_at)
+        token = create_api_token(user=user, name=options["name"][:100], expires_at=expires_at, scopes=options["scope"])
         self.stdout.write(f"Token of {user} ({user.get_role_display()}), valid until {expires_at:%Y-%m-%d %H:%M} UTC:")
         self.stdout.write(token)

@@ -2,9 +2,13 @@
 
 export default {
   "As the browser ({zone})": "Wie der Browser ({zone})",
+  "Administer": "Verwalten",
+  "Choose what it may be used for.": "Wählen Sie, wofür es benutzt werden darf.",
+  "Curate": "Daten pflegen",
   "Ended": "Abgelaufen",
   "ended {day}": "abgelaufen {day}",
   "Held back, too many tries": "Zurückgehalten, zu viele Versuche",
+  "Fly": "Fliegen",
   "It is {time} there.": "Dort ist es {time}.",
   "last used {when}": "zuletzt benutzt {when}",
   "made {when}": "erstellt {when}",
@@ -12,6 +16,8 @@ export default {
   "never used": "nie benutzt",
   "No token is made.": "Kein Token ist erstellt.",
   "Password": "Passwort",
+  "Plan": "Planen",
+  "Read": "Lesen",
   "Revoke {name}": "{name} widerrufen",
   "Revoked": "Widerrufen",
   "revoked {when}": "widerrufen {when}",

@@ -311,6 +311,8 @@ export default {
   "The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach.":
     "Die Routen nehmen kürzere Wege als bevorzugt, weiter weg von den Leitungen: Entlang der Leitungen sind nicht alle Ziele in Reichweite.",
   "The UAVs keep apart.": "Die UAVs halten Abstand.",
+  "{name} is reported to be in the air: the plan begins with a take-off from the ground at the place where it was last seen.":
+    "{name} meldet sich in der Luft: Der Plan beginnt mit einem Start vom Boden dort, wo es zuletzt gesehen wurde.",
   "The wind is too strong on every way to it, or back.": "Der Wind ist auf jedem Weg dorthin oder zurück zu stark.",
   "the wind": "der Wind",
   "the wind, {time} more than in calm air": "der Wind, {time} mehr als bei Windstille",

@@ -57,4 +57,37 @@ export default {
   "“{before}” is now “{name}”.": "„{before}“ heißt jetzt „{name}“.",
   "“{name}” is back.": "„{name}“ ist zurück.",
   "“{name}” is there.": "„{name}“ ist da.",
+  "Connect a UAV": "Ein UAV verbinden",
+  "Demo": "Demo",
+  "Demo data, flown by simulated UAVs": "Demodaten, von simulierten UAVs geflogen",
+  "Demo missions are being planned and flown in simulation.":
+    "Demomissionen werden geplant und in der Simulation geflogen.",
+  "Import your network": "Eigenes Netz importieren",
+  "Not removed.": "Nicht entfernt.",
+  "Remove the demo data": "Demodaten entfernen",
+  "Remove the demo data?": "Demodaten entfernen?",
+  "Show demo missions": "Demomissionen zeigen",
+  "The demo missions were not made.": "Die Demomissionen wurden nicht angelegt.",
+  "The demo missions with their records and the demo UAVs are deleted. Simulated flights of them end at once.":
+    "Die Demomissionen mit ihren Flugberichten und die Demo-UAVs werden gelöscht. Ihre simulierten Flüge enden sofort.",
+  "The missions marked “Demo” and their UAVs are demo data.":
+    "Die mit „Demo“ gekennzeichneten Missionen und ihre UAVs sind Demodaten.",
+  "UAVs that your own missions use stay, and so do assets and zones. This cannot be undone.":
+    "UAVs, die eigene Missionen verwenden, bleiben, ebenso Objekte und Zonen. Das lässt sich nicht rückgängig machen.",
+  "{count} demo mission is removed.": ["{count} Demomission ist entfernt.", "{count} Demomissionen sind entfernt."],
+  "A mission is planned, rehearsed in simulation, approved and flown, and then has a report. Open one to see its stages.":
+    "Eine Mission wird geplant, in der Simulation geprobt, freigegeben und geflogen und hat danach einen Bericht. Öffnen Sie eine, um ihre Schritte zu sehen.",
+  "Pick towers, lines or bridges on the map and choose UAVs. Routes keep to batteries, wind, terrain and no-fly zones.":
+    "Wählen Sie Masten, Leitungen oder Brücken auf der Karte und dazu UAVs. Die Routen berücksichtigen Akkus, Wind, Gelände und Flugverbotszonen.",
+  "Back": "Zurück",
+  "Follow UAVs in flight, acknowledge alerts, and hold, return or land a UAV.":
+    "Verfolgen Sie UAVs im Flug, quittieren Sie Alarme, und lassen Sie ein UAV halten, zurückkehren oder landen.",
+  "Assets and zones": "Objekte und Zonen",
+  "Your network and the no-fly zones. Import your own from OpenStreetMap, GIS files or zone services.":
+    "Ihr Netz und die Flugverbotszonen. Importieren Sie eigene aus OpenStreetMap, GIS-Dateien oder Zonendiensten.",
+  "Connect your own UAV by MAVLink, or fly simulated ones. The account menu starts this tour again.":
+    "Verbinden Sie ein eigenes UAV über MAVLink, oder fliegen Sie simulierte. Das Kontomenü startet diesen Rundgang erneut.",
+  "End the tour": "Rundgang beenden",
+  "{number} of {all}": "{number} von {all}",
+  "Next step": "Weiter",
 };

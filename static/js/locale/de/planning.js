@@ -1,11 +1,46 @@
 /** Planning: priorities, who flies what, locks, how good a plan is. English → German; [one, other] where there is a plural. */
 
 export default {
+  "It takes {needed} Wh {there}, {missing} Wh more than the battery of {name} may give.":
+    "{needed} Wh braucht es {there}, {missing} Wh mehr, als der Akku von {name} geben darf.",
+  "It is {needed} {there}, {missing} more than the range of {name}.":
+    "Es sind {needed} {there}, {missing} mehr als die Reichweite von {name}.",
+  "The battery of {name} does not last for it.": "Der Akku von {name} reicht dafür nicht.",
+  "Other UAVs: {limits}.": "Andere UAVs: {limits}.",
+  "mast or wires in the way": "Mast oder Leiterseile im Weg",
+  "battery too small": "Akku zu klein",
+  "range too short": "Reichweite zu gering",
+  "wind too strong": "zu starker Wind",
+  "no permitted route": "keine zulässige Route",
+  "without the sensor": "ohne den Sensor",
+  "It is locked to {name}.": "Es ist auf {name} festgelegt.",
+  "It is tied to {name}.": "Es ist an {name} gebunden.",
+  "There is no UAV that can take off.": "Kein UAV kann starten.",
+  "No UAV that can take off has the sensor {sensor}.": "Kein UAV, das starten kann, hat den Sensor {sensor}.",
+  "No UAV of the plan has the sensor {sensor}.": "Kein UAV des Plans hat den Sensor {sensor}.",
+  "It is locked to {name}, which cannot take off.": "Es ist auf {name} festgelegt, das nicht starten kann.",
+  "It is tied to {name}, which cannot fly to it.": "Es ist an {name} gebunden, das nicht hinfliegen kann.",
+  "It is tied to {name}, which cannot take off.": "Es ist an {name} gebunden, das nicht starten kann.",
+  "It is tied to {name}, which does not have the sensor {sensor}.":
+    "Es ist an {name} gebunden, das den Sensor {sensor} nicht hat.",
+  "It is tied to {name}, which has as many targets as it may have.":
+    "Es ist an {name} gebunden, das so viele Ziele hat, wie es haben darf.",
+  "It is locked to others of which one cannot be reached: the run is left out as a whole.":
+    "Es ist mit anderen festgelegt, von denen eines nicht erreichbar ist: Die Folge bleibt als Ganzes weg.",
+  "To land there is to fly through {zone}.": "Dort zu landen hieße, durch {zone} zu fliegen.",
+  "No UAV has a clear way of up to {reach} to the network from where it stands.":
+    "Kein UAV hat von seinem Standort einen freien Weg von höchstens {reach} zum Netz.",
+  "It is more than {reach} from the network.": "Es liegt mehr als {reach} vom Netz entfernt.",
+  "Every straight way to it from the network within {reach} meets a no-fly zone.":
+    "Jeder gerade Weg dorthin vom Netz im Umkreis von {reach} trifft auf eine Flugverbotszone.",
+  "There is no way from it to a base that lies outside every no-fly zone.":
+    "Kein Weg führt von dort zu einer Basis, die außerhalb aller Flugverbotszonen liegt.",
+  "No UAV can get there: no way on the network keeps clear of every zone.":
+    "Kein UAV kommt hin: Kein Weg im Netz meidet alle Zonen.",
+  "There is no permitted route for {names}.": "Für {names} gibt es keine zulässige Route.",
   "{minutes} min of flight.": "{minutes} min Flug.",
   "It is locked to others: the run is left out as a whole.":
     "Es ist mit anderen festgelegt: Die Folge bleibt als Ganzes weg.",
-  "The one that comes nearest lacks {length}, {minutes} min of flight.":
-    "Dem, das ihm am nächsten kommt, fehlen {length}, {minutes} min Flug.",
   "At most {share} above the best plan without the zones that come or go meanwhile.":
     "Höchstens {share} über dem besten Plan ohne die Zonen, die währenddessen kommen oder gehen.",
   "At most {share} above the best plan with what is locked, without the zones that come or go meanwhile.":

@@ -75,4 +75,5 @@ export default {
   "No follow-up was made.": "Es wurde keine Folgemission angelegt.",
   "flight {number}": "Flug {number}",
   "{count} legs": "{count} Abschnitte",
+  "Without reports, not in these figures": "Ohne Meldungen, nicht in diesen Werten",
 };

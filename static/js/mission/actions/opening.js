@@ -104,7 +104,7 @@ export function createOpening(context, { conflictWith }) {
     const { mission } = store.state;
     if (!mission) return;
     try {
-      await remove(`/missions/${mission.id}`);
+      await remove(`/missions/${mission.id}`, { headers: { "If-Match": `"${mission.revision}"` } });
       drafts.drop(mission.id);
       location.href = `/?gone=${mission.id}&was=${encodeURIComponent(mission.name)}`;
     } catch (error) {

@@ -31,6 +31,8 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
   let toldDeleted = null;
   /** @type {string | null} */
   let watched = null;
+  /** the map data for which the causes were read last @type {{ id: string | null, revision: number }} */
+  let groundRead = { id: null, revision: 0 };
 
   /** @param {string} id @param {boolean} here */
   const presence = (id, here) => post(`/missions/${id}/presence`, { editor, here }, { keepalive: !here });
@@ -78,13 +80,15 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
   async function followGround(present) {
     const { mission } = store.state;
     if (!mission) return;
-    const { plan, is_stale: wasStale } = mission;
-    const isOnOtherGround = plan && !wasStale && plan.ground_revision !== present.ground_revision;
+    const { id, plan } = mission;
+    const known = groundRead.id === id ? groundRead.revision : plan?.ground_revision;
+    const isOnOtherGround = plan && known !== present.ground_revision;
     const hasOtherUavs = JSON.stringify(mission.uav_changes) !== JSON.stringify(present.uav_changes);
     if (!isOnOtherGround && !hasOtherUavs) return;
     const fleet = hasOtherUavs ? await readFleet() : store.state.fleet;
     const { data: fresh } = /** @type {Answer<Mission>} */ (await get(`/missions/${mission.id}`));
     if (fresh.revision !== mission.revision || store.state.mission !== mission) return;
+    groundRead = { id, revision: present.ground_revision };
     const { is_stale, stale_reason, stale_causes, uav_changes } = fresh;
     store.update({ fleet, mission: { ...mission, is_stale, stale_reason, stale_causes, uav_changes } });
   }

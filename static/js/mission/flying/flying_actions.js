@@ -58,6 +58,8 @@ const freshKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`
 const asSeen = ({ state: { mission } }) => ({
   headers: { "If-Match": `"${mission?.revision}"`, "Idempotency-Key": freshKey() },
 });
+/** What stops UAVs is not held up by what somebody else has changed meanwhile. */
+const whateverChanged = () => ({ headers: { "If-Match": "*", "Idempotency-Key": freshKey() } });
 /** @param {Flyer[]} flyers */
 const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
 
@@ -65,7 +67,7 @@ const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
 function returnsOf(returns, flyers) {
   const lines = flyers.flatMap(({ place }) => {
     const check = returnOf(returns, place);
-    return check ? check.warnings : returnLines(check);
+    return check ? [...check.warnings, check.fence_warning].filter(Boolean) : returnLines(check);
   });
   return [...new Set(lines)];
 }
@@ -190,6 +192,7 @@ async function send(acting, flyer, flight) {
         { names: uavsWords(flyers) },
       ),
       t("A UAV that is not connected gets its route when it is, within the hour."),
+      ...flyers.map(({ place }) => returnOf(acting.store.state.returns, place)?.fence_warning),
     ],
     act: flyer ? t("Send to {name}", { name: flyer.name }) : t("Send to UAVs"),
     isBack: true,
@@ -226,7 +229,7 @@ async function abort(acting) {
   });
   if (!asked) return;
   await tried(acting, t("Not aborted."), async () => {
-    await post(`/missions/${mission.id}/abort`, { why: asked.why }, asSeen(acting.store));
+    await post(`/missions/${mission.id}/abort`, { why: asked.why }, whateverChanged());
     await readMission(acting.store, mission.id);
   });
 }

@@ -3,6 +3,7 @@
 import { openAlertLimits } from "../../alert_limits/dialog.js";
 import { ApiError } from "../../api.js";
 import { byId, h, icon, setChildren } from "../../dom.js";
+import { groundCauses } from "../../domain/flying.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { toast } from "../../page/toast.js";
 import { markSimulated } from "../../simulated.js";
@@ -196,13 +197,12 @@ function wayOut({ label, act, href }) {
 function noticesOf(state, context) {
   const { actions, canPlan, showPlace } = context;
   const { mission } = state;
-  const isStale = mission?.is_stale && !(mission.stale_causes ?? []).every(({ what }) => what === "uav");
   return [
     problemNotice(state, canPlan),
     state.conflict && isUnsaved(state) && conflictNotice(state.conflict, actions),
     uavNotice(state, actions, canPlan),
     mission &&
-      isStale &&
+      groundCauses(mission).length > 0 &&
       state.planIsStored &&
       isPlanCurrent(state) &&
       staleNotice(mission, actions, { canPlan, showPlace }),
@@ -279,7 +279,7 @@ function planNotices({ plan }, { actions, canPlan, askWhy }) {
  * @param {{ canPlan: boolean, showPlace: ShowPlace }} how
  */
 function staleNotice(mission, actions, { canPlan, showPlace }) {
-  const causes = mission.stale_causes.filter(({ what }) => what !== "uav");
+  const causes = groundCauses(mission);
   const isOfGround = causes[0] === mission.stale_causes[0];
   const headline = isOfGround
     ? mission.stale_reason.split(/(?<=\.) /)[0]

@@ -74,6 +74,30 @@ async function note(alert) {
   await tried(async () => void (await post(`/alerts/${alert.id}/notes`, { text: asked.text })), t("The note is kept."));
 }
 
+/** A UAV that is down where its flight does not end stays on the board until somebody says what became of it. @param {Alert} alert */
+async function close(alert) {
+  const asked = await confirmAct({
+    title: t("Close this alert"),
+    lines: [alert.message],
+    field: { name: "reason", label: t("What became of the UAV; it is kept as a note"), isNeeded: true },
+    act: t("Close"),
+    keep: t("Cancel"),
+  });
+  if (!asked?.reason) return;
+  await tried(
+    async () => void (await post(`/alerts/${alert.id}/close`, { reason: asked.reason })),
+    t("The alert is closed."),
+  );
+}
+
+/** @param {Alert} alert */
+const closeButton = (alert) =>
+  h(
+    "button",
+    { type: "button", class: "button small quiet", "data-act": "close", onclick: () => void close(alert) },
+    t("Close"),
+  );
+
 /** What has become of an alert. @param {Alert} alert */
 function historyWords(alert) {
   const said = [
@@ -220,6 +244,7 @@ class AlertPanel {
   #said(alert, uav) {
     const act = uav ? this.#actButton(alert, uav) : null;
     const known = this.#page.canFly && isUnanswered(alert) && acknowledgeButton(alert, act !== null);
+    const closing = this.#page.canFly && alert.code === "down-off-plan" && isOpenAlert(alert) && closeButton(alert);
     const past = historyWords(alert);
     const pick = () => uav && this.#acts.pick(uav.id);
     return h(
@@ -234,7 +259,7 @@ class AlertPanel {
         alert.is_simulated && [" ", simulatedMark()],
       ),
       past && h("p", { class: "caption" }, past),
-      (act || known) && h("div", { class: "alert-acts" }, act, known),
+      (act || known || closing) && h("div", { class: "alert-acts" }, act, known, closing),
     );
   }
 

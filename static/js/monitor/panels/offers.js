@@ -16,7 +16,7 @@ import { causeWords, differenceOf, isUndecided, overWords, sentenceOf, targetLin
 /** @param {LiveOffer} offer @param {"accept" | "decline"} act @param {string} words once it is done */
 async function decide(offer, act, words) {
   try {
-    await post(`/replan-offers/${offer.id}/${act}`, {});
+    await post(`/replan-offers/${offer.id}/${act}`, {}, { headers: { "If-Match": `"${offer.revision}"` } });
     say(words);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;

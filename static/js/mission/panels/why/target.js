@@ -2,7 +2,7 @@
 
 import { h } from "../../../dom.js";
 import { t, tn } from "../../../text.js";
-import { heightText, lengthText, numberText } from "../../../units.js";
+import { heightText, lengthText } from "../../../units.js";
 import { inWords, zoneOf } from "../../plan_words.js";
 import { showLegalTimes } from "../options/legal_times.js";
 
@@ -21,7 +21,7 @@ export function targetExplanation(said, entry, { plan, store, actions, canPlan }
     h(
       "p",
       { class: "why-sentence" },
-      [reasonWords(said, full) || inWords(entry.message), lackWords(said, entry)].filter(Boolean).join(" "),
+      isRangeOfPlan(said, entry) ? inWords(entry.message) : reasonWords(said, full) || inWords(entry.message),
     ),
     facts(said),
     canPlan && changes(said, { target, full, store, actions }),
@@ -64,19 +64,8 @@ function sharedWords(said, full) {
     : `${words} ${t("No other UAV has the range left after its other targets.")}`;
 }
 
-/**
- * What the range lacks of the UAV that comes nearest; sentences of batteries have it in themselves.
- *
- * @param {Pick<Said, "reason">} said
- * @param {Pick<Unassigned, "missing_m" | "missing_s">} entry
- */
-export function lackWords({ reason }, { missing_m, missing_s }) {
-  if (reason !== "beyond_range" || !missing_m) return "";
-  return t("The one that comes nearest lacks {length}, {minutes} min of flight.", {
-    length: lengthText(missing_m),
-    minutes: numberText(Math.ceil((missing_s ?? 0) / 6) / 10, 1),
-  });
-}
+/** Whether the plan says whose range is too short, by how much, and what keeps the others. @param {Said} said @param {Unassigned} entry */
+const isRangeOfPlan = ({ reason }, entry) => reason === "beyond_range" && entry.reason === reason;
 
 /** @param {Said} said @param {Reach[]} [full] see fullUavs */
 export function reasonWords(said, full = []) {

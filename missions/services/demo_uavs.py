@@ -1,0 +1,42 @@
+"""The demo region's UAVs with their types and bases."""
+
+from django.contrib.gis.geos import Point
+from django.utils import timezone
+
+from inspection.demo_region import BASES, BasedUav
+from inspection.demo_region import Base as PlannedBase
+from missions.models import Base, Uav, UavType
+from workspace.models import Organisation
+
+TYPE_FIGURES = ("max_range_m", "cruise_speed_mps", "battery_wh", "mass_kg", "max_airspeed_mps", "rotor_disk_m2", "hover_power_w")
+
+
+def create_demo_uavs(*, organisation: Organisation) -> int:
+    """Return how many are new; what is there already stays as it is, a UAV wherever it stands now."""
+    return sum(_create_uav(uav, _base(base, organisation), organisation) for base in BASES for uav in base.uavs)
+
+
+def _base(planned: PlannedBase, organisation: Organisation) -> Base:
+    location = Point(*planned.position, srid=4326)
+    return Base.objects.get_or_create(organisation=organisation, name=planned.name, defaults={"location": location})[0]
+
+
+def _create_uav(uav: BasedUav, base: Base, organisation: Organisation) -> bool:
+    """Range, speed, sensors and performance are its type's: the UAV's name without its number."""
+    facts = {name: getattr(uav, name) for name in TYPE_FIGURES} | {"sensors": list(uav.sensors)}
+    uav_type, _ = UavType.objects.get_or_create(organisation=organisation, name=uav.type_name, defaults=facts)
+    _, is_new = Uav.objects.get_or_create(
+        organisation=organisation,
+        name=uav.name,
+        defaults={
+            "uav_type": uav_type,
+            "base": base,
+            "base_name": base.name,
+            "location": base.location,
+            "located_at": timezone.now(),
+            "battery_percent": 100.0,
+            "is_simulated": True,
+            "is_demo": True,
+        },
+    )
+    return is_new

@@ -1,0 +1,239 @@
+"""Demo missions: one flown to its end, one in flight and one planned, by the planner and by simulated UAVs; and their removal."""
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from datetime import timedelta
+from functools import partial
+from typing import Protocol
+from uuid import UUID
+
+from django.contrib.gis.db.models.functions import Distance
+from django.contrib.gis.measure import D
+from django.db import transaction
+from django.db.models import Q, QuerySet
+from django.utils import timezone
+from django.utils.translation import gettext as _
+
+from inspection.demo_region import BASES
+from inspection.geodesy import LonLat
+from inspection.models import Asset, AssetKind
+from missions.fleet_selectors import performance_of
+from missions.flight_plan.conditions import Conditions, WindLayer
+from missions.models import Base, CommandKind, CommandState, EndAction, Mission, MissionState, Uav, UavCommand, UavType
+from missions.routing.problem import Objective, Task, TaskKind
+from missions.selectors import mission_of_organisation
+from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
+from missions.services.approval import approve_mission
+from missions.services.demo_uavs import create_demo_uavs
+from missions.services.dispatch import dispatch_mission
+from missions.services.refused import refuse
+from missions.services.steering import command_uav
+from simulation.models import Simulation, SimulationState
+from simulation.rehearsing.sky import Named, named_sky
+from simulation.services.simulated_flights import start_simulated_flights
+from simulation.services.simulations import end_simulation
+from simulation.vehicle_models import PRESENT
+from workspace.models import Job, Organisation, User
+from workspace.services import create_job, record_change
+
+MAKE_DEMO_MISSIONS = "simulation.tasks.make_demo_missions"
+FASTEST = 10.0  # times real time, of the flight that is to be over soon
+STEP_TIMEOUT_S = 120.0  # for a UAV to stand ready, to be loaded, to start
+FLIGHT_TIMEOUT_S = 480.0
+POLL_S = 0.5
+
+
+class OnProgress(Protocol):
+    """Told what is being done, and which share is done."""
+
+    def __call__(self, message: str, share: float) -> None: ...
+
+
+@dataclass(frozen=True)
+class DemoMission:
+    """What a demo mission consists of. Targets are towers between two distances of the first UAV's base, evenly picked.
+
+    speed: in which multiple of real time it is flown; None: it stays planned.
+    """
+
+    name: str
+    uavs: tuple[str, ...]
+    targets: int
+    between_m: tuple[float, float]
+    task: Task
+    speed: float | None
+    wind: tuple[WindLayer, ...] = ()
+    sorties: int = 1
+    departs_in_h: float | None = None
+
+
+DEMO_MISSIONS = (
+    DemoMission("Demo: Varneck lines", ("Osprey 1",), 10, (400.0, 3_500.0), Task(TaskKind.PHOTO, 30.0), 1.0),
+    DemoMission(
+        "Demo: Elmsgard and Varneck, in wind", ("Kestrel 2", "Osprey 2"), 14, (600.0, 5_000.0), Task(TaskKind.PHOTO, 30.0), None,
+        wind=(WindLayer(60.0, 6.0, 240.0),), sorties=2, departs_in_h=3.0,
+    ),
+    DemoMission("Demo: Elmsgard lines", ("Kestrel 1",), 4, (300.0, 1_500.0), Task(TaskKind.PHOTO, 10.0), FASTEST),
+)  # fmt: skip
+
+
+class NotThere(Exception):
+    """The demo region has been removed."""
+
+
+def has_demo_region(organisation: Organisation) -> bool:
+    """Whether its towers are there, and no UAV of the organisation's own has the name of one of its UAVs."""
+    names = {uav.name for base in BASES for uav in base.uavs}
+    if Uav.objects.filter(organisation=organisation, is_demo=False, name__in=names).exists():
+        return False
+    return Asset.objects.filter(kind=AssetKind.TOWER, vanished_at=None, data_import__is_synthetic=True).exists()
+
+
+def open_demo_job(organisation: Organisation) -> Job | None:
+    return Job.objects.filter(organisation=organisation, task=MAKE_DEMO_MISSIONS, state__in=("queued", "running")).first()
+
+
+def want_demo_missions(*, organisation: Organisation, actor: User) -> Job:
+    """The job that makes them; the one that is open already, if there is one."""
+    with transaction.atomic():
+        Organisation.objects.select_for_update(no_key=True).get(pk=organisation.pk)
+        return open_demo_job(organisation) or create_job(
+            organisation=organisation, created_by=actor, task=MAKE_DEMO_MISSIONS, parameters={}, message="Waiting for a worker"
+        )
+
+
+def make_demo_missions(*, organisation: Organisation, actor: User, progress: OnProgress) -> list[UUID]:
+    """Put the demo UAVs that are missing into the fleet, plan all missions, then fly; return when the fast flight is over.
+
+    What is there already is left as it is.
+    Raises NotThere, Refused, TimeoutError, and what `progress` raises.
+    """
+    if not has_demo_region(organisation):
+        raise NotThere
+    create_demo_uavs(organisation=organisation)
+    made = []
+    for number, demo in enumerate(DEMO_MISSIONS):
+        if not _of(demo, organisation).exists():
+            progress(f"Planning “{demo.name}”", 0.5 * number / len(DEMO_MISSIONS))
+            made.append(_planned(demo, organisation, actor).pk)
+    for number, demo in enumerate(DEMO_MISSIONS):
+        mission = _of(demo, organisation).filter(state=MissionState.PLANNED).first()
+        if demo.speed is not None and mission is not None:
+            _fly(mission, actor, demo.speed, partial(progress, share=0.5 + 0.5 * number / len(DEMO_MISSIONS)))
+    return made
+
+
+def _of(demo: DemoMission, organisation: Organisation) -> QuerySet[Mission]:
+    return Mission.objects.filter(organisation=organisation, is_demo=True, name=demo.name, deleted_at=None)
+
+
+def _planned(demo: DemoMission, organisation: Organisation, actor: User) -> Mission:
+    uavs = [Uav.objects.select_related("uav_type").get(organisation=organisation, name=name) for name in demo.uavs]
+    request = PlanRequest(
+        tuple(_request_of(uav, demo.sorties) for uav in uavs),
+        tuple(TargetRequest(tower.pk, task=demo.task) for tower in _towers(demo, uavs)),
+        Objective.MAKESPAN,
+        return_to_start=True,
+        conditions=Conditions(demo.wind),
+        departs_at=None if demo.departs_in_h is None else timezone.now().replace(microsecond=0) + timedelta(hours=demo.departs_in_h),
+        organisation=organisation.pk,
+    )
+    with transaction.atomic():
+        mission = create_mission(organisation=organisation, author=actor, name=demo.name, request=request)
+        Mission.objects.filter(pk=mission.pk).update(is_demo=True)
+    return plan_mission(mission=mission, actor=actor)
+
+
+def _request_of(uav: Uav, sorties: int) -> UavRequest:
+    return UavRequest(
+        uav.name, LonLat(*uav.location.coords[:2]), uav.range_m, uav.speed_mps, EndAction.RETURN, uav=uav.pk, sensors=tuple(uav.sensors),
+        performance=performance_of(uav), sorties=sorties,
+    )  # fmt: skip
+
+
+def _towers(demo: DemoMission, uavs: Sequence[Uav]) -> list[Asset]:
+    """The same number about each UAV's base, none twice."""
+    near_m, far_m = demo.between_m
+    found: dict[int, Asset] = {}
+    for uav in uavs:
+        towers = Asset.objects.filter(
+            Q(centre__distance_gte=(uav.location, D(m=near_m))) & Q(centre__distance_lte=(uav.location, D(m=far_m))),
+            kind=AssetKind.TOWER, subtype="tower", is_flyable=True, vanished_at=None, data_import__is_synthetic=True,
+        )  # fmt: skip
+        near = list(towers.annotate(away=Distance("centre", uav.location)).order_by("away", "pk"))
+        wanted = demo.targets // len(uavs)
+        found |= {tower.pk: tower for tower in near[:: max(len(near) // wanted, 1)][:wanted]}
+    if not found:
+        raise NotThere
+    return list(found.values())
+
+
+def _fly(mission: Mission, actor: User, speed: float, tell: Callable[[str], None]) -> None:
+    """Approve it, have simulated UAVs take its UAVs' places, load and start them; to the end where it is flown fast."""
+    approve_mission(mission=mission, actor=actor)
+    loaded = mission_of_organisation(mission.organisation, mission.pk)
+    sky = named_sky(Named.CALM, Conditions())
+    simulation = start_simulated_flights(mission=loaded, actor=actor, sky=sky, speed=speed)
+    _wait(lambda: _is_flying(simulation), tell, f"Starting the simulated UAVs of “{mission.name}”", STEP_TIMEOUT_S)
+    loads = dispatch_mission(mission=mission, actor=actor)
+    _wait(lambda: _are_applied(loads), tell, f"Loading “{mission.name}”", STEP_TIMEOUT_S)
+    starts = [command_uav(uav=load.uav, kind=CommandKind.START, actor=actor) for load in loads]
+    _wait(lambda: _are_applied(starts), tell, f"Starting “{mission.name}”", STEP_TIMEOUT_S)
+    if speed > 1.0:
+        _wait(lambda: _is_over(mission), tell, f"Flying “{mission.name}”", FLIGHT_TIMEOUT_S)
+
+
+def _wait(is_so: Callable[[], bool], tell: Callable[[str], None], words: str, timeout_s: float) -> None:
+    """Raises TimeoutError with the words."""
+    ends_s = time.monotonic() + timeout_s
+    while not is_so():
+        tell(words)
+        if time.monotonic() > ends_s:
+            raise TimeoutError(words)
+        time.sleep(POLL_S)
+
+
+def _is_flying(simulation: Simulation) -> bool:
+    return not simulation.vehicles.exclude(state=SimulationState.FLYING).exists()
+
+
+def _are_applied(commands: Sequence[UavCommand]) -> bool:
+    """Raises Refused where one of them has failed or expired."""
+    states = UavCommand.objects.filter(pk__in=[command.pk for command in commands]).select_related("uav")
+    for command in states:
+        if command.state in (CommandState.FAILED, CommandState.EXPIRED):
+            raise refuse("command_failed", _("%(uav)s did not take a command.") % {"uav": command.uav.name})
+    return all(command.state == CommandState.APPLIED for command in states)
+
+
+def _is_over(mission: Mission) -> bool:
+    return Mission.objects.filter(pk=mission.pk, state=MissionState.COMPLETED).exists()
+
+
+def remove_demo_data(*, organisation: Organisation, actor: User) -> dict[str, int]:
+    """End the simulated flights, and delete the demo missions with their records, the demo UAVs that no other mission has, and types and
+    bases of the demo region that are left without a UAV. Assets and zones stay. Returns how many missions and UAVs went.
+    """
+    with transaction.atomic():
+        job = open_demo_job(organisation)
+        missions = Mission.objects.filter(organisation=organisation, is_demo=True)
+        for simulation in Simulation.objects.filter(mission__in=missions, state__in=PRESENT):
+            end_simulation(simulation=simulation, actor=actor)
+        if job is not None:
+            Job.objects.filter(pk=job.pk).update(cancel_requested_at=timezone.now())
+        names = list(missions.values_list("name", flat=True))
+        UavCommand.objects.filter(Q(mission__in=missions) | Q(approval__mission__in=missions)).delete()
+        missions.delete()
+        uavs = Uav.objects.filter(organisation=organisation, is_demo=True, mission_uavs=None)
+        uav_names = list(uavs.values_list("name", flat=True))
+        Uav.objects.filter(pk__in=list(uavs.values_list("pk", flat=True))).delete()
+        type_names = {uav.type_name for base in BASES for uav in base.uavs}
+        UavType.objects.filter(organisation=organisation, name__in=type_names, uavs=None).delete()
+        Base.objects.filter(organisation=organisation, name__in=[base.name for base in BASES], uavs=None).delete()
+        gone = {"missions": len(names), "uavs": len(uav_names)}
+        record_change(
+            organisation=organisation, actor=actor, action="delete", subject_type="demo-data", subject_id=organisation.pk,
+            before={"missions": names, "uavs": uav_names},
+        )  # fmt: skip
+    return gone

@@ -1,0 +1,56 @@
+"""It is on the ground where its flight does not end: crashed, or landed by itself. Only a person closes this alert, with a reason."""
+
+import math
+from collections.abc import Iterable
+
+from inspection.geodesy import LonLat
+from telemetry.alerting.detector import Detector
+from telemetry.alerting.finding import CRITICAL, Finding
+from telemetry.alerting.memory import position_of
+from telemetry.alerting.route_line import RouteLine
+from telemetry.alerting.situation import Situation
+
+CODE = "down-off-plan"
+WORDS = (
+    "%(uav)s is on the ground %(metres)s m from where its flight begins or ends, last at %(place)s: it has crashed, or landed by itself."
+)
+AWAY_M = 30.0  # of the places at which it was planned to stand; GPS and a landing by hand stay well within
+NOT_STARTED = frozenset({"arm"})
+TOLD_TO = frozenset({"land"})  # by ourselves, and nobody has to be told
+
+
+def detect(situation: Situation) -> Iterable[Finding] | None:
+    """None where nothing is found: what is open stays open."""
+    newest, model = situation.uav.newest, situation.model
+    if newest is None or model is None or not situation.is_known_down or not _was_started(situation):
+        return None
+    position = position_of(newest)
+    if position is None:
+        return None
+    away_m = away_from_plan_m(model.line, position)
+    return None if away_m < AWAY_M else [finding(situation.uav.name, situation.uav.flight, position, away_m)]
+
+
+def finding(name: str, flight: int, position: LonLat, away_m: float) -> Finding:
+    values = {"uav": name, "metres": round(away_m), "place": f"{position.lon:.5f}, {position.lat:.5f}"}
+    details = {"position": [position.lon, position.lat], "away_m": round(away_m, 1), "flight": flight}
+    return Finding(CODE, CRITICAL, WORDS, values, subject=str(flight), details=details)
+
+
+def away_from_plan_m(line: RouteLine, position: LonLat) -> float:
+    """From the nearest place at which it was planned to stand on the ground."""
+    stands = [line.vertices[0], line.vertices[-1], *(line.vertices[place] for place in line.charges_at)]
+    here = line.east_north(position)
+    return min(math.dist(here, place) for place in stands)
+
+
+def _was_started(situation: Situation) -> bool:
+    order = situation.order
+    if order is None:
+        return situation.memory.was_in_flight
+    if order.kind in TOLD_TO or order.kind in NOT_STARTED:
+        return False
+    return order.done_s is not None or situation.memory.was_in_flight
+
+
+DETECTOR = Detector(CODE, detect, raise_after_s=2.0, clear_after_s=0.0, needs_flight=False)

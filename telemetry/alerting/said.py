@@ -1,0 +1,37 @@
+"""What a vehicle says in words (STATUSTEXT), as far as alerts rest on it or quote it."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+KEPT_S = 600.0  # for which a word of the battery counts where nothing else speaks of it
+BEFORE_S, AFTER_S = 15.0, 10.0  # of a change of mode: words that may give its reason
+MOST_QUOTED = 3
+_BATTERY = re.compile(r"\bbatt", re.IGNORECASE)
+_WORSE = re.compile(r"critical|emergency|dangerous|fail", re.IGNORECASE)
+_LOW = re.compile(r"\blow\b|empty|unhealthy", re.IGNORECASE)
+
+
+@dataclass(frozen=True, slots=True)
+class Said:
+    """A warning or worse, by the server's clock."""
+
+    at_s: float
+    text: str
+
+
+def quoted(said: Sequence[Said], from_s: float, to_s: float) -> str:
+    """The last few that were received between two moments, the newest last; empty for none."""
+    texts = dict.fromkeys(word.text for word in said if from_s <= word.at_s <= to_s)
+    return "; ".join(list(texts)[-MOST_QUOTED:])
+
+
+def words_of_battery(said: Sequence[Said], now_s: float) -> Said | None:
+    """The newest that says that the battery is low or worse."""
+    about = [word for word in said if now_s - word.at_s <= KEPT_S and _BATTERY.search(word.text)]
+    return next((word for word in reversed(about) if _LOW.search(word.text) or is_worse(word)), None)
+
+
+def is_worse(word: Said) -> bool:
+    """Than low."""
+    return _WORSE.search(word.text) is not None

@@ -1,0 +1,106 @@
+"""Which addresses a UAV is answered at: the one it is believed to have, and others that bring the same signed frames or later ones.
+
+A signature tells who made a frame, not who brought it: whoever listens on the UAV's network can send a copy that arrives first.
+"""
+
+from collections import Counter, deque
+from dataclasses import dataclass, field
+
+from telemetry.gateway.peers import Peer
+
+MOVE_AFTER_S = 5.0  # for which another address alone must have brought frames to become the UAV's
+SAME_WITHIN_S = 2.0  # a copy that comes later is a replay
+MAX_ADDRESSES = 8
+MAX_RECENT = 512  # frames that are remembered, to know their copies
+
+
+@dataclass
+class Heard:
+    since_s: float
+    last_s: float
+
+
+@dataclass
+class Addresses:
+    """Of one UAV. Times are seconds since 1970. `copied`: which other address brought frames of the UAV as well, and when last."""
+
+    main: Peer | None = None
+    copied: tuple[str, float] | None = None
+    _heard: dict[Peer, Heard] = field(default_factory=dict)
+    _first: dict[tuple[str, int], tuple[Peer, float]] = field(default_factory=dict)  # who brought a frame first, and when
+    _order: deque[tuple[str, int]] = field(default_factory=deque)
+
+    def take(self, stream: str, timestamp: int, peer: Peer, now_s: float) -> None:
+        """A frame that is believed, and came for the first time."""
+        self._first[stream, timestamp] = (peer, now_s)
+        self._order.append((stream, timestamp))
+        if len(self._order) > MAX_RECENT:
+            self._first.pop(self._order.popleft(), None)
+        self._hear(peer, now_s)
+        self._move(now_s)
+
+    def copy(self, stream: str, timestamp: int, peer: Peer, now_s: float) -> bool:
+        """Whether a frame with a right signature, which was taken before, comes by a second address now."""
+        first = self._first.get((stream, timestamp))
+        if first is None or first[0] == peer or not 0 <= now_s - first[1] <= SAME_WITHIN_S:
+            return False
+        self._hear(peer, now_s)
+        self.copied = (peer.name if first[0] == self.main else first[0].name, now_s)
+        return True
+
+    def answered(self, now_s: float) -> list[Peer]:
+        """The main one first."""
+        if self.main is None:
+            return []
+        return [self.main, *(peer for peer, heard in self._heard.items() if peer != self.main and not _is_silent(heard, now_s))]
+
+    def believe(self, peer: Peer) -> None:
+        """Where nothing is signed there is one address alone."""
+        self.forget()
+        self.main = peer
+
+    def forget(self) -> None:
+        self.main = self.copied = None
+        self._heard.clear()
+        self._first.clear()
+        self._order.clear()
+
+    def _hear(self, peer: Peer, now_s: float) -> None:
+        heard = self._heard.get(peer)
+        if heard is not None and not _is_silent(heard, now_s):
+            heard.last_s = now_s
+        elif heard is not None or self._has_room(peer, now_s):
+            self._heard[peer] = Heard(now_s, now_s)
+
+    def _has_room(self, newcomer: Peer, now_s: float) -> bool:
+        """Make some where a host has several addresses more than the newcomer's: many ports of one must not keep out another."""
+        self._heard = {peer: heard for peer, heard in self._heard.items() if peer == self.main or not _is_silent(heard, now_s)}
+        if len(self._heard) < MAX_ADDRESSES:
+            return True
+        hosts = Counter(_host(peer) for peer in self._heard)
+        host, number = hosts.most_common(1)[0]
+        if number <= hosts[_host(newcomer)] + 1:
+            return False
+        del self._heard[next(peer for peer in reversed(self._heard) if _host(peer) == host and peer != self.main)]
+        return True
+
+    def _move(self, now_s: float) -> None:
+        """To the address that was heard for longest, once nothing came from the main one for a while."""
+        main = None if self.main is None else self._heard.get(self.main)
+        if main is not None and not _is_silent(main, now_s):
+            return
+        others = [(heard.since_s, peer) for peer, heard in self._heard.items() if peer != self.main and not _is_silent(heard, now_s)]
+        since_s, peer = min(others, key=lambda other: other[0], default=(now_s, None))
+        if peer is not None and (self.main is None or now_s - since_s >= MOVE_AFTER_S):
+            if self.main is not None:
+                self._heard.pop(self.main, None)
+            self.main = peer
+
+
+def _is_silent(heard: Heard, now_s: float) -> bool:
+    """Also where our clock of the day was set back since."""
+    return abs(now_s - heard.last_s) >= MOVE_AFTER_S
+
+
+def _host(peer: Peer) -> str:
+    return peer.name.rpartition(":")[0]

@@ -1,0 +1,48 @@
+"""UAVs that are down where their flights do not end: reported at once, and until somebody closes it."""
+
+from uuid import UUID
+
+from django.db import transaction
+from django.utils import timezone
+
+from inspection.geodesy import LonLat
+from missions.models import Approval, Uav
+from telemetry.alerting.detectors import down
+from telemetry.models import Alert, AlertLevel, AlertNote
+from telemetry.selectors.alerts import BY_PERSON
+from telemetry.services.alerts import CLOSED, alert_was_closed, note_alert, open_alert, step
+from telemetry.services.approved_flights import flight_model
+from workspace.models import User
+
+
+class ClosedByItself(Exception):
+    """An alert that is over when its cause is gone is closed by nobody."""
+
+
+def tell_of_failed_flight(*, uav_id: int, approval_id: UUID, flight: int) -> None:
+    """A flight whose companion computer has reported that it failed, of a UAV that is not where it begins or ends."""
+    model, uav = flight_model(approval_id, uav_id, flight), Uav.objects.get(pk=uav_id)
+    position = LonLat(*uav.location.coords[:2])
+    if model is None or (away_m := down.away_from_plan_m(model.line, position)) < down.AWAY_M:
+        return
+    found = down.finding(uav.name, flight, position, away_m)
+    open_alert(
+        uav=uav, level=AlertLevel(found.level), code=found.code, message=found.message, values=found.values, details=found.details,
+        mission=Approval.objects.select_related("mission").get(pk=approval_id).mission, subject=found.subject,
+    )  # fmt: skip
+
+
+def close_down_alert(*, alert: Alert, actor: User, reason: str) -> AlertNote | None:
+    """A person says what became of the UAV. None for one that is closed already. Raises ClosedByItself for any other alert."""
+    if alert.code != down.CODE:
+        raise ClosedByItself
+    now = timezone.now()
+    with transaction.atomic():
+        held = Alert.objects.select_for_update().get(pk=alert.pk)
+        if held.closed_at is not None:
+            return None
+        held.closed_at, held.close_reason, held.revision = now, BY_PERSON, held.revision + 1
+        held.course = [*held.course, step(CLOSED, now, reason=BY_PERSON, by=actor.get_full_name() or actor.username)]
+        held.save(update_fields=["closed_at", "close_reason", "revision", "course"])
+        alert_was_closed(held, actor, reason)
+        return note_alert(alert=held, actor=actor, text=reason)

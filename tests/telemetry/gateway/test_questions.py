@@ -1,0 +1,85 @@
+"""Which messages a vehicle is asked for: by intervals, by streams only where intervals bring nothing, and within a budget."""
+
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from telemetry.gateway.greeting import FRAME_BYTES, INTERVALS_S, LONGEST_STRETCH, intervals_s
+from telemetry.gateway.questions import ASK_AGAIN_S, Questions
+from telemetry.ground_station.flavour import Flavour
+from telemetry.ground_station.vehicle_state import VehicleState
+
+POSITION, BATTERY = mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mavlink.MAVLINK_MSG_ID_BATTERY_STATUS
+WANTED = set(intervals_s(Flavour.ARDUPILOT, 0.0))
+
+
+def copter() -> VehicleState:
+    state = VehicleState(7, flavour=Flavour.ARDUPILOT, firmware=(4, 6, 0))
+    state.home = state.position
+    return state
+
+
+def asked(messages: list) -> tuple[set[int], list[int]]:
+    """Messages by intervals, and whether streams are started (1) or stopped (0)."""
+    intervals = {int(m.param1) for m in messages if m.get_type() == "COMMAND_LONG" and m.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL}
+    return intervals, [m.start_stop for m in messages if m.get_type() == "REQUEST_DATA_STREAM"]
+
+
+def hear(questions: Questions, now_s: float, *numbers: int) -> None:
+    for number in numbers:
+        questions.receive(mavlink.mavlink_map[number](*[0] * len(mavlink.mavlink_map[number].fieldnames)), now_s)
+
+
+def refusal() -> object:
+    return mavlink.MAVLink_command_ack_message(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_RESULT_UNSUPPORTED)
+
+
+def test_an_ardupilot_is_asked_for_intervals_and_its_streams_are_stopped_before() -> None:
+    questions = Questions()
+    messages = questions.due(copter(), 100.0, has_position=False)
+    assert asked(messages) == (WANTED, [0])
+    kinds = [message.get_type() for message in messages]
+    assert kinds.index("REQUEST_DATA_STREAM") < kinds.index("COMMAND_LONG")
+    for second in range(1, 300):
+        hear(questions, 100.0 + second, *WANTED)
+        assert asked(questions.due(copter(), 100.0 + second, has_position=True)) == (set(), [])
+
+
+def test_a_message_that_does_not_come_is_asked_for_again_by_itself_ever_more_rarely() -> None:
+    questions, times = Questions(), []
+    questions.due(copter(), 0.0, has_position=False)
+    for second in range(1, 200):
+        hear(questions, float(second), *(WANTED - {BATTERY}))
+        intervals, streams = asked(questions.due(copter(), float(second), has_position=True))
+        assert intervals <= {BATTERY} and not streams
+        times += [second] if intervals else []
+    assert times and len(times) <= 6 and times[-1] - times[-2] > times[1] - times[0]
+
+
+def test_streams_are_started_where_intervals_are_refused() -> None:
+    questions = Questions()
+    questions.due(copter(), 0.0, has_position=False)
+    questions.receive(refusal(), 0.5)
+    assert asked(questions.due(copter(), ASK_AGAIN_S, has_position=False))[1] == [1]
+
+
+def test_streams_are_started_where_intervals_bring_no_position() -> None:
+    questions = Questions()
+    found = [asked(questions.due(copter(), ASK_AGAIN_S * round_, has_position=False))[1] for round_ in range(4)]
+    assert found == [[0], [], [1], [1]]
+
+
+def test_a_px4_is_never_asked_for_streams() -> None:
+    questions, state = Questions(), VehicleState(7, flavour=Flavour.PX4)
+    for second in range(0, 60, 5):
+        assert asked(questions.due(state, float(second), has_position=False))[1] == []
+
+
+def bytes_s(budget_bytes_s: float) -> float:
+    wanted = intervals_s(Flavour.ARDUPILOT, budget_bytes_s)
+    return sum((mavlink.mavlink_map[number].unpacker.size + FRAME_BYTES) / every_s for number, every_s in wanted.items())
+
+
+def test_a_budget_is_kept_as_long_as_positions_come_once_a_second() -> None:
+    assert intervals_s(Flavour.ARDUPILOT, 0.0)[POSITION] == INTERVALS_S[POSITION] == 0.2
+    assert 600.0 < bytes_s(0.0) < 1_500.0
+    assert bytes_s(400.0) <= 400.5
+    assert intervals_s(Flavour.ARDUPILOT, 1.0)[POSITION] == 0.2 * LONGEST_STRETCH == 1.0

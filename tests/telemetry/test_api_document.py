@@ -1,0 +1,50 @@
+"""docs/api.md: its examples run as they stand, against the real server, worker's code and websocket."""
+
+import re
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+from unittest import mock
+
+import pytest
+from django.conf import settings
+from django.utils import timezone
+
+from missions.tasks import solve_plan
+from tests.missions.worlds import world
+from tests.telemetry.live.conftest import closed_door, door, here, live_program, without_redis
+from tests.workspace.front_door import Door
+from tests.workspace.people import somebody
+from workspace.models import Role
+from workspace.services import create_api_token
+
+__all__ = ["closed_door", "door", "here", "live_program", "without_redis"]
+pytestmark = pytest.mark.django_db(transaction=True)
+DOCUMENT = Path(settings.BASE_DIR) / "docs" / "api.md"
+SECTIONS = ["Token", "Paging", "Errors", "Retries", "If-Match", "Jobs", "Uploads", "Live feed"]
+
+
+def examples() -> dict[str, str]:
+    """Return the Python of each section."""
+    sections = re.split(r"^## ", DOCUMENT.read_text(), flags=re.MULTILINE)[1:]
+    found = {section.partition("\n")[0]: "\n".join(re.findall(r"```python\n(.*?)```", section, re.DOTALL)) for section in sections}
+    return {title: code for title, code in found.items() if code}
+
+
+def run_here(task: str, *, args: list[str], retry: bool) -> None:
+    assert task == "missions.tasks.solve_plan"
+    solve_plan(*args)
+
+
+def test_every_example_of_the_document_runs(live_server: Any, here: Door) -> None:
+    world()
+    token = create_api_token(user=somebody(Role.ADMINISTRATOR), name="example", expires_at=timezone.now() + timedelta(hours=1))
+    assert list(examples()) == SECTIONS
+    names: dict[str, Any] = {}
+    with mock.patch("workspace.tasks.current_app.send_task", side_effect=run_here):
+        for title, code in examples().items():
+            own = code.replace("http://127.0.0.1:8000", live_server.url).replace("spw_...", token)
+            if title == "Live feed":
+                names["SERVER"] = f"http://127.0.0.1:{here.port}"
+            exec(compile(own, f"docs/api.md, {title}", "exec"), names)  # noqa: S102 - our own document
+    assert names["status"] == 200 or names["shown"]

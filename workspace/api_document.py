@@ -1,0 +1,105 @@
+"""The OpenAPI document: made once per version of the program, kept in a file, and sent as it is kept.
+
+Making it takes seconds of processor time. `manage.py make_api_document`, which `./run` and the image's build call, makes the files; a
+process that finds none of its version makes it once and keeps it.
+"""
+
+import gzip
+import hashlib
+import os
+import threading
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from django.conf import settings
+from django.http import HttpRequest, HttpResponse
+from django.utils import translation
+from django.utils.cache import get_conditional_response
+from django.views.decorators.http import require_safe
+from drf_spectacular.generators import SchemaGenerator
+from drf_spectacular.renderers import OpenApiJsonRenderer, OpenApiYamlRenderer
+
+APPS = ("config", "inspection", "missions", "operation", "simulation", "telemetry", "workspace")
+FORMS = {"yaml": OpenApiYamlRenderer, "json": OpenApiJsonRenderer}
+FORM_OF = {
+    "application/vnd.oai.openapi": "yaml",
+    "application/yaml": "yaml",
+    "application/vnd.oai.openapi+json": "json",
+    "application/json": "json",
+}
+
+_making = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Document:
+    """One form of the document, plain and packed."""
+
+    plain: bytes
+    packed: bytes
+    sha256: str
+
+
+@require_safe
+def api_document(request: HttpRequest) -> HttpResponse:
+    """Answer in YAML, or in JSON where that is asked for, with an ETag; nobody has to be signed in."""
+    media_type = request.get_preferred_type(list(FORM_OF)) or "application/vnd.oai.openapi"
+    document = stored(FORM_OF[media_type])
+    is_packed = "gzip" in request.headers.get("Accept-Encoding", "")
+    etag = f'"{document.sha256[:32]}{"-gz" if is_packed else ""}"'
+    answer = get_conditional_response(request, etag=etag) or HttpResponse(
+        document.packed if is_packed else document.plain, content_type=f"{media_type}; charset=utf-8"
+    )
+    if is_packed and answer.status_code == 200:
+        answer["Content-Encoding"] = "gzip"
+    answer["ETag"], answer["Vary"], answer["Cache-Control"] = etag, "Accept, Accept-Encoding", "public, no-cache"
+    return answer
+
+
+def stored(form: str) -> Document:
+    """The document in this form, "yaml" or "json"; of several askers at once one makes it and the others wait."""
+    with _making:
+        return _stored(form)
+
+
+@cache
+def _stored(form: str) -> Document:
+    path = Path(settings.STATIC_ROOT) / "api" / f"{version_of_the_program()}.{form}.gz"
+    try:
+        packed = path.read_bytes()
+        plain = gzip.decompress(packed)
+    except (OSError, EOFError):
+        plain = _made(form)
+        packed = gzip.compress(plain, mtime=0)
+        _keep(path, packed)
+    return Document(plain, packed, hashlib.sha256(plain).hexdigest())
+
+
+def version_of_the_program() -> str:
+    """A digest of the program's own sources."""
+    digest = hashlib.sha256()
+    for app in APPS:
+        for path in sorted((Path(settings.BASE_DIR) / app).rglob("*.py")):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:32]
+
+
+def _made(form: str) -> bytes:
+    with translation.override("en"):
+        schema = SchemaGenerator().get_schema(request=None, public=True)
+        rendered = FORMS[form]().render(schema, renderer_context={})
+        return rendered.encode() if isinstance(rendered, str) else rendered
+
+
+def _keep(path: Path, packed: bytes) -> None:
+    """For the processes beside and after this one; where nothing can be written each makes its own."""
+    written = path.with_suffix(f".{os.getpid()}")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        for older in path.parent.glob(f"*.{path.name.partition('.')[2]}"):
+            older.unlink(missing_ok=True)
+        written.write_bytes(packed)
+        written.rename(path)
+    except OSError:
+        written.unlink(missing_ok=True)
