@@ -17,7 +17,8 @@ REMEMBERED = timedelta(hours=1)  # for which it counts who was served
 def start_fair_job(*, job_id: UUID | str, max_running: int) -> Job | None:
     """Take the job that the message is about, or one of the same task whose organisation waits for its turn in its place.
 
-    None where each organisation that waits has `max_running` running jobs of the app: these wait until one of them ends.
+    None where none waits, and where each organisation that waits has `max_running` running jobs of the app: these wait until one of them
+    ends. A job whose worker was lost goes on before any other.
     """
     with transaction.atomic():
         with connection.cursor() as cursor:
@@ -25,7 +26,7 @@ def start_fair_job(*, job_id: UUID | str, max_running: int) -> Job | None:
         job = Job.objects.filter(pk=job_id).first()
         if job is None:
             return None
-        next_id = job.pk if job.state == JobState.RUNNING else _next_of(job, max_running)
+        next_id = job.pk if job.state == JobState.RUNNING and not job.is_held else _next_of(job, max_running)
         return None if next_id is None else start_job(job_id=next_id)
 
 

@@ -8,6 +8,7 @@ from django.contrib.auth.models import UserManager as DjangoUserManager
 from django.contrib.postgres.fields import ArrayField
 from django.db import models
 from django.db.models.functions import Now
+from django.utils import timezone
 from django.utils.crypto import salted_hmac
 from django.utils.translation import gettext_lazy as _
 
@@ -267,6 +268,11 @@ class Job(models.Model):
     @property
     def is_open(self) -> bool:
         return self.state in OPEN_STATES
+
+    @property
+    def is_held(self) -> bool:
+        """Whether a worker does it, whose lease has not run out."""
+        return self.state == JobState.RUNNING and self.lease_expires_at is not None and self.lease_expires_at > timezone.now()
 
 
 class AuditEntry(models.Model):

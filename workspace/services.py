@@ -148,7 +148,7 @@ def start_job(*, job_id: UUID | str) -> Job | None:
         job = Job.objects.select_for_update().filter(pk=job_id).first()
         if job is None or not job.is_open:
             return None
-        if job.state == JobState.RUNNING and job.lease_expires_at is not None and job.lease_expires_at > now:
+        if job.is_held:
             return None
         if job.cancel_requested_at is not None:
             confirm_cancelled(job=job)

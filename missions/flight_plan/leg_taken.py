@@ -96,26 +96,24 @@ def taken_in_wind(
     air_2 = east_mps * east_mps + north_mps * north_mps
     if air_2 > own.limit_mps * own.limit_mps:
         return np.inf, np.inf
+    along_mps, across_mps = east * east_mps + north * north_mps, east * north_mps - north * east_mps
     level_s = level_air_mps = 0.0
     if length_m > 0.0:
-        along_mps, across_mps = east * east_mps + north * north_mps, east * north_mps - north * east_mps
         ground_mps, level_air_mps = ground_and_air_speed(own.cruise_mps, own.limit_mps, along_mps, across_mps)
         if ground_mps == TOO_STRONG:
             return np.inf, np.inf
         level_s = length_m / ground_mps
     vertical_s = rise_m / own.climb_mps if rise_m > 0.0 else -rise_m / own.descent_mps
-    longer_s = max(vertical_s - level_s, 0.0)
     if len(table) == 0:
-        return level_s + longer_s, 0.0
-    joules = 0.0
-    if level_s > 0.0:
-        level_w = watts(table, LEVEL, level_air_mps, density)
-        joules = level_s * level_w
-        if rise_m > 0.0:  # what lifts the weight is paid beside the level flight, in which it costs more than in a hover
-            joules += (vertical_s - longer_s) * (watts(table, CLIMBING, level_air_mps, density) - level_w)
-    if longer_s > 0.0:
-        joules += longer_s * watts(table, CLIMBING if rise_m > 0.0 else LEVEL, math.sqrt(air_2), density)
-    return level_s + longer_s, joules
+        return max(level_s, vertical_s), 0.0
+    if vertical_s > level_s:  # the rise takes longer: slower along
+        air_mps = math.hypot(length_m / vertical_s - along_mps, across_mps) if length_m > 0.0 else math.sqrt(air_2)
+        return vertical_s, vertical_s * watts(table, CLIMBING if rise_m > 0.0 else LEVEL, air_mps, density)
+    level_w = watts(table, LEVEL, level_air_mps, density)
+    joules = level_s * level_w
+    if rise_m > 0.0:  # power between level flight and the full climb is a convex function of the climb: this is no less
+        joules += vertical_s * (watts(table, CLIMBING, level_air_mps, density) - level_w)
+    return level_s, joules
 
 
 @njit(cache=True, nogil=True)

@@ -28,7 +28,7 @@ def refuse_to_cut_off(uav: Uav, before: Mapping[str, Any]) -> None:
         changed.append("state")
     if not changed or (changed == ["mavlink_system_id"] and before["mavlink_system_id"] is None):  # one without an id reached nobody
         return
-    refuse_for(_reasons(uav, is_flight_one=is_retired)[:1])
+    refuse_for(_reasons(uav, is_flight_one=is_retired and not before["is_simulated"])[:1])
 
 
 def refuse_while_needed(uav: Uav) -> None:

@@ -55,7 +55,7 @@ class DemoData(APIView):
         operation_id="remove_demo_data",
         summary="Remove the demo missions with their records, and the demo UAVs",
         description="Simulated flights of demo missions end at once. UAVs that another mission has stay. Assets and zones stay.",
-        responses=DemoRemovedSerializer,
+        responses={200: DemoRemovedSerializer},
     )
     def delete(self, request: SignedInRequest) -> Response:
         return Response(remove_demo_data(organisation=request.user.organisation, actor=request.user))

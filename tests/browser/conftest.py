@@ -1,11 +1,13 @@
 """A whole installation started by ./run with the data of a region, and Chromium in front of it."""
 
 import json
+import math
 import os
 import shutil
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
@@ -20,6 +22,7 @@ from scripts.places import Places
 from scripts.system_packages import BROWSERS
 from tests.browser.pictures import HAS_PICTURES
 from tests.browser.regions import region
+from workspace.proof import PROOF_S
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
 # findings: the quickest flags of those that render WebGL in Debian's Chromium without a graphics card
@@ -32,6 +35,7 @@ expect.set_options(timeout=PATIENCE_MS)
 # The processor draws maps and the 3D view: with a sixteenth of the pixels a map's page takes half as much of its time. The layout stays.
 COARSE_CANVASES = "Object.defineProperty(window, 'devicePixelRatio', { get: () => 0.25 });"
 PICTURE_SETTLES_MS = 800  # for documentation alone: a change of theme reaches the map a few frames later
+LONGEST_TEST_S = 300.0
 PASSWORD = "inspect-the-lines"
 USERS = {"opal": "operator", "rory": "operator", "vera": "viewer", "cora": "curator", "ada": "administrator"}
 NEW_USERS = f"""
@@ -55,7 +59,7 @@ with connection.cursor() as cursor:
 
 @dataclass(frozen=True)
 class Site:
-    """Where it is, and the cookies of those who have come in: only the first of their tests goes through the door.
+    """Where it is, and who came in when, with their cookies: only the first of their tests within PROOF_S goes through the door.
 
     `does(code)` runs Python in the installation, for what no page can bring about. Vehicles speak to its gateway by UDP.
     """
@@ -63,7 +67,7 @@ class Site:
     address: str
     does: Callable[[str], None]
     gateway_port: int
-    cookies: dict[str, list[Any]] = field(default_factory=dict)
+    came_in: dict[str, tuple[float, list[Any]]] = field(default_factory=dict)
 
 
 def _free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
@@ -187,15 +191,18 @@ class Visitor:
         return page
 
     def signs_in(self, name: str, **how: object) -> Page:
-        """The page of missions; without the door where it has been passed before and nobody has closed the session since."""
-        page = self.opens("/", cookies=self.site.cookies.get(name), **how)  # type: ignore[arg-type]
+        """The page of missions; without the door where it was passed lately and nobody has closed the session since."""
+        since_s, cookies = self.site.came_in.get(name, (-math.inf, None))
+        if time.monotonic() - since_s > PROOF_S - LONGEST_TEST_S:  # what wants the password again, some minutes later
+            since_s, cookies = time.monotonic(), None
+        page = self.opens("/", cookies=cookies, **how)  # type: ignore[arg-type]
         if page.locator("form[action$='sign-in'], input[name=password]").count():
             page.get_by_label("User name").fill(name)
             page.get_by_label("Password").fill(PASSWORD)
             page.get_by_role("button", name="Sign in").click()
         expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
         page.locator("html[data-loaded]").wait_for(state="attached")  # the page listens to keys
-        self.site.cookies[name] = page.context.cookies()
+        self.site.came_in[name] = since_s, page.context.cookies()
         return page
 
     def _heard(self, message: ConsoleMessage) -> None:

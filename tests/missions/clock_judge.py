@@ -170,17 +170,19 @@ def _fly(
     for number, (length_m, way, middle_m, rise_m, point) in enumerate(steps):
         wind = wind_mps(request, middle_m)
         air = density(point["altitude_amsl_m"] or 0.0, request.conditions.temperature_c)
-        # A leg is straight. As far as the level flight takes, it rises in flight; what the rise takes longer is flown up or down in place.
-        left_s, lift_mps = abs(rise_m) / CLIMB_MPS, CLIMB_MPS if rise_m > 0.0 else 0.0
+        # A leg is straight: where the rise takes longer than the way, the UAV flies slower along it.
+        rise_s, lift_mps = abs(rise_m) / CLIMB_MPS, CLIMB_MPS if rise_m > 0.0 else 0.0
         if length_m > 0.01:
             flown = speeds_mps(uav, way, wind, point.get("speed_mps"))
             ground_mps, air_mps = flown or (1e-6, 0.0)  # no headway: it takes for ever, and the clock is seen to be wrong
             level_s = length_m / ground_mps
-            sloped_s = min(left_s, level_s)
-            spend(sloped_s, air_mps, lift_mps, air)
-            spend(level_s - sloped_s, air_mps, 0.0, air)
-            left_s -= sloped_s
-        spend(left_s, math.hypot(*wind), lift_mps, air)
+            if rise_s > level_s:
+                slow = length_m / rise_s / math.hypot(*way)
+                air_mps = math.hypot(slow * way[0] - wind[0], slow * way[1] - wind[1])
+            spend(rise_s, air_mps, lift_mps, air)
+            spend(max(level_s - rise_s, 0.0), air_mps, 0.0, air)
+        else:
+            spend(rise_s, math.hypot(*wind), lift_mps, air)
         hold_s, here_mps = (point["task"] or {}).get("hold_s", 0.0), math.hypot(*wind_mps(request, point["altitude_agl_m"]))
         if number == 0:
             spend(LIFTS_S + brakes_s(uav.cruise_speed_mps), math.hypot(*wind), 0.0, air)

@@ -94,7 +94,7 @@ def test_another_organisation_finds_nothing(mission: Mission, person: User) -> N
 
 
 def test_the_verdict_says_in_words_by_route_and_target_why(mission: Mission, person: User) -> None:
-    mission.mission_uavs.update(performance={"battery_wh": 10.7})
+    mission.mission_uavs.update(performance={"battery_wh": 11.1})
     rehearsal = rehearsed(mission, person, "calm")
     body = client_of(person).get(f"/api/v1/{path(mission)}/{rehearsal.pk}").json()
     verdict = body["runs"][0]["verdict"]

@@ -85,6 +85,18 @@ def test_one_that_was_heard_in_the_air_long_ago_is_not_in_flight(uav: Uav, kind:
     assert make(client_of(somebody(Role.OPERATOR)), uav, kind).status_code == 201
 
 
+@pytest.mark.parametrize(("is_simulated", "status"), [(False, 409), (True, 200)])
+def test_a_uav_that_flies_is_not_retired_unless_it_is_simulated(is_simulated: bool, status: int) -> None:
+    uav = linked_uav().uav
+    Uav.objects.update(is_simulated=is_simulated)
+    fly(uav)
+    answer = client_of(somebody(Role.ADMINISTRATOR)).patch(
+        f"/api/v1/uavs/{uav.pk}", {"state": "retired"}, content_type="application/json", headers={"If-Match": "*"}
+    )
+    assert answer.status_code == status
+    assert (Uav.objects.get().state == "retired") is is_simulated
+
+
 def test_a_token_of_a_person_makes_and_revokes_none(uav: Uav, kind: str) -> None:
     token = create_api_token(user=somebody(Role.ADMINISTRATOR), name="script", expires_at=timezone.now() + timedelta(days=1))
     client = Client(headers={"Authorization": f"Bearer {token}"})

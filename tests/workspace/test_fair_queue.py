@@ -56,6 +56,13 @@ def test_the_message_of_one_that_was_served_lately_takes_the_job_of_one_that_wai
 
 
 @pytest.mark.django_db
+def test_the_message_of_a_job_that_runs_takes_another_that_waits() -> None:
+    jobs = [*waiting(user_of("One"), 1), *waiting(user_of("Two"), 1)]
+    taken = [start_fair_job(job_id=job.pk, max_running=1) for job in reversed(jobs)]
+    assert [job and job.pk for job in taken] == [job.pk for job in jobs]
+
+
+@pytest.mark.django_db
 def test_jobs_of_another_app_and_of_another_task_are_not_taken() -> None:
     user = user_of("Many")
     plan, apply = waiting(user, 1, "missions.tasks.plan")[0], waiting(user_of("One"), 1, "inspection.tasks.apply_proposal")[0]

@@ -171,7 +171,7 @@ def test_a_tower_that_has_to_be_flown_over_counts() -> None:
     over, level = tall.costs([IRIS], [RETURN], Conditions()), EAST.costs([IRIS], [RETURN], Conditions())
     assert over.seconds.first[0, 0] == pytest.approx(level.seconds.first[0, 0], abs=0.01)
     performance = IRIS.performance
-    lifting_wh = 12 * (power_w(performance, climb_mps=2.5) - power_w(performance)) / 3600
+    lifting_wh = 12 * (power_w(performance, airspeed_mps=10, climb_mps=2.5) - power_w(performance, airspeed_mps=10)) / 3600
     assert over.wh.first[0, 0] - level.wh.first[0, 0] == pytest.approx(lifting_wh, rel=1e-2)
 
 
