@@ -122,7 +122,7 @@ ELME_VALLEY = Region(
     tower_label=r"[EHV]\d{3}-\d+",
     picture_line=r"H133-(\d+)",
     picture_towers="26.58,25.65,26.67,25.72",
-    sortie_battery_wh=240.0,
+    sortie_battery_wh=200.0,
     afternoon_utc="13:00",
     night_utc="16:10",
 )
@@ -157,7 +157,7 @@ COLUMBUS = Region(
     tower_label=r"Tower \d+ of \d+",
     picture_line=r"Tower (\d+) of 40",
     picture_towers="-83.0,39.90,-82.94,39.925",
-    sortie_battery_wh=280.0,
+    sortie_battery_wh=235.0,
     afternoon_utc="19:30",
     night_utc="23:10",
 )

@@ -107,6 +107,7 @@ def module(page: Page, name: str) -> str:
 def test_signing_out_tells_of_drafts_and_deletes_them(visitor: Visitor, picture: Picture) -> None:
     page = newcomer(visitor, "dora")
     page.goto("/missions/new")
+    page.locator("html[data-loaded]").wait_for(state="attached")  # the page listens to the name
     page.get_by_label("Name of the mission").fill("Half a plan")
     page.wait_for_function(f"() => {DRAFTS} === 1")
     page.get_by_role("button", name=re.compile("^Account of")).click()
