@@ -85,6 +85,9 @@ class DispatchInputSerializer(WhyInputSerializer):
 class CommandParametersSerializer(KnownFieldsSerializer):
     speed_mps = serializers.FloatField(required=False, help_text="over ground; of change-speed")
     altitude_relative_m = serializers.FloatField(required=False, help_text="above the place of take-off; of take-off")
+    out_of_slot = serializers.BooleanField(
+        required=False, help_text="of start, after 409 `start_slot`: take off although others in the air come near its route"
+    )
 
 
 class CommandInputSerializer(WhyInputSerializer):
@@ -98,6 +101,7 @@ class GivenParametersSerializer(serializers.Serializer):
     speed_mps = serializers.FloatField(required=False)
     altitude_relative_m = serializers.FloatField(required=False)
     flight = serializers.IntegerField(required=False, help_text="number of the flight whose mission is sent, from 1")
+    out_of_slot = serializers.BooleanField(required=False, help_text="it was asked for although others in the air come near its route")
 
 
 @extend_schema_field(GivenParametersSerializer)

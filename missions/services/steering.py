@@ -28,6 +28,7 @@ from missions.services.approval_checks import Look, look_at, look_that_counts
 from missions.services.flying import ON_ITS_WAY
 from missions.services.outbox import queue_command
 from missions.services.refused import Reason, refuse, refuse_for
+from missions.services.start_slots import OUT_OF_SLOT, reasons_to_wait
 from workspace.models import User
 
 SLOWEST_MPS = 0.5
@@ -38,7 +39,8 @@ BY_HAND = tuple(kind for kind in CommandKind if kind not in {CommandKind.UPLOAD_
 def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", parameters: dict[str, Any] | None = None) -> UavCommand:
     """Give one UAV a command, as part of the mission that it has in hand if there is one.
 
-    parameters: `speed_mps` over ground for a change of speed, `altitude_relative_m` above the take-off place for a take-off.
+    parameters: `speed_mps` over ground for a change of speed, `altitude_relative_m` above the take-off place for a take-off, `out_of_slot`
+    for a start although others in the air are near its route.
     Raises Refused.
     """
     if kind not in BY_HAND:
@@ -55,7 +57,7 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
         if kind in SETS_IN_MOTION:
             mission, approval = _to_move_for(uav, kind, mission, approval)
             if kind == CommandKind.START:
-                checked["flight"] = _flight_to_start(uav, mission, approval, look, timezone.now())
+                checked["flight"] = _flight_to_start(uav, mission, approval, look, timezone.now(), out_of_slot=OUT_OF_SLOT in checked)
         return queue_command(uav=uav, kind=kind, actor=actor, why=why, parameters=checked, mission=mission, approval=approval)
 
 
@@ -85,6 +87,8 @@ def _parameters(uav: Uav, kind: CommandKind, given: dict[str, Any]) -> dict[str,
         return {"speed_mps": _within("speed_mps", given, *speed_limits_mps(uav), "m/s")}
     if kind == CommandKind.TAKE_OFF:
         return {"altitude_relative_m": _within("altitude_relative_m", given, LOWEST_TAKE_OFF_M, settings.FLIGHT_RULES.max_agl_m, "m")}
+    if kind == CommandKind.START and set(given) == {OUT_OF_SLOT}:
+        return dict(given) if given[OUT_OF_SLOT] else {}
     if given:
         raise refuse("no_parameters", _("This command has no parameters."))
     return {}
@@ -113,19 +117,21 @@ def _to_move_for(uav: Uav, kind: CommandKind, mission: Mission | None, approval:
     return mission, approval
 
 
-def _flight_to_start(uav: Uav, mission: Mission, approval: Approval, look: Look | None, now: datetime) -> int:
+def _flight_to_start(uav: Uav, mission: Mission, approval: Approval, look: Look | None, now: datetime, *, out_of_slot: bool) -> int:
     """That is on the UAV, seen there, and due. Raises Refused."""
     values = {"uav": uav.name}
     last = UavCommand.objects.filter(uav=uav, axis=CommandAxis.MISSION).order_by("-sequence").first()
     if last is None or last.approval_id != approval.pk or last.kind != CommandKind.UPLOAD_MISSION or last.state != CommandState.APPLIED:
         raise refuse("not_loaded", _("%(uav)s does not have its mission yet.") % values)
     flight = int(last.parameters.get("flight", 1))
-    route = MissionUav.objects.select_related("route__mission_uav").get(mission=mission, uav=uav).route
+    route = MissionUav.objects.select_related("route__mission_uav", "route__mission").get(mission=mission, uav=uav).route
     if flight <= route.flights_flown:
         raise refuse("flown_already", _("%(uav)s has flown this flight.") % values)
     if flight == 1 and mission.departs_at is not None:
         _refuse_untimely(mission.departs_at + timedelta(seconds=route.departs_s), now, values)
     refuse_for(_reasons_for(route.mission_uav.sequence, look_that_counts(look, mission, now=now)))
+    if not out_of_slot:
+        refuse_for(reasons_to_wait(uav=uav, route=route, flight=flight, now=now))
     return flight
 
 

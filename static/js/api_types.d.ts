@@ -694,6 +694,8 @@ export interface components {
              * @description above the place of take-off; of take-off
              */
             altitude_relative_m?: number;
+            /** @description of start, after 409 `start_slot`: take off although others in the air come near its route */
+            out_of_slot?: boolean;
         };
         /**
          * @description * `safety` - safety
@@ -808,6 +810,12 @@ export interface components {
              */
             job: string | null;
             missions: number;
+            uavs: number;
+        };
+        DemoRemoved: {
+            /** @description deleted, with their records */
+            missions: number;
+            /** @description deleted */
             uavs: number;
         };
         DismissRequest: {
@@ -1436,6 +1444,8 @@ export interface components {
             altitude_relative_m?: number;
             /** @description number of the flight whose mission is sent, from 1 */
             flight?: number;
+            /** @description it was asked for although others in the air come near its route */
+            out_of_slot?: boolean;
         };
         GivenRoute: {
             /**
@@ -6734,6 +6744,7 @@ export type DayEnum = components['schemas']['DayEnum'];
 export type DaylightEvent = components['schemas']['DaylightEvent'];
 export type DeckSourceEnum = components['schemas']['DeckSourceEnum'];
 export type DemoData = components['schemas']['DemoData'];
+export type DemoRemoved = components['schemas']['DemoRemoved'];
 export type DismissRequest = components['schemas']['DismissRequest'];
 export type DispatchInputRequest = components['schemas']['DispatchInputRequest'];
 export type DrawnAreaRequest = components['schemas']['DrawnAreaRequest'];

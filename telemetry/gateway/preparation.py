@@ -11,6 +11,7 @@ from missions.mavlink.content import FlightLoad
 from missions.mavlink.frozen import TakeOff
 from missions.models import CommandKind, MissionState, UavCommand
 from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
+from missions.services.start_slots import reasons_to_carry_later
 from telemetry.gateway.begun_in_air import item_to_begin_with
 from telemetry.ground_station.flavour import RESTARTS, Flavour, Mode
 from telemetry.ground_station.leg import beside_leg
@@ -82,6 +83,10 @@ def task_of(command: UavCommand) -> Task | CannotCarry:
     if before != wanted:
         return CannotCarry("not-loaded", "The UAV does not hold this flight of the approved mission: send it first.")
     begun_by = approved.route.begun_by if command.kind == CommandKind.START else None
+    if command.kind == CommandKind.START:
+        to_wait = reasons_to_carry_later(command)
+        if to_wait:
+            return CannotCarry("start-slot", to_wait[0].message)
     return Task(order=Order(command.kind), take_off=approved.take_off, aboard=approved.load, before=before, begun_by=begun_by)
 
 

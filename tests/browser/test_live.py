@@ -133,7 +133,7 @@ def test_a_uav_that_is_silent_is_estimated_and_a_page_that_is_cut_off_says_so(
     mission, flyers = flight
     page = visitor.signs_in("opal")
     for uav in {command["uav"]["id"] for command in asks(page, f"/missions/{mission}/commands")["results"]}:
-        writes(page, "POST", f"/uavs/{uav}/commands", {"kind": "start"})
+        writes(page, "POST", f"/uavs/{uav}/commands", {"kind": "start", "parameters": {"out_of_slot": True}})
     opened(page, f"/missions/{mission}/fly")
     along_m = flies_until(page, lambda: page.locator(".map-flyer.measured").count() == 2, flyers, 300.0)
     kite = card(page, "Kite")

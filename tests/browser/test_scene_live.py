@@ -55,7 +55,7 @@ class Line:
 
 def starts(page: Page, mission: str) -> None:
     for uav in {command["uav"]["id"] for command in asks(page, f"/missions/{mission}/commands")["results"]}:
-        writes(page, "POST", f"/uavs/{uav}/commands", {"kind": "start"})
+        writes(page, "POST", f"/uavs/{uav}/commands", {"kind": "start", "parameters": {"out_of_slot": True}})
 
 
 def reading(page: Page, name: str) -> str:

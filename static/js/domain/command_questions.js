@@ -160,6 +160,26 @@ const ASKED = {
 };
 
 /**
+ * What is asked where a start is refused because others in the air come near its route.
+ *
+ * @param {string} name of the UAV
+ * @param {string} why in the server's words
+ * @returns {Omit<Question, "opener">}
+ */
+export const outOfSlotQuestion = (name, why) => ({
+  title: t("Start {name} outside its slot?", { name }),
+  lines: [
+    why,
+    t(
+      "Plans keep UAVs apart by their times. Started now, it is up to you to keep them apart: pause one, or have one return.",
+    ),
+  ],
+  keep: t("Wait"),
+  act: t("Start {name} all the same", { name }),
+  isDanger: true,
+});
+
+/**
  * What confirmAct asks.
  *
  * @param {AskedKind} kind

@@ -1,12 +1,13 @@
 /** What an operator tells UAVs from the live page. Each asks first; nothing acts at once. */
 
-import { ApiError, get, post } from "../api.js";
+import { ApiError, get } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
 import { LATE, questionOf } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
 import { flyingUavs } from "../domain/in_air.js";
 import { returnOf } from "../domain/own_return.js";
 import { confirmAct } from "../page/confirm.js";
+import { tellUav } from "../page/tell_uav.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
@@ -16,7 +17,6 @@ import { unheardLines } from "./unheard.js";
 /** @import { Answer } from "../api.js" */
 /** @import { Commanding, MonitorStore } from "./types.d.ts" */
 
-const AGAIN = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 /** @type {Record<"pause" | "return", { title: (uavs: number) => string, lines: string[], act: string, isBack: boolean }>} */
 const ALL = {
   pause: {
@@ -63,11 +63,11 @@ export function createCommanding(store) {
   const certainty = (uav) => certaintyOf(uav, store.state.now_ms);
 
   /** @param {LiveUav} uav @param {CommandKind} kind @param {Record<string, any>} [filled] what was filled in */
-  async function told(uav, kind, { why = "", ...parameters } = {}) {
+  async function told(uav, kind, filled = {}) {
     try {
-      await post(`/uavs/${uav.id}/commands`, { kind, why, parameters }, { headers: { "Idempotency-Key": AGAIN() } });
-      say(t("{act}: {name} is being told.", { act: KINDS[kind], name: uav.name }));
-      return true;
+      const isTold = await tellUav(uav.id, uav.name, kind, filled);
+      if (isTold) say(t("{act}: {name} is being told.", { act: KINDS[kind], name: uav.name }));
+      return isTold;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       toast(`${t("{name} was not told: {act}.", { name: uav.name, act: KINDS[kind] })} ${error.message}`);

@@ -84,6 +84,11 @@ export default {
   "It stops on its route and waits for Resume, as long as its battery lasts.":
     "Es bleibt auf seiner Route stehen und wartet auf Fortsetzen, solange der Akku reicht.",
   "Keep flying": "Weiterfliegen",
+  "Start {name} outside its slot?": "{name} außerhalb seines Zeitfensters starten?",
+  "Plans keep UAVs apart by their times. Started now, it is up to you to keep them apart: pause one, or have one return.":
+    "Pläne halten UAVs durch ihre Zeiten auseinander. Jetzt gestartet, müssen Sie sie auseinanderhalten: Halten Sie eines an, oder lassen Sie eines zurückkehren.",
+  Wait: "Warten",
+  "Start {name} all the same": "{name} trotzdem starten",
   "Pause {name}": "{name} pausieren",
   "Resume the flight of {name}?": "Den Flug von {name} fortsetzen?",
   "It flies on along its route from where it is.": "Es fliegt seine Route weiter, von da, wo es ist.",

@@ -8,6 +8,7 @@ import { LATE, questionOf, WHY } from "../../domain/command_questions.js";
 import { flyersOf, isFrozen, isOnItsWay, KINDS } from "../../domain/flying.js";
 import { returnLines, returnOf } from "../../domain/own_return.js";
 import { confirmAct } from "../../page/confirm.js";
+import { freshKey, tellUav } from "../../page/tell_uav.js";
 import { say } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { lengthText } from "../../units.js";
@@ -53,7 +54,6 @@ export function createFlying(store, { failed, page }) {
   };
 }
 
-const freshKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 /** The act is of the revision on the page, and done once. @param {MissionStore} store */
 const asSeen = ({ state: { mission } }) => ({
   headers: { "If-Match": `"${mission?.revision}"`, "Idempotency-Key": freshKey() },
@@ -239,10 +239,10 @@ async function command(acting, flyer, kind) {
   const returns = returnOf(acting.store.state.returns, flyer.place);
   const asked = await confirmAct(questionOf(kind, { ...flyer, returns }));
   if (!asked) return;
-  const { why = "", ...parameters } = asked;
-  await tried(acting, t("{name} was not told: {act}.", { name: flyer.name, act: KINDS[kind] }), async () => {
-    const headers = { "Idempotency-Key": freshKey() };
-    await post(`/uavs/${flyer.uav}/commands`, { kind, why, parameters }, { headers });
-    say(t("{act}: {name} is being told.", { act: KINDS[kind], name: flyer.name }));
+  const title = t("{name} was not told: {act}.", { name: flyer.name, act: KINDS[kind] });
+  await tried(acting, title, async () => {
+    if (await tellUav(flyer.uav, flyer.name, kind, asked)) {
+      say(t("{act}: {name} is being told.", { act: KINDS[kind], name: flyer.name }));
+    }
   });
 }

@@ -1,0 +1,127 @@
+"""Planned delays keep UAVs apart only if they are kept: a start beside one that is in the air waits for its time."""
+
+from datetime import timedelta
+
+import pytest
+from django.utils import timezone
+
+from missions.models import CommandKind, Mission, MissionUav, Route, UavCommand
+from missions.services.flying import FlightEnd, mark_flight_ended
+from missions.services.refused import Refused
+from missions.services.start_slots import reasons_to_carry_later, reasons_to_wait
+from missions.services.steering import command_uav
+from tests.missions.api import post
+from tests.missions.flights import an_operator, carry, dispatched, fleet
+from tests.missions.worlds import world
+from tests.workspace.people import client_of
+from workspace.models import User
+
+pytestmark = pytest.mark.django_db
+
+
+@pytest.fixture
+def person() -> User:
+    return an_operator()
+
+
+@pytest.fixture
+def crossing(person: User) -> tuple[Mission, list[MissionUav]]:
+    """Two UAVs whose routes cross and are kept apart by a delay; the one that departs first comes first."""
+    here, uavs = world(), fleet("Tern", "Kite")
+    mission = dispatched(person, uavs, here.towers[4:6])
+    carry(*uavs)
+    places = list(mission.mission_uavs.select_related("uav", "route").order_by("route__departs_s"))
+    assert places[1].route.departs_s - places[0].route.departs_s > 20.0
+    return mission, places
+
+
+def start(place: MissionUav, person: User) -> UavCommand:
+    return command_uav(uav=place.uav, kind=CommandKind.START, actor=person)
+
+
+def took_off(place: MissionUav, ago_s: float) -> None:
+    carry(place.uav)
+    UavCommand.objects.filter(uav=place.uav, kind=CommandKind.START).update(finished_at=timezone.now() - timedelta(seconds=ago_s))
+
+
+def test_one_that_was_planned_later_is_not_started_six_seconds_after_the_first(crossing, person) -> None:
+    _, (first, second) = crossing
+    start(first, person)
+    took_off(first, ago_s=6.0)
+    with pytest.raises(Refused) as error:
+        start(second, person)
+    (reason,) = error.value.reasons
+    assert (reason.code, reason.uav) == ("start_slot", second.sequence)
+    assert first.name in reason.message and "It can be started in" in reason.message
+    assert not UavCommand.objects.filter(uav=second.uav, kind=CommandKind.START).exists()
+
+
+def test_who_answers_for_it_starts_it_all_the_same(crossing, person) -> None:
+    _, (first, second) = crossing
+    start(first, person)
+    took_off(first, ago_s=6.0)
+    client, path = client_of(person), f"uavs/{second.uav_id}/commands"
+    asked = post(client, path, {"kind": "start"})
+    assert (asked.status_code, asked.json()["error"]["code"]) == (409, "start_slot")
+    assert post(client, path, {"kind": "start", "parameters": {"out_of_slot": False}}).status_code == 409
+    told = post(client, path, {"kind": "start", "parameters": {"out_of_slot": True}})
+    assert (told.status_code, told.json()["parameters"]) == (201, {"out_of_slot": True, "flight": 1})
+    assert reasons_to_carry_later(UavCommand.objects.get(pk=told.json()["id"])) == []
+    assert post(client, path, {"kind": "hold", "parameters": {"out_of_slot": True}}).json()["error"]["code"] == "no_parameters"
+
+
+def test_one_that_goes_on_in_the_air_waits_for_nobody(crossing, person) -> None:
+    _, (first, second) = crossing
+    start(first, person)
+    took_off(first, ago_s=6.0)
+    Route.objects.filter(mission_uav=second).update(begun_by=2)
+    second.route.refresh_from_db()
+    assert reasons_to_wait(uav=second.uav, route=second.route, flight=1, now=timezone.now()) == []
+
+
+def test_it_is_started_at_its_time(crossing, person) -> None:
+    _, (first, second) = crossing
+    start(first, person)
+    took_off(first, ago_s=second.route.departs_s - first.route.departs_s)
+    assert start(second, person)
+
+
+def test_one_that_is_about_to_take_off_counts_as_taking_off_now(crossing, person) -> None:
+    _, (first, second) = crossing
+    start(first, person)
+    with pytest.raises(Refused) as error:
+        start(second, person)
+    assert error.value.reasons[0].code == "start_slot"
+
+
+def test_one_that_is_down_is_in_nobodys_way(crossing, person) -> None:
+    mission, (first, second) = crossing
+    start(first, person)
+    took_off(first, ago_s=6.0)
+    mark_flight_ended(mission_id=mission.pk, uav_id=first.uav_id, flight=1, end=FlightEnd.FAILED)
+    assert start(second, person)
+
+
+def test_a_start_that_waited_for_its_link_is_looked_at_again_before_it_is_carried_out(crossing, person) -> None:
+    _, (first, second) = crossing
+    late = start(second, person)
+    assert reasons_to_carry_later(late) == []
+    UavCommand.objects.filter(pk=late.pk).update(created_at=timezone.now() - timedelta(seconds=20))
+    with pytest.raises(Refused):
+        start(first, person)
+    UavCommand.objects.filter(pk=late.pk).update(state="expired")
+    start(first, person)
+    took_off(first, ago_s=3.0)
+    UavCommand.objects.filter(pk=late.pk).update(state="queued")
+    late.refresh_from_db()
+    assert [reason.code for reason in reasons_to_carry_later(late)] == ["start_slot"]
+
+
+def test_routes_that_share_no_place_start_together(crossing, person) -> None:
+    _, (first, second) = crossing
+    for waypoint in Route.objects.get(mission_uav=second).waypoints.all():
+        waypoint.position.x += 1.0
+        waypoint.save()
+    start(first, person)
+    took_off(first, ago_s=6.0)
+    assert start(second, person)
