@@ -1,10 +1,12 @@
-"""Alerts after which the rest of a mission is planned anew and offered: a UAV is lost or comes back by itself, or its battery is short."""
+"""Alerts after which the rest of a mission is planned anew and offered: a UAV is lost, down off its plan or comes back by itself, or its
+battery is short.
+"""
 
 from collections.abc import Iterable
 from uuid import UUID
 
 from missions.services.replanning import suggest
-from telemetry.alerting.detectors import battery, link, mode_changed
+from telemetry.alerting.detectors import battery, down, link, mode_changed
 from telemetry.alerting.finding import CRITICAL, Finding
 from telemetry.alerting.modes import ModeKind, mode_kind
 
@@ -25,6 +27,8 @@ def code_of(finding: Finding) -> str | None:
     if finding.code == battery.CODE and finding.level == CRITICAL:
         return BATTERY_SHORT
     if finding.code == link.CODE and finding.level == CRITICAL:
+        return UAV_OUT
+    if finding.code == down.CODE:
         return UAV_OUT
     if finding.code == mode_changed.CODE and mode_kind(str(finding.details.get("mode") or "")) in COMES_DOWN:
         return UAV_OUT

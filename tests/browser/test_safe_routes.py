@@ -94,3 +94,18 @@ def test_what_does_not_fit_in_one_flight_is_shown_as_several(visitor: Visitor, p
     opens(page, mission)
     expect(page.get_by_role("list", name="Routes")).to_contain_text("flights")
     in_both_themes(page, picture, "plan-sorties")
+
+
+def test_on_a_phone_several_warnings_take_one_line(visitor: Visitor, picture: Picture) -> None:
+    page = visitor.signs_in("opal", size=(390, 844), touch=True)
+    mission = planned(page, "Out of range", uavs=[{"name": "Heron", "position": region.west, "max_range_m": 2_000.0}])
+    assert len(mission["plan"]["unassigned"]) > 1
+    opens(page, mission)
+    fold = page.locator(".notice-fold summary")
+    expect(fold).to_contain_text(re.compile(r"\d warnings"))
+    expect(page.get_by_text("is not reached.").first).to_be_hidden()
+    in_both_themes(page, picture, "plan-warnings-folded-phone")
+    fold.click()
+    expect(page.get_by_text("is not reached.").first).to_be_visible()
+    in_both_themes(page, picture, "plan-warnings-phone")
+    assert faults(page) == []

@@ -17,6 +17,7 @@ from tests.workspace.people import somebody
         ("battery-short", WARNING, {}, None),
         ("link-lost", CRITICAL, {}, "uav-out"),
         ("link-lost", WARNING, {}, None),
+        ("down-off-plan", CRITICAL, {}, "uav-out"),
         ("mode-changed", CRITICAL, {"mode": "RTL"}, "uav-out"),
         ("mode-changed", WARNING, {"mode": "LOITER"}, None),
         ("weather", ADVISORY, {}, None),

@@ -1,6 +1,7 @@
 /** Planning: priorities, who flies what, locks, how good a plan is. English → German; [one, other] where there is a plural. */
 
 export default {
+  "{count} warning": ["{count} Warnung", "{count} Warnungen"],
   "It takes {needed} Wh {there}, {missing} Wh more than the battery of {name} may give.":
     "{needed} Wh braucht es {there}, {missing} Wh mehr, als der Akku von {name} geben darf.",
   "It is {needed} {there}, {missing} more than the range of {name}.":

@@ -40,6 +40,7 @@ const STATE_WORDS = {
   aborted: t("Aborted"),
   failed: t("Failed"),
 };
+const phone = matchMedia("(max-width: 720px)");
 const MOST_CAUSES = 3;
 const MOST_UNREACHED = 3;
 /** @param {number} count */
@@ -247,9 +248,9 @@ function planNotices({ plan }, { actions, canPlan, askWhy }) {
   const more = unreached.length - MOST_UNREACHED;
   /** @param {string[]} keys @param {string} label @returns {WayOut[]} */
   const remove = (keys, label) => (canPlan ? [{ label, act: () => actions.removeTargets(keys) }] : []);
-  return [
-    (plan?.result.warnings ?? []).map(({ message }) => notice("warning", "triangle-alert", "", inWords(message))),
-    unreached
+  return folded([
+    ...(plan?.result.warnings ?? []).map(({ message }) => notice("warning", "triangle-alert", "", inWords(message))),
+    ...unreached
       .slice(0, MOST_UNREACHED)
       .map(({ target, sentence }) =>
         notice("warning", "triangle-alert", t("{target} is not reached.", { target: target.label }), sentence, [
@@ -268,6 +269,35 @@ function planNotices({ plan }, { actions, canPlan, askWhy }) {
           t("Remove all that are not reached"),
         ),
       ),
+  ]);
+}
+
+let isUnfolded = false; // on a phone, where several warnings take one line until somebody wants to read them
+
+/** @param {(HTMLElement | false)[]} notices @returns {Child[]} */
+function folded(notices) {
+  const shown = notices.filter((entry) => entry !== false);
+  if (!phone.matches || shown.length < 2) return shown;
+  return [
+    h(
+      "details",
+      {
+        class: "notice-fold",
+        open: isUnfolded,
+        /** @param {ToggleEvent} event */
+        ontoggle: (event) => {
+          isUnfolded = /** @type {HTMLDetailsElement} */ (event.currentTarget).open;
+        },
+      },
+      h(
+        "summary",
+        { class: "notice warning" },
+        icon("triangle-alert"),
+        h("p", {}, tn(shown.length, "{count} warning", "{count} warnings")),
+        icon("chevron-down", "small"),
+      ),
+      shown,
+    ),
   ];
 }
 
