@@ -49,7 +49,10 @@ class UavAdmin(_FleetAdmin):
     list_filter = ["state", "link", "is_simulated", "allows_unsigned", "uav_type", "base_name", "end_action", "organisation"]
     list_select_related = ["uav_type", "organisation"]
     search_fields = ["name", "base_name", "serial_number", "uav_type__name"]
-    readonly_fields = ["autopilot_return", "autopilot_return_read_at", "revision", "created_at", "updated_at"]
+    readonly_fields = [  # the first ones are changed on the page of the fleet, which guards flights
+        "state", "link", "mavlink_system_id", "allows_unsigned", "is_simulated", "is_demo",
+        "autopilot_return", "autopilot_return_read_at", "revision", "created_at", "updated_at",
+    ]  # fmt: skip
 
 
 @admin.register(UavType)

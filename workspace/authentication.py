@@ -14,7 +14,7 @@ from rest_framework.authentication import BaseAuthentication, SessionAuthenticat
 from rest_framework.exceptions import AuthenticationFailed
 from rest_framework.request import Request
 
-from workspace.models import ApiToken, Organisation, Role, User
+from workspace.models import ApiToken, Organisation, Role, TokenScope, User
 from workspace.prepared import prepared_rows
 from workspace.services import hash_token, note_use
 
@@ -44,10 +44,11 @@ def bearer_token(scope: dict[str, Any]) -> bytes | None:
     return authorization[7:].strip() if authorization[:7].lower() == b"bearer " else None
 
 
-def user_of_token(token: bytes) -> User | None:
-    """Whose token it is, if it is valid."""
+def reader_of_token(token: bytes) -> User | None:
+    """Whose token it is, if it is valid and may read."""
     found = _valid_token(token)
-    return found.user if found else None
+    may_read = found is not None and (found.scopes is None or TokenScope.READ in found.scopes)
+    return found.user if found is not None and may_read else None
 
 
 class Holder(NamedTuple):

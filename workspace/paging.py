@@ -4,9 +4,10 @@ import base64
 import binascii
 import json
 from dataclasses import dataclass
-from datetime import UTC, datetime, time
+from datetime import UTC, datetime, time, timedelta
 from typing import Any, Generic, TypeVar
 
+from django.conf import settings
 from django.core.exceptions import ValidationError as DjangoValidationError
 from django.db.models import Model, Q, QuerySet
 from django.utils.dateparse import parse_date, parse_datetime
@@ -44,9 +45,13 @@ def page_of(
 
 
 def changed_since(request: Request, queryset: QuerySet[Any, Row]) -> QuerySet[Any, Row]:
-    """Return the rows with an `updated_at` not before `?changed_since=`. Raises ApiProblem 400."""
+    """Return the rows with an `updated_at` not before `?changed_since=`, and those of a transaction that may have ended only since.
+
+    A row's `updated_at` is the beginning of its transaction, and imports have long ones: rows come twice rather than never. Raises
+    ApiProblem 400.
+    """
     since = asked_instant(request, "changed_since")
-    return queryset if since is None else queryset.filter(updated_at__gte=since)
+    return queryset if since is None else queryset.filter(updated_at__gte=since - timedelta(seconds=settings.CELERY_TASK_TIME_LIMIT))
 
 
 def asked_instant(request: Request, name: str) -> datetime | None:

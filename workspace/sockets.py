@@ -16,7 +16,7 @@ from django.db import Error as DatabaseError
 
 from operation.log_context import REQUEST_ID_HEADER, about, sane_request_id
 from operation.metrics import WEBSOCKET_MESSAGES, WEBSOCKETS
-from workspace.authentication import bearer_token, user_of_token
+from workspace.authentication import bearer_token, reader_of_token
 from workspace.browser_sessions import note_session
 from workspace.farewell import farewell_here
 from workspace.models import User
@@ -102,7 +102,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
         """Whoever listens, if they still may."""
         token = bearer_token(self.scope)
         if token is not None:
-            return await database_sync_to_async(user_of_token)(token)
+            return await database_sync_to_async(reader_of_token)(token)
         key = await database_sync_to_async(lambda: self.scope["session"].session_key)()
         if key is None:
             return None

@@ -3,7 +3,7 @@
 import json
 import zlib
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import shapely
@@ -74,11 +74,24 @@ def difference_of(
 ) -> ZoneDifference:
     """Compare the set's rows with what a file or a version says; edited rows are kept unless they are to be replaced.
 
-    A zone whose record could not be read does not vanish: nobody knows what the file says of it.
+    A zone whose record could not be read does not vanish: nobody knows what the file says of it. Where a file has several zones of its
+    identifier, which of them each record is cannot be told by their numbers: zones of the set stay as they are, and what differs from all
+    of them is new beside them.
     """
     found = ZoneDifference()
     held = {(zone.identifier, zone.layer): zone for zone in zone_set.zones.all()} if zone_set else {}
+    not_read = {name for record in unread for name in (record.identifier, record.name[:MAX_IDENTIFIER]) if name}
+    beside = {identifier: layer for identifier, layer in sorted(held) if identifier in not_read}  # the last layer of each
     for record in records:
+        if record.identifier in beside:
+            zone = next((zone for zone in held.values() if zone.identifier == record.identifier and says_the_same(zone, record)), None)
+            if zone is None:
+                beside[record.identifier] += 1
+                found.new.append(replace(record, layer=beside[record.identifier]))
+            else:
+                del held[zone.identifier, zone.layer]
+                found.unchanged += 1
+            continue
         zone = held.pop((record.identifier, record.layer), None)
         if zone is None:
             found.new.append(record)
@@ -90,7 +103,6 @@ def difference_of(
             found.kept.append((zone, record))
         else:
             found.changed.append((zone, record))
-    not_read = {name for record in unread for name in (record.identifier, record.name[:MAX_IDENTIFIER]) if name}
     for zone in held.values():
         if zone.identifier in not_read:
             found.unread.append(zone)

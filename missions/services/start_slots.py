@@ -1,82 +1,123 @@
 """Whether a UAV may be started now, beside those that are in the air: planned delays keep routes apart only if they are kept."""
 
+import math
 from dataclasses import replace
 from datetime import datetime, timedelta
 
 import numpy as np
 from django.conf import settings
-from django.db.models import Q
+from django.db import connection
+from django.db.models import Max, Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from missions.flight_plan.rules import SeparationRules
 from missions.flight_plan.separation import TimedRoute, conflicts, keep_apart
 from missions.flight_selectors import STILL_FLOWN, route_in_time
-from missions.models import OPEN_COMMANDS, CommandKind, CommandState, Route, Uav, UavCommand
+from missions.in_air_hooks import uavs_in_the_air
+from missions.models import CommandAxis, CommandKind, CommandState, Route, Uav, UavCommand
 from missions.services.flying import ON_ITS_WAY
 from missions.services.refused import Reason
 
+START_SLOT = "start-slot"  # what a command failed with
 OUT_OF_SLOT = "out_of_slot"  # a start's parameter: whoever gave it has answered that it is to take off all the same
+STARTS_LOCK = 0x05A7_0031  # advisory lock, with the organisation
+NOT_CONFIRMED = (CommandState.FAILED, CommandState.EXPIRED)
+METRES_PER_DEGREE = 111_195.0
 KEPT_SHARE = 0.5  # of the planned time between two UAVs, which has to be left after all that a start is late or early
 
 
-def reasons_to_wait(*, uav: Uav, route: Route, flight: int, now: datetime, given_at: datetime | None = None) -> list[Reason]:
-    """Return why this flight cannot start now beside the flights that were started, with how long it has to wait; empty where it may.
+def hold_starts(organisation_id: int) -> None:
+    """One start of an organisation is decided on at a time, to the end of the transaction."""
+    with connection.cursor() as cursor:
+        cursor.execute("SELECT pg_advisory_xact_lock(%s, %s)", [STARTS_LOCK, organisation_id])
 
-    given_at: of a start that was given already, so that those given later do not count until they are carried out. One that goes on in the
-    air does not take off.
+
+def reasons_to_wait(*, uav: Uav, route: Route, flight: int, now: datetime, given_at: datetime | None = None) -> list[Reason]:
+    """Return why this flight cannot start now beside those that are in the air, with how long it has to wait; empty where it may.
+
+    given_at: of a start that was given already, so that those given later do not count until they are sent. One that goes on in the air
+    does not take off.
     """
     if route.begun_by is not None:
         return []
     own = _since(route, flight, started_s=0.0)
-    others = [] if own is None else _in_the_air(uav, now, given_at)
-    if own is None or not others:
+    if own is None:
         return []
+    timely, untimely = _in_the_air(uav, now, given_at)
+    place = route.mission_uav.sequence
     planned = settings.SEPARATION_RULES
+    values = {"uav": uav.name}
+    for other in untimely:
+        if _share_an_area(own, other, planned.lateral_m):
+            words = _(
+                "%(other)s is in the air, not at the times of its plan, and in the area of the route of %(uav)s. Wait until that is down."
+            )
+            return [Reason("start_slot", words % {**values, "other": other.uav}, place)]
     rules = SeparationRules(planned.lateral_m, planned.vertical_m, KEPT_SHARE * planned.time_s)
-    found = conflicts([own], others, rules=rules)
+    found = conflicts([own], timely, rules=rules)
     if not found:
         return []
-    apart = keep_apart([own], others, rules=rules)
+    apart = keep_apart([own], timely, rules=rules)
     nearest = min(found, key=lambda encounter: (encounter.seconds, encounter.metres))
-    values = {"uav": uav.name, "other": nearest.uavs[1], "metres": f"{nearest.metres:.0f}", "seconds": f"{apart.delays_s[0]:.0f}"}
+    values |= {"other": nearest.uavs[1], "metres": f"{nearest.metres:.0f}", "seconds": f"{apart.delays_s[0]:.0f}"}
     if apart.unresolved:
         words = _("Started now, %(uav)s would come within %(metres)s m of %(other)s, which is in the air. Wait until that is down.")
     else:
         words = _(
             "Started now, %(uav)s would come within %(metres)s m of %(other)s, which is in the air. It can be started in %(seconds)s s."
         )
-    return [Reason("start_slot", words % values, route.mission_uav.sequence)]
+    return [Reason("start_slot", words % values, place)]
 
 
-def _in_the_air(uav: Uav, now: datetime, given_at: datetime | None) -> list[TimedRoute]:
-    """Flights of the organisation that were started and have not ended, in seconds from now; one that is about to start counts from now."""
+def _in_the_air(uav: Uav, now: datetime, given_at: datetime | None) -> tuple[list[TimedRoute], list[TimedRoute]]:
+    """Flights of the organisation that were started and have not ended, in seconds from now; one that is about to start counts from now.
+
+    First those that are where their plan has them by now, then those in the air of which that is not known: held, told to return or to
+    fly at another speed since, failed, aborted, or of a start that was sent and not confirmed.
+    """
     since = now - timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s)
-    about_to = Q(state__in=OPEN_COMMANDS) if given_at is None else Q(state__in=OPEN_COMMANDS, created_at__lt=given_at)
-    starts = (
+    waits = Q(state=CommandState.QUEUED) if given_at is None else Q(state=CommandState.QUEUED, created_at__lt=given_at)
+    starts = list(
         UavCommand.objects.filter(
-            about_to | Q(state=CommandState.APPLIED, finished_at__gt=since),
-            organisation=uav.organisation_id, kind=CommandKind.START, mission__state__in=ON_ITS_WAY, mission__deleted_at=None,
+            waits | Q(sent_at__gt=since), organisation=uav.organisation_id, kind=CommandKind.START, mission__isnull=False
         )
         .exclude(uav=uav)
+        .select_related("mission")
         .order_by("uav_id", "-sequence")
         .distinct("uav_id")
-    )  # fmt: skip
-    found = []
+    )
+    uav_ids = [start.uav_id for start in starts]
+    later = UavCommand.objects.filter(uav__in=uav_ids, sent_at__gt=since, axis__in=[CommandAxis.FLIGHT, CommandAxis.SPEED])
+    last = dict(later.values_list("uav_id").annotate(Max("sequence")))
+    in_the_air = uavs_in_the_air(uav_ids)
+    timely, untimely = [], []
     for start in starts:
         route = (
-            Route.objects.select_related("mission", "mission_uav")
-            .filter(mission=start.mission_id, mission_uav__uav=start.uav_id, has_failed=False, **STILL_FLOWN)
-            .first()
+            Route.objects.select_related("mission", "mission_uav").filter(mission=start.mission_id, mission_uav__uav=start.uav_id).first()
         )
         flight = int(start.parameters.get("flight", 1))
-        if route is None or flight <= route.flights_flown:
+        if route is None or route.geometry is None:
+            continue
+        has_ended = route.continued_by_id is not None or route.has_failed or flight <= route.flights_flown
+        is_off = start.mission.state not in ON_ITS_WAY or start.state in NOT_CONFIRMED or last.get(start.uav_id, 0) > start.sequence
+        if has_ended or is_off:
+            flown = _since(route, flight, started_s=0.0) if start.uav_id in in_the_air else None
+            untimely += [] if flown is None else [flown]
             continue
         started_s = 0.0 if start.finished_at is None else (start.finished_at - now).total_seconds()
         flown = _since(route, flight, started_s=started_s)
-        if flown is not None:
-            found.append(flown)
-    return found
+        timely += [] if flown is None else [flown]
+    return timely, untimely
+
+
+def _share_an_area(one: TimedRoute, other: TimedRoute, margin_m: float) -> bool:
+    """Whether the boxes about two routes come within the margin of each other: ways home are inside of them."""
+    low, high = one.position.min(axis=0), one.position.max(axis=0)
+    other_low, other_high = other.position.min(axis=0), other.position.max(axis=0)
+    north_deg = margin_m / METRES_PER_DEGREE
+    margin_deg = np.array([north_deg / max(math.cos(math.radians(low[1])), 0.01), north_deg])
+    return bool(((low - margin_deg <= other_high) & (other_low <= high + margin_deg)).all())
 
 
 def _since(route: Route, flight: int, *, started_s: float) -> TimedRoute | None:
@@ -111,8 +152,8 @@ def _flight_of(timed: TimedRoute, flight: int) -> TimedRoute:
 
 
 def reasons_to_carry_later(start: UavCommand) -> list[Reason]:
-    """The same for a start that was given some time ago and is about to be carried out."""
-    if start.parameters.get(OUT_OF_SLOT):
+    """The same for a start that was given some time ago and is about to be carried out; one that was sent may be in the air."""
+    if start.parameters.get(OUT_OF_SLOT) or start.sent_at is not None:
         return []
     route = (
         Route.objects.select_related("mission", "mission_uav")

@@ -28,7 +28,7 @@ from missions.services.approval_checks import Look, look_at, look_that_counts
 from missions.services.flying import ON_ITS_WAY
 from missions.services.outbox import queue_command
 from missions.services.refused import Reason, refuse, refuse_for
-from missions.services.start_slots import OUT_OF_SLOT, reasons_to_wait
+from missions.services.start_slots import OUT_OF_SLOT, hold_starts, reasons_to_wait
 from workspace.models import User
 
 SLOWEST_MPS = 0.5
@@ -130,6 +130,7 @@ def _flight_to_start(uav: Uav, mission: Mission, approval: Approval, look: Look 
     if flight == 1 and mission.departs_at is not None:
         _refuse_untimely(mission.departs_at + timedelta(seconds=route.departs_s), now, values)
     refuse_for(_reasons_for(route.mission_uav.sequence, look_that_counts(look, mission, now=now)))
+    hold_starts(uav.organisation_id)
     if not out_of_slot:
         refuse_for(reasons_to_wait(uav=uav, route=route, flight=flight, now=now))
     return flight

@@ -20,13 +20,14 @@ from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
 from missions.fleet_selectors import performance_of
 from missions.flight_plan.conditions import Conditions, WindLayer
-from missions.models import Base, CommandKind, CommandState, EndAction, Mission, MissionState, Uav, UavCommand, UavType
+from missions.models import Base, CommandKind, CommandState, EndAction, Mission, MissionState, MissionUav, Uav, UavCommand, UavType
 from missions.routing.problem import Objective, Task, TaskKind
 from missions.selectors import mission_of_organisation
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
 from missions.services.approval import approve_mission
 from missions.services.demo_uavs import create_demo_uavs
 from missions.services.dispatch import dispatch_mission
+from missions.services.flying import ON_ITS_WAY
 from missions.services.refused import refuse
 from missions.services.steering import command_uav
 from simulation.models import Simulation, SimulationState
@@ -42,6 +43,7 @@ FASTEST = 10.0  # times real time, of the flight that is to be over soon
 STEP_TIMEOUT_S = 120.0  # for a UAV to stand ready, to be loaded, to start
 FLIGHT_TIMEOUT_S = 480.0
 POLL_S = 0.5
+FROZEN_IN_FLIGHT = (MissionState.APPROVED, *ON_ITS_WAY)
 
 
 class OnProgress(Protocol):
@@ -213,11 +215,16 @@ def _is_over(mission: Mission) -> bool:
 
 def remove_demo_data(*, organisation: Organisation, actor: User) -> dict[str, int]:
     """End the simulated flights, and delete the demo missions with their records, the demo UAVs that no other mission has, and types and
-    bases of the demo region that are left without a UAV. Assets and zones stay. Returns how many missions and UAVs went.
+    bases of the demo region that are left without a UAV. Assets and zones stay. Returns how many missions and UAVs went. Raises Refused
+    while a real UAV may fly one of the missions.
     """
     with transaction.atomic():
         job = open_demo_job(organisation)
         missions = Mission.objects.filter(organisation=organisation, is_demo=True)
+        list(missions.select_for_update(no_key=True).values_list("pk"))
+        real = MissionUav.objects.filter(mission__in=missions, mission__state__in=FROZEN_IN_FLIGHT, uav__is_simulated=False)
+        for name in real.values_list("uav__name", flat=True)[:1]:
+            raise refuse("demo_in_flight", _("%(uav)s flies a demo mission. Revoke or abort it first.") % {"uav": name})
         for simulation in Simulation.objects.filter(mission__in=missions, state__in=PRESENT):
             end_simulation(simulation=simulation, actor=actor)
         if job is not None:

@@ -8,6 +8,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions.models import Mission, Uav
+from missions.views.problems import refusals
 from simulation.services.demo_missions import has_demo_region, open_demo_job, remove_demo_data, want_demo_missions
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
@@ -55,10 +56,11 @@ class DemoData(APIView):
         operation_id="remove_demo_data",
         summary="Remove the demo missions with their records, and the demo UAVs",
         description="Simulated flights of demo missions end at once. UAVs that another mission has stay. Assets and zones stay.",
-        responses={200: DemoRemovedSerializer},
+        responses={200: DemoRemovedSerializer, 409: OpenApiResponse(description="A real UAV may fly one of them.")},
     )
     def delete(self, request: SignedInRequest) -> Response:
-        return Response(remove_demo_data(organisation=request.user.organisation, actor=request.user))
+        with refusals():
+            return Response(remove_demo_data(organisation=request.user.organisation, actor=request.user))
 
 
 def _found(organisation: Organisation) -> dict[str, object]:

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
 
+from inspection.geodesy import LonLat
 from telemetry.alerting.energy import EnergyPlan
 from telemetry.alerting.route_line import RouteLine
 
@@ -49,12 +50,16 @@ class Held:
 
 @dataclass(frozen=True, slots=True)
 class FlightModel:
-    """What was approved of the flight, worked out once. `max_airspeed_mps` is the highest that the UAV flies through the air."""
+    """What was approved of the flight, worked out once. `max_airspeed_mps` is the highest that the UAV flies through the air.
+
+    rally_points: where it may land by itself beside its home.
+    """
 
     line: RouteLine
     energy: EnergyPlan | None
     max_airspeed_mps: float
     reserve_percent: float
+    rally_points: tuple[LonLat, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -29,7 +29,7 @@ from missions.services.commands import (
 from telemetry.gateway.blind import send_blind
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.preparation import CannotCarry, Task, as_begun, reason_not_to, task_of
+from telemetry.gateway.preparation import CannotCarry, Task, as_begun, reason_not_to, reason_not_to_start, task_of
 from telemetry.gateway.reading import OTHER_LIST_READ, ask_for_the_present, read_aboard
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
 from telemetry.gateway.vehicle_limits import reason_not_to_load, warnings_of
@@ -134,6 +134,10 @@ class Carriage:
     async def _order(self, task: Task) -> None:
         assert task.order is not None  # noqa: S101 - of two only one is None
         if task.aboard is not None and not await self._is_aboard(task.aboard, task.before):
+            return
+        too_near = await self._surely(reason_not_to_start, self.command) if self.command.kind == CommandKind.START else None
+        if too_near is not None:  # while the list was read, somebody else has taken off
+            await self._refuse(too_near)
             return
         if not await self._surely(note_sent, self.command.pk, **self._fence):
             await self._end(note_released)

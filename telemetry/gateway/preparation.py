@@ -11,7 +11,7 @@ from missions.mavlink.content import FlightLoad
 from missions.mavlink.frozen import TakeOff
 from missions.models import CommandKind, MissionState, UavCommand
 from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
-from missions.services.start_slots import reasons_to_carry_later
+from missions.services.start_slots import START_SLOT, reasons_to_carry_later
 from telemetry.gateway.begun_in_air import item_to_begin_with
 from telemetry.ground_station.flavour import RESTARTS, Flavour, Mode
 from telemetry.ground_station.leg import beside_leg
@@ -57,6 +57,12 @@ class Task:
     known: Sequence[FlightLoad] = ()
 
 
+def reason_not_to_start(start: UavCommand) -> CannotCarry | None:
+    """Others that are in the air come near its route."""
+    to_wait = reasons_to_carry_later(start)
+    return CannotCarry(START_SLOT, to_wait[0].message) if to_wait else None
+
+
 def task_of(command: UavCommand) -> Task | CannotCarry:
     """Reads the database."""
     before = loaded_on(command.uav_id)
@@ -84,9 +90,9 @@ def task_of(command: UavCommand) -> Task | CannotCarry:
         return CannotCarry("not-loaded", "The UAV does not hold this flight of the approved mission: send it first.")
     begun_by = approved.route.begun_by if command.kind == CommandKind.START else None
     if command.kind == CommandKind.START:
-        to_wait = reasons_to_carry_later(command)
-        if to_wait:
-            return CannotCarry("start-slot", to_wait[0].message)
+        too_near = reason_not_to_start(command)
+        if too_near is not None:
+            return too_near
     return Task(order=Order(command.kind), take_off=approved.take_off, aboard=approved.load, before=before, begun_by=begun_by)
 
 

@@ -9,8 +9,9 @@ from typing import Any
 from uuid import UUID
 
 from django.db import connection
+from django.db.models import Exists, OuterRef
 
-from missions.models import OPEN_COMMANDS, CommandAxis, CommandState, Mission, Uav
+from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandState, Mission, Uav, UavCommand
 from telemetry.alerting.said import KEPT_S, Said
 from telemetry.alerting.surroundings import LinkFacts, Order
 from telemetry.estimation.own_time import believed_rate
@@ -56,8 +57,14 @@ def said_by(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[Said, ...
 
 
 def closed_by_people(pairs: Collection[tuple[int, UUID]], code: str) -> set[tuple[int, UUID, str]]:
-    """UAVs, missions and subjects whose alert of a code a person has closed."""
-    rows = Alert.objects.filter(code=code, uav__in={uav for uav, _ in pairs}, close_reason=BY_PERSON, mission__isnull=False)
+    """UAVs, missions and subjects whose alert of a code a person has closed since the UAV was started last."""
+    started = UavCommand.objects.filter(
+        uav=OuterRef("uav"), mission=OuterRef("mission"), kind=CommandKind.START, state=CommandState.APPLIED,
+        finished_at__gt=OuterRef("closed_at"),
+    )  # fmt: skip
+    rows = Alert.objects.filter(
+        ~Exists(started), code=code, uav__in={uav for uav, _ in pairs}, close_reason=BY_PERSON, mission__isnull=False
+    )
     return {(uav, mission, subject) for uav, mission, subject in rows.values_list("uav_id", "mission_id", "subject") if uav and mission}
 
 

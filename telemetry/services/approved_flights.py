@@ -6,6 +6,7 @@ from uuid import UUID
 
 from django.conf import settings
 
+from inspection.geodesy import LonLat
 from missions.flight_plan.conditions import conditions_from_json
 from missions.flight_plan.performance import performance_from_json
 from missions.models import Approval
@@ -43,6 +44,9 @@ def flight_model(approval_id: UUID, uav_id: int, flight: int) -> FlightModel | N
         energy=plan,
         max_airspeed_mps=performance.max_airspeed_mps or route.cruise_speed_mps,
         reserve_percent=performance.reserve_percent,
+        rally_points=tuple(
+            LonLat(item.longitude_e7 / 1e7, item.latitude_e7 / 1e7) for item in (approved.load.rally if approved.load else ())
+        ),
     )
 
 

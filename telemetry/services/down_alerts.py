@@ -23,7 +23,7 @@ def tell_of_failed_flight(*, uav_id: int, approval_id: UUID, flight: int) -> Non
     """A flight whose companion computer has reported that it failed, of a UAV that is not where it begins or ends."""
     model, uav = flight_model(approval_id, uav_id, flight), Uav.objects.get(pk=uav_id)
     position = LonLat(*uav.location.coords[:2])
-    if model is None or (away_m := down.away_from_plan_m(model.line, position)) < down.AWAY_M:
+    if model is None or (away_m := down.away_from_plan_m(model.line, position, model.rally_points)) < down.AWAY_M:
         return
     found = down.finding(uav.name, flight, position, away_m)
     open_alert(

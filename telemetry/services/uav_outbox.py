@@ -12,6 +12,7 @@ from missions.given_selectors import Given, given_to
 from missions.models import OPEN_COMMANDS, CommandKind, CommandState, LinkKind, UavCommand
 from missions.services.commands import claim_commands, note_acknowledged, note_applied, note_failed, note_sent
 from missions.services.dispatch import ApprovedLoad, load_of
+from missions.services.start_slots import START_SLOT, reasons_to_carry_later
 from telemetry.models import AlertLevel, UavLink
 from telemetry.services.alerts import close_alert, open_alert
 
@@ -50,7 +51,12 @@ def handed_to(uav_id: int, given: Given) -> Given:
     if not given.has_unclaimed:
         return given
     for command in claim_commands(uav_ids=[uav_id], holder=HOLDER, lease_s=LEASE_S, limit=MOST_AT_ONCE, link=LinkKind.HTTP):
-        note_sent(command.pk, attempt=command.attempts, holder=HOLDER)
+        holding: dict[str, Any] = {"attempt": command.attempts, "holder": HOLDER}
+        to_wait = reasons_to_carry_later(command) if command.kind == CommandKind.START else []
+        if to_wait:
+            note_failed(command.pk, START_SLOT, to_wait[0].message, **holding)
+        else:
+            note_sent(command.pk, **holding)
     return given_to(uav_id)
 
 

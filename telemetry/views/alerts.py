@@ -90,6 +90,8 @@ class AlertNotes(APIView):
 
 
 class AlertClosing(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="close_alert",
         summary="Close the alert of a UAV that is down where its flight does not end, with what became of it",

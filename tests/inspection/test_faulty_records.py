@@ -111,3 +111,17 @@ def test_the_api_names_the_records_that_nobody_has_seen(tmp_path: Path, curator:
     accepted = client.post(address, {"parameters": {"seen": ["line 10"]}}, content_type="application/json")
     assert (accepted.status_code, accepted.json()["state"]) == (202, "applying")
     assert client.get(f"/api/v1/imports/{proposal.pk}/changes?action=not_read").json()["features"][0]["geometry"]["type"] == "Polygon"
+
+
+def test_of_several_zones_of_one_name_none_takes_the_place_of_another_that_cannot_be_read(tmp_path: Path, curator: User) -> None:
+    three = [("ED-R 12", SQUARE.format(degree)) for degree in (6, 7, 8)]
+    import_zones(path=openair(tmp_path, *three), set_name="National")
+    was = {zone.pk: zone.geometry.extent for zone in NoFlyZone.objects.all()}
+    path = openair(tmp_path, three[0], ("ED-R 12", broken(SQUARE.format(7))), three[2], ("ED-R 12", SQUARE.format(9)))
+    proposal = proposed(path, curator, leave_out_faulty=True)
+    assert {action: proposal.difference[action] for action in ("new", "changed", "vanished", "unchanged")} == {
+        "new": 1, "changed": 0, "vanished": 0, "unchanged": 2,
+    }  # fmt: skip
+    applied(proposal, curator, seen=[record["place"] for record in proposal.summary["not_read"]])
+    assert {zone.pk: zone.geometry.extent for zone in NoFlyZone.objects.filter(pk__in=was)} == was
+    assert NoFlyZone.objects.count() == 4

@@ -5,11 +5,14 @@ from datetime import timedelta
 import pytest
 from django.utils import timezone
 
-from missions.models import CommandKind, Mission, MissionUav, Route, UavCommand
+from missions.given_selectors import given_to
+from missions.models import CommandKind, Mission, MissionUav, Route, Uav, UavCommand
 from missions.services.flying import FlightEnd, mark_flight_ended
 from missions.services.refused import Refused
 from missions.services.start_slots import reasons_to_carry_later, reasons_to_wait
 from missions.services.steering import command_uav
+from telemetry.models import UavLink
+from telemetry.services.uav_outbox import handed_to
 from tests.missions.api import post
 from tests.missions.flights import an_operator, carry, dispatched, fleet
 from tests.missions.worlds import world
@@ -77,6 +80,50 @@ def test_one_that_goes_on_in_the_air_waits_for_nobody(crossing, person) -> None:
     Route.objects.filter(mission_uav=second).update(begun_by=2)
     second.route.refresh_from_db()
     assert reasons_to_wait(uav=second.uav, route=second.route, flight=1, now=timezone.now()) == []
+
+
+@pytest.mark.parametrize("is_in_air", [True, False])
+@pytest.mark.parametrize("told", ["hold", "expired", "aborted"])
+def test_one_that_is_not_where_its_plan_has_it_is_waited_for_while_it_is_in_the_air(crossing, person, told: str, is_in_air: bool) -> None:
+    _, (first, second) = crossing
+    start(first, person)
+    took_off(first, ago_s=1_000.0)
+    UavLink.objects.update_or_create(uav=first.uav, defaults={"is_in_air": is_in_air, "heard_at": timezone.now()})
+    if told == "hold":
+        hold = command_uav(uav=first.uav, kind=CommandKind.HOLD, actor=person)
+        UavCommand.objects.filter(pk=hold.pk).update(state="applied", sent_at=timezone.now(), finished_at=timezone.now())
+    elif told == "expired":
+        UavCommand.objects.filter(uav=first.uav, kind=CommandKind.START).update(state="expired", outcome_code="unconfirmed")
+    else:
+        first.route.has_failed = True
+        first.route.save()
+    reasons = reasons_to_wait(uav=second.uav, route=second.route, flight=1, now=timezone.now())
+    assert [reason.code for reason in reasons] == (["start_slot"] if is_in_air else [])
+    assert all("not at the times of its plan" in reason.message for reason in reasons)
+
+
+def test_a_start_that_was_sent_is_not_taken_back_for_its_slot(crossing, person) -> None:
+    _, (first, second) = crossing
+    late = start(second, person)
+    UavCommand.objects.filter(pk=late.pk).update(sent_at=timezone.now())
+    late.refresh_from_db()
+    with pytest.raises(Refused):
+        start(first, person)
+    assert reasons_to_carry_later(late) == []
+
+
+def test_a_companion_that_fetches_its_start_late_is_not_given_it(crossing, person) -> None:
+    _, (first, second) = crossing
+    Uav.objects.filter(pk=second.uav_id).update(link="http")
+    second.uav.refresh_from_db()
+    late = start(second, person)
+    UavCommand.objects.filter(pk=late.pk).update(created_at=timezone.now() - timedelta(seconds=20), state="expired")
+    start(first, person)
+    took_off(first, ago_s=3.0)
+    UavCommand.objects.filter(pk=late.pk).update(state="queued")
+    handed = handed_to(second.uav_id, given_to(second.uav_id))
+    late.refresh_from_db()
+    assert (late.state, late.outcome_code, handed.has_unclaimed) == ("failed", "start-slot", False)
 
 
 def test_it_is_started_at_its_time(crossing, person) -> None:

@@ -4,6 +4,7 @@ import math
 from datetime import timedelta
 
 import pytest
+from django.utils import timezone
 from django.utils.translation import override
 
 from missions.models import Approval, CommandKind, Mission, Uav, UavCommand, UavType
@@ -257,6 +258,23 @@ def test_a_uav_that_came_down_beside_its_route_is_told_until_a_person_closes_it(
     for second in range(61, 66):
         in_flight(second, uav, approval, memories, **fallen)
     assert open_ones() == [], "nobody is told again of what somebody has closed"
+    again = queue_command(uav=uav, kind=CommandKind.START, actor=person, mission=Mission.objects.get(pk=approval.mission_id))
+    UavCommand.objects.filter(pk=again.pk).update(state="applied", finished_at=timezone.now())
+    for second in range(66, 71):
+        in_flight(second, uav, approval, memories, **fallen)
+    assert open_ones() == [("down-off-plan", "critical")], "it was started again since"
+
+
+def test_a_uav_that_was_told_to_hold_on_the_ground_has_not_crashed(uav, approval):
+    place = seen(uav, approval).newest.measurement
+    away = {"longitude_deg": place.longitude_deg + 0.01, "is_armed": False, "is_in_air": False}
+    heard(uav, 0)
+    UavLink.objects.update(is_in_air=False)
+    command = queue_command(uav=uav, kind=CommandKind.HOLD, actor=an_operator(), mission=Mission.objects.get(pk=approval.mission_id))
+    UavCommand.objects.filter(pk=command.pk).update(state="applied", finished_at=at(0))
+    for second in range(1, 6):
+        in_flight(second, uav, approval, Memories(), **away)
+    assert open_ones() == []
 
 
 def test_a_uav_that_was_told_to_land_or_has_not_started_is_not_missed(uav, approval):

@@ -150,6 +150,7 @@ def test_reports_and_estimates_of_the_same_uavs_lock_nobody_out() -> None:
             cursor.execute("SELECT uav_id FROM telemetry_uavwatch ORDER BY uav_id FOR UPDATE")
             cursor.execute("UPDATE telemetry_uavwatch SET estimated = '{}', version = version + 1")
 
+    report(0)  # an UPDATE takes rows that came after its SELECT … FOR UPDATE in the order in which they lie
     threads = [threading.Thread(target=often, args=[write]) for write in (report, report, estimate, estimate)]
     for thread in threads:
         thread.start()

@@ -18,6 +18,7 @@ from django.utils.http import urlsafe_base64_encode
 from tests.missions.api import TERN, plan_body
 from tests.missions.worlds import world
 from tests.workspace.people import client_of, somebody
+from workspace.authentication import reader_of_token
 from workspace.models import SCOPES_OF_ROLE, ApiToken, Role, TokenScope, User
 from workspace.services import create_api_token
 
@@ -53,6 +54,8 @@ def send(client: Client, method: str, path: str, body: Any = None) -> tuple[int,
         ("post", "missions/00000000-0000-4000-8000-000000000000/dispatch", "fly"),
         ("post", "missions/00000000-0000-4000-8000-000000000000/abort", "fly"),
         ("post", "uavs/1/commands", "fly"),
+        ("post", "alerts/1/close", "fly"),
+        ("post", "alerts/1/acknowledge", "fly"),
         ("post", "simulations", "fly"),
         ("post", "assets", "curate"),
         ("post", "zones", "curate"),
@@ -185,3 +188,12 @@ def test_tokens_from_before_keep_what_their_owners_role_has() -> None:
     import_module("workspace.migrations.0009_token_scopes").give_all_of_the_role(apps, None)
     for token in ApiToken.objects.select_related("user"):
         assert token.scopes == list(SCOPES_OF_ROLE[token.user.role])
+
+
+@pytest.mark.parametrize(
+    ("scopes", "may_follow"), [(("read",), True), (("read", "plan"), True), ((), True), (("plan", "administer"), False)]
+)
+def test_a_websocket_needs_a_token_that_may_read(scopes: tuple[str, ...], may_follow: bool) -> None:
+    user = somebody(Role.ADMINISTRATOR)
+    token = create_api_token(user=user, name="test", expires_at=timezone.now() + timedelta(days=1), scopes=scopes or None)
+    assert reader_of_token(token.encode()) == (user if may_follow else None)

@@ -15,7 +15,7 @@ WORDS = (
     "%(uav)s is on the ground %(metres)s m from where its flight begins or ends, last at %(place)s: it has crashed, or landed by itself."
 )
 AWAY_M = 30.0  # of the places at which it was planned to stand; GPS and a landing by hand stay well within
-NOT_STARTED = frozenset({"arm"})
+SETS_OFF = frozenset({"start", "take-off", "resume"})
 TOLD_TO = frozenset({"land"})  # by ourselves, and nobody has to be told
 
 
@@ -27,7 +27,7 @@ def detect(situation: Situation) -> Iterable[Finding] | None:
     position = position_of(newest)
     if position is None:
         return None
-    away_m = away_from_plan_m(model.line, position)
+    away_m = away_from_plan_m(model.line, position, model.rally_points)
     return None if away_m < AWAY_M else [finding(situation.uav.name, situation.uav.flight, position, away_m)]
 
 
@@ -37,20 +37,23 @@ def finding(name: str, flight: int, position: LonLat, away_m: float) -> Finding:
     return Finding(CODE, CRITICAL, WORDS, values, subject=str(flight), details=details)
 
 
-def away_from_plan_m(line: RouteLine, position: LonLat) -> float:
-    """From the nearest place at which it was planned to stand on the ground."""
-    stands = [line.vertices[0], line.vertices[-1], *(line.vertices[place] for place in line.charges_at)]
+def away_from_plan_m(line: RouteLine, position: LonLat, rally_points: Iterable[LonLat] = ()) -> float:
+    """From the nearest place at which it was planned to stand on the ground, or may land when it returns by itself."""
+    stands = [
+        line.vertices[0],
+        line.vertices[-1],
+        *(line.vertices[place] for place in line.charges_at),
+        *map(line.east_north, rally_points),
+    ]
     here = line.east_north(position)
     return min(math.dist(here, place) for place in stands)
 
 
 def _was_started(situation: Situation) -> bool:
     order = situation.order
-    if order is None:
-        return situation.memory.was_in_flight
-    if order.kind in TOLD_TO or order.kind in NOT_STARTED:
+    if order is not None and order.kind in TOLD_TO:
         return False
-    return order.done_s is not None or situation.memory.was_in_flight
+    return situation.memory.was_in_flight or (order is not None and order.kind in SETS_OFF and order.done_s is not None)
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=2.0, clear_after_s=0.0, needs_flight=False)
