@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, TypedDict, TypeVar
+from typing import TYPE_CHECKING, TypedDict
 
 from django.contrib.gis.db.models.functions import AsGeoJSON
 from django.contrib.gis.geos import MultiPolygon, Polygon
@@ -45,7 +45,6 @@ VOLTAGE_NOT_STATED = gettext_noop("voltage not stated")
 UNREAD_OF_A_LINE = {f"line__{name}" for name in ("geometry", "centre", "node_osm_ids", "tags", "parts")}
 OSM_KEY = re.compile(r"([nwr])(\d{1,18})", re.IGNORECASE)
 
-Row = TypeVar("Row")
 Box = tuple[float, float, float, float]  # west, south, east, north; west > east crosses the 180th meridian
 
 
@@ -94,7 +93,7 @@ def references_of(organisation_id: int, assets: Iterable[int]) -> dict[int, Asse
     return {row.asset_id: row for row in AssetReference.objects.filter(organisation=organisation_id, asset__in=list(assets))}
 
 
-def with_external_id(assets: QuerySet[Asset, Row], organisation_id: int, external_id: str) -> QuerySet[Asset, Row]:
+def with_external_id(assets: QuerySet[DrawnAsset], organisation_id: int, external_id: str) -> QuerySet[DrawnAsset]:
     """The one asset that has this id in the organisation."""
     named = AssetReference.objects.filter(organisation=organisation_id, external_id=external_id)
     return assets.filter(pk__in=named.values("asset"))

@@ -191,7 +191,10 @@ class InspectionTarget(models.Model):
 
     class Meta:
         ordering = ["sequence"]
-        indexes = [models.Index(fields=["external_id"], condition=~Q(external_id=""), name="target_external_id_idx")]
+        indexes = [
+            models.Index(fields=["external_id"], condition=~Q(external_id=""), name="target_external_id_idx"),
+            models.Index(fields=["-state_at", "-id"], condition=Q(state_at__isnull=False), name="target_state_at_idx"),
+        ]
         constraints = [
             models.UniqueConstraint(fields=["mission", "sequence"], name="target_sequence", deferrable=models.Deferrable.DEFERRED),
             models.CheckConstraint(condition=Q(state__in=TargetState.values), name="target_state_known"),
