@@ -4406,10 +4406,77 @@ export interface components {
             is_armed?: boolean | null;
             is_in_air?: boolean | null;
         };
+        ReportedResult: {
+            uav: number;
+            uav_name: string;
+            /** @description complete, skipped or failed */
+            outcome: string;
+            note: string;
+            /** @description as the payload measured them */
+            values: {
+                [key: string]: unknown;
+            };
+            /** Format: date-time */
+            measured_at: string;
+            /** Format: date-time */
+            received_at: string;
+        };
         ReportsRequest: {
             /** @description one run of the UAV's counter: a new one whenever its numbers begin anew */
             stream: string;
             records: components["schemas"]["ReportRequest"][];
+        };
+        Result: {
+            id: number;
+            mission: components["schemas"]["ResultMission"];
+            /** @description of the target in its mission, from 0 */
+            place: number;
+            label: string;
+            /** @description the target's; may be empty */
+            external_id: string;
+            /** @description the target's */
+            attributes: {
+                [key: string]: string | number | boolean;
+            };
+            asset: components["schemas"]["ResultAsset"] | null;
+            /**
+             * @description as picked, else the asset's centre
+             * @example [
+             *       9.52,
+             *       47.14
+             *     ]
+             */
+            position: number[] | null;
+            /** @description as planned */
+            task: components["schemas"]["TaskOutput"];
+            /** @description null where no route reached it */
+            planned: components["schemas"]["ResultPlan"] | null;
+            state: components["schemas"]["ResultStateEnum"];
+            /**
+             * Format: date-time
+             * @description since when
+             */
+            state_at: string;
+            /** @description why it was skipped or failed; may be empty */
+            state_reason: string;
+            /** @description what UAVs reported of it, by time */
+            reported: components["schemas"]["ReportedResult"][];
+        };
+        ResultAsset: {
+            id: number;
+            kind: string;
+            /** @description your organisation's id of it; may be empty */
+            external_id: string;
+        };
+        ResultMission: {
+            /** Format: uuid */
+            id: string;
+            name: string;
+            /** @description may be empty */
+            external_id: string;
+            state: components["schemas"]["MissionState"];
+            /** @description address of its record: how near each UAV came, and how long it held */
+            record: string;
         };
         /**
          * @description * `complete` - complete
@@ -4418,6 +4485,20 @@ export interface components {
          * @enum {string}
          */
         ResultOutcomeEnum: "complete" | "skipped" | "failed";
+        ResultPage: {
+            results: components["schemas"]["Result"][];
+            next: string | null;
+        };
+        ResultPlan: {
+            uav: number | null;
+            uav_name: string;
+            waypoint_sequence: number;
+            /**
+             * Format: date-time
+             * @description null where the mission has no departure
+             */
+            at: string | null;
+        };
         /** @description What the UAV found at a target. */
         ResultRequest: {
             /** Format: int64 */
@@ -4441,6 +4522,14 @@ export interface components {
                 [key: string]: unknown;
             };
         };
+        /**
+         * @description * `in-progress` - In progress
+         *     * `complete` - Complete
+         *     * `skipped` - Skipped
+         *     * `failed` - Failed
+         * @enum {string}
+         */
+        ResultStateEnum: "in-progress" | "complete" | "skipped" | "failed";
         ResultsRequest: {
             /** @description one run of the UAV's counter: a new one whenever its numbers begin anew */
             stream: string;
@@ -7086,9 +7175,16 @@ export type ReplanAsked = components['schemas']['ReplanAsked'];
 export type ReplanOffer = components['schemas']['ReplanOffer'];
 export type ReplanOfferPage = components['schemas']['ReplanOfferPage'];
 export type ReportRequest = components['schemas']['ReportRequest'];
+export type ReportedResult = components['schemas']['ReportedResult'];
 export type ReportsRequest = components['schemas']['ReportsRequest'];
+export type Result = components['schemas']['Result'];
+export type ResultAsset = components['schemas']['ResultAsset'];
+export type ResultMission = components['schemas']['ResultMission'];
 export type ResultOutcomeEnum = components['schemas']['ResultOutcomeEnum'];
+export type ResultPage = components['schemas']['ResultPage'];
+export type ResultPlan = components['schemas']['ResultPlan'];
 export type ResultRequest = components['schemas']['ResultRequest'];
+export type ResultStateEnum = components['schemas']['ResultStateEnum'];
 export type ResultsRequest = components['schemas']['ResultsRequest'];
 export type ReturnCheck = components['schemas']['ReturnCheck'];
 export type ReturnCheckStateEnum = components['schemas']['ReturnCheckStateEnum'];
