@@ -8,7 +8,7 @@ from django.db.models.functions import Now
 
 from inspection.models import Asset, AssetReference
 from inspection.services.curation import check_revision
-from workspace.models import User
+from workspace.models import AuditEntry, User
 from workspace.services import record_change
 
 REFERENCE_FIELDS = ("external_id", "attributes")
@@ -47,6 +47,19 @@ def save_asset_reference(*, asset: Asset, actor: User, values: dict[str, Any], e
             organisation=actor.organisation, actor=actor, action="changed", subject_type="asset_reference", subject_id=held.pk,
             before=before, after=_facts(row),
         )  # fmt: skip
+
+
+def restore_references(*, asset: Asset) -> None:
+    """Bring back what each organisation kept with an asset that had been deleted, but for ids that are another asset's by now."""
+    last = AuditEntry.objects.filter(subject_type="asset_reference", subject_id=str(asset.pk))
+    AssetReference.objects.bulk_create(
+        (
+            AssetReference(organisation_id=entry.organisation_id, asset=asset, **entry.after)
+            for entry in last.order_by("organisation_id", "-pk").distinct("organisation_id")
+            if entry.after
+        ),
+        ignore_conflicts=True,
+    )
 
 
 def _facts(row: AssetReference) -> dict[str, Any]:

@@ -107,3 +107,17 @@ def test_the_list_reads_them_in_one_query(curator: Client) -> None:
         features = curator.get("/api/v1/assets").json()["features"]
     assert [feature["properties"]["external_id"] for feature in features] == ["SAP-0", "SAP-1", "SAP-2"]
     assert sum("inspection_assetreference" in query["sql"] for query in queries.captured_queries) == 1
+
+
+def test_an_asset_that_is_brought_back_has_them_again(curator: Client) -> None:
+    asset = write(curator, "POST", "assets", TOWER | GIVEN).json()["id"]
+    other = client_of(somebody(Role.CURATOR, Organisation.objects.create(name="Other")))
+    write(other, "PATCH", f"assets/{asset}", {"external_id": "mine"})
+    assert curator.delete(f"/api/v1/assets/{asset}", headers={"If-Match": "*"}).status_code == 204
+    assert not AssetReference.objects.exists()
+    taken = write(other, "POST", "assets", TOWER | {"external_id": "mine"}).json()["id"]
+    entry = AuditEntry.objects.filter(subject_type="asset", subject_id=str(asset)).latest("recorded_at")
+    assert write(curator, "POST", f"history/{entry.pk}/undo", {}).status_code == 200
+    assert given_of(curator, asset) == GIVEN
+    assert given_of(other, asset)["external_id"] == "", "it is another asset's by now"
+    assert given_of(other, taken)["external_id"] == "mine"
