@@ -31,7 +31,14 @@ def uavs_of_organisation(organisation: Organisation) -> QuerySet[Uav]:
 
 
 def uavs_that_match(
-    organisation: Organisation, *, text: str = "", state: str = "", base: int | None = None, uav_type: int | None = None, sensor: str = ""
+    organisation: Organisation,
+    *,
+    text: str = "",
+    state: str = "",
+    base: int | None = None,
+    uav_type: int | None = None,
+    sensor: str = "",
+    external_id: str = "",
 ) -> QuerySet[Uav]:
     """Without a state all but the retired ones."""
     uavs = uavs_of_organisation(organisation)
@@ -44,6 +51,8 @@ def uavs_that_match(
         uavs = uavs.filter(uav_type=uav_type)
     if sensor:
         uavs = uavs.filter(Q(sensor__icontains=sensor) | Q(uav_type__sensors__icontains=sensor))
+    if external_id:
+        uavs = uavs.filter(external_id=external_id)
     if state == EVERY_STATE:
         return uavs
     return uavs.filter(state=state) if state else uavs.exclude(state=UavState.RETIRED)

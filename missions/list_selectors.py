@@ -57,6 +57,8 @@ class MissionFilter:
     is_stale: bool | None = None
     changed_from: datetime | None = None
     changed_before: datetime | None = None
+    external_id: str = ""
+    target_external_id: str = ""
     is_deleted: bool = False
 
 
@@ -82,6 +84,10 @@ def missions_found(organisation: Organisation, asked: MissionFilter) -> QuerySet
         others = missions_with_other_uavs(missions)
         stale = ~Q(state=MissionState.DRAFT) & (~Q(ground_revision=ground_revision()) | Q(landing_routes_without_base()) | Q(pk__in=others))
         missions = missions.filter(stale) if asked.is_stale else missions.exclude(stale)
+    if asked.external_id:
+        missions = missions.filter(external_id=asked.external_id)
+    if asked.target_external_id:
+        missions = missions.filter(Exists(InspectionTarget.objects.filter(mission=OuterRef("pk"), external_id=asked.target_external_id)))
     if asked.changed_from is not None:
         missions = missions.filter(updated_at__gte=asked.changed_from)
     if asked.changed_before is not None:

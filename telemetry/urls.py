@@ -9,6 +9,7 @@ from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFil
 from telemetry.views.live import Live
 from telemetry.views.log import LatestTelemetry, TelemetryLog
 from telemetry.views.mission_record import MissionRecord, MissionRecordFile
+from telemetry.views.results import Results
 from telemetry.views.uav_link import UavAcknowledgements, UavResults, UavRoute, UavTelemetry
 from telemetry.views.unknown_vehicles import UnknownVehicleAdoption, UnknownVehicleIgnoring, UnknownVehicles
 from telemetry.views.vehicle_logs import FlightLogFile, FlightLogs, UavConnection, VehicleTexts
@@ -43,6 +44,7 @@ urlpatterns = [
     path("alerts/<int:alert_id>/notes", AlertNotes.as_view(), name="api-alert-notes"),
     path("uav-types/<int:type_id>/alert-limits", UavTypeAlertLimits.as_view(), name="api-uav-type-alert-limits"),
     path("missions/<uuid:mission_id>/alert-limits", MissionAlertLimits.as_view(), name="api-mission-alert-limits"),
+    path("results", Results.as_view(), name="api-results"),
     path("live", Live.as_view(), name="api-live"),
     path("telemetry", TelemetryLog.as_view(), name="api-telemetry"),
     path("missions/<uuid:mission_id>/record", MissionRecord.as_view(), name="api-mission-record"),

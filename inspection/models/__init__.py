@@ -1,5 +1,6 @@
 """What exists on the ground, where it comes from, and the graph that connects it."""
 
+from inspection.models.asset_references import AssetReference
 from inspection.models.assets import Asset, AssetKind, AssetSet, Bridge, OsmType, PowerLine, PowerTower, Railway
 from inspection.models.gaps import DataGap, GapKind, GapSearch, GapState
 from inspection.models.graph import GraphSnapshot, Ground
@@ -22,6 +23,7 @@ __all__ = [
     "ROW_ACTIONS",
     "Asset",
     "AssetKind",
+    "AssetReference",
     "AssetSet",
     "Bridge",
     "ChangeAction",

@@ -7,7 +7,9 @@ from inspection.selectors.assets import (
     asset_label,
     asset_with_geometry,
     assets_on_the_ground,
+    references_of,
     voltage_text,
+    with_external_id,
     zones,
 )
 from inspection.selectors.graph import NoGraph, current_graph, graph_of_version, zones_in_force
@@ -36,10 +38,12 @@ __all__ = [
     "ground_revision",
     "ground_summary",
     "has_terrain",
+    "references_of",
     "terrain_edition",
     "tile_of_edition",
     "vector_tile",
     "voltage_text",
+    "with_external_id",
     "zones",
     "zones_in_force",
 ]

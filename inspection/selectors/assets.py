@@ -1,6 +1,7 @@
 """Assets and zones as lists, and what they are called."""
 
 import re
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, TypedDict
 
 from django.contrib.gis.db.models.functions import AsGeoJSON
@@ -9,7 +10,7 @@ from django.db.models import Q, QuerySet
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
-from inspection.models import Asset, AssetKind, NoFlyZone
+from inspection.models import Asset, AssetKind, AssetReference, NoFlyZone
 
 COORDINATE_DIGITS = 7  # about a centimetre
 # In English: what is stored and what the tiles say. gettext_noop names them for the catalogues.
@@ -85,6 +86,17 @@ def asset_with_geometry(asset_id: int) -> DrawnAsset:
         .annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
         .get(pk=asset_id)
     )
+
+
+def references_of(organisation_id: int, assets: Iterable[int]) -> dict[int, AssetReference]:
+    """What the organisation keeps with these assets, by their primary keys."""
+    return {row.asset_id: row for row in AssetReference.objects.filter(organisation=organisation_id, asset__in=list(assets))}
+
+
+def with_external_id(assets: QuerySet[DrawnAsset], organisation_id: int, external_id: str) -> QuerySet[DrawnAsset]:
+    """The one asset that has this id in the organisation."""
+    named = AssetReference.objects.filter(organisation=organisation_id, external_id=external_id)
+    return assets.filter(pk__in=named.values("asset"))
 
 
 def zones(*, box: Box | None = None, text: str = "", zone_set: int | None = None) -> QuerySet[DrawnZone]:

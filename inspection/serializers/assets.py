@@ -5,10 +5,11 @@ from typing import Any
 
 from rest_framework import serializers
 
-from inspection.models import AssetKind
+from inspection.models import AssetKind, AssetReference
 from inspection.selectors import asset_detail, asset_label
 from inspection.selectors.assets import DrawnAsset
 from inspection.serializers.features import SourceSerializer, collection_serializer, feature_serializer, source_json
+from workspace.external_data import AttributesField
 from workspace.serializers import Declared
 
 
@@ -27,6 +28,8 @@ class AssetPropertiesSerializer(serializers.Serializer):
     osm = serializers.CharField(allow_null=True, help_text="type and id, such as w123")
     is_flyable = serializers.BooleanField(help_text="part of the inspection graph")
     centre = serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=2, help_text="lon, lat")
+    external_id = serializers.CharField(help_text="your organisation's id of it; may be empty")
+    attributes = AttributesField(required=True, help_text="your organisation's own")
 
 
 class AssetDetailPropertiesSerializer(AssetPropertiesSerializer):
@@ -55,8 +58,8 @@ FIELDS_OF_AN_ASSET = (
 )  # fmt: skip
 
 
-def asset_feature(asset: DrawnAsset) -> dict[str, Any]:
-    """`asset` comes with `geometry_json` from inspection.selectors."""
+def asset_feature(asset: DrawnAsset, reference: AssetReference | None) -> dict[str, Any]:
+    """`asset` comes with `geometry_json` from inspection.selectors, `reference` is the reader's organisation's."""
     properties = {
         "kind": asset.kind,
         "subtype": asset.subtype,
@@ -72,12 +75,14 @@ def asset_feature(asset: DrawnAsset) -> dict[str, Any]:
         "osm": f"{asset.osm_type}{asset.osm_id}" if asset.osm_id is not None else None,
         "is_flyable": asset.is_flyable,
         "centre": [asset.centre.x, asset.centre.y],
+        "external_id": reference.external_id if reference else "",
+        "attributes": reference.attributes if reference else {},
     }
     return {"type": "Feature", "id": asset.pk, "geometry": json.loads(asset.geometry_json), "properties": properties}
 
 
-def asset_detail_feature(asset: DrawnAsset) -> dict[str, Any]:
-    feature = asset_feature(asset)
+def asset_detail_feature(asset: DrawnAsset, reference: AssetReference | None) -> dict[str, Any]:
+    feature = asset_feature(asset, reference)
     feature["properties"] |= {
         "tags": asset.tags,
         "revision": asset.revision,

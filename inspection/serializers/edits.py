@@ -10,6 +10,7 @@ from inspection.services.geometry_input import asset_shape, bridge_stored, store
 from inspection.zones.geometry_gate import GeometryFault
 from inspection.zones.schedule import checked_schedule
 from workspace.errors import ApiProblem
+from workspace.external_data import AttributesField, ExternalIdField
 
 HIGHEST_VOLTAGE_V = 2_000_000  # the highest line in service has 1,150 kV
 MOST_VOLTAGES = 12
@@ -44,6 +45,8 @@ class AssetInputSerializer(serializers.Serializer):
     height_m = serializers.FloatField(min_value=0.1, max_value=1_000, allow_null=True, required=False)
     is_flyable = serializers.BooleanField(required=False)
     tags = serializers.DictField(child=serializers.CharField(max_length=2_000, allow_blank=True), required=False)
+    external_id = ExternalIdField(help_text="your organisation's id of it, of one asset each; empty: none")
+    attributes = AttributesField(help_text="your organisation's own; a change replaces all of them")
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)

@@ -64,7 +64,7 @@ def save_asset(*, asset: Asset, actor: User, expected_revision: int | None = Non
     with transaction.atomic():
         hold_ground()
         before = Asset.objects.select_for_update(of=["self"]).filter(pk=asset.pk).first()
-        _check_revision(before, expected_revision, "asset", asset.pk)
+        check_revision(before, expected_revision, "asset", asset.pk)
         asset.voltages_v = sorted(set(asset.voltages_v), reverse=True)
         asset.max_voltage_v = max(asset.voltages_v, default=None)
         asset.centre = _centre(asset.geometry)
@@ -97,7 +97,7 @@ def delete_asset(*, asset: Asset, actor: User, expected_revision: int | None = N
     with transaction.atomic():
         hold_ground()
         kept = Asset.objects.select_for_update(of=["self"]).filter(pk=asset.pk).first()
-        _check_revision(kept, expected_revision, "asset", asset.pk)
+        check_revision(kept, expected_revision, "asset", asset.pk)
         if kept is None:
             return
         before = asset_facts(kept)
@@ -121,7 +121,7 @@ def save_zone(*, zone: NoFlyZone, actor: User, expected_revision: int | None = N
     with transaction.atomic():
         hold_ground()
         before = NoFlyZone.objects.select_for_update(of=["self"]).filter(pk=zone.pk).first()
-        _check_revision(before, expected_revision, "zone", zone.pk)
+        check_revision(before, expected_revision, "zone", zone.pk)
         zone.identifier = zone.identifier or f"drawn-{uuid.uuid4()}"
         if before is not None and before.geometry != zone.geometry and before.circle == zone.circle:
             zone.circle = None  # what was drawn anew is no longer the circle that the source stated
@@ -140,7 +140,7 @@ def delete_zone(*, zone: NoFlyZone, actor: User, expected_revision: int | None =
     with transaction.atomic():
         hold_ground()
         kept = NoFlyZone.objects.select_for_update(of=["self"]).filter(pk=zone.pk).first()
-        _check_revision(kept, expected_revision, "zone", zone.pk)
+        check_revision(kept, expected_revision, "zone", zone.pk)
         if kept is None:
             return
         _record(actor, zone_facts(kept), None, kept)
@@ -167,7 +167,8 @@ def many_edits() -> Iterator[None]:
         number_supports()
 
 
-def _check_revision(row: Asset | NoFlyZone | None, expected: int | None, subject: str, key: int | None) -> None:
+def check_revision(row: Asset | NoFlyZone | None, expected: int | None, subject: str, key: int | None) -> None:
+    """Raises StaleRevision for a row that is gone, or of another revision than expected; None expects any."""
     if expected is not None and (row is None or row.revision != expected):
         raise StaleRevision(subject, key)
 

@@ -4,6 +4,7 @@ from django.db import IntegrityError, transaction
 from django.utils.translation import gettext as _
 
 from inspection.models import Asset, NoFlyZone
+from inspection.services.asset_references import restore_references
 from inspection.services.curation import delete_asset, delete_zone, save_asset, save_zone
 from inspection.services.facts import asset_from_facts, take_asset_facts, take_zone_facts, zone_from_facts
 from inspection.services.ground import hold_ground
@@ -64,7 +65,9 @@ def _undo_asset(entry: AuditEntry, actor: User) -> Asset | None:
         return None
     if asset is None:
         asset = asset_from_facts(entry.before, key=int(entry.subject_id))
-        return save_asset(asset=asset, actor=actor, action="restored")
+        restored = save_asset(asset=asset, actor=actor, action="restored")
+        restore_references(asset=restored)
+        return restored
     return revert_asset(asset=asset, entry=entry, actor=actor, expected_revision=None)
 
 

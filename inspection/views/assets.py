@@ -1,9 +1,11 @@
 """Assets: the list and one of them."""
 
+from typing import Any
+
+from django.db import transaction
 from django.http import Http404
 from django.urls import reverse
-from drf_spectacular.utils import OpenApiParameter, extend_schema
-from rest_framework.request import Request
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -18,15 +20,19 @@ from inspection.serializers.assets import (
 )
 from inspection.serializers.edits import AssetInputSerializer
 from inspection.services import delete_asset, save_asset
+from inspection.services.asset_references import REFERENCE_FIELDS, save_asset_reference
 from inspection.views.edits import edits
 from inspection.views.history import answer, asset_now
 from inspection.views.parameters import BOX, box_of, kinds_of, text_of
+from workspace.external_data import EXTERNAL_ID, asked_external_id
 from workspace.idempotency import idempotent
 from workspace.paging import changed_since, page_of
 from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
 from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
+
+EXTERNAL_ID_TAKEN = {409: OpenApiResponse(description="Another asset has the external id.")}
 
 
 class AssetList(APIView):
@@ -40,63 +46,88 @@ class AssetList(APIView):
             OpenApiParameter("kind", str, description=f"one or several of {', '.join(AssetKind.values)}, with commas"),
             OpenApiParameter("text", str, description='words in name, ref or operator; "138 kV"; an OSM id such as w123; best first'),
             OpenApiParameter("flyable", bool, description="true: only what may be flown to"),
+            EXTERNAL_ID,
             OpenApiParameter("total", bool, description="true: also how many there are, on all pages"),
             CHANGED_SINCE,
             *PAGE_PARAMETERS,
         ],
         responses=AssetCollectionSerializer,
     )
-    def get(self, request: Request) -> Response:
-        text = text_of(request)
+    def get(self, request: SignedInRequest) -> Response:
+        text, external_id = text_of(request), asked_external_id(request)
         flyable = True if request.query_params.get("flyable") == "true" else None
         found = selectors.assets_on_the_ground(box=box_of(request), kinds=kinds_of(request), text=text, flyable=flyable)
         found = changed_since(request, found)
+        if external_id:
+            found = selectors.with_external_id(found, request.user.organisation_id, external_id)
         assets = found.only(*FIELDS_OF_AN_ASSET)
         page = page_of(request, with_match_rank(assets, text=text), order=BEST_FIRST) if text else page_of(request, assets)
-        features = [asset_feature(asset) for asset in page.rows]
+        references = selectors.references_of(request.user.organisation_id, [asset.pk for asset in page.rows])
+        features = [asset_feature(asset, references.get(asset.pk)) for asset in page.rows]
         total = {"total": found.count()} if request.query_params.get("total") == "true" else {}
         return Response({"type": "FeatureCollection", "features": features, "next": page.next} | total)
 
     @extend_schema(
-        operation_id="create_asset", summary="Draw an asset", request=AssetInputSerializer, responses={201: AssetDetailFeatureSerializer}
+        operation_id="create_asset",
+        summary="Draw an asset",
+        request=AssetInputSerializer,
+        responses={201: AssetDetailFeatureSerializer} | EXTERNAL_ID_TAKEN,
     )
     @idempotent
     def post(self, request: SignedInRequest) -> Response:
         body = AssetInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
-        with edits(lambda: None):
-            asset = save_asset(asset=Asset(**body.validated_data), actor=request.user)
-        response = answer(asset_now(asset.pk))
+        values = dict(body.validated_data)
+        reference = _reference_in(values)
+        with edits(lambda: None), transaction.atomic():
+            asset = save_asset(asset=Asset(**values), actor=request.user)
+            if any(reference.values()):
+                save_asset_reference(asset=asset, actor=request.user, values=reference)
+        response = answer(asset_now(request.user, asset.pk))
         response.status_code = 201
         response["Location"] = reverse("api-asset", args=[asset.pk])
         return response
+
+
+def _reference_in(values: dict[str, Any]) -> dict[str, Any]:
+    """Take what belongs to the organisation's reference out of the values of an asset."""
+    return {name: values.pop(name) for name in REFERENCE_FIELDS if name in values}
 
 
 class AssetDetail(APIView):
     write_roles = CURATORS
 
     @extend_schema(operation_id="get_asset", summary="One asset with its tags and source", responses=AssetDetailFeatureSerializer)
-    def get(self, request: Request, asset_id: int) -> Response:
-        return answer(asset_now(asset_id))
+    def get(self, request: SignedInRequest, asset_id: int) -> Response:
+        return answer(asset_now(request.user, asset_id))
 
     @extend_schema(
         operation_id="change_asset",
         summary="Correct an asset",
-        description="Imports leave what was corrected by hand alone.",
+        description=(
+            "Imports leave what was corrected by hand alone. `external_id` and `attributes` are your organisation's: they survive imports, "
+            "and setting them alone is no correction."
+        ),
         parameters=[IF_MATCH_REQUIRED],
         request=AssetInputSerializer(partial=True),
-        responses={200: AssetDetailFeatureSerializer} | PRECONDITION_ANSWERS,
+        responses={200: AssetDetailFeatureSerializer} | PRECONDITION_ANSWERS | EXTERNAL_ID_TAKEN,
     )
     def patch(self, request: SignedInRequest, asset_id: int) -> Response:
         revision = expected_revision(request)
         asset = self._asset(asset_id)
         body = AssetInputSerializer(asset, data=request.data, partial=True)
         body.is_valid(raise_exception=True)
-        for name, value in body.validated_data.items():
+        values = dict(body.validated_data)
+        reference = _reference_in(values)
+        for name, value in values.items():
             setattr(asset, name, value)
-        with edits(lambda: asset_now(asset_id)):
-            save_asset(asset=asset, actor=request.user, expected_revision=revision)
-        return answer(asset_now(asset_id))
+        with edits(lambda: asset_now(request.user, asset_id)), transaction.atomic():
+            if values or not reference:
+                save_asset(asset=asset, actor=request.user, expected_revision=revision)
+            if reference:
+                unseen = None if values else revision
+                save_asset_reference(asset=asset, actor=request.user, values=reference, expected_revision=unseen)
+        return answer(asset_now(request.user, asset_id))
 
     @extend_schema(
         operation_id="delete_asset",
@@ -107,7 +138,7 @@ class AssetDetail(APIView):
     )
     def delete(self, request: SignedInRequest, asset_id: int) -> Response:
         revision = expected_revision(request)
-        with edits(lambda: asset_now(asset_id)):
+        with edits(lambda: asset_now(request.user, asset_id)):
             delete_asset(asset=self._asset(asset_id), actor=request.user, expected_revision=revision)
         return Response(status=204)
 

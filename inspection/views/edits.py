@@ -8,6 +8,7 @@ from django.utils.translation import gettext as _
 
 from inspection.selectors.history import NEWEST_FIRST, changes_of
 from inspection.services import StaleRevision, WrongGeometry
+from inspection.services.asset_references import ExternalIdTaken
 from inspection.services.history import CannotUndo
 from workspace.errors import ApiProblem
 
@@ -24,6 +25,9 @@ def edits(current: Callable[[], dict[str, Any] | None]) -> Iterator[None]:
         raise ApiProblem(
             412, "changed", _("Changed by %(who)s in the meantime; nothing of yours was stored.") % {"who": who}, details=details
         ) from error
+    except ExternalIdTaken as error:
+        message = _("Another asset has this external id.")
+        raise ApiProblem(409, "external_id_taken", message, details={"external_id": [message]}) from error
     except WrongGeometry as error:
         raise ApiProblem(400, "invalid_geometry", str(error)) from error
     except CannotUndo as error:

@@ -10,7 +10,7 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.models import Asset, NoFlyZone
-from inspection.selectors import asset_with_geometry, zones
+from inspection.selectors import asset_with_geometry, references_of, zones
 from inspection.selectors.history import NEWEST_FIRST, SUBJECTS, changes_of, changes_of_the_ground
 from inspection.serializers.assets import AssetDetailFeatureSerializer, asset_detail_feature
 from inspection.serializers.history import GroundHistoryPageSerializer, RevertSerializer, entry_json
@@ -18,7 +18,7 @@ from inspection.serializers.zones import ZoneDetailFeatureSerializer, zone_detai
 from inspection.services.history import follow_source, revert_asset, revert_zone, undo
 from inspection.views.edits import edits
 from inspection.views.parameters import invalid
-from workspace.models import AuditEntry
+from workspace.models import AuditEntry, User
 from workspace.paging import page_of
 from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
@@ -31,9 +31,10 @@ UNDONE = PolymorphicProxySerializer(
 CANNOT = {409: OpenApiResponse(description="It was changed again since, or there is nothing to go back to.")}
 
 
-def asset_now(asset_id: int) -> dict[str, Any] | None:
+def asset_now(user: User, asset_id: int) -> dict[str, Any] | None:
+    """As the user's organisation sees it."""
     try:
-        return asset_detail_feature(asset_with_geometry(asset_id))
+        return asset_detail_feature(asset_with_geometry(asset_id), references_of(user.organisation_id, [asset_id]).get(asset_id))
     except Asset.DoesNotExist:
         return None
 
@@ -100,7 +101,10 @@ class HistoryUndo(APIView):
         entry = changes_of_the_ground().filter(pk=entry_id).first()
         if entry is None:
             raise Http404
-        now = asset_now if entry.subject_type == "asset" else zone_now
+
+        def now(key: int) -> dict[str, Any] | None:
+            return asset_now(request.user, key) if entry.subject_type == "asset" else zone_now(key)
+
         with edits(lambda: now(int(entry.subject_id))):
             row = undo(entry=entry, actor=request.user)
         return Response(status=204) if row is None else answer(now(row.pk))
@@ -143,9 +147,9 @@ class AssetRevert(APIView):
     def post(self, request: SignedInRequest, asset_id: int) -> Response:
         entry, revision = _entry("asset", asset_id, request), expected_revision(request)
         asset = _asset(asset_id)
-        with edits(lambda: asset_now(asset_id)):
+        with edits(lambda: asset_now(request.user, asset_id)):
             revert_asset(asset=asset, entry=entry, actor=request.user, expected_revision=revision)
-        return answer(asset_now(asset_id))
+        return answer(asset_now(request.user, asset_id))
 
 
 class AssetFollowSource(APIView):
@@ -161,9 +165,9 @@ class AssetFollowSource(APIView):
     def post(self, request: SignedInRequest, asset_id: int) -> Response:
         revision = expected_revision(request)
         asset = _asset(asset_id)
-        with edits(lambda: asset_now(asset_id)):
+        with edits(lambda: asset_now(request.user, asset_id)):
             follow_source(asset=asset, actor=request.user, expected_revision=revision)
-        return answer(asset_now(asset_id))
+        return answer(asset_now(request.user, asset_id))
 
 
 class ZoneHistory(APIView):

@@ -6,6 +6,7 @@ from django.contrib.postgres.fields import ArrayField
 from django.db.models import Q
 from django.db.models.functions import Now
 
+from workspace.external_data import MAX_EXTERNAL_ID_LENGTH
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation, User
 
 
@@ -127,6 +128,10 @@ class Uav(models.Model):
     )
     autopilot_return_read_at = models.DateTimeField(null=True, blank=True)
     sensor = models.CharField(max_length=100, blank=True)
+    external_id = models.CharField(
+        max_length=MAX_EXTERNAL_ID_LENGTH, blank=True, default="", db_default="", help_text="another system's id of it; one UAV each"
+    )
+    attributes = models.JSONField(default=dict, db_default={}, blank=True, help_text="names and values of other systems")
     end_action = models.CharField(max_length=10, choices=EndAction.choices, default=EndAction.HOVER)
     created_at = models.DateTimeField(db_default=Now(), editable=False)
     revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
@@ -138,6 +143,7 @@ class Uav(models.Model):
         verbose_name_plural = "UAVs"
         constraints = [
             models.UniqueConstraint(fields=["organisation", "name"], name="uav_name_unique"),
+            models.UniqueConstraint(fields=["organisation", "external_id"], condition=~Q(external_id=""), name="uav_external_id_unique"),
             models.CheckConstraint(condition=Q(max_range_m=None) | Q(max_range_m__gt=0), name="uav_range_positive"),
             models.CheckConstraint(condition=Q(cruise_speed_mps__gt=0), name="uav_speed_positive"),
             models.CheckConstraint(condition=Q(battery_wh=None) | Q(battery_wh__gt=0), name="uav_battery_positive"),

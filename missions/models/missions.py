@@ -10,6 +10,7 @@ from django.db.models.functions import Now
 
 from inspection.models import Asset
 from missions.models.fleet import EndAction, Uav
+from workspace.external_data import MAX_EXTERNAL_ID_LENGTH
 from workspace.models import DEFAULT_ORGANISATION_ID, Organisation
 
 LONGEST_NAME = 200
@@ -66,6 +67,14 @@ class Mission(models.Model):
     updated_at = models.DateTimeField(auto_now=True)
     deleted_at = models.DateTimeField(null=True, blank=True, help_text="deleted missions can be brought back")
     is_demo = models.BooleanField(default=False, db_default=False, help_text="made with the demo data, and goes with them")
+    external_id = models.CharField(
+        max_length=MAX_EXTERNAL_ID_LENGTH,
+        blank=True,
+        default="",
+        db_default="",
+        help_text="another system's id, such as a work order's; several missions may have one",
+    )
+    attributes = models.JSONField(default=dict, db_default={}, blank=True, help_text="names and values of other systems")
     started_at = models.DateTimeField(null=True, blank=True, help_text="when its first UAV began to fly")
     ended_at = models.DateTimeField(null=True, blank=True, help_text="when it was completed, aborted, or had failed")
     continues = models.ForeignKey(
@@ -88,6 +97,7 @@ class Mission(models.Model):
         indexes = [
             models.Index(fields=["organisation"], condition=Q(state__in=["dispatched", "active"]), name="mission_on_its_way_idx"),
             models.Index(fields=["organisation", "ended_at"], condition=Q(ended_at__isnull=False), name="mission_just_ended_idx"),
+            models.Index(fields=["organisation", "external_id"], condition=~Q(external_id=""), name="mission_external_id_idx"),
         ]
         constraints = [
             models.CheckConstraint(condition=Q(state__in=MissionState.values), name="mission_state_known"),
@@ -168,6 +178,10 @@ class InspectionTarget(models.Model):
     priority = models.CharField(max_length=6, choices=TargetPriority.choices, default=TargetPriority.NORMAL)
     uav_name = models.CharField(max_length=100, blank=True, help_text="the only UAV that may do it; empty = any")
     sensor = models.CharField(max_length=LONGEST_SENSOR, blank=True, help_text="that its UAV must have; empty = any")
+    external_id = models.CharField(
+        max_length=MAX_EXTERNAL_ID_LENGTH, blank=True, default="", db_default="", help_text="another system's id, such as a work item's"
+    )
+    attributes = models.JSONField(default=dict, db_default={}, blank=True, help_text="names and values of other systems")
     state = models.CharField(max_length=20, choices=TargetState.choices, default=TargetState.PENDING)
     state_at = models.DateTimeField(null=True, blank=True, help_text="since when, while the mission flies")
     state_reason = models.CharField(max_length=300, blank=True, default="", db_default="", help_text="why it was skipped or failed")
@@ -177,6 +191,10 @@ class InspectionTarget(models.Model):
 
     class Meta:
         ordering = ["sequence"]
+        indexes = [
+            models.Index(fields=["external_id"], condition=~Q(external_id=""), name="target_external_id_idx"),
+            models.Index(fields=["-state_at", "-id"], condition=Q(state_at__isnull=False), name="target_state_at_idx"),
+        ]
         constraints = [
             models.UniqueConstraint(fields=["mission", "sequence"], name="target_sequence", deferrable=models.Deferrable.DEFERRED),
             models.CheckConstraint(condition=Q(state__in=TargetState.values), name="target_state_known"),

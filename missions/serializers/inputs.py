@@ -52,6 +52,7 @@ from missions.services import (
     with_bases,
 )
 from missions.services.requests import GO_ON, LostLinkRequest, lost_link_from_json
+from workspace.external_data import AttributesField, ExternalIdField
 
 
 class TaskSerializer(KnownFieldsSerializer):
@@ -158,6 +159,8 @@ class TargetInputSerializer(KnownFieldsSerializer):
     sensor = serializers.CharField(
         max_length=LONGEST_SENSOR, required=False, allow_null=True, allow_blank=True, help_text="only UAVs that have it may do it"
     )
+    external_id = ExternalIdField(help_text="another system's id, such as a work item's; empty: none")
+    attributes = AttributesField(help_text="of other systems")
 
     def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
         if attrs.get("asset") is None and attrs.get("position") is None:
@@ -332,6 +335,8 @@ def _target_request(target: dict[str, Any]) -> TargetRequest:
         priority=priority_from_json(target.get("priority", TargetPriority.NORMAL)),
         uav=target.get("uav") or "",
         sensor=target.get("sensor") or "",
+        external_id=target.get("external_id", ""),
+        attributes=target.get("attributes", {}),
     )
 
 
@@ -358,7 +363,14 @@ class PlanInputSerializer(OptionsSerializer):
         return asked if asked.departs_at is None else replace(asked, organisation=self.context["organisation"].pk)
 
 
-class MissionInputSerializer(OptionsSerializer):
+class GivenToMissionSerializer(OptionsSerializer):
+    """What other systems may keep with a mission."""
+
+    external_id = ExternalIdField(help_text="another system's id, such as a work order's; several missions may have one")
+    attributes = AttributesField(help_text="of other systems; a change replaces all of them")
+
+
+class MissionInputSerializer(GivenToMissionSerializer):
     name = serializers.CharField(max_length=200)
     plan = serializers.BooleanField(required=False, default=False, help_text="plan it in the same request")
     plan_of = serializers.UUIDField(
@@ -368,7 +380,7 @@ class MissionInputSerializer(OptionsSerializer):
     )
 
 
-class MissionPatchSerializer(OptionsSerializer):
+class MissionPatchSerializer(GivenToMissionSerializer):
     name = serializers.CharField(max_length=200, required=False)
     plan = serializers.BooleanField(required=False, default=False, help_text="plan it in the same request")
     plan_of = serializers.UUIDField(

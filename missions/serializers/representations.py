@@ -28,6 +28,8 @@ def mission_json(mission: Mission) -> dict[str, Any]:
     return {
         "id": str(mission.pk),
         "name": mission.name,
+        "external_id": mission.external_id,
+        "attributes": mission.attributes,
         "state": mission.state,
         "author": mission.author.username if mission.author else None,
         "objective": mission.objective,
@@ -67,6 +69,7 @@ def mission_summary(
     return {
         "id": str(mission.pk),
         "name": mission.name,
+        "external_id": mission.external_id,
         "state": mission.state,
         "author": mission.author.username if mission.author else None,
         "revision": mission.revision,
@@ -139,6 +142,8 @@ def _target(row: InspectionTarget) -> dict[str, Any]:
         "priority": row.priority,
         "uav": row.uav_name or None,
         "sensor": row.sensor,
+        "external_id": row.external_id,
+        "attributes": row.attributes,
         "state": row.state,
         "unassigned_reason": row.unassigned_reason,
         "unassigned_message": row.unassigned_message,

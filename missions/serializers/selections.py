@@ -14,7 +14,7 @@ from workspace.serializers import Declared
 
 
 class SelectionInputSerializer(OptionsSerializer):
-    """A name, and targets as in a mission; UAVs, what is tied or locked to them, and options are not kept."""
+    """A name, and targets as in a mission; UAVs, what is tied or locked to them, options, external ids and attributes are not kept."""
 
     uavs: Declared = None
     objective: Declared = None

@@ -9,6 +9,7 @@ from missions.models import EndAction, MissionState, Objective, TargetPriority, 
 from missions.routing.problem import TaskKind
 from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializer
 from missions.serializers.commands import MissionApprovalSerializer
+from workspace.external_data import AttributesField
 from workspace.serializers import Declared
 
 
@@ -335,6 +336,8 @@ class MissionTargetSerializer(serializers.Serializer):
     priority = serializers.ChoiceField(choices=TargetPriority.choices)
     uav = serializers.CharField(allow_null=True, help_text="name of the only UAV that may do it")
     sensor = serializers.CharField(help_text="that its UAV must have; may be empty")
+    external_id = serializers.CharField(help_text="another system's id; may be empty")
+    attributes = AttributesField(required=True, help_text="of other systems")
     state = serializers.ChoiceField(choices=TargetState.choices)
     unassigned_reason = serializers.CharField()
     unassigned_message = serializers.CharField()
@@ -343,6 +346,8 @@ class MissionTargetSerializer(serializers.Serializer):
 class MissionSerializer(serializers.Serializer):
     id = serializers.UUIDField()
     name = serializers.CharField()
+    external_id = serializers.CharField(help_text="another system's id, such as a work order's; may be empty")
+    attributes = AttributesField(required=True, help_text="of other systems")
     state = serializers.ChoiceField(choices=MissionState.choices)
     author = serializers.CharField(allow_null=True)
     objective = serializers.ChoiceField(choices=Objective.choices)
@@ -373,6 +378,7 @@ class MissionSerializer(serializers.Serializer):
 class MissionSummarySerializer(serializers.Serializer):
     id = serializers.UUIDField()
     name = serializers.CharField()
+    external_id = serializers.CharField(help_text="another system's id; may be empty")
     state = serializers.ChoiceField(choices=MissionState.choices)
     author = serializers.CharField(allow_null=True)
     revision = serializers.IntegerField(help_text="the ETag")

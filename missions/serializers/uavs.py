@@ -13,10 +13,11 @@ from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, MOST_RESERVE_PERCENT
 from missions.serializers.performance import fault_words
+from workspace.external_data import AttributesField, ExternalIdField
 
 OWN = (
     "name", "base_name", "state", "serial_number", "mavlink_system_id", "link", "is_simulated", "allows_unsigned", "heading_deg",
-    "battery_percent", "sensor", "end_action",
+    "battery_percent", "sensor", "end_action", "external_id", "attributes",
 )  # fmt: skip
 FEATURE = {"type", "id", "geometry", "properties", "bbox"}  # RFC 7946
 FROM_TYPE = ("max_range_m", "cruise_speed_mps", *OWN_PERFORMANCE_KEYS)
@@ -62,6 +63,8 @@ class UavPropertiesSerializer(KnownFieldsSerializer):
     battery_percent = FiniteFloatField(allow_null=True, required=False, min_value=0, max_value=100)
     sensor = serializers.CharField(max_length=100, allow_blank=True, required=False, help_text="besides those of its type")
     end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
+    external_id = ExternalIdField(help_text="another system's id of it, one UAV each; empty: none")
+    attributes = AttributesField(help_text="of other systems; a change replaces all of them")
     type_name = serializers.CharField(read_only=True)
     sensors = serializers.ListField(child=serializers.CharField(), read_only=True, help_text="its own and its type's")
     from_type = serializers.ListField(child=serializers.CharField(), read_only=True, help_text="which values are the type's")

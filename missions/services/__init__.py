@@ -12,7 +12,7 @@ from missions.services.fleet import (
     restore_base,
     restore_uav_type,
 )
-from missions.services.fleet_rows import FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdQuota, SystemIdTaken
+from missions.services.fleet_rows import ExternalIdTaken, FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdQuota, SystemIdTaken
 from missions.services.hand_checks import look_by_hand
 from missions.services.hand_points import HandPoint
 from missions.services.mission_copies import duplicate_mission
@@ -60,6 +60,7 @@ __all__ = [
     "BaseRequest",
     "Charging",
     "Departure",
+    "ExternalIdTaken",
     "FleetChanged",
     "FleetRowInUse",
     "GraphOutdated",

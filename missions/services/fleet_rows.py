@@ -26,6 +26,10 @@ class NameTaken(Exception):
         self.subject = subject
 
 
+class ExternalIdTaken(Exception):
+    """Another UAV of the organisation has this external id."""
+
+
 class SystemIdTaken(Exception):
     """Another UAV has this MAVLink system id."""
 
@@ -73,7 +77,10 @@ def locked(row: Row, expected_revision: int | None) -> Row:
 
 
 def stored(row: Row, *, actor: User, action: str, before: dict[str, Any] | None, facts: Facts) -> Row:
-    """Save a row that is new, changed or brought back, with its entry in the history. Raises NameTaken or SystemIdTaken."""
+    """Save a row that is new, changed or brought back, with its entry in the history.
+
+    Raises NameTaken, ExternalIdTaken or SystemIdTaken.
+    """
     try:
         with transaction.atomic():
             row.save(force_insert=action in {"create", "restore"})
@@ -84,6 +91,8 @@ def stored(row: Row, *, actor: User, action: str, before: dict[str, Any] | None,
     except IntegrityError as error:
         if any(name in str(error) for name in NAMES_TAKEN):
             raise NameTaken(SUBJECTS[type(row)]) from error
+        if "uav_external_id_unique" in str(error):
+            raise ExternalIdTaken from error
         if "mavlink_system_id" in str(error):
             raise SystemIdTaken from error
         raise

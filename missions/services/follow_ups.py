@@ -37,6 +37,8 @@ def draft_follow_up(*, mission: Mission, author: User, name: str = "") -> Missio
         author=author,
         name=(name or _("{name} – follow-up").format(name=mission.name[: LONGEST_NAME - 20]))[:LONGEST_NAME],
         request=replace(asked, uavs=uavs, targets=missed, locks=(), departs_at=None),
+        external_id=mission.external_id,
+        attributes=mission.attributes,
     )
 
 

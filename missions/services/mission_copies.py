@@ -16,7 +16,7 @@ COPIED = (
     "organisation_id", "state", "objective", "return_to_start", "planned_at", "graph_version", "ground_revision", "flat_ground_assumed",
     "total_length_m", "longest_route_m", "plan_warnings", "last_plan", "locks", "plan_quality",
     "departs_at", "conditions", "charging_w", "total_energy_wh", "separation", "lost_link",
-    "lost_link_check",
+    "lost_link_check", "external_id", "attributes",
 )  # fmt: skip
 
 

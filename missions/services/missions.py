@@ -1,6 +1,7 @@
 """Missions from creation to deletion. Every write locks the mission's row, counts its revision and leaves an entry in its history."""
 
 from collections import Counter
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from datetime import datetime
 from typing import Any
@@ -40,7 +41,7 @@ from missions.services.wishes import refuse_contradictions
 from workspace.models import Organisation, User
 from workspace.services import record_change
 
-BESIDE_ROUTES = ("name", "lost_link")  # what routes do not hang on
+BESIDE_ROUTES = ("name", "lost_link", "external_id", "attributes")  # what routes do not hang on
 MOST_NAMES = 5  # that an entry of the history keeps
 EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}
 
@@ -81,13 +82,23 @@ class MissionChange:
     conditions: Conditions | None = None
     charging: Charging | None = None
     lost_link: LostLinkRequest | None = None
+    external_id: str | None = None
+    attributes: Mapping[str, Any] | None = None
 
     @property
     def drops_plan(self) -> bool:
         return any(getattr(self, part.name) is not None for part in fields(self) if part.name not in BESIDE_ROUTES)
 
 
-def create_mission(*, organisation: Organisation, author: User | None, name: str, request: PlanRequest) -> Mission:
+def create_mission(
+    *,
+    organisation: Organisation,
+    author: User | None,
+    name: str,
+    request: PlanRequest,
+    external_id: str = "",
+    attributes: Mapping[str, Any] | None = None,
+) -> Mission:
     """Store a draft. Raises InvalidRequest if a target is not on the ground, or wishes contradict each other."""
     refuse_contradictions(request)
     targets = _target_rows(request.targets)
@@ -103,6 +114,8 @@ def create_mission(*, organisation: Organisation, author: User | None, name: str
             conditions=conditions_to_json(request.conditions),
             charging_w=request.charging_w,
             lost_link=lost_link_to_json(request.lost_link),
+            external_id=external_id,
+            attributes=dict(attributes or {}),
         )
         _store_uavs(mission, request.uavs)
         _store_targets(mission, targets)
@@ -137,6 +150,10 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
             locked.charging_w = change.charging.power_w
         if change.lost_link is not None:
             locked.lost_link = lost_link_to_json(change.lost_link)
+        if change.external_id is not None:
+            locked.external_id = change.external_id
+        if change.attributes is not None:
+            locked.attributes = dict(change.attributes)
         if change.locks is not None:
             locked.locks = [lock_to_json(lock) for lock in change.locks]
         elif targets is not None:
@@ -153,9 +170,13 @@ def change_mission(*, mission: Mission, actor: User, change: MissionChange, expe
         elif change.lost_link is not None:
             check_lost_link(mission=locked)
         _save(locked)
-        action = "rename" if change.lost_link is None and not change.drops_plan else "change"
+        action = "rename" if _only_renames(change) else "change"
         note(locked, actor, action, before=before, after=_summary(locked) | _differences(picked, _what_is_picked(locked)))
     return locked
+
+
+def _only_renames(change: MissionChange) -> bool:
+    return all(getattr(change, part.name) is None for part in fields(change) if part.name != "name")
 
 
 def _what_is_picked(mission: Mission) -> dict[str, list[str]]:
@@ -254,6 +275,8 @@ def request_of_mission(*, mission: Mission) -> PlanRequest:
                 priority=priority_from_json(row.priority),
                 uav=row.uav_name,
                 sensor=row.sensor,
+                external_id=row.external_id,
+                attributes=row.attributes,
             )
             for row in mission.targets.all()
         ),
@@ -292,6 +315,8 @@ def _target_rows(targets: tuple[TargetRequest, ...]) -> list[InspectionTarget]:
                 priority=priority_to_json(target.priority),
                 uav_name=target.uav,
                 sensor=target.sensor,
+                external_id=target.external_id,
+                attributes=dict(target.attributes),
             )
         )
     return rows
@@ -334,6 +359,8 @@ def _save(mission: Mission) -> None:
 def _summary(mission: Mission) -> dict[str, Any]:
     return {
         "name": mission.name,
+        "external_id": mission.external_id,
+        "attributes": mission.attributes,
         "state": str(mission.state),
         "revision": mission.revision,
         "objective": str(mission.objective),

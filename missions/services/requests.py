@@ -51,6 +51,8 @@ class TargetRequest:
     priority: Priority = Priority.NORMAL
     uav: str = ""
     sensor: str = ""
+    external_id: str = field(default="", compare=False)  # of another system, as are the attributes: no plan hangs on them
+    attributes: Mapping[str, Any] = field(default_factory=dict, compare=False)
 
 
 @dataclass(frozen=True)

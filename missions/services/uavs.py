@@ -17,14 +17,14 @@ from workspace.models import Organisation, User
 FIELDS = (
     "name", "base_name", "state", "serial_number", "mavlink_system_id", "link", "is_simulated", "allows_unsigned", "max_range_m",
     "cruise_speed_mps", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "heading_deg", "battery_percent", "sensor",
-    "end_action",
+    "end_action", "external_id", "attributes",
 )  # fmt: skip
 
 
 def create_uav(*, organisation: Organisation, actor: User, position: LonLat | None, values: dict[str, Any]) -> Uav:
     """values has some of FIELDS, name among them, and perhaps `base` and `uav_type`; without a position it stands at its base.
 
-    Raises NameTaken, SystemIdTaken or SystemIdQuota.
+    Raises NameTaken, ExternalIdTaken, SystemIdTaken or SystemIdQuota.
     """
     uav = Uav(organisation=organisation)
     _put(uav, values)
@@ -37,7 +37,7 @@ def create_uav(*, organisation: Organisation, actor: User, position: LonLat | No
 def change_uav(*, uav: Uav, actor: User, position: LonLat | None, values: dict[str, Any], expected_revision: int | None = None) -> Uav:
     """Retired, it gives its MAVLink system id back.
 
-    Raises FleetChanged, NameTaken, SystemIdTaken, SystemIdQuota, or Refused for another link or system id while anything is on its way.
+    Raises FleetChanged, what create_uav raises, or Refused for another link or system id while anything is on its way.
     """
     with transaction.atomic():
         held = locked(uav, expected_revision)
@@ -58,7 +58,7 @@ def delete_uav(*, uav: Uav, actor: User, expected_revision: int | None = None) -
 
 
 def restore_uav(*, organisation: Organisation, actor: User, key: int) -> Uav:
-    """As it was when it was deleted, but without credentials. Raises NotDeleted, NameTaken, SystemIdTaken or SystemIdQuota."""
+    """As it was when it was deleted, but without credentials. Raises NotDeleted, or what create_uav raises."""
     facts = facts_to_restore(Uav, organisation=organisation, key=key)
     type_key, base_key = facts.get("uav_type"), facts.get("base")
     uav = Uav(  # an entry of before there were states, types and bases says nothing of them

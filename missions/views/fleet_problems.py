@@ -9,11 +9,11 @@ from django.utils.translation import ngettext
 from drf_spectacular.utils import OpenApiResponse
 
 from missions.fleet_selectors import last_change
-from missions.services import FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdQuota, SystemIdTaken
+from missions.services import ExternalIdTaken, FleetChanged, FleetRowInUse, NameTaken, NotDeleted, SystemIdQuota, SystemIdTaken
 from workspace.errors import ApiProblem
 from workspace.preconditions import PRECONDITION_ANSWERS
 
-TAKEN = {409: OpenApiResponse(description="The name, or the MAVLink system id, is taken.")}
+TAKEN = {409: OpenApiResponse(description="The name, the external id or the MAVLink system id is taken.")}
 CHANGE_ANSWERS = {**TAKEN, **PRECONDITION_ANSWERS}
 DELETE_ANSWERS = {204: None, 409: OpenApiResponse(description="Something still points at it."), **PRECONDITION_ANSWERS}
 RESTORE_CONFLICT = {409: OpenApiResponse(description="It was not deleted, or its name is taken in the meantime.")}
@@ -29,6 +29,9 @@ def fleet_problems(current: Callable[[], Any] | None = None) -> Iterator[None]:
             "uav": _("Another UAV has this name."), "uav_type": _("Another type has this name."), "base": _("Another base has this name.")
         }  # fmt: skip
         raise ApiProblem(409, "name_taken", messages[error.subject], details={"name": [messages[error.subject]]}) from error
+    except ExternalIdTaken as error:
+        message = _("Another UAV has this external id.")
+        raise ApiProblem(409, "external_id_taken", message, details={"external_id": [message]}) from error
     except SystemIdTaken as error:
         message = _("Another UAV has this MAVLink system id.")
         raise ApiProblem(409, "system_id_taken", message, details={"mavlink_system_id": [message]}) from error

@@ -9,6 +9,7 @@ from rest_framework.request import Request
 from missions.list_selectors import LAST_CHANGED_FIRST, ORDERS, MissionFilter, order_of
 from missions.models import MissionState
 from workspace.errors import ApiProblem
+from workspace.external_data import EXTERNAL_ID, asked_external_id
 from workspace.paging import asked_instant
 
 ORDER_NAMES = [*ORDERS, *(f"-{name}" for name in ORDERS)]
@@ -20,6 +21,8 @@ FILTER_PARAMETERS = [
     OpenApiParameter("stale", bool, description="whether the ground or a UAV has changed since the mission was planned"),
     OpenApiParameter("changed_from", str, description="date or time with offset, ISO 8601"),
     OpenApiParameter("changed_before", str, description="date or time with offset, ISO 8601"),
+    EXTERNAL_ID,
+    OpenApiParameter("target_external_id", str, description="the external id of one of its targets"),
     OpenApiParameter("deleted", bool, description="true: the deleted ones"),
     OpenApiParameter("order", str, enum=ORDER_NAMES, description="the column to sort by, with - for descending; -changed without one"),
 ]
@@ -42,6 +45,8 @@ def asked_filter(request: Request) -> MissionFilter:
         is_stale={"true": True, "false": False}.get(ask.get("stale", "")),
         changed_from=asked_instant(request, "changed_from"),
         changed_before=asked_instant(request, "changed_before"),
+        external_id=asked_external_id(request),
+        target_external_id=asked_external_id(request, "target_external_id"),
         is_deleted=ask.get("deleted") == "true",
     )
 

@@ -154,7 +154,12 @@ class MissionList(_PlansWhenAsked):
         values = serializer.validated_data
         with api_problems(), transaction.atomic():  # a mission that cannot be planned as asked is not left behind
             mission = services.create_mission(
-                organisation=user.organisation, author=user, name=values["name"], request=inputs.plan_request(values)
+                organisation=user.organisation,
+                author=user,
+                name=values["name"],
+                request=inputs.plan_request(values),
+                external_id=values.get("external_id", ""),
+                attributes=values.get("attributes"),
             )
             if values["plan"]:
                 return _plan_and_answer(user, mission, revision=mission.revision, status=201, plan_of=values.get("plan_of"))

@@ -17,6 +17,7 @@ from missions.serializers.uavs import UavCollectionSerializer, UavFeatureSeriali
 from missions.views.fleet_problems import CHANGE_ANSWERS, DELETE_ANSWERS, RESTORE_CONFLICT, TAKEN, fleet_problems
 from missions.views.problems import refusals
 from workspace.errors import ApiProblem
+from workspace.external_data import EXTERNAL_ID, asked_external_id
 from workspace.idempotency import idempotent
 from workspace.models import User
 from workspace.paging import changed_since, page_of
@@ -82,7 +83,7 @@ def _filters(request: Request) -> dict[str, Any]:
     if faults:
         place, messages = next(iter(faults.items()))
         raise ApiProblem(400, "invalid", f"{place}: {messages[0]}", details=faults)
-    return words | ids
+    return words | ids | {"external_id": asked_external_id(request)}
 
 
 class UavList(APIView):
@@ -97,6 +98,7 @@ class UavList(APIView):
             OpenApiParameter("base", int),
             OpenApiParameter("type", int),
             OpenApiParameter("sensor", str, description="part of the name of one of its sensors"),
+            EXTERNAL_ID,
             CHANGED_SINCE,
             *PAGE_PARAMETERS,
         ],

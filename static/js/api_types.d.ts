@@ -352,6 +352,12 @@ export interface components {
             is_flyable: boolean;
             /** @description lon, lat */
             centre: number[];
+            /** @description your organisation's id of it; may be empty */
+            external_id: string;
+            /** @description your organisation's own */
+            attributes: {
+                [key: string]: string | number | boolean;
+            };
             /** @description as the source has them */
             tags: {
                 [key: string]: unknown;
@@ -396,6 +402,12 @@ export interface components {
             tags?: {
                 [key: string]: string;
             };
+            /** @description your organisation's id of it, of one asset each; empty: none */
+            external_id?: string;
+            /** @description your organisation's own; a change replaces all of them */
+            attributes?: {
+                [key: string]: string | number | boolean;
+            };
         };
         /**
          * @description * `tower` - Power tower
@@ -431,6 +443,12 @@ export interface components {
             is_flyable: boolean;
             /** @description lon, lat */
             centre: number[];
+            /** @description your organisation's id of it; may be empty */
+            external_id: string;
+            /** @description your organisation's own */
+            attributes: {
+                [key: string]: string | number | boolean;
+            };
         };
         /** @description A place where UAVs stand and take off. */
         Base: {
@@ -2362,6 +2380,12 @@ export interface components {
             /** Format: uuid */
             id: string;
             name: string;
+            /** @description another system's id, such as a work order's; may be empty */
+            external_id: string;
+            /** @description of other systems */
+            attributes: {
+                [key: string]: string | number | boolean;
+            };
             state: components["schemas"]["MissionState"];
             author: string | null;
             objective: components["schemas"]["ObjectiveEnum"];
@@ -2451,7 +2475,7 @@ export interface components {
             name: string;
             missions: number;
         };
-        /** @description UAVs, targets and options, all optional: what a mission is made of. */
+        /** @description What other systems may keep with a mission. */
         MissionInputRequest: {
             uavs?: components["schemas"]["UavInputRequest"][];
             targets?: components["schemas"]["TargetInputRequest"][];
@@ -2478,6 +2502,12 @@ export interface components {
              */
             charging_w?: number | null;
             lost_link?: components["schemas"]["LostLinkRequest"] | null;
+            /** @description another system's id, such as a work order's; several missions may have one */
+            external_id?: string;
+            /** @description of other systems; a change replaces all of them */
+            attributes?: {
+                [key: string]: string | number | boolean;
+            };
             name: string;
             /**
              * @description plan it in the same request
@@ -2528,6 +2558,8 @@ export interface components {
             /** Format: uuid */
             id: string;
             name: string;
+            /** @description another system's id; may be empty */
+            external_id: string;
             state: components["schemas"]["MissionState"];
             author: string | null;
             /** @description the ETag */
@@ -2593,6 +2625,12 @@ export interface components {
             uav: string | null;
             /** @description that its UAV must have; may be empty */
             sensor: string;
+            /** @description another system's id; may be empty */
+            external_id: string;
+            /** @description of other systems */
+            attributes: {
+                [key: string]: string | number | boolean;
+            };
             state: components["schemas"]["TargetState"];
             unassigned_reason: string;
             unassigned_message: string;
@@ -2882,6 +2920,12 @@ export interface components {
             tags?: {
                 [key: string]: string;
             };
+            /** @description your organisation's id of it, of one asset each; empty: none */
+            external_id?: string;
+            /** @description your organisation's own; a change replaces all of them */
+            attributes?: {
+                [key: string]: string | number | boolean;
+            };
         };
         /** @description A place where UAVs stand and take off. */
         PatchedBaseRequest: {
@@ -2896,7 +2940,7 @@ export interface components {
             position?: number[];
             note?: string;
         };
-        /** @description UAVs, targets and options, all optional: what a mission is made of. */
+        /** @description What other systems may keep with a mission. */
         PatchedMissionPatchRequest: {
             uavs?: components["schemas"]["UavInputRequest"][];
             targets?: components["schemas"]["TargetInputRequest"][];
@@ -2923,6 +2967,12 @@ export interface components {
              */
             charging_w?: number | null;
             lost_link?: components["schemas"]["LostLinkRequest"] | null;
+            /** @description another system's id, such as a work order's; several missions may have one */
+            external_id?: string;
+            /** @description of other systems; a change replaces all of them */
+            attributes?: {
+                [key: string]: string | number | boolean;
+            };
             name?: string;
             /**
              * @description plan it in the same request
@@ -2949,7 +2999,7 @@ export interface components {
             /** @description whether they may sign in */
             is_active?: boolean;
         };
-        /** @description A name, and targets as in a mission; UAVs, what is tied or locked to them, and options are not kept. */
+        /** @description A name, and targets as in a mission; UAVs, what is tied or locked to them, options, external ids and attributes are not kept. */
         PatchedSelectionInputRequest: {
             targets?: components["schemas"]["TargetInputRequest"][];
             /**
@@ -3059,6 +3109,12 @@ export interface components {
             /** @description besides those of its type */
             sensor?: string;
             end_action?: components["schemas"]["EndActionEnum"];
+            /** @description another system's id of it, one UAV each; empty: none */
+            external_id?: string;
+            /** @description of other systems; a change replaces all of them */
+            attributes?: {
+                [key: string]: string | number | boolean;
+            };
             /**
              * @description lon, lat [deg], WGS84
              * @example [
@@ -3690,6 +3746,12 @@ export interface components {
             /** Format: uuid */
             id: string;
             name: string;
+            /** @description another system's id; may be empty */
+            external_id: string;
+            /** @description of other systems */
+            attributes: {
+                [key: string]: string | number | boolean;
+            };
             state: components["schemas"]["MissionState"];
             /** Format: date-time */
             departs_at: string | null;
@@ -3837,6 +3899,12 @@ export interface components {
             place: number;
             label: string;
             asset: number | null;
+            /** @description another system's id; may be empty */
+            external_id: string;
+            /** @description of other systems */
+            attributes: {
+                [key: string]: string | number | boolean;
+            };
             state: components["schemas"]["TargetState"];
             /** Format: date-time */
             state_at: string | null;
@@ -4338,10 +4406,77 @@ export interface components {
             is_armed?: boolean | null;
             is_in_air?: boolean | null;
         };
+        ReportedResult: {
+            uav: number;
+            uav_name: string;
+            /** @description complete, skipped or failed */
+            outcome: string;
+            note: string;
+            /** @description as the payload measured them */
+            values: {
+                [key: string]: unknown;
+            };
+            /** Format: date-time */
+            measured_at: string;
+            /** Format: date-time */
+            received_at: string;
+        };
         ReportsRequest: {
             /** @description one run of the UAV's counter: a new one whenever its numbers begin anew */
             stream: string;
             records: components["schemas"]["ReportRequest"][];
+        };
+        Result: {
+            id: number;
+            mission: components["schemas"]["ResultMission"];
+            /** @description of the target in its mission, from 0 */
+            place: number;
+            label: string;
+            /** @description the target's; may be empty */
+            external_id: string;
+            /** @description the target's */
+            attributes: {
+                [key: string]: string | number | boolean;
+            };
+            asset: components["schemas"]["ResultAsset"] | null;
+            /**
+             * @description as picked, else the asset's centre
+             * @example [
+             *       9.52,
+             *       47.14
+             *     ]
+             */
+            position: number[] | null;
+            /** @description as planned */
+            task: components["schemas"]["TaskOutput"];
+            /** @description null where no route reached it */
+            planned: components["schemas"]["ResultPlan"] | null;
+            state: components["schemas"]["ResultStateEnum"];
+            /**
+             * Format: date-time
+             * @description since when
+             */
+            state_at: string;
+            /** @description why it was skipped or failed; may be empty */
+            state_reason: string;
+            /** @description what UAVs reported of it, by time */
+            reported: components["schemas"]["ReportedResult"][];
+        };
+        ResultAsset: {
+            id: number;
+            kind: string;
+            /** @description your organisation's id of it; may be empty */
+            external_id: string;
+        };
+        ResultMission: {
+            /** Format: uuid */
+            id: string;
+            name: string;
+            /** @description may be empty */
+            external_id: string;
+            state: components["schemas"]["MissionState"];
+            /** @description address of its record: how near each UAV came, and how long it held */
+            record: string;
         };
         /**
          * @description * `complete` - complete
@@ -4350,6 +4485,20 @@ export interface components {
          * @enum {string}
          */
         ResultOutcomeEnum: "complete" | "skipped" | "failed";
+        ResultPage: {
+            results: components["schemas"]["Result"][];
+            next: string | null;
+        };
+        ResultPlan: {
+            uav: number | null;
+            uav_name: string;
+            waypoint_sequence: number;
+            /**
+             * Format: date-time
+             * @description null where the mission has no departure
+             */
+            at: string | null;
+        };
         /** @description What the UAV found at a target. */
         ResultRequest: {
             /** Format: int64 */
@@ -4373,6 +4522,14 @@ export interface components {
                 [key: string]: unknown;
             };
         };
+        /**
+         * @description * `in-progress` - In progress
+         *     * `complete` - Complete
+         *     * `skipped` - Skipped
+         *     * `failed` - Failed
+         * @enum {string}
+         */
+        ResultStateEnum: "in-progress" | "complete" | "skipped" | "failed";
         ResultsRequest: {
             /** @description one run of the UAV's counter: a new one whenever its numbers begin anew */
             stream: string;
@@ -4783,7 +4940,7 @@ export interface components {
             /** @description what the others were called */
             missing: string[];
         };
-        /** @description A name, and targets as in a mission; UAVs, what is tied or locked to them, and options are not kept. */
+        /** @description A name, and targets as in a mission; UAVs, what is tied or locked to them, options, external ids and attributes are not kept. */
         SelectionInputRequest: {
             targets: components["schemas"]["TargetInputRequest"][];
             /**
@@ -5347,6 +5504,12 @@ export interface components {
             uav?: string | null;
             /** @description only UAVs that have it may do it */
             sensor?: string | null;
+            /** @description another system's id, such as a work item's; empty: none */
+            external_id?: string;
+            /** @description of other systems */
+            attributes?: {
+                [key: string]: string | number | boolean;
+            };
         };
         /**
          * @description * `low` - Low
@@ -5725,6 +5888,12 @@ export interface components {
             /** @description besides those of its type */
             sensor?: string;
             end_action?: components["schemas"]["EndActionEnum"];
+            /** @description another system's id of it, one UAV each; empty: none */
+            external_id?: string;
+            /** @description of other systems; a change replaces all of them */
+            attributes?: {
+                [key: string]: string | number | boolean;
+            };
             /**
              * @description lon, lat [deg], WGS84
              * @example [
@@ -5877,6 +6046,12 @@ export interface components {
             /** @description besides those of its type */
             sensor?: string;
             end_action?: components["schemas"]["EndActionEnum"];
+            /** @description another system's id of it, one UAV each; empty: none */
+            external_id?: string;
+            /** @description of other systems; a change replaces all of them */
+            attributes?: {
+                [key: string]: string | number | boolean;
+            };
             readonly type_name: string;
             /** @description its own and its type's */
             readonly sensors: string[];
@@ -5962,6 +6137,12 @@ export interface components {
             /** @description besides those of its type */
             sensor?: string;
             end_action?: components["schemas"]["EndActionEnum"];
+            /** @description another system's id of it, one UAV each; empty: none */
+            external_id?: string;
+            /** @description of other systems; a change replaces all of them */
+            attributes?: {
+                [key: string]: string | number | boolean;
+            };
         };
         /**
          * @description * `active` - Active
@@ -6994,9 +7175,16 @@ export type ReplanAsked = components['schemas']['ReplanAsked'];
 export type ReplanOffer = components['schemas']['ReplanOffer'];
 export type ReplanOfferPage = components['schemas']['ReplanOfferPage'];
 export type ReportRequest = components['schemas']['ReportRequest'];
+export type ReportedResult = components['schemas']['ReportedResult'];
 export type ReportsRequest = components['schemas']['ReportsRequest'];
+export type Result = components['schemas']['Result'];
+export type ResultAsset = components['schemas']['ResultAsset'];
+export type ResultMission = components['schemas']['ResultMission'];
 export type ResultOutcomeEnum = components['schemas']['ResultOutcomeEnum'];
+export type ResultPage = components['schemas']['ResultPage'];
+export type ResultPlan = components['schemas']['ResultPlan'];
 export type ResultRequest = components['schemas']['ResultRequest'];
+export type ResultStateEnum = components['schemas']['ResultStateEnum'];
 export type ResultsRequest = components['schemas']['ResultsRequest'];
 export type ReturnCheck = components['schemas']['ReturnCheck'];
 export type ReturnCheckStateEnum = components['schemas']['ReturnCheckStateEnum'];

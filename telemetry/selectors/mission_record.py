@@ -99,6 +99,8 @@ def mission_record(mission: Mission) -> dict[str, Any]:
         "mission": {
             "id": mission.pk,
             "name": mission.name,
+            "external_id": mission.external_id,
+            "attributes": mission.attributes,
             "state": mission.state,
             "departs_at": mission.departs_at,
             "started_at": mission.started_at,
@@ -244,6 +246,8 @@ def _targets(mission: Mission, targets: Sequence[InspectionTarget], routes: Sequ
                 "place": target.sequence,
                 "label": target.label,
                 "asset": target.asset_id,
+                "external_id": target.external_id,
+                "attributes": target.attributes,
                 "state": target.state,
                 "state_at": target.state_at,
                 "state_reason": target.state_reason or target.unassigned_message,

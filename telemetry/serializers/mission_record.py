@@ -3,6 +3,7 @@
 from rest_framework import serializers
 
 from missions.models import MissionState, TargetState, WaypointKind
+from workspace.external_data import AttributesField
 from workspace.serializers import Declared
 
 
@@ -17,6 +18,8 @@ class RecordApprovalSerializer(serializers.Serializer):
 class RecordMissionSerializer(serializers.Serializer):
     id = serializers.UUIDField()
     name = serializers.CharField()
+    external_id = serializers.CharField(help_text="another system's id; may be empty")
+    attributes = AttributesField(required=True, help_text="of other systems")
     state = serializers.ChoiceField(choices=MissionState.choices)
     departs_at = serializers.DateTimeField(allow_null=True)
     started_at = serializers.DateTimeField(allow_null=True, help_text="when its first UAV began to fly")
@@ -144,6 +147,8 @@ class RecordTargetSerializer(serializers.Serializer):
     place = serializers.IntegerField()
     label: Declared = serializers.CharField()
     asset = serializers.IntegerField(allow_null=True)
+    external_id = serializers.CharField(help_text="another system's id; may be empty")
+    attributes = AttributesField(required=True, help_text="of other systems")
     state = serializers.ChoiceField(choices=TargetState.choices)
     state_at = serializers.DateTimeField(allow_null=True)
     state_reason = serializers.CharField(allow_blank=True)

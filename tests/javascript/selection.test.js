@@ -201,3 +201,22 @@ test("one asset twice in a mission keeps its two places, also in a lock", () => 
   assert.deepEqual(requestOf(selection).targets, [{ asset: 5 }, { asset: 5 }]);
   assert.equal(withoutTargets(selection, [selection.targets[0].key]).targets.length, 1);
 });
+
+test("what another system keeps with a target is sent back as it came", () => {
+  const given = { external_id: "item-1", attributes: { row: 1, is_urgent: true } };
+  const stored = {
+    asset: 7,
+    kind: "tower",
+    label: "Tower 18",
+    detail: "",
+    length_m: null,
+    position: [10, 50],
+    stretch: null,
+  };
+  const targets = [
+    { ...stored, is_point: false, ...given },
+    { ...stored, asset: 8, is_point: false, external_id: "", attributes: {} },
+  ];
+  const selection = selectionOf({ objective: "total", return_to_start: true, uavs: [heron], targets, locks: [] });
+  assert.deepEqual(requestOf(selection).targets, [{ asset: 7, ...given }, { asset: 8 }]);
+});

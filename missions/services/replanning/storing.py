@@ -65,7 +65,14 @@ def _store(proposal: Proposal) -> Mission:
         lost_link=lost_link_from_json(flying.lost_link),
     )
     name = f"{flying.name[: LONGEST_NAME - 20]}, continued"
-    draft = create_mission(organisation=flying.organisation, author=flying.author, name=name, request=request)
+    draft = create_mission(
+        organisation=flying.organisation,
+        author=flying.author,
+        name=name,
+        request=request,
+        external_id=flying.external_id,
+        attributes=flying.attributes,
+    )
     Mission.objects.filter(pk=draft.pk).update(continues=flying, alert_limits=flying.alert_limits)
     for uav, one in zip(draft.mission_uavs.all(), continued, strict=True):
         MissionUav.objects.filter(pk=uav.pk).update(home_amsl_m=one.leaving.rest.take_off_amsl_m)

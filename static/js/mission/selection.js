@@ -283,6 +283,18 @@ function asKept(uav) {
   return { ...none, ...(uav.sensors ? { sensors: uav.sensors } : {}), own_figures: uav.own_figures ?? [] };
 }
 
+/**
+ * What other systems keep with a target; the page leaves it as it is.
+ *
+ * @param {Pick<TargetInputRequest, "external_id" | "attributes">} target
+ */
+function givenOf({ external_id, attributes }) {
+  return {
+    ...(external_id ? { external_id } : {}),
+    ...(Object.keys(attributes ?? {}).length ? { attributes } : {}),
+  };
+}
+
 /** The body of /plans and of a mission. @param {MissionSelection} selection @returns {PlanInputRequest} */
 export function requestOf(selection) {
   return {
@@ -308,7 +320,7 @@ export function requestOf(selection) {
       if (priority !== NO_WISH.priority) body.priority = priority;
       if (uav !== null) body.uav = uav;
       if (sensor) body.sensor = sensor;
-      return body;
+      return { ...body, ...givenOf(target) };
     }),
     objective: selection.objective,
     return_to_start: selection.return_to_start,
@@ -355,7 +367,7 @@ export function storedTarget(target) {
     centre: target.position,
     task: target.task ?? null,
   };
-  return { key: keyOf(made), ...made, ...wishesOf(target) };
+  return { key: keyOf(made), ...made, ...wishesOf(target), ...("external_id" in target ? givenOf(target) : {}) };
 }
 
 /**

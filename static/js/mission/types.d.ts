@@ -18,6 +18,7 @@ import type {
   RehearsalTrack,
   ReturnCheck,
   Route,
+  TargetInputRequest,
   TargetPriority,
   TaskKind,
   UavConnection,
@@ -63,7 +64,7 @@ export interface Wishes {
 }
 
 /** A target that is picked. The same place has the same key. */
-export interface PickedTarget extends Partial<Wishes> {
+export interface PickedTarget extends Partial<Wishes>, Pick<TargetInputRequest, "external_id" | "attributes"> {
   key: string;
   /** id; null for a place on the map */
   asset: number | null;
