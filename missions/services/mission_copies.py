@@ -34,7 +34,7 @@ def duplicate_mission(*, mission: Mission, author: User, name: str = "") -> Miss
             values["state"] = MissionState.PLANNED
         copy = Mission.objects.create(author=author, name=(name or _free_name(mission))[:LONGEST_NAME], **values)
         uavs = _copied(MissionUav, mission.mission_uavs.all(), mission=copy)
-        targets = _copied(InspectionTarget, mission.targets.all(), mission=copy, state=TargetState.PENDING)
+        targets = _copied(InspectionTarget, mission.targets.all(), mission=copy, state=TargetState.PENDING, state_at=None, state_reason="")
         rows = list(mission.routes.prefetch_related("waypoints"))
         routes = [_copy_of(route, mission=copy, mission_uav=uavs[route.mission_uav_id]) for route in rows]
         Route.objects.bulk_create(routes)
