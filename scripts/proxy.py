@@ -5,8 +5,9 @@ import os
 import resource
 from pathlib import Path
 
+from operation.address_limits import COSTLY
 from operation.json_lines import is_asked_for
-from scripts import page_headers
+from scripts import page_headers, proxy_limits
 from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
 from scripts.proxy_site import ALIVE, Site, came_over_http, certificates, entrances, error_json, plain_server, quoted, spoken, upstreams
 
@@ -59,6 +60,18 @@ def _failures(name: str, media_type: str, headers: str, *, unavailable: str, too
         }}"""
 
 
+def _too_many(headers: str) -> str:
+    """What nginx answers to an address that asks for too much."""
+    return f"""
+        location @api_too_many {{
+            internal;
+            default_type application/json;
+            add_header Retry-After {proxy_limits.RETRY_AFTER_S} always;
+{headers}
+            return 429 '{proxy_limits.TOO_MANY}';
+        }}"""
+
+
 def _proxied(
     location: str,
     name: str,
@@ -69,6 +82,7 @@ def _proxied(
     compression: str = "on",
     faults: str = "warn",
     again: str = "error",
+    limits: str = "",
 ) -> str:
     return f"""
         location {location} {{
@@ -89,7 +103,7 @@ def _proxied(
             proxy_hide_header Referrer-Policy;
             proxy_hide_header Strict-Transport-Security;
             error_page 502 504 = @{name}_unavailable;
-            error_page 413 = @{name}_too_large;
+            error_page 413 = @{name}_too_large;{limits}
 {headers}
         }}"""
 
@@ -110,7 +124,7 @@ def _websockets(scheme: str, *, to: tuple[str, str]) -> str:
             proxy_send_timeout 30s;
             proxy_next_upstream error timeout http_503;
             proxy_buffering off;
-            error_page 502 504 = @api_unavailable;
+            error_page 502 504 = @api_unavailable;{proxy_limits.of_sockets()}
         }}"""
 
 
@@ -201,6 +215,9 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
     places_of_edits = _proxied("~ ^/api/v1/missions", "api", headers, scheme, to=web, compression="off", again=again)
     # A plan that was asked for changes nothing: when its program dies over it, another one is asked.
     plans = _proxied("= /api/v1/plans", "api", headers, scheme, to=web, again=f"{again} non_idempotent")
+    costly = "".join(
+        _proxied(kind.location, "api", headers, scheme, to=web, again=again, limits=proxy_limits.of_requests(kind)) for kind in COSTLY
+    )
     api = _proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme, to=web, again=again)
     links = _proxied("~ ^/(new-password|invitation)/", "page", headers, scheme, to=web, faults="emerg", again=again)
     pages = _proxied("/", "page", headers, scheme, to=web, again=again)
@@ -230,6 +247,7 @@ http {{
     }}
     map $upstream_http_x_request_id $told_id {{ "" "-"; default $upstream_http_x_request_id; }}
     {visitor}
+{proxy_limits.zones()}
     log_format line {_line()};
     access_log /dev/stdout line buffer=32k flush=1s;
     server_tokens off;
@@ -264,9 +282,9 @@ http {{
             alias "{quoted(site.static)[1:-1]}/$hashed";
             add_header Cache-Control "public, max-age=31536000, immutable";
 {headers}
-        }}{pages}{plans}{places_of_edits}{api}{links}{_websockets(scheme, to=live)}
+        }}{pages}{plans}{costly}{places_of_edits}{api}{links}{_websockets(scheme, to=live)}
 {failures_for_people}
-{failures_for_programs}
+{failures_for_programs}{_too_many(headers)}
     }}{plain_server(site)}{beside}
 }}
 """
