@@ -173,6 +173,7 @@ def configuration(places: Places, sockets: Path, port: int) -> str:
             static=places.static,
             web=tuple(f"unix:{sockets / name}.sock" for name in WEB_PROGRAMS),
             live=(f"unix:{sockets / 'live.sock'}",),
+            uav_link=(f"unix:{sockets / 'uav-link.sock'}",),
             listens_at=f"127.0.0.1:{port}",
             is_behind_https=is_https_asked_for(),
         ),
@@ -187,9 +188,15 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
     headers = page_headers.headers(tiles, is_https=site.is_https)
     is_behind_https = site.is_behind_https and site.certificate is None
     scheme = "$http_x_forwarded_proto" if is_behind_https else "$scheme"
-    (web_scheme, web_tls), (live_scheme, live_tls) = spoken(site, site.web), spoken(site, site.live)
     mark = "$" if site.resolver else ""
-    web, live = (f"{web_scheme}://{mark}web", web_tls), (f"{live_scheme}://{mark}live", live_tls)
+    web, live, uav_link = (
+        (f"{spoken_scheme}://{mark}{name}", tls)
+        for name, (spoken_scheme, tls) in {
+            "web": spoken(site, site.web),
+            "live": spoken(site, site.live),
+            "uav_link": spoken(site, site.for_uavs),
+        }.items()
+    )
     # The application takes the last address: behind a TLS proxy the one that this proxy has added, for its own is everybody's.
     visitor = 'map $http_x_forwarded_for $visitor { "" $remote_addr; default $http_x_forwarded_for; }'
     if not is_behind_https:
@@ -219,6 +226,7 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
         _proxied(kind.location, "api", headers, scheme, to=web, again=again, limits=proxy_limits.of_requests(kind)) for kind in COSTLY
     )
     api = _proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme, to=web, again=again)
+    of_uavs = _proxied("^~ /api/v1/uav-link/", "api", headers, scheme, to=uav_link, again=again)
     links = _proxied("~ ^/(new-password|invitation)/", "page", headers, scheme, to=web, faults="emerg", again=again)
     pages = _proxied("/", "page", headers, scheme, to=web, again=again)
     return f"""{"user root;" if os.geteuid() == 0 else ""}
@@ -282,7 +290,7 @@ http {{
             alias "{quoted(site.static)[1:-1]}/$hashed";
             add_header Cache-Control "public, max-age=31536000, immutable";
 {headers}
-        }}{pages}{plans}{costly}{places_of_edits}{api}{links}{_websockets(scheme, to=live)}
+        }}{pages}{plans}{of_uavs}{costly}{places_of_edits}{api}{links}{_websockets(scheme, to=live)}
 {failures_for_people}
 {failures_for_programs}{_too_many(headers)}
     }}{plain_server(site)}{beside}
