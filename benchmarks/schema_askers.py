@@ -7,8 +7,8 @@ then while the others ask for /api/schema without a pause. With --write the tabl
 """
 
 import argparse
-import threading
 import time
+from concurrent.futures import ProcessPoolExecutor
 from http.client import HTTPConnection
 from statistics import quantiles
 from urllib.parse import urlsplit
@@ -19,7 +19,7 @@ MOST_CHANGE_MS = 50.0
 
 
 def seconds_of(host: str, path: str, headers: dict[str, str], lasts_s: float) -> list[float]:
-    """How long each answer took. Raises SystemExit for any that is not 200."""
+    """How long each answer took. Raises SystemExit for any that is neither 200 nor, where an address asks for too much, 429."""
     connection, taken = HTTPConnection(host, timeout=120), []
     ends_s = time.monotonic() + lasts_s
     while time.monotonic() < ends_s:
@@ -28,25 +28,19 @@ def seconds_of(host: str, path: str, headers: dict[str, str], lasts_s: float) ->
         answer = connection.getresponse()
         answer.read()
         taken.append(time.perf_counter() - began_s)
-        if answer.status != 200:
+        if answer.status not in (200, 429):
             raise SystemExit(f"{path} was answered {answer.status}")
     return taken
 
 
 def with_askers(number: int, host: str, headers: dict[str, str], lasts_s: float) -> tuple[list[float], int]:
     """The times of whoever is signed in, and how many answers the others got meanwhile."""
-    got: list[int] = []
-
-    def ask() -> None:
-        got.append(len(seconds_of(host, "/api/schema", {"Accept-Encoding": "gzip"}, lasts_s)))
-
-    askers = [threading.Thread(target=ask) for _ in range(number)]
-    for asker in askers:
-        asker.start()
-    times = seconds_of(host, "/api/v1/missions", headers, lasts_s)
-    for asker in askers:
-        asker.join()
-    return times, sum(got)
+    if not number:
+        return seconds_of(host, "/api/v1/missions", headers, lasts_s), 0
+    with ProcessPoolExecutor(number) as askers:  # processes of their own: their work is no part of what is measured
+        got = [askers.submit(seconds_of, host, "/api/schema", {"Accept-Encoding": "gzip"}, lasts_s) for _ in range(number)]
+        times = seconds_of(host, "/api/v1/missions", headers, lasts_s)
+        return times, sum(len(one.result()) for one in got)
 
 
 def row(name: str, times: list[float], answers: int) -> tuple[str, ...]:
@@ -69,7 +63,7 @@ def main() -> None:
     beside, answers = with_askers(options.askers, host, headers, options.seconds)
     change_ms = (quantiles(beside, n=100)[94] - quantiles(alone, n=100)[94]) * 1e3
     rows = [row("alone", alone, 0), row(f"beside {options.askers} askers of /api/schema", beside, answers)]
-    text = table(["GET /api/v1/missions", "requests", "median [ms]", "p95 [ms]", "longest [ms]", "documents sent meanwhile"], rows)
+    text = table(["GET /api/v1/missions", "requests", "median [ms]", "p95 [ms]", "longest [ms]", "answers to the others meanwhile"], rows)
     told = f"{text}\n\nThe p95 changes by {change_ms:+.1f} ms; less than {MOST_CHANGE_MS:g} is asked for. {machine('django')}"
     print(told)
     if options.write:

@@ -19,6 +19,7 @@ from inspection.zones.rules import ZoneRules
 from missions.command_rules import CommandRules
 from missions.flight_plan.rules import FlightRules, SeparationRules
 from missions.routing.rules import RoutingRules
+from operation.address_limits import operators_per_address, sockets_per_address
 from telemetry.ground_station.rules import CommandRules as VehicleCommandRules
 from telemetry.ground_station.rules import TransferRules
 
@@ -241,12 +242,19 @@ REST_FRAMEWORK: dict[str, Any] = {
     "DEFAULT_THROTTLE_RATES": {
         "plans": os.environ.get("SPANWISE_PLAN_RATE", "40/second"),
         "uav-link": os.environ.get("SPANWISE_UAV_LINK_RATE", "20/second"),
+        "tiles": os.environ.get("SPANWISE_TILE_RATE", "3000/minute"),
+        "scene": os.environ.get("SPANWISE_SCENE_RATE", "60/minute"),
+        "exports": os.environ.get("SPANWISE_EXPORT_RATE", "30/minute"),
     },
     "EXCEPTION_HANDLER": "workspace.errors.error_response",
     "UNAUTHENTICATED_USER": "django.contrib.auth.models.AnonymousUser",
 }
 
 SPECTACULAR_SETTINGS = openapi_settings()
+
+# Open websockets that one `live` program takes; 0: as many as there are. Those of an address count for all operators behind it.
+SOCKETS_PER_USER = int(os.environ.get("SPANWISE_SOCKETS_PER_USER", "32"))
+SOCKETS_PER_ADDRESS = sockets_per_address(operators_per_address())
 
 # Celery: rows in PostgreSQL are the truth, Redis is a hint (findings: late acknowledgement and a fast sweep, or work is lost).
 CELERY_BROKER_URL = broker_url(REDIS_URL)

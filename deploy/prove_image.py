@@ -46,7 +46,7 @@ PATIENCE_S = 900.0  # after which there is nothing to be proven
 USER = 10001  # of the image
 SERVICES = "spanwise.svc.cluster.local"
 BACKUP = "/var/lib/spanwise-files/backups/proof"
-PROGRAMS = ("live", "gateway", "estimator", "simulator", "worker-data", "worker-planning", "worker-simulation", "beat")
+PROGRAMS = ("live", "uav-link", "gateway", "estimator", "simulator", "worker-data", "worker-planning", "worker-simulation", "beat")
 NETWORK = "podman-default-kube-network"  # what podman play kube puts pods into
 DEMO = [
     ["make_demo_region", "/var/lib/spanwise/demo"],
@@ -120,7 +120,7 @@ class Proof:
         folders = {
             "secrets": secret_folder(self.folder / "program-secrets", secrets, USER),
             "trust": secret_folder(self.folder / "trust", {"ca.crt": (servers.secrets / "ca.crt").read_text()}, USER),
-            **{f"inner-{program}-certificate": self._inner_certificate(servers, program) for program in ("web", "live")},
+            **{f"inner-{program}-certificate": self._inner_certificate(servers, program) for program in ("web", "live", "uav-link")},
         }
         return Site(self.podman, shipped(self.options.overlay), self.options.image, files, folders, gateway, own)
 
@@ -152,9 +152,10 @@ class Proof:
         first = [self.site.pod("web", 1), self.site.pod("web", 2), *(self.site.pod(program, 1) for program in PROGRAMS)]
         with ThreadPoolExecutor(4) as several:
             started = list(several.map(self._start, first))
-        self.web, live = started[:2], next(pod for pod in started if pod.program == "live")
+        self.web = started[:2]
         self.names.tell(f"web.{SERVICES}", [pod.address for pod in self.web])  # also of one that is gone: the proxy finds out by itself
-        self.names.tell(f"live.{SERVICES}", [live.address])
+        for name in ("live", "uav-link"):
+            self.names.tell(f"{name}.{SERVICES}", [next(pod for pod in started if pod.program == name).address])
         self.proxy_pod = self._start(self.site.pod("proxy", 1))
         self.running = [*started, self.proxy_pod]
         wait_until_ready(self.running, PATIENCE_S)

@@ -29,9 +29,18 @@ def _granian(*arguments: str) -> list[str]:
 
 def web(*where: str) -> list[str]:
     """Pages and API. One process a program: of several on one socket the first to wake takes most of the work."""
+    return _wsgi("config.wsgi:application", *where)
+
+
+def uav_link(*where: str) -> list[str]:
+    """The HTTP link of UAVs, which is answered however much pages ask for."""
+    return _wsgi("config.uav_link:application", *where)
+
+
+def _wsgi(application: str, *where: str) -> list[str]:
     command = ["--interface", "wsgi", *where, "--workers", "1"]
     command += ["--no-ws", "--blocking-threads", "4", "--backlog", BACKLOG, "--http", "1", "--workers-kill-timeout", "8"]
-    return _granian(*command, "--respawn-failed-workers", "--respawn-interval", "0.5", "config.wsgi:application")
+    return _granian(*command, "--respawn-failed-workers", "--respawn-interval", "0.5", application)
 
 
 def live(*where: str) -> list[str]:

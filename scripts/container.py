@@ -1,6 +1,7 @@
 """Become one of the programs, in a container: spanwise NAME [ARGUMENT...]
 
-web live proxy · gateway estimator simulator · worker-data worker-planning worker-simulation beat · migrate · manage ARGUMENT... · healthy
+web live uav-link proxy
+gateway estimator simulator · worker-data worker-planning worker-simulation beat · migrate · manage ARGUMENT... · healthy
 backup [FOLDER] · restore FOLDER [--replace]     (of the database and the flights' logs; the key is the site's to keep)
 
 The image's entry point. Everything comes from the environment: docs/deployment.md. SIGTERM ends each of them softly.
@@ -20,8 +21,8 @@ from scripts import commands, container_health, container_proxy
 from scripts.inner_tls import inner_certificate, look_after
 from scripts.places import PROJECT_DIR
 
-WEB_PORT, LIVE_PORT = 8000, 8001
-SERVING = ("web", "live")  # behind the proxy
+WEB_PORT, LIVE_PORT, UAV_LINK_PORT = 8000, 8001, 8002
+SERVING = ("web", "live", "uav-link")  # behind the proxy
 METRICS = "0.0.0.0:9464"
 SECRETS = ("DATABASE_URL", "REDIS_URL", "SPANWISE_SECRET_KEY")
 BACKUPS = "/var/lib/spanwise-backups"
@@ -44,6 +45,7 @@ def _worker(queue: str) -> list[str]:
 PROGRAMS: dict[str, Callable[[], list[str]]] = {
     "web": lambda: commands.web(*_listening(int(os.environ.get("SPANWISE_WEB_PORT", WEB_PORT)))),
     "live": lambda: commands.live(*_listening(int(os.environ.get("SPANWISE_LIVE_PORT", LIVE_PORT)))),
+    "uav-link": lambda: commands.uav_link(*_listening(int(os.environ.get("SPANWISE_UAV_LINK_PORT", UAV_LINK_PORT)))),
     "gateway": lambda: commands.management("run_gateway"),
     "estimator": lambda: commands.management("run_estimator"),
     "simulator": lambda: commands.management("run_simulator"),

@@ -31,10 +31,11 @@ def name_server(text: str) -> str:
 
 
 def site_of_environment(folder: Path) -> Site:
-    """SPANWISE_PROXY_WEB and SPANWISE_PROXY_LIVE: addresses with commas between them, or one name each with SPANWISE_PROXY_RESOLVES=1.
+    """SPANWISE_PROXY_WEB, SPANWISE_PROXY_LIVE and SPANWISE_PROXY_UAV_LINK (else web answers UAVs): addresses with
+    commas between them, or one name each with SPANWISE_PROXY_RESOLVES=1.
 
     Which name server is asked, SPANWISE_PROXY_NAME_SERVER says, else the container's own resolv.conf.
-    SPANWISE_PROXY_TRUST: the authority that the certificates of web and live are checked by; without it they speak plain HTTP.
+    SPANWISE_PROXY_TRUST: the authority that the certificates of web, live and uav-link are checked by; without it they speak plain HTTP.
     SPANWISE_TLS_CERTIFICATE and SPANWISE_TLS_KEY: files; with them TLS is spoken here, on SPANWISE_PROXY_TLS_PORT.
     """
     certificate, key = os.environ.get("SPANWISE_TLS_CERTIFICATE"), os.environ.get("SPANWISE_TLS_KEY")
@@ -44,6 +45,7 @@ def site_of_environment(folder: Path) -> Site:
         static=Path(os.environ.get("SPANWISE_STATIC_DIR") or state_directory() / "static"),
         web=tuple(os.environ.get("SPANWISE_PROXY_WEB", "web:8000").split(",")),
         live=tuple(os.environ.get("SPANWISE_PROXY_LIVE", "live:8001").split(",")),
+        uav_link=tuple(named.split(",")) if (named := os.environ.get("SPANWISE_PROXY_UAV_LINK")) else (),
         listens_at=os.environ.get("SPANWISE_PROXY_PORT", "8080"),
         is_behind_https=is_https_asked_for(),
         certificate=Path(certificate) if certificate and key else None,

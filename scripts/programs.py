@@ -89,7 +89,7 @@ def _worker(places: Places, queue: str, processes: int) -> Program:
 
 
 def _web(places: Places, name: str, socket: Path) -> Program:
-    command = commands.web("--uds", str(socket))
+    command = (commands.uav_link if name == "uav-link" else commands.web)("--uds", str(socket))
     return Program(name, PROGRAM_STAGE, command, places.process(name), patience_s=20, stale_files=[socket])
 
 
@@ -129,7 +129,7 @@ def _programs(places: Places, sockets: Path) -> list[Program]:
     if is_asked_for():
         nginx = [sys.executable, "-m", "scripts.proxy_lines", *nginx]
     return [
-        *(_web(places, name, sockets / f"{name}.sock") for name in WEB_PROGRAMS),
+        *(_web(places, name, sockets / f"{name}.sock") for name in (*WEB_PROGRAMS, "uav-link")),
         Program(
             name="live",
             stage=PROGRAM_STAGE,

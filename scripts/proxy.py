@@ -5,8 +5,9 @@ import os
 import resource
 from pathlib import Path
 
+from operation.address_limits import COSTLY
 from operation.json_lines import is_asked_for
-from scripts import page_headers
+from scripts import page_headers, proxy_limits
 from scripts.places import TELLING_PROGRAMS, WEB_PROGRAMS, CannotStart, Places, telling_socket
 from scripts.proxy_site import ALIVE, Site, came_over_http, certificates, entrances, error_json, plain_server, quoted, spoken, upstreams
 
@@ -59,6 +60,18 @@ def _failures(name: str, media_type: str, headers: str, *, unavailable: str, too
         }}"""
 
 
+def _too_many(headers: str) -> str:
+    """What nginx answers to an address that asks for too much."""
+    return f"""
+        location @api_too_many {{
+            internal;
+            default_type application/json;
+            add_header Retry-After {proxy_limits.RETRY_AFTER_S} always;
+{headers}
+            return 429 '{proxy_limits.TOO_MANY}';
+        }}"""
+
+
 def _proxied(
     location: str,
     name: str,
@@ -69,6 +82,7 @@ def _proxied(
     compression: str = "on",
     faults: str = "warn",
     again: str = "error",
+    limits: str = "",
 ) -> str:
     return f"""
         location {location} {{
@@ -89,7 +103,7 @@ def _proxied(
             proxy_hide_header Referrer-Policy;
             proxy_hide_header Strict-Transport-Security;
             error_page 502 504 = @{name}_unavailable;
-            error_page 413 = @{name}_too_large;
+            error_page 413 = @{name}_too_large;{limits}
 {headers}
         }}"""
 
@@ -110,7 +124,7 @@ def _websockets(scheme: str, *, to: tuple[str, str]) -> str:
             proxy_send_timeout 30s;
             proxy_next_upstream error timeout http_503;
             proxy_buffering off;
-            error_page 502 504 = @api_unavailable;
+            error_page 502 504 = @api_unavailable;{proxy_limits.of_sockets()}
         }}"""
 
 
@@ -159,6 +173,7 @@ def configuration(places: Places, sockets: Path, port: int) -> str:
             static=places.static,
             web=tuple(f"unix:{sockets / name}.sock" for name in WEB_PROGRAMS),
             live=(f"unix:{sockets / 'live.sock'}",),
+            uav_link=(f"unix:{sockets / 'uav-link.sock'}",),
             listens_at=f"127.0.0.1:{port}",
             is_behind_https=is_https_asked_for(),
         ),
@@ -173,9 +188,15 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
     headers = page_headers.headers(tiles, is_https=site.is_https)
     is_behind_https = site.is_behind_https and site.certificate is None
     scheme = "$http_x_forwarded_proto" if is_behind_https else "$scheme"
-    (web_scheme, web_tls), (live_scheme, live_tls) = spoken(site, site.web), spoken(site, site.live)
     mark = "$" if site.resolver else ""
-    web, live = (f"{web_scheme}://{mark}web", web_tls), (f"{live_scheme}://{mark}live", live_tls)
+    web, live, uav_link = (
+        (f"{spoken_scheme}://{mark}{name}", tls)
+        for name, (spoken_scheme, tls) in {
+            "web": spoken(site, site.web),
+            "live": spoken(site, site.live),
+            "uav_link": spoken(site, site.for_uavs),
+        }.items()
+    )
     # The application takes the last address: behind a TLS proxy the one that this proxy has added, for its own is everybody's.
     visitor = 'map $http_x_forwarded_for $visitor { "" $remote_addr; default $http_x_forwarded_for; }'
     if not is_behind_https:
@@ -201,7 +222,11 @@ def site_configuration(site: Site, *, beside: str = "") -> str:
     places_of_edits = _proxied("~ ^/api/v1/missions", "api", headers, scheme, to=web, compression="off", again=again)
     # A plan that was asked for changes nothing: when its program dies over it, another one is asked.
     plans = _proxied("= /api/v1/plans", "api", headers, scheme, to=web, again=f"{again} non_idempotent")
+    costly = "".join(
+        _proxied(kind.location, "api", headers, scheme, to=web, again=again, limits=proxy_limits.of_requests(kind)) for kind in COSTLY
+    )
     api = _proxied("~ ^/(api/|healthz|readyz)", "api", headers, scheme, to=web, again=again)
+    of_uavs = _proxied("^~ /api/v1/uav-link/", "api", headers, scheme, to=uav_link, again=again)
     links = _proxied("~ ^/(new-password|invitation)/", "page", headers, scheme, to=web, faults="emerg", again=again)
     pages = _proxied("/", "page", headers, scheme, to=web, again=again)
     return f"""{"user root;" if os.geteuid() == 0 else ""}
@@ -230,6 +255,7 @@ http {{
     }}
     map $upstream_http_x_request_id $told_id {{ "" "-"; default $upstream_http_x_request_id; }}
     {visitor}
+{proxy_limits.zones()}
     log_format line {_line()};
     access_log /dev/stdout line buffer=32k flush=1s;
     server_tokens off;
@@ -264,9 +290,9 @@ http {{
             alias "{quoted(site.static)[1:-1]}/$hashed";
             add_header Cache-Control "public, max-age=31536000, immutable";
 {headers}
-        }}{pages}{plans}{places_of_edits}{api}{links}{_websockets(scheme, to=live)}
+        }}{pages}{plans}{of_uavs}{costly}{places_of_edits}{api}{links}{_websockets(scheme, to=live)}
 {failures_for_people}
-{failures_for_programs}
+{failures_for_programs}{_too_many(headers)}
     }}{plain_server(site)}{beside}
 }}
 """

@@ -35,8 +35,8 @@ BACKLOG = 4_096  # connections that wait to be accepted; Linux allows so many un
 class Site:
     """What one nginx stands in front of.
 
-    `web` and `live` are addresses as nginx writes them (unix:/path.sock, host:port). With a `resolver` (its address) they are one name
-    each, asked for again every two seconds: behind it come and go as many programs as there are. Without a certificate and with
+    `web`, `live` and `uav_link` are addresses as nginx writes them (unix:/path.sock, host:port). With a `resolver` (its address) they are
+    one name each, asked for again every two seconds: behind it come and go as many programs as there are. Without a certificate and with
     `is_behind_https` somebody in front has taken the TLS off, and says so.
     """
 
@@ -50,7 +50,12 @@ class Site:
     key: Path | None = None
     listens_at_tls: str = ""
     resolver: str = ""
+    uav_link: tuple[str, ...] = ()  # where UAVs are answered; without it by web
     trust: Path | None = None  # the authority inside: with it the programs behind are spoken to by TLS alone, each by its own name
+
+    @property
+    def for_uavs(self) -> tuple[str, ...]:
+        return self.uav_link or self.web
 
     @property
     def is_https(self) -> bool:
@@ -70,8 +75,10 @@ def upstreams(site: Site) -> str:
     if site.resolver:
         return f"    resolver {site.resolver} valid=2s;\n    resolver_timeout 2s;"
 
-    def servers(addresses: Iterable[str]) -> str:
-        return "\n".join(f"        server {quoted(address)} max_fails=0;" for address in addresses)
+    def servers(addresses: Iterable[str], *, mark: str = "") -> str:
+        return "\n".join(f"        server {quoted(address)} max_fails=0{mark};" for address in addresses)
+
+    instead = servers(site.web, mark=" backup") if site.uav_link else ""  # a program of UAVs that is being started leaves none unanswered
 
     return f"""    upstream web {{
         least_conn;
@@ -80,6 +87,11 @@ def upstreams(site: Site) -> str:
     }}
     upstream live {{
 {servers(site.live)}
+    }}
+    upstream uav_link {{
+{servers(site.for_uavs)}
+{instead}
+        keepalive {KEPT};
     }}"""
 
 
@@ -111,7 +123,11 @@ def spoken(site: Site, addresses: tuple[str, ...]) -> tuple[str, str]:
 def entrances(site: Site) -> str:
     """Where this server listens; with a certificate the plain port leads to the one with TLS."""
     plain = f"listen {site.listens_at} backlog={BACKLOG};"
-    names = f"        set $web {site.web[0]};\n        set $live {site.live[0]};\n" if site.resolver else ""
+    names = (
+        f"        set $web {site.web[0]};\n        set $live {site.live[0]};\n        set $uav_link {site.for_uavs[0]};\n"
+        if site.resolver
+        else ""
+    )
     if site.certificate is None:
         # Whoever took the TLS off says how the visitor came; what says nothing comes from inside.
         led = refused_or_led() if site.is_behind_https else ""

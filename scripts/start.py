@@ -202,7 +202,7 @@ class Installation:
         try:
             while True:
                 time.sleep(1.0)
-                states = self.supervisor.states()
+                states = self.supervisor.states_as_served()
                 if not states and not self.supervisor.is_alive():
                     return self._end_without_supervisor()
                 for state in states:
@@ -229,7 +229,7 @@ class Installation:
         return Supervisor(self.places, socket_directory(self.places.state))
 
     def show_status(self) -> int:
-        states: list[ProgramState] = self._find_supervisor().states()
+        states: list[ProgramState] = self._find_supervisor().states_as_served()
         port = _instance(self.places).get("port")
         if not states or port is None:
             print(f"Spanwise is not running on {self.places.state}")

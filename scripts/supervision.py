@@ -11,11 +11,11 @@ import time
 import xmlrpc.client
 from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from scripts.places import PROJECT_DIR, CannotStart, Places
+from scripts.places import PROJECT_DIR, SERVING_PROGRAMS, CannotStart, Places
 from scripts.processes import end_processes, processes_in
 from scripts.programs import SERVERS, SERVERS_STAGE, Program
 
@@ -108,6 +108,13 @@ class ProgramState:
     pid: int  # 0 while it does not run
 
 
+def serves(socket_file: Path) -> bool:
+    """Whether a program accepts connections there. Granian's sockets do from when its worker has loaded the application on."""
+    with socket.socket(socket.AF_UNIX) as caller:
+        caller.settimeout(CALL_TIMEOUT_S)
+        return caller.connect_ex(str(socket_file)) == 0
+
+
 class Supervisor:
     """One installation's supervisor, running or not."""
 
@@ -167,6 +174,15 @@ class Supervisor:
         except (OSError, http.client.HTTPException, xmlrpc.client.Error):
             return []
         return [ProgramState(row["name"], row["statename"], row["description"], row["start"], row["pid"]) for row in rows]
+
+    def states_as_served(self) -> list[ProgramState]:
+        """The programs' states, where one that the proxy asks runs only once it serves: until then it starts."""
+        return [
+            replace(state, state="STARTING", description="does not serve yet")
+            if state.state == "RUNNING" and state.name in SERVING_PROGRAMS and not serves(self.sockets / f"{state.name}.sock")
+            else state
+            for state in self.states()
+        ]
 
     def end_leftovers(self) -> None:
         """End what a killed supervisor left behind. The kernel has asked its programs to stop; here they get their time to do so."""

@@ -27,7 +27,8 @@ class LiveConsumer(SignedInSocket):
     "offers": […]}}`, then `{"type": "changes", "sequence": …, "uavs": [… whole ones …], …, "gone": {"uavs": [… ids …], …}}`, numbered one
     by one, and `{"type": "still-there"}` in silence. The page says `{"type": "have", "sequence": n}` of each that has a number of its own,
     and is told the latest of each object once it has the one before the last; or `{"type": "again"}` where it has lost count. Closed with
-    4400 after anything else, with 4401 soon after whoever listens may not any more, with 4404 where the mission is deleted.
+    4400 after anything else, with 4401 soon after whoever listens may not any more, with 4404 where the mission is deleted, and at
+    once with 4429 where the user or the network has as many websockets open as are allowed.
     """
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
@@ -46,6 +47,8 @@ class LiveConsumer(SignedInSocket):
         user = await self._user()
         if user is None or not (mission is None or await _has_mission(user, mission)):
             await self.close()  # before it is accepted: the handshake is refused with 403, whatever the reason
+            return
+        if await self.is_one_too_many(user):
             return
         await self.accept()
         self._hub = hub_here()

@@ -1,6 +1,6 @@
 """Addresses of the UAV link and of the log under /api/v1/."""
 
-from django.urls import path, register_converter
+from django.urls import include, path, register_converter
 
 from telemetry.views.alert_limits import MissionAlertLimits, UavTypeAlertLimits
 from telemetry.views.alerts import AlertAcknowledgement, AlertClosing, AlertDetail, AlertNotes, Alerts
@@ -10,7 +10,6 @@ from telemetry.views.live import Live
 from telemetry.views.log import LatestTelemetry, TelemetryLog
 from telemetry.views.mission_record import MissionRecord, MissionRecordFile
 from telemetry.views.results import Results
-from telemetry.views.uav_link import UavAcknowledgements, UavResults, UavRoute, UavTelemetry
 from telemetry.views.unknown_vehicles import UnknownVehicleAdoption, UnknownVehicleIgnoring, UnknownVehicles
 from telemetry.views.vehicle_logs import FlightLogFile, FlightLogs, UavConnection, VehicleTexts
 
@@ -30,10 +29,7 @@ class FileKindConverter:
 register_converter(FileKindConverter, "file_kind")
 
 urlpatterns = [
-    path("uav-link/route", UavRoute.as_view(), name="uav-link-route"),
-    path("uav-link/acknowledgements", UavAcknowledgements.as_view(), name="uav-link-acknowledgements"),
-    path("uav-link/telemetry", UavTelemetry.as_view(), name="uav-link-telemetry"),
-    path("uav-link/results", UavResults.as_view(), name="uav-link-results"),
+    path("uav-link/", include("telemetry.uav_link_urls")),
     path("unknown-vehicles", UnknownVehicles.as_view(), name="api-unknown-vehicles"),
     path("unknown-vehicles/<int:vehicle_id>/adopt", UnknownVehicleAdoption.as_view(), name="api-unknown-vehicle-adoption"),
     path("unknown-vehicles/<int:vehicle_id>/ignore", UnknownVehicleIgnoring.as_view(), name="api-unknown-vehicle-ignoring"),

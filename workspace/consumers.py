@@ -31,7 +31,7 @@ class JobConsumer(SignedInSocket):
     """`/ws/jobs/{id}`: the job as `GET /api/v1/jobs/{id}` shows it, at once and after every change, until it has ended.
 
     Messages are `{"type": "job", "job": {…}}` and, now and then, `{"type": "still-there"}`; nothing is to be sent here. Closed
-    with 4401 soon after whoever listens may not any more.
+    with 4401 soon after whoever listens may not any more, and at once with 4429 where they have too many websockets open.
     """
 
     def kind(self) -> str:
@@ -43,6 +43,8 @@ class JobConsumer(SignedInSocket):
         user = await self._user()
         if user is None or await self._version(user) is None:
             await self.close()  # before it is accepted: the handshake is refused with 403, whatever the reason
+            return
+        if await self.is_one_too_many(user):
             return
         await self.accept()
         self._start(self._listen())

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+from collections import Counter
 from collections.abc import Coroutine
 from contextlib import suppress
 from importlib import import_module
@@ -20,6 +21,7 @@ from workspace.authentication import bearer_token, reader_of_token
 from workspace.browser_sessions import note_session
 from workspace.farewell import farewell_here
 from workspace.models import User
+from workspace.sign_in_attempts import network_of
 
 logger = logging.getLogger(__name__)
 
@@ -27,7 +29,9 @@ CHECK_PERSON_EVERY_S = 4.0
 STILL_THERE_EVERY_S = 20.0  # a proxy between here and the page closes what is silent
 
 RETRY_AFTER = b"2"  # seconds
-ENDED, FAILED, SIGNED_OUT, NOTHING_TO_SAY = 1000, 1011, 4401, 4400
+ENDED, FAILED, SIGNED_OUT, NOTHING_TO_SAY, TOO_MANY = 1000, 1011, 4401, 4400, 4429
+
+_open: Counter[str] = Counter()  # websockets of this process, by user and by network
 
 
 class SignedInSocket(AsyncWebsocketConsumer):
@@ -40,6 +44,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
         """Hangs up only once nobody waits for what the browser says: the server says nothing to it before that."""
         self._tasks: list[asyncio.Task[None]] = []
         self._hung_up: asyncio.Future[int] = asyncio.get_running_loop().create_future()
+        self._places: list[str] = []  # that it takes in _open
         with about(**_facts_of(scope)):  # whatever is begun here knows it, too
             spoken = asyncio.ensure_future(super().__call__(scope, receive, send))
         try:
@@ -53,6 +58,10 @@ class SignedInSocket(AsyncWebsocketConsumer):
         finally:
             for task in (spoken, *self._tasks):
                 task.cancel()
+            _open.subtract(self._places)
+            for place in self._places:
+                if not _open[place]:
+                    del _open[place]
             if self._counted_as is not None:
                 farewell_here().forget(self)
                 WEBSOCKETS.labels(self._counted_as).dec()
@@ -77,6 +86,18 @@ class SignedInSocket(AsyncWebsocketConsumer):
         WEBSOCKETS.labels(self._counted_as).inc()
         farewell_here().expect(self)
         self._messages = WEBSOCKET_MESSAGES.labels(self._counted_as)
+
+    async def is_one_too_many(self, user: User) -> bool:
+        """Take a place among the open websockets of this user and this network, or tell the page by a close code that none is left."""
+        network = network_of(_address_of(self.scope))
+        wanted = {f"user {user.pk}": settings.SOCKETS_PER_USER, f"network {network}": settings.SOCKETS_PER_ADDRESS}
+        if any(most and _open[place] >= most for place, most in wanted.items()):
+            await AsyncWebsocketConsumer.accept(self)  # a refused handshake shows a page no reason
+            await self.close(TOO_MANY)
+            return True
+        self._places = list(wanted)
+        _open.update(self._places)
+        return False
 
     async def send(self, *arguments: Any, **named: Any) -> None:
         await super().send(*arguments, **named)
@@ -128,6 +149,13 @@ class SignedInSocket(AsyncWebsocketConsumer):
                 now = await self._same_user(user)
                 if now is None or now.role != user.role:
                     return self.hang_up(SIGNED_OUT)
+
+
+def _address_of(scope: Any) -> str:
+    """Return where it came from: behind the proxy's unix socket, or a proxy in a network, what that proxy itself appended last."""
+    told = [value.decode("latin-1") for name, value in scope["headers"] if name == b"x-forwarded-for"]
+    client = scope.get("client")
+    return told[-1].rpartition(",")[2].strip() if told else client[0] if client else ""
 
 
 def _facts_of(scope: Any) -> dict[str, Any]:

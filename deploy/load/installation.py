@@ -42,7 +42,7 @@ from scripts.supervision import ProgramState, Supervisor
 PATIENCE_S = 600.0  # the first start of a checkout that has not been set up compiles the core
 ANSWERS_WITHIN_S = 10.0
 SITE = "load.test"  # RFC 6761: no name of the outside
-HOSTS = {"web": "127.77.0", "live": "127.78.0"}  # every address of 127/8 is this machine
+HOSTS = {"web": "127.77.0", "live": "127.78.0", "uav-link": "127.79.0"}  # every address of 127/8 is this machine
 AS_RUN_STARTS = dict.fromkeys(KINDS, 1) | {"web": 2}
 
 
@@ -88,6 +88,7 @@ class Installation:
             "SPANWISE_ALLOWED_HOSTS": "localhost,127.0.0.1",
             "SPANWISE_TRUSTED_ORIGINS": self.address,
             "SPANWISE_SIMULATOR_PORTS": ports_of_simulations(),
+            "SPANWISE_OPERATORS_PER_ADDRESS": "0",  # everybody comes from this machine
             **(settings or {}),
         }
         self.name_server = NameServer() if by_name else None
@@ -244,6 +245,7 @@ class Installation:
         environment = {
             "SPANWISE_PROXY_WEB": self._addresses("web", most),
             "SPANWISE_PROXY_LIVE": self._addresses("live", most),
+            "SPANWISE_PROXY_UAV_LINK": self._addresses("uav-link", most),
             "SPANWISE_PROXY_PORT": f"127.0.0.1:{self.plain_port}",
             "SPANWISE_PROXY_TLS_PORT": f"127.0.0.1:{self.port}",
             "SPANWISE_TLS_CERTIFICATE": str(certificate),

@@ -9,7 +9,7 @@ from scripts import commands
 from scripts.places import Places, telling_socket
 from scripts.programs import Program, web_programs
 
-KINDS = ("web", "live", "worker-data", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat")
+KINDS = ("web", "uav-link", "live", "worker-data", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat")
 PORTS_OF_SIMULATIONS = 200
 
 
@@ -42,8 +42,8 @@ def replicas(places: Places, sockets: Path, counts: Mapping[str, int]) -> list[P
 
 
 def at_address(program: Program, host: str, port: int) -> Program:
-    """The same web or live program at a port, as in a container, in place of a unix socket."""
-    command = {"web": commands.web, "live": commands.live}[kind_of(program.name)]
+    """The same web, live or uav-link program at a port, as in a container, in place of a unix socket."""
+    command = {"web": commands.web, "live": commands.live, "uav-link": commands.uav_link}[kind_of(program.name)]
     return replace(program, command=command("--host", host, "--port", str(port)), stale_files=[])
 
 

@@ -24,6 +24,7 @@ class Ground(APIView):
 
 class Tile(APIView):
     content_negotiation_class = OneAnswer
+    throttle_scope = "tiles"
 
     @extend_schema(
         operation_id="get_tile",

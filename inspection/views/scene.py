@@ -18,6 +18,8 @@ from inspection.views.parameters import box_of, invalid
 
 
 class SceneOfBox(APIView):
+    throttle_scope = "scene"
+
     @extend_schema(
         operation_id="get_scene",
         summary="What stands in a box, for the 3D view",

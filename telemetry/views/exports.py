@@ -58,6 +58,7 @@ FILES = {(200, kind.media_type.partition(";")[0]): OpenApiTypes.STR for kind in 
 
 class MissionTelemetryFile(APIView):
     content_negotiation_class = OneAnswer
+    throttle_scope = "exports"
 
     @extend_schema(
         operation_id="export_mission_telemetry", summary="What was flown in a mission, as CSV, GPX, KML or GeoJSON", description=ABOUT,
@@ -74,6 +75,7 @@ class MissionTelemetryFile(APIView):
 
 class UavTelemetryFile(APIView):
     content_negotiation_class = OneAnswer
+    throttle_scope = "exports"
 
     @extend_schema(
         operation_id="export_uav_telemetry", summary="What a UAV has flown, as CSV, GPX, KML or GeoJSON", description=ABOUT,

@@ -41,6 +41,7 @@ class MissionRecord(APIView):
 
 class MissionRecordFile(APIView):
     content_negotiation_class = OneAnswer
+    throttle_scope = "exports"
 
     @extend_schema(
         operation_id="export_mission_record",

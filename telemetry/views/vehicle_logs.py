@@ -61,6 +61,7 @@ class FlightLogs(APIView):
 
 class FlightLogFile(APIView):
     content_negotiation_class = OneAnswer
+    throttle_scope = "exports"
 
     @extend_schema(
         operation_id="download_flight_log",

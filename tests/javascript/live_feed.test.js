@@ -3,6 +3,7 @@ import test from "node:test";
 
 import { openFeed, pauseBefore_ms } from "../../static/js/live/feed.js";
 import { serverClock } from "../../static/js/live/server_clock.js";
+import { staleWords } from "../../static/js/live/stale.js";
 
 globalThis.location = { protocol: "https:", host: "spanwise.example", origin: "https://spanwise.example" };
 
@@ -295,4 +296,20 @@ test("the server's time is known although the page's clock is wrong and words co
   ticks_ms += 100_000; // the page slept, and what it knew is too old
   clock.heard(at(90_000));
   assert.equal(clock.now_ms(), server_ms + 90_000);
+});
+
+test("a page whose websocket is refused because too many are open asks, says so, and tries again a minute later", async (context) => {
+  const { feed, states, pass } = page(context, { answers: [answer({ uavs: [{ id: 1 }] })] });
+  Socket.last.isLost(4429);
+  await settle();
+  assert.deepEqual(states, ["connecting", "crowded"]);
+  const said = staleWords({ link: feed.state, since_ms: feed.since_ms, now_ms: feed.now_ms() });
+  assert.deepEqual([said.words, said.isBad], ["Too many live pages are open.", false]);
+  await pass(59_000);
+  assert.equal(Socket.all.length, 1);
+  await pass(1_001);
+  assert.equal(Socket.all.length, 2);
+  Socket.last.says(snapshot(1, {}));
+  assert.equal(feed.state, "live");
+  feed.close();
 });

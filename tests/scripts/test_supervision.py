@@ -51,6 +51,22 @@ def _wait_until(is_so: Callable[[], bool], *, timeout_s: float = 20.0) -> None:
         time.sleep(0.05)
 
 
+def test_a_program_that_the_proxy_asks_runs_only_once_it_serves(supervisor: Supervisor, places: Places, sockets: Path) -> None:
+    code = f"""
+import pathlib, socket, time
+while not pathlib.Path({str(places.state / "loaded")!r}).exists(): time.sleep(0.05)
+listening = socket.socket(socket.AF_UNIX); listening.bind({str(sockets / "web-1.sock")!r}); listening.listen(); time.sleep(60)"""
+    program = places.state / "program.py"
+    program.write_text(code)
+    folder = places.process("web-1")
+    folder.mkdir(parents=True)
+    supervisor.start([Program(name="web-1", stage=SERVERS_STAGE, command=[sys.executable, str(program)], folder=folder)])
+    _wait_until(lambda: [state.state for state in supervisor.states()] == ["RUNNING"])
+    assert [(state.state, state.description) for state in supervisor.states_as_served()] == [("STARTING", "does not serve yet")]
+    (places.state / "loaded").touch()
+    _wait_until(lambda: [state.state for state in supervisor.states_as_served()] == ["RUNNING"])
+
+
 def _server_with_worker(places: Places) -> Program:
     """A server whose worker outlives it, like nginx's or Granian's, and keeps what the next server needs."""
     code = "import os, time; os.fork(); time.sleep(60)"

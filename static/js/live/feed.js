@@ -8,10 +8,11 @@ import { applyChanges, nothingShown, shownAfterSnapshot } from "./shown.js";
 /** @import { Live, LiveAnswer } from "../api_types.d.ts" */
 /** @import { Changes, Touched } from "./shown.js" */
 
-/** @typedef {"live" | "asked" | "connecting" | "signed-out" | "gone"} FeedState */
+/** @typedef {"live" | "asked" | "crowded" | "connecting" | "signed-out" | "gone"} FeedState */
 
 export const LIVE = "live"; // told of each change at once
 export const ASKED = "asked"; // by HTTP, every two seconds
+export const CROWDED = "crowded"; // by HTTP, too: as many websockets are open as this user, or this network, may have
 export const CONNECTING = "connecting"; // neither: what is shown is as old as its times say
 export const SIGNED_OUT = "signed-out"; // for good
 export const GONE = "gone"; // the mission is deleted: for good
@@ -23,6 +24,8 @@ const ASK_WITHIN_MS = 8_000;
 const FIRST_PAUSE_MS = 500;
 const LONGEST_PAUSE_MS = 5_000;
 const RESTARTS = 1012; // the code of a websocket whose program is being stopped
+const TOO_MANY = 4429; // of one that is refused because too many are open
+const CROWDED_PAUSE_MS = 60_000; // then the page tries again: others may have been closed
 
 /**
  * A message of the server: a snapshot, changes, or that it is still there.
@@ -80,6 +83,7 @@ class Feed {
   /** @type {AbortController | null} */
   #asking = null;
   #isOver = false;
+  #isCrowded = false; // the last websocket was refused because too many are open
   /** @type {Partial<Record<"silence" | "first" | "connect" | "ask", ReturnType<typeof setTimeout>>>} */
   #timers = {};
 
@@ -150,6 +154,7 @@ class Feed {
     });
     opened.addEventListener("close", (event) => {
       if (!isCurrent()) return;
+      this.#isCrowded = event?.code === TOO_MANY;
       if (event?.code === RESTARTS && this.state === LIVE) this.#reconnect();
       else this.#lose();
     });
@@ -183,6 +188,7 @@ class Feed {
   #begin(snapshot) {
     this.#sequence = snapshot.sequence;
     this.#failures = 0;
+    this.#isCrowded = false;
     this.#stopAsking();
     this.#become(LIVE);
     this.#showEverything(snapshot.live);
@@ -201,8 +207,10 @@ class Feed {
 
   #lose() {
     this.#hangUp();
-    if (this.state !== ASKED) this.#become(CONNECTING);
-    const pause_ms = pauseBefore_ms(this.#failures, this.#random);
+    if (this.state !== ASKED && this.state !== CROWDED) this.#become(CONNECTING);
+    const pause_ms = this.#isCrowded
+      ? CROWDED_PAUSE_MS * (0.5 + this.#random() / 2)
+      : pauseBefore_ms(this.#failures, this.#random);
     this.#failures += 1;
     this.#timers.connect = setTimeout(() => this.#connect(), pause_ms);
     this.#startAsking();
@@ -254,7 +262,7 @@ class Feed {
         this.#clock.heard(answer.data.server_time);
         this.#showEverything(answer.data.live);
       }
-      this.#become(ASKED);
+      this.#become(this.#isCrowded ? CROWDED : ASKED);
     } catch (error) {
       if (own !== this.#asking) return;
       const { status } = /** @type {Partial<ApiError>} */ (error);

@@ -2,7 +2,7 @@
 
 import { t } from "../text.js";
 import { exactClockText } from "../units.js";
-import { CONNECTING, GONE, SIGNED_OUT } from "./feed.js";
+import { CONNECTING, CROWDED, GONE, SIGNED_OUT } from "./feed.js";
 
 /** @import { FeedState } from "./feed.js" */
 
@@ -18,6 +18,12 @@ export function staleWords({ link, since_ms, now_ms }) {
   if (link === SIGNED_OUT)
     return { words: t("You are signed out: nothing comes in any more."), isBad: true, needsDoor: true };
   if (link === GONE) return { words: t("This mission has been deleted."), isBad: true };
+  if (link === CROWDED)
+    return {
+      words: t("Too many live pages are open."),
+      rest: t("This one is updated every two seconds. Close some that you do not need."),
+      isBad: false,
+    };
   if (link === CONNECTING && now_ms - since_ms > GRACE_MS)
     return {
       words: t("No live data since {time}.", { time: exactClockText(new Date(since_ms).toISOString()) }),

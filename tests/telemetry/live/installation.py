@@ -20,7 +20,7 @@ from tests.telemetry.gateway.program import free_port
 from tests.workspace.front_door import environment_of, redis_at
 
 STARTED_AGAIN_AFTER_S = 0.3
-NAMES = (*WEB_PROGRAMS, "live", "gateway", "estimator", "proxy")
+NAMES = (*WEB_PROGRAMS, "uav-link", "live", "gateway", "estimator", "proxy")
 
 
 @dataclass

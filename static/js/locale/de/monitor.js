@@ -97,6 +97,9 @@ export default {
   "wind {speed}": "Wind {speed}",
   "You are signed out: nothing comes in any more.": "Sie sind abgemeldet: Es kommt nichts mehr herein.",
   "This mission has been deleted.": "Diese Mission ist gelöscht.",
+  "Too many live pages are open.": "Zu viele Live-Seiten sind offen.",
+  "This one is updated every two seconds. Close some that you do not need.":
+    "Diese wird alle zwei Sekunden aktualisiert. Schließen Sie einige, die Sie nicht brauchen.",
   "No live data since {time}.": "Keine Live-Daten seit {time}.",
   "What you see is from then. Connecting again.": "Was Sie sehen, ist von da. Die Verbindung wird wieder aufgebaut.",
   "Live": "Live",

@@ -2,7 +2,7 @@
 
 import { signInAddress } from "../../api.js";
 import { byId, h, icon, setChildren } from "../../dom.js";
-import { ASKED, LIVE } from "../../live/feed.js";
+import { ASKED, CROWDED, LIVE } from "../../live/feed.js";
 import { staleWords } from "../../live/stale.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, speedText, zoneText } from "../../units.js";
@@ -79,8 +79,8 @@ function drawState(chip, mission) {
 function drawStale(state) {
   const stale = byId("stale");
   const said = staleWords(state);
-  const isWhole = state.link === LIVE || state.link === ASKED;
-  document.documentElement.dataset.link = said ? "cut" : isWhole ? "whole" : "opening";
+  const isWhole = state.link === LIVE || state.link === ASKED || state.link === CROWDED;
+  document.documentElement.dataset.link = said?.isBad ? "cut" : isWhole ? "whole" : "opening";
   if (stale.dataset.words === (said?.words ?? "")) return;
   stale.dataset.words = said?.words ?? "";
   stale.hidden = !said;

@@ -1,0 +1,19 @@
+"""The HTTP application of UAVs alone (WSGI), program `uav-link`: its threads are taken by no page, and it plans nothing."""
+
+import os
+
+from django.conf import settings
+from django.core.wsgi import get_wsgi_application
+
+from operation.tracing import begin_tracing
+
+os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
+settings.ROOT_URLCONF = "config.uav_link_urls"
+settings.MIDDLEWARE = ["config.observed_requests.ObservedRequests", "django.middleware.security.SecurityMiddleware"]
+begin_tracing("uav-link")  # before the middleware is put together, of which it is a part
+application = get_wsgi_application()
+
+import config.uav_link_urls  # noqa: E402, F401 (Django first; before the first request comes in)
+from operation.program import program_begins  # noqa: E402
+
+program_begins("uav-link")
