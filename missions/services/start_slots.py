@@ -100,8 +100,8 @@ def _in_the_air(uav: Uav, now: datetime, given_at: datetime | None) -> tuple[lis
         if route is None or route.geometry is None:
             continue
         has_ended = route.continued_by is not None or route.has_failed or flight <= route.flights_flown
-        is_off = start.mission is None or start.mission.state not in ON_ITS_WAY or start.state in NOT_CONFIRMED or last.get(start.uav_id, 0) > start.sequence
-        if has_ended or is_off:
+        was_told_else = start.state in NOT_CONFIRMED or last.get(start.uav_id, 0) > start.sequence
+        if has_ended or was_told_else or start.mission is None or start.mission.state not in ON_ITS_WAY:
             flown = _since(route, flight, started_s=0.0) if start.uav_id in in_the_air else None
             untimely += [] if flown is None else [flown]
             continue
