@@ -1,15 +1,14 @@
 """Small rises of a drawn route as slopes: a UAV flies on over them, where straight up and down it all but stops, twice for each."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 SLOPE = 1.0 / 6.0  # at 14 m/s a climb of 2.3 m/s, which does not slow a UAV that climbs at 2.5 m/s
 LEAST_RUN_M = 15.0  # across the ground: room to pitch up and down at speed
 MOST_RISE_M = 9.0  # what is higher stays straight up: a slope would begin too far before what it is for, and nearer to zones aloft
 
 
-@dataclass(frozen=True, slots=True)
-class ProfilePoint:
+class ProfilePoint(NamedTuple):
     """A point of a route seen from the side: metres along the route, its level, and the leg on which it is put in, with its share of it.
 
     One of the route's own points is the start of its leg. is_fixed: its level is not to be changed; most_m: the highest that it may have.
@@ -33,7 +32,7 @@ def with_slopes(profile: Sequence[ProfilePoint]) -> list[ProfilePoint]:
 
 
 def _backward(profile: Sequence[ProfilePoint]) -> list[ProfilePoint]:
-    return [replace(point, along_m=-point.along_m) for point in reversed(profile)]
+    return [point._replace(along_m=-point.along_m) for point in reversed(profile)]
 
 
 def _with_slopes_up(profile: list[ProfilePoint]) -> list[ProfilePoint]:
@@ -48,7 +47,7 @@ def _with_slopes_up(profile: list[ProfilePoint]) -> list[ProfilePoint]:
 
 
 def _sloped_to(profile: list[ProfilePoint], top: int, rise_m: float) -> list[ProfilePoint]:
-    """With a slope that ends at the top of a step; what it passes over is lifted onto it. As it was where that may not be lifted so high."""
+    """With a slope that ends at the top of a step; what it passes over is lifted onto it, or else nothing where that may not be."""
     slope = rise_m / max(rise_m / SLOPE, LEAST_RUN_M)
 
     def sloped_m(point: ProfilePoint) -> float:
@@ -64,12 +63,12 @@ def _sloped_to(profile: list[ProfilePoint], top: int, rise_m: float) -> list[Pro
             elif place == top - 2:
                 return profile  # down and up again at one place
             elif not after.is_own:
-                lifted.append(replace(after, level_m=sloped_m(after)))
+                lifted.append(after._replace(level_m=sloped_m(after)))
             return [*profile[: place + 1], *reversed(lifted), *profile[top:]]
         if sloped_m(point) > point.most_m:
             return profile
         if point.is_own:  # others lie on the straight leg, and so on the slope
-            lifted.append(replace(point, level_m=sloped_m(point)))
+            lifted.append(point._replace(level_m=sloped_m(point)))
     return profile
 
 
@@ -80,4 +79,4 @@ def _between(point: ProfilePoint, after: ProfilePoint, share: float, level_m_of:
     end = second.share if second.leg == first.leg and not second.is_own else 1.0
     along_m = point.along_m + share * (after.along_m - point.along_m)
     put_in = ProfilePoint(along_m, 0.0, first.leg, first.share + along * (end - first.share), is_own=False)
-    return replace(put_in, level_m=level_m_of(put_in))
+    return put_in._replace(level_m=level_m_of(put_in))

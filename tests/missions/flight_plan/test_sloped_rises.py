@@ -1,5 +1,7 @@
 """Small steps up and down of a drawn route become slopes that are nowhere lower."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -64,8 +66,10 @@ def test_no_place_is_lower_than_it_was(drawn: list[tuple[float, float, bool]], l
         level_m = after_m
     profile.append(own(profile[-1].leg + 1, level_m, is_fixed=True))
     flown = with_slopes(profile)
-    assert [(point.along_m, point.leg) for point in flown if point.is_own] == [(point.along_m, point.leg) for point in profile if point.is_own]
-    assert all(before.along_m <= after.along_m + 1e-9 for before, after in zip(flown, flown[1:], strict=False))
+    assert [(point.along_m, point.leg) for point in flown if point.is_own] == [
+        (point.along_m, point.leg) for point in profile if point.is_own
+    ]
+    assert all(before.along_m <= after.along_m + 1e-9 for before, after in pairwise(flown))
     assert [(point.leg, not point.is_own, point.share) for point in flown] == sorted((p.leg, not p.is_own, p.share) for p in flown)
     at_m = np.linspace(0.0, profile[-1].along_m, 1_711)
     assert (highest_at(flown, at_m) >= lowest_at(profile, at_m) - 1e-6).all()
@@ -83,7 +87,7 @@ def lowest_at(profile: list[ProfilePoint], at_m: np.ndarray) -> np.ndarray:
 def _at(profile: list[ProfilePoint], at_m: np.ndarray, *, highest: bool) -> np.ndarray:
     """Levels along a profile; where it is a step, its top or its foot."""
     found = np.full(len(at_m), -np.inf if highest else np.inf)
-    for before, after in zip(profile, profile[1:], strict=False):
+    for before, after in pairwise(profile):
         inside = (at_m >= before.along_m - 1e-9) & (at_m <= after.along_m + 1e-9)
         length_m = after.along_m - before.along_m
         share = np.clip((at_m[inside] - before.along_m) / length_m, 0.0, 1.0) if length_m > 1e-9 else 0.0
