@@ -13,6 +13,7 @@ from inspection.graph.network import Network
 
 BESIDE_M = 25.0  # across the ground: arms of a tower, wires in the wind, and what a UAV strays
 MOST_CELLS = 512  # of the grid, along each side
+NO_ASSET = -1
 LEAST_CELL_DEG = 0.005  # some 500 m: a span lies in few cells
 
 FloatArray = NDArray[np.float64]
@@ -24,8 +25,8 @@ class Spans:
     """k spans: straight from top to top, so never lower than the wire. What stands alone is a span from its place to its place.
 
     start, end (k, 2) lon, lat [deg]; start_height_m, end_height_m and the greater of both, (k,), above ground, guessed where no tag
-    states one. They are found on a grid: cell c has the spans member[first[c]] to member[first[c + 1] - 1]; low and step (2,) [deg]
-    and shape (2,) tell the grid.
+    states one; asset (k,): primary key of the line or railway that hangs there, NO_ASSET for what stands alone. They are found on a
+    grid: cell c has the spans member[first[c]] to member[first[c + 1] - 1]; low and step (2,) [deg] and shape (2,) tell the grid.
     """
 
     start: FloatArray
@@ -33,6 +34,7 @@ class Spans:
     start_height_m: FloatArray
     end_height_m: FloatArray
     highest_m: FloatArray
+    asset: IntArray
     low: FloatArray
     step: FloatArray
     shape: IntArray
@@ -55,26 +57,30 @@ def spans_of(network: Network) -> Spans:
 
 
 def _spans(network: Network) -> Spans:
-    pairs, heights_m = hung_between(network)
-    return spans_between(network.position[pairs[:, 0]], network.position[pairs[:, 1]], heights_m[:, 0], heights_m[:, 1])
+    pairs, heights_m, asset = hung_between(network)
+    return spans_between(network.position[pairs[:, 0]], network.position[pairs[:, 1]], heights_m[:, 0], heights_m[:, 1], asset)
 
 
-def hung_between(network: Network, taller_than_m: float = -1.0) -> tuple[IntArray, FloatArray]:
-    """Nodes at the ends of each span, (k, 2), twice the same for what stands alone, and their heights; of spans with an end so tall."""
+def hung_between(network: Network, taller_than_m: float = -1.0) -> tuple[IntArray, FloatArray, IntArray]:
+    """Nodes at the ends of each span, (k, 2), twice the same for what stands alone, their heights, and Spans.asset; with an end so tall."""
     heights_m = asset_heights_m(network.node_kind, network.node_height_m)
     is_tall = heights_m > taller_than_m
     if not is_tall.any():
-        return np.zeros((0, 2), dtype=np.int64), np.zeros((0, 2))
+        return np.zeros((0, 2), dtype=np.int64), np.zeros((0, 2)), np.zeros(0, dtype=np.int64)
     hangs = np.isin(network.edge_kind, (EdgeKind.LINE, EdgeKind.RAILWAY)) & is_tall[network.edge].any(axis=1)
-    pairs = network.edge[hangs].astype(np.int64)
-    pairs = pairs[np.abs(network.position[pairs[:, 0], 0] - network.position[pairs[:, 1], 0]) <= 180.0]
+    pairs, asset = network.edge[hangs].astype(np.int64), network.edge_asset[hangs]
+    is_short = np.abs(network.position[pairs[:, 0], 0] - network.position[pairs[:, 1], 0]) <= 180.0
+    pairs, asset = pairs[is_short], asset[is_short]
     is_tall[pairs.ravel()] = False
-    pairs = np.concatenate([pairs, np.flatnonzero(is_tall)[:, None].repeat(2, axis=1)])
-    return pairs, heights_m[pairs]
+    alone = np.flatnonzero(is_tall)
+    pairs = np.concatenate([pairs, alone[:, None].repeat(2, axis=1)])
+    return pairs, heights_m[pairs], np.concatenate([asset, np.full(len(alone), NO_ASSET)])
 
 
-def spans_between(start: FloatArray, end: FloatArray, start_height_m: FloatArray, end_height_m: FloatArray) -> Spans:
-    """With their grid."""
+def spans_between(
+    start: FloatArray, end: FloatArray, start_height_m: FloatArray, end_height_m: FloatArray, asset: IntArray | None = None
+) -> Spans:
+    """With their grid. Without assets none of them belongs to one."""
     if not len(start):
         start, end = np.zeros((0, 2)), np.zeros((0, 2))
     west_south, east_north = np.minimum(start, end), np.maximum(start, end)
@@ -84,7 +90,8 @@ def spans_between(start: FloatArray, end: FloatArray, start_height_m: FloatArray
     shape = (extent // step).astype(np.int64) + 1
     first, member = _on_grid(west_south, east_north, low, step, shape)
     highest_m = np.maximum(start_height_m, end_height_m)
-    return Spans(start, end, start_height_m, end_height_m, highest_m, low, step, shape, first, member)
+    asset = np.full(len(start), NO_ASSET) if asset is None else asset
+    return Spans(start, end, start_height_m, end_height_m, highest_m, asset, low, step, shape, first, member)
 
 
 @njit(cache=True, nogil=True)

@@ -84,7 +84,7 @@ def walls_along(start: FloatArray, end: FloatArray, is_round: NDArray[np.bool_])
 
 def _walls(network: Network, heights: FlownHeights) -> Geometries:
     tallest_m = heights.max_agl_m - heights.clearance_m
-    pairs, heights_m = hung_between(network, tallest_m)
+    pairs, heights_m, _ = hung_between(network, tallest_m)
     start, along = network.position[pairs[:, 0]], network.position[pairs[:, 1]] - network.position[pairs[:, 0]]
     begin, until = _above(heights_m[:, 0], heights_m[:, 1], tallest_m)
     is_round = np.column_stack([begin == 0.0, until == 1.0])
@@ -103,7 +103,7 @@ def low_ceilings(network: Network, zones: ZoneIndex, heights: FlownHeights, clea
     aloft = zones.where(zones.floor_agl_m > heights.transit_agl_m + heights.give_m)
     if not len(aloft):
         return NO_CEILINGS
-    pairs, heights_m = hung_between(network, heights.transit_agl_m - heights.clearance_m)
+    pairs, heights_m, _ = hung_between(network, heights.transit_agl_m - heights.clearance_m)
     start, end = network.position[pairs[:, 0]], network.position[pairs[:, 1]]
     high_m = heights_m.max(axis=1, initial=0.0) + heights.clearance_m + heights.give_m
     low_m, wide_m = np.full(len(start), heights.transit_agl_m - heights.give_m), clearance_m + BESIDE_M * ROUNDER

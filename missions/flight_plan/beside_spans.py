@@ -24,6 +24,7 @@ class _Columns(NamedTuple):
     start: FloatArray
     stop: FloatArray
     highest_m: FloatArray
+    asset: IntArray
     low: FloatArray
     step: FloatArray
     shape: IntArray
@@ -31,18 +32,22 @@ class _Columns(NamedTuple):
     member: NDArray[np.int32]
 
 
-def legs_beside(position: FloatArray, level_m: FloatArray, own: IntArray, clearance_m: float, spans: Spans) -> tuple[IntArray, IntArray]:
+def legs_beside(
+    position: FloatArray, level_m: FloatArray, own: IntArray, asset: IntArray, clearance_m: float, spans: Spans
+) -> tuple[IntArray, IntArray]:
     """Legs, by the places of their starts, and the spans within BESIDE_M of each that may be too high for it.
 
-    position (n, 2), level_m (n,), own (n,): the target that is inspected at each point, NONE for none. With a clearance levels count
-    from flat ground, and what they clear everywhere is left out; with inf all heights may be too high.
+    position (n, 2), level_m (n,), own, asset (n,): the target that is inspected at each point and what it lies on, NONE for none. With
+    a clearance levels count from flat ground, and what they clear everywhere is left out; with inf all heights may be too high.
     """
-    return _legs_beside(position, level_m, own, clearance_m, _columns(spans))
+    return _legs_beside(position, level_m, own, asset, clearance_m, _columns(spans))
 
 
-def points_beside(position: FloatArray, level_m: FloatArray, own: IntArray, clearance_m: float, spans: Spans) -> tuple[IntArray, IntArray]:
+def points_beside(
+    position: FloatArray, level_m: FloatArray, own: IntArray, asset: IntArray, clearance_m: float, spans: Spans
+) -> tuple[IntArray, IntArray]:
     """The same for points over or under which the route goes straight up or down."""
-    return _points_beside(position, level_m, own, clearance_m, _columns(spans))
+    return _points_beside(position, level_m, own, asset, clearance_m, _columns(spans))
 
 
 def stretches_too_low(
@@ -56,7 +61,7 @@ def stretches_too_low(
 
 
 def _columns(spans: Spans) -> _Columns:
-    return _Columns(spans.start, spans.end, spans.highest_m, spans.low, spans.step, spans.shape, spans.first, spans.member)
+    return _Columns(spans.start, spans.end, spans.highest_m, spans.asset, spans.low, spans.step, spans.shape, spans.first, spans.member)
 
 
 @njit(cache=True, nogil=True)
@@ -105,10 +110,15 @@ def _within(
 
 
 @njit(cache=True, nogil=True)
-def _is_own(target: int, begin: int, end: int, position: FloatArray, own: IntArray, start: FloatArray, stop: FloatArray) -> bool:
-    """Whether a span hangs at what the target's points, around those from begin to end, inspect; or they follow it."""
+def _is_own(
+    target: int, begin: int, end: int, position: FloatArray, own: IntArray, start: FloatArray, stop: FloatArray, is_along: bool
+) -> bool:
+    """Whether a span hangs at what the target's points, around those from begin to end, inspect; or they follow it.
+
+    is_along: whether the target lies on what hangs there. Over a tower that stands under the wires of another line it does not.
+    """
     east_m = _metres_east(position[begin, 1])
-    follows = True
+    follows = is_along
     for place in range(begin, end + 1):
         x, y = position[place, 0], position[place, 1]
         low, high = _within(
@@ -139,6 +149,7 @@ def _beside(
     position: FloatArray,
     level_m: FloatArray,
     own: IntArray,
+    asset: IntArray,
     clearance_m: float,
     on: _Columns,
     found: list[int],
@@ -179,8 +190,10 @@ def _beside(
                 if share > until:
                     continue
                 target = own[begin]
-                if target != NONE and target == own[end] and _is_own(target, begin, end, position, own, start[span], stop[span]):
-                    continue
+                if target != NONE and target == own[end]:
+                    is_along = asset[begin] != NONE and asset[begin] == on.asset[span]
+                    if _is_own(target, begin, end, position, own, start[span], stop[span], is_along):
+                        continue
                 found.append(span)
 
 
@@ -189,6 +202,7 @@ def _legs_beside(
     position: FloatArray,
     level_m: FloatArray,
     own: IntArray,
+    asset: IntArray,
     clearance_m: float,
     on: _Columns,
 ) -> tuple[IntArray, IntArray]:
@@ -196,7 +210,7 @@ def _legs_beside(
     for leg in range(len(position) - 1):
         if position[leg, 0] == position[leg + 1, 0] and position[leg, 1] == position[leg + 1, 1]:
             continue
-        _beside(leg, leg + 1, position, level_m, own, clearance_m, on, found)
+        _beside(leg, leg + 1, position, level_m, own, asset, clearance_m, on, found)
         while len(legs) < len(found):
             legs.append(leg)
     return np.array(legs, dtype=np.int64), np.array(found, dtype=np.int64)
@@ -207,6 +221,7 @@ def _points_beside(
     position: FloatArray,
     level_m: FloatArray,
     own: IntArray,
+    asset: IntArray,
     clearance_m: float,
     on: _Columns,
 ) -> tuple[IntArray, IntArray]:
@@ -217,7 +232,7 @@ def _points_beside(
             if 0 <= other < len(position):
                 is_column = is_column or (position[point, 0] == position[other, 0] and position[point, 1] == position[other, 1])
         if is_column:
-            _beside(point, point, position, level_m, own, clearance_m, on, found)
+            _beside(point, point, position, level_m, own, asset, clearance_m, on, found)
         while len(points) < len(found):
             points.append(point)
     return np.array(points, dtype=np.int64), np.array(found, dtype=np.int64)

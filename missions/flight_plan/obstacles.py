@@ -5,11 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from inspection.geodesy import distance_m
 from inspection.graph.spans import Spans
 from missions.flight_plan.beside_spans import legs_beside, points_beside, stretches_too_low
 from missions.flight_plan.heights import GroundHeights
 from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.waypoints import END, FloatArray, IntArray, RoutePoints, Waypoints
+from missions.flight_plan.sloped_rises import ProfilePoint, with_slopes
+from missions.flight_plan.waypoints import END, NONE, PASS, FloatArray, IntArray, RoutePoints, Waypoints
 
 HAIR = 1e-9  # of a leg
 ABOVE_ALL_M = 1e5  # the top of what stands on ground that is not known
@@ -50,10 +52,10 @@ def too_low(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHeights 
     points = waypoints.points
     is_known = waypoints.amsl_m is not None and ground_heights_m is not None
     level_m = points.agl_m if waypoints.amsl_m is None or not is_known else waypoints.amsl_m
-    own = _inspected(points)
+    own, asset = _inspected(points)
     on_flat_m = np.inf if is_known else rules.clearance_m
-    leg, leg_span = legs_beside(points.position, level_m, own, on_flat_m, spans)
-    point, point_span = points_beside(points.position, level_m, own, on_flat_m, spans)
+    leg, leg_span = legs_beside(points.position, level_m, own, asset, on_flat_m, spans)
+    point, point_span = points_beside(points.position, level_m, own, asset, on_flat_m, spans)
     if not len(leg) and not len(point):
         return None
     span = np.concatenate([leg_span, point_span])
@@ -93,15 +95,18 @@ def rising_over(
     if low is None:
         return waypoints, ()
     blocked = tuple(np.unique(low.span[low.agl_m > rules.max_agl_m + HAIR]).tolist())
-    return _risen(waypoints, low.where(np.isfinite(low.level_m)), ground_heights_m), blocked
+    return _risen(waypoints, low.where(np.isfinite(low.level_m)), ground_heights_m, rules.max_agl_m), blocked
 
 
-def _inspected(points: RoutePoints) -> IntArray:
-    """The target that is being done at each point, NONE for none; the end over the last target still belongs to it."""
+def _inspected(points: RoutePoints) -> tuple[IntArray, IntArray]:
+    """The target that is being done at each point, and its asset, NONE for none; the end over the last target still belongs to it."""
     own = points.target.copy()
     if points.kind[-1] == END and (points.position[-1] == points.position[-2]).all() and points.agl_m[-1] == points.agl_m[-2]:
         own[-1] = own[-2]
-    return own
+    of_target = np.full(int(own.max()) + 2, NONE, dtype=np.int64)  # the last for NONE
+    is_own = points.target != NONE
+    np.maximum.at(of_target, points.target[is_own], points.asset[is_own])
+    return own, of_target[own]
 
 
 def _on_leg(points: RoutePoints, place: IntArray, share: FloatArray) -> FloatArray:
@@ -110,7 +115,7 @@ def _on_leg(points: RoutePoints, place: IntArray, share: FloatArray) -> FloatArr
     return at
 
 
-def _risen(waypoints: Waypoints, low: TooLow, ground_heights_m: GroundHeights | None) -> Waypoints:
+def _risen(waypoints: Waypoints, low: TooLow, ground_heights_m: GroundHeights | None, max_agl_m: float) -> Waypoints:
     points = waypoints.points
     is_known = waypoints.amsl_m is not None
     plain_m = points.agl_m if waypoints.amsl_m is None else waypoints.amsl_m
@@ -132,6 +137,7 @@ def _risen(waypoints: Waypoints, low: TooLow, ground_heights_m: GroundHeights | 
             legs.append(leg)
             shares.append(share)
             levels_m.append(own_m)
+    legs, shares, levels_m = _with_slopes(points, level_m, plain_m - points.agl_m + max_agl_m, legs, shares, levels_m)
     place = np.array(legs, dtype=np.int64)
     flown = points.with_points_between(place, np.array(shares, dtype=np.float64))
     new = place + 1 + np.arange(len(place))
@@ -150,6 +156,32 @@ def _risen(waypoints: Waypoints, low: TooLow, ground_heights_m: GroundHeights | 
     if waypoints.amsl_m is None:
         return Waypoints(risen, None, agl_m)
     return Waypoints(risen, flown_m, flown_m - (waypoints.amsl_m[0] - waypoints.relative_m[0]))
+
+
+def _with_slopes(
+    points: RoutePoints, level_m: FloatArray, most_m: FloatArray, legs: list[int], shares: list[float], levels_m: list[float]
+) -> tuple[list[int], list[float], list[float]]:
+    """Legs, shares and levels of the points to be put in, with small steps as slopes, and level_m of the route's own changed to fit.
+
+    What is done at a place is done at its level; only points that are passed are lifted, and none above most_m.
+    """
+    length_m = distance_m(points.position[:-1], points.position[1:])
+    along_m = np.concatenate([[0.0], np.cumsum(length_m)])
+    is_fixed = (points.kind != PASS) | (points.target != NONE)
+    is_fixed[list(points.task)] = True
+    own = [
+        ProfilePoint(float(along_m[place]), float(level_m[place]), place, 0.0, True, bool(is_fixed[place]), float(most_m[place]))
+        for place in range(len(points))
+    ]
+    put_in = [
+        ProfilePoint(float(along_m[leg + 1] if share >= 1.0 - HAIR else along_m[leg] + share * length_m[leg]), level, leg, share, False)
+        for leg, share, level in zip(legs, shares, levels_m, strict=True)
+    ]
+    profile = with_slopes(sorted([*own, *put_in], key=lambda point: (point.leg, not point.is_own)))
+    for place, point in enumerate(point for point in profile if point.is_own):
+        level_m[place] = point.level_m
+    new = [point for point in profile if not point.is_own]
+    return [point.leg for point in new], [point.share for point in new], [point.level_m for point in new]
 
 
 def _profile(

@@ -17,7 +17,7 @@ from inspection.geodesy.local_frame import LocalFrame
 from inspection.graph.spans import Spans
 from missions.flight_plan.heights import GroundHeights
 from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.waypoints import BASE, FloatArray, RoutePoints, Waypoints
+from missions.flight_plan.waypoints import BASE, NONE, FloatArray, RoutePoints, Waypoints
 
 BESIDE_M = 24.0  # across the ground; drawing keeps a little more
 STEP_M = 4.0
@@ -62,7 +62,7 @@ def legs_too_near(waypoints: Waypoints, spans: Spans, ground_heights_m: GroundHe
     found: set[tuple[int, int]] = set()
     too_near = _too_near(line, level_m, leg, start[span], end[span], top_m[span], rules.clearance_m)
     for own_leg, own_span in zip(leg[too_near].tolist(), span[too_near].tolist(), strict=True):
-        if not _is_inspected(points, line, own_leg, start[own_span], end[own_span]):
+        if not _is_inspected(points, line, own_leg, start[own_span], end[own_span], int(spans.asset[near[own_span]])):
             found.add((own_leg, int(near[own_span])))
     return found
 
@@ -188,12 +188,19 @@ def _too_near(
     return too_near
 
 
-def _is_inspected(points: RoutePoints, line: FloatArray, leg: int, start: FloatArray, end: FloatArray) -> bool:
-    """Whether the leg belongs to a target, or comes down to one or rises from it, at which the span hangs or along which it is flown."""
+def _is_inspected(points: RoutePoints, line: FloatArray, leg: int, start: FloatArray, end: FloatArray, asset: int) -> bool:
+    """Whether the leg belongs to a target, or comes down to one or rises from it, at which the span hangs or which lies along it.
+
+    asset: what hangs there. A target on something else that is crossed by it does not lie along it, however near.
+    """
     target = int(max(points.target[leg], points.target[leg + 1]))
     moves = bool((line[leg] != line[leg + 1]).any())
     if target < 0 or (moves and points.target[leg] != points.target[leg + 1]):
         return False
     places = line[points.target == target]
-    hangs = min(float(np.hypot(*(places - place).T).min()) for place in (start, end)) <= SAME_M
-    return hangs or bool((shapely.distance(shapely.points(line[leg : leg + 2]), lines_between(start[None], end[None])[0]) <= SAME_M).all())
+    if min(float(np.hypot(*(places - place).T).min()) for place in (start, end)) <= SAME_M:
+        return True
+    is_along = asset != NONE and bool((points.asset[points.target == target] == asset).any())
+    return is_along and bool(
+        (shapely.distance(shapely.points(line[leg : leg + 2]), lines_between(start[None], end[None])[0]) <= SAME_M).all()
+    )

@@ -202,6 +202,18 @@ def test_lines_of_the_highest_voltages_are_taken_to_be_taller_and_their_towers_t
     assert at_tower["altitude_agl_m"] == least_m
 
 
+@pytest.mark.parametrize("end_action", [EndAction.HOVER, EndAction.RETURN])
+def test_a_pole_that_a_taller_line_passes_right_over_is_inspected_from_above_that(end_action: EndAction) -> None:
+    """Its wires hang 0.6 m beside the pole's middle."""
+    here = world(height_m=14.0, subtype="pole")
+    power_line([ground.tower((lon, lat), height_m=45.0) for lon, lat in ((10.0071, 55.9994), (10.0089, 56.00061))], voltages_v=[110_000])
+    rebuild()
+    plan = make_plan(request=request(here.towers[2], uavs=(uav(end_action=end_action),)))
+    (at_pole,) = [waypoint for waypoint in plan["routes"][0]["waypoints"] if waypoint["kind"] == "target"]
+    assert at_pole["altitude_agl_m"] == pytest.approx(60.0, abs=0.1)
+    assert WireJudge().faults(plan) == []
+
+
 def slope(path: Path) -> None:
     """Ground that rises by 1 in 7 to the east."""
     step = 0.0005

@@ -36,7 +36,7 @@ class WireJudge:
             if row.kind == "line":
                 for place in untagged.intersection(_vertices(row)):
                     tops[place] = max(tops[place], self._height(row))
-        wires, hung = [], set()
+        wires, hung, hangs = [], set(), []
         for row in rows:
             if row.kind == "bridge":
                 wires.append((tuple(row.centre.coords), tuple(row.centre.coords), self._height(row), self._height(row)))
@@ -46,11 +46,13 @@ class WireJudge:
                     course = [tuple(place[:2]) for place in part.coords]
                     hung.update(course)
                     for start, end in pairwise(course):
+                        hangs.append((len(wires), row.pk))
                         wires.append((start, end, *(self._top(row, place, tops) for place in (start, end))))
         wires += [(place, place, top, top) for place, top in tops.items() if place not in hung]  # else a wire ends at its top
         self.origin = np.array([wires[0][0][0], wires[0][0][1]])
         self.start, self.end = (self._metres(np.array([wire[side] for wire in wires])) for side in (0, 1))
         self.top_m = np.array([wire[2:] for wire in wires])
+        self.asset = dict(hangs)
         if ground is not None:
             self.top_m = self.top_m + np.column_stack([ground(np.array([wire[side] for wire in wires])) for side in (0, 1)])
         self.tree = shapely.STRtree([shapely.LineString([a, b]) if a != b else shapely.Point(a) for a, b in self._ends()])
@@ -88,11 +90,13 @@ class WireJudge:
                 continue  # up from the ground, or down to it
             line = shapely.LineString(places[leg : leg + 2]) if (places[leg] != places[leg + 1]).any() else shapely.Point(places[leg])
             target = self._target(one, other, line)
-            own = places[[waypoint["target"] == target for waypoint in waypoints]] if target is not None else places[:0]
+            at_target = [waypoint for waypoint in waypoints if target is not None and waypoint["target"] == target]
+            own = self._metres(np.array([waypoint["position"] for waypoint in at_target]).reshape(-1, 2))
+            assets = {waypoint["asset"] for waypoint in at_target}
             for wire in self.tree.query(line, predicate="dwithin", distance=BESIDE_M).tolist():
                 self.passed += 1
                 short_m = self._short_m(places[leg], places[leg + 1], level_m[leg], level_m[leg + 1], wire)
-                if short_m > ROUNDING_M and not self._is_inspected(own, wire):
+                if short_m > ROUNDING_M and not self._is_inspected(own, assets, wire):
                     yield f"{route['uav']}: leg {leg} at {one['position']} is {short_m:.1f} m too low over {self.top_m[wire].tolist()}"
 
     def _short_m(self, start: Any, end: Any, start_m: float, end_m: float, wire: int) -> float:
@@ -106,13 +110,15 @@ class WireJudge:
         short_m = CLEARANCE_M - STEEPEST * beside_m - over_m
         return float(short_m[beside_m <= BESIDE_M].max(initial=-math.inf))
 
-    def _is_inspected(self, own: Any, wire: int) -> bool:
-        """Whether it hangs at a place of the target, or the target lies along it."""
+    def _is_inspected(self, own: Any, assets: set[int | None], wire: int) -> bool:
+        """Whether it hangs at a place of the target, or the target lies along it, as a part of the same line."""
         if not len(own):
             return False
         ends = np.array([self.start[wire], self.end[wire]])
         if min(np.hypot(*(own - end).T).min() for end in ends) < 2.0:
             return True
+        if self.asset.get(wire, -1) not in assets:
+            return False
         near = shapely.distance(shapely.points(own), shapely.LineString(ends) if (ends[0] != ends[1]).any() else shapely.Point(ends[0]))
         return bool((np.sort(near)[: 2 if len(own) > 1 else 1] < 2.0).all())
 

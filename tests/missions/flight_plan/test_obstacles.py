@@ -14,7 +14,7 @@ from missions.flight_plan.beside_spans import AT_M
 from missions.flight_plan.obstacles import rising_over, too_low
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.tall_clearance import legs_too_near, spans_too_near
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
+from missions.flight_plan.waypoints import NONE, RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.routing.problem import Task, TaskKind
 
 HERE = 56.0
@@ -37,11 +37,11 @@ def route(*agl_m: float) -> Waypoints:
     return over_flat_ground(*(RoutePoint(at(400.0 * n, 0.0), WaypointKind.PASS, height) for n, height in enumerate(agl_m)))
 
 
-def spans(*rows: tuple[float, float, float, float, float, float]) -> Spans:
-    """Each from north, east, height to north, east, height."""
+def spans(*rows: tuple[float, float, float, float, float, float], asset: int = NONE) -> Spans:
+    """Each from north, east, height to north, east, height; all of one line."""
     drawn = np.array(rows).reshape(-1, 6)
     start, end = (np.array([at(north, east) for north, east in drawn[:, side : side + 2]]).reshape(-1, 2) for side in (0, 3))
-    return spans_between(start, end, drawn[:, 2], drawn[:, 5])
+    return spans_between(start, end, drawn[:, 2], drawn[:, 5], np.full(len(drawn), asset))
 
 
 def tower(north_m: float, east_m: float, height_m: float) -> tuple[float, float, float, float, float, float]:
@@ -144,6 +144,23 @@ def test_what_is_inspected_is_come_down_to_but_not_under_the_wires_of_another_li
     assert rising_over(points, spans(own), None, RULES)[0] is points
     flown, _ = rising_over(points, spans(own, (220.0, -90.0, 40.0, 220.0, 90.0, 40.0)), None, RULES)
     assert flown.points.agl_m.tolist() == [60.0, 60.0, 55.0, 55.0]
+
+
+def test_a_pole_right_under_the_wires_of_another_line_is_inspected_from_above_these() -> None:
+    """They hang 0.5 m beside its middle: it is not they that are inspected."""
+    pole, across = (200.0, 0.0, 14.0, 200.0, 90.0, 14.0), (200.5, -90.0, 45.0, 200.5, 90.0, 45.0)
+    points = inspected(29.0)
+    flown, _ = rising_over(points, spans(pole, across, asset=5), None, RULES)
+    assert flown.points.agl_m.tolist() == [60.0, 60.0, 60.0, 60.0]
+    assert spans_too_near(points, spans(pole, across, asset=5), None, RULES) == {1}
+
+
+def test_a_point_on_a_line_is_come_down_to_between_the_towers_of_that_line() -> None:
+    """What hangs there is what is inspected, whatever its wires are taken to be as high as."""
+    own = spans((200.0, -90.0, 45.0, 200.0, 90.0, 45.0), asset=7)
+    points = inspected(29.0)
+    assert rising_over(points, own, None, RULES)[0] is points
+    assert spans_too_near(points, own, None, RULES) == set()
 
 
 LENGTHS = st.floats(-600.0, 1_400.0)
