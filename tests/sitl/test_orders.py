@@ -1,0 +1,75 @@
+"""What a UAV in flight is told is done by an ArduCopter: hold, go on, return, land, abort; and what it will not do is told in its words."""
+
+import pytest
+
+from missions.models import CommandKind, CommandState
+from missions.services.dispatch import load_of
+from telemetry.ground_station.flavour import COPTER_MODES, Mode
+from telemetry.models import Alert
+from tests.sitl.flights import bring, holds, lands, order, take_off, wait_until_ready
+from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for
+from tests.telemetry.gateway.test_commands import begin, dispatch, ended
+
+pytestmark = pytest.mark.django_db(transaction=True)
+
+
+@pytest.mark.parametrize("transport", ["udp", "tcp"])
+def test_a_flight_is_held_goes_on_and_returns(transport, uav, mission, firmware, tmp_path):
+    with gateway_at_work(tmp_path) as gateway:
+        vehicle = firmware(port_of(gateway, transport), transport)
+        upload = take_off(vehicle, uav, mission)
+        order(uav, CommandKind.HOLD)
+        wait_for(lambda: vehicle.custom_mode == COPTER_MODES[Mode.HOLD], "its hold")
+        order(uav, CommandKind.RESUME, upload)
+        wait_for(lambda: vehicle.custom_mode == COPTER_MODES[Mode.MISSION], "its mission")
+        order(uav, CommandKind.RETURN)
+        wait_for(lambda: vehicle.custom_mode == COPTER_MODES[Mode.RETURN], "its return")
+        lands(vehicle)
+
+
+@pytest.mark.parametrize(("kind", "mode"), [(CommandKind.LAND, Mode.LAND), (CommandKind.ABORT, Mode.RETURN)])
+def test_a_flight_is_ended(kind, mode, uav, mission, firmware, tmp_path):
+    with gateway_at_work(tmp_path) as gateway:
+        vehicle = firmware(port_of(gateway))
+        take_off(vehicle, uav, mission)
+        order(uav, kind)
+        wait_for(lambda: vehicle.custom_mode == COPTER_MODES[mode], f"{kind}")
+        lands(vehicle)
+
+
+def test_a_refusal_to_arm_is_told_in_its_own_words(uav, mission, firmware, tmp_path):
+    with gateway_at_work(tmp_path) as gateway:
+        vehicle = firmware(port_of(gateway), parameters={"BATT_MONITOR": 4.0, "BATT_ARM_VOLT": 20.0})
+        upload = bring(vehicle, mission)
+        start = ended(begin(uav, mission, upload.approval))
+        assert start.state == CommandState.FAILED and not vehicle.is_armed
+        assert "below minimum arming voltage" in start.outcome, start.outcome
+
+
+def test_a_list_that_another_ground_station_has_changed_is_not_flown(uav, mission, firmware, tmp_path):
+    with gateway_at_work(tmp_path) as gateway:
+        vehicle = firmware(port_of(gateway))
+        upload = bring(vehicle, mission)
+        vehicle.shorten()
+        start = ended(begin(uav, mission, upload.approval))
+        assert (start.state, start.outcome_code) == (CommandState.FAILED, "other-list"), start.outcome
+        assert not vehicle.is_armed
+        wait_for(lambda: Alert.objects.filter(code="other-list-on-board", uav=uav, closed_at=None).exists(), "an alert")
+
+
+def test_a_mission_is_brought_and_flown_off_over_a_link_that_loses_three_of_ten_frames(uav, mission, firmware, lossy, tmp_path):
+    with gateway_at_work(tmp_path) as gateway:
+        link = lossy(port_of(gateway), 0.3)
+        vehicle = firmware(link.port, speed=1.0)
+        vehicle.set("SIM_SPEEDUP", 10.0)
+        wait_until_ready(vehicle)
+        vehicle.set("SIM_SPEEDUP", 1.0)
+        upload = ended(dispatch(mission))
+        assert upload.state == CommandState.APPLIED, upload.outcome
+        assert holds(vehicle, load_of(upload).load)
+        start = ended(begin(uav, mission, upload.approval))
+        assert start.state == CommandState.APPLIED, start.outcome
+        order(uav, CommandKind.RETURN)
+        vehicle.set("SIM_SPEEDUP", 5.0)
+        lands(vehicle)
+    assert link.lost > 20
