@@ -20,6 +20,7 @@ from missions.mavlink.frames import frames_of_datagram, message_of
 from missions.mavlink.signing import FrameWriter
 from telemetry.ground_station.wire import HeldItem, held_item
 from tests.missions.worlds import UAV_AT
+from tests.telemetry.gateway.station import wait_for
 
 HOME_AMSL_M = 100.0
 SECOND_STATION = (254, mavlink.MAV_COMP_ID_MISSIONPLANNER)
@@ -27,8 +28,8 @@ ABSOLUTE_POSITION = 0x10  # of EKF_STATUS_REPORT: it may be armed in GUIDED only
 READY_S = 120.0
 ANSWER_S, TRIES = 1.0, 20
 LOOP_S = 0.02
-FORCED_REBOOT = 20_190_226.0  # of an armed vehicle
-SENSORS = {f"{kind}_{axis}": value for kind, value in (("ACCOFFS", 0.001), ("ACC2OFFS", 0.001), ("ACCSCAL", 1.001), ("ACC2SCAL", 1.001)) for axis in "XYZ"}
+CALIBRATED = {"ACCOFFS": 0.001, "ACC2OFFS": 0.001, "ACCSCAL": 1.001, "ACC2SCAL": 1.001}  # without, it does not arm
+SENSORS = {f"INS_{kind}_{axis}": value for kind, value in CALIBRATED.items() for axis in "XYZ"}
 
 
 @dataclass
@@ -48,7 +49,7 @@ class Firmware:
 
     def __enter__(self) -> "Firmware":
         self.folder.mkdir(parents=True, exist_ok=True)
-        usual = {"FRAME_CLASS": 1.0, "SYSID_THISMAV": float(self.system), **{f"INS_{name}": value for name, value in SENSORS.items()}}
+        usual = {"FRAME_CLASS": 1.0, "SYSID_THISMAV": float(self.system), **SENSORS}
         lines = [f"{name} {value:.10g}\n" for name, value in (usual | self.parameters).items()]
         (self.folder / "vehicle.parm").write_text("".join(lines))
         self._console = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -61,6 +62,7 @@ class Firmware:
         self._process = self._start(wipe=True)
         self._thread = threading.Thread(target=self._listen, name=f"second link of {self.system}")
         self._thread.start()
+        wait_for(lambda: self._sender is not None, "that it speaks by its second link")
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -1,8 +1,5 @@
 """A flight on the firmware: brought, started, and in the air."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 from missions.mavlink.content import FlightLoad, MissionType
 from missions.models import CommandKind, CommandState, Mission, Uav, UavCommand
 from missions.services.commands import queue_command
@@ -54,12 +51,3 @@ def order(uav: Uav, kind: CommandKind, upload: UavCommand | None = None) -> None
 def lands(vehicle: Firmware) -> None:
     wait_for(lambda: not vehicle.is_armed, "that it has landed and disarmed", patience_s=FLIGHT_S)
     assert abs(vehicle.height_m) < 1.0
-
-
-@contextmanager
-def pace(vehicle: Firmware, speed: float) -> Iterator[None]:
-    """While this lasts."""
-    usual, vehicle.speed = vehicle.speed, speed
-    vehicle.set("SIM_SPEEDUP", speed)
-    yield
-    vehicle.set("SIM_SPEEDUP", usual)

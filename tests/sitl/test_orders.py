@@ -3,12 +3,11 @@
 import pytest
 
 from missions.models import CommandKind, CommandState
-from missions.services.dispatch import load_of
 from telemetry.ground_station.flavour import COPTER_MODES, Mode
 from telemetry.models import Alert
-from tests.sitl.flights import bring, holds, lands, order, take_off, wait_until_ready
+from tests.sitl.flights import bring, lands, order, take_off
 from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for
-from tests.telemetry.gateway.test_commands import begin, dispatch, ended
+from tests.telemetry.gateway.test_commands import begin, ended
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
@@ -55,21 +54,3 @@ def test_a_list_that_another_ground_station_has_changed_is_not_flown(uav, missio
         assert (start.state, start.outcome_code) == (CommandState.FAILED, "other-list"), start.outcome
         assert not vehicle.is_armed
         wait_for(lambda: Alert.objects.filter(code="other-list-on-board", uav=uav, closed_at=None).exists(), "an alert")
-
-
-def test_a_mission_is_brought_and_flown_off_over_a_link_that_loses_three_of_ten_frames(uav, mission, firmware, lossy, tmp_path):
-    with gateway_at_work(tmp_path) as gateway:
-        link = lossy(port_of(gateway), 0.3)
-        vehicle = firmware(link.port, speed=1.0)
-        vehicle.set("SIM_SPEEDUP", 10.0)
-        wait_until_ready(vehicle)
-        vehicle.set("SIM_SPEEDUP", 1.0)
-        upload = ended(dispatch(mission))
-        assert upload.state == CommandState.APPLIED, upload.outcome
-        assert holds(vehicle, load_of(upload).load)
-        start = ended(begin(uav, mission, upload.approval))
-        assert start.state == CommandState.APPLIED, start.outcome
-        order(uav, CommandKind.RETURN)
-        vehicle.set("SIM_SPEEDUP", 5.0)
-        lands(vehicle)
-    assert link.lost > 20
