@@ -76,9 +76,8 @@ def _sitl_tests(binary: str = "", *arguments: str) -> Step:
     firmware = Path(binary).resolve()
     if not (binary and firmware.is_file() and os.access(firmware, os.X_OK)):
         raise CannotStart(f"--sitl needs the program of an ArduCopter in software in the loop, not {binary!r}")
-    step = _pytest(
-        "tests on a firmware", "sitl", list(arguments) if any(SITL_TESTS in one for one in arguments) else [SITL_TESTS, *arguments]
-    )
+    places = [] if any(SITL_TESTS in one for one in arguments) else [SITL_TESTS]
+    step = _pytest("tests on a firmware", "sitl", [*places, *arguments])
     apart = ["unshare", "--net", *(["--map-root-user"] if os.geteuid() else []), "--"]
     command = [*apart, *_python("-m", "scripts.test_run.loopback"), *step.command]
     return replace(step, command=command, environment=step.environment | {SITL: str(firmware)}, cache=None)

@@ -1,4 +1,4 @@
-"""An ArduCopter in software in the loop: a program that the user has, started for one test, with a second link for what the test does to it.
+"""An ArduCopter in software in the loop: the user's program, started for one test, with a second link for what the test does to it.
 
 `unshare` gives the tests and the firmware a network of their own (scripts.test_run.loopback), for it listens on all addresses.
 """
@@ -15,6 +15,7 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from inspection.geodesy.wgs84 import short_distance_m
 from missions.mavlink.content import MissionItem, MissionType
 from missions.mavlink.frames import frames_of_datagram, message_of
 from missions.mavlink.signing import FrameWriter
@@ -174,6 +175,16 @@ class Firmware:
         """Above its home."""
         told = self.newest.get("GLOBAL_POSITION_INT")
         return 0.0 if told is None else told.relative_alt / 1000.0
+
+    @property
+    def place(self) -> tuple[float, float]:
+        """Longitude and latitude, as it tells them."""
+        told = self.newest.get("GLOBAL_POSITION_INT")
+        return self.at if told is None else (told.lon / 1e7, told.lat / 1e7)
+
+    @property
+    def from_home_m(self) -> float:
+        return short_distance_m(*self.at, *self.place)
 
     @property
     def is_ready(self) -> bool:

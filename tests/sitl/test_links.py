@@ -30,7 +30,7 @@ def test_more_than_200_items_are_brought(transport, loss, uav, region, firmware,
         vehicle = firmware(lossy(port, loss).port if loss else port, transport)
         wait_until_ready(vehicle)
         vehicle.set("SIM_SPEEDUP", 1.0)
-        upload = ended(dispatch(mission))
+        upload = ended(dispatch(mission), patience_s=FLIGHT_S)
         assert upload.state == CommandState.APPLIED, upload.outcome
         load = load_of(upload).load
         assert len(load.mission) >= 200 and load.fence
