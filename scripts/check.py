@@ -3,6 +3,7 @@
 All steps run, even when one has failed. Tests that wait have a second try when all is over (scripts.second_try).
 
 python -m scripts.check [--fast | --long] [PYTEST ARGUMENT...]
+python -m scripts.check --sitl BINARY [PYTEST ARGUMENT...]      (the link's tests on a real firmware: tests/sitl)
 python -m scripts.check --chaos [ROW...]      (the fault table: tests.chaos)
 """
 
@@ -35,6 +36,7 @@ PROGRAMS = PROJECT_DIR / ".venv" / "bin"
 TEST_WORKERS = min(8, (os.cpu_count() or 2) + 1)  # some of their tests mostly wait
 TYPE_CHECKER = str(PROJECT_DIR / "node_modules" / "typescript-native" / "bin" / "tsc")
 BROWSER_WORKERS = 2  # each with a whole installation
+SITL, SITL_TESTS = "SPANWISE_SITL", "tests/sitl"
 
 
 def _python(*arguments: str) -> list[str]:
@@ -69,8 +71,22 @@ def _javascript_tests() -> Iterator[Step]:
         yield Step("JavaScript tests", [str(PROGRAMS / "node"), "--test", *options, *scripts], report=report)
 
 
+def _sitl_tests(binary: str = "", *arguments: str) -> Step:
+    """The link's tests on a firmware, with a network of their own, as it listens on all addresses. Raises CannotStart."""
+    firmware = Path(binary).resolve()
+    if not (binary and firmware.is_file() and os.access(firmware, os.X_OK)):
+        raise CannotStart(f"--sitl needs the program of an ArduCopter in software in the loop, not {binary!r}")
+    places = [] if any(SITL_TESTS in one for one in arguments) else [SITL_TESTS]
+    step = _pytest("tests on a firmware", "sitl", [*places, *arguments])
+    apart = ["unshare", "--net", *(["--map-root-user"] if os.geteuid() else []), "--"]
+    command = [*apart, *_python("-m", "scripts.test_run.loopback"), *step.command]
+    return replace(step, command=command, environment=step.environment | {SITL: str(firmware)}, cache=None)
+
+
 def steps(arguments: list[str]) -> list[Step]:
     """The steps that these arguments ask for."""
+    if arguments[:1] == ["--sitl"]:
+        return [_sitl_tests(*arguments[1:])]
     is_fast, is_long = "--fast" in arguments, "--long" in arguments
     rest = [argument for argument in arguments if argument not in {"--fast", "--long"}]
     without_long = "" if is_long else " and not long"
@@ -206,6 +222,7 @@ def _print_summary(results: list[Result], reports: list[Report], often_late: lis
 def main(arguments: list[str]) -> int:
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, _interrupt)
+    os.environ.pop(SITL, None)  # they run by --sitl alone
     state, began = state_directory() / "check", time.monotonic()
     try:
         with private_servers(state, workers=TEST_WORKERS) as environment:

@@ -127,8 +127,8 @@ def _gps(message: Message) -> Values:
 
 
 def _wind(message: Message) -> Values | None:
-    """ArduPilot's: from where it blows. Exactly 0 from exactly 0 degrees is what it sends where it neither measures nor estimates wind."""
-    if not (math.isfinite(message.direction) and math.isfinite(message.speed)) or (message.direction, message.speed) == (0.0, 0.0):
+    """ArduPilot's: from where it blows. Exactly 0 m/s is what it sends where it neither measures nor estimates wind."""
+    if not (math.isfinite(message.direction) and math.isfinite(message.speed)) or message.speed == 0.0:
         return None
     from_rad = math.radians(message.direction)
     return {"wind_north_mps": -message.speed * math.cos(from_rad), "wind_east_mps": -message.speed * math.sin(from_rad)}

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from scripts.check import TEST_WORKERS, steps
-from scripts.places import PROJECT_DIR
+from scripts.check import SITL, TEST_WORKERS, steps
+from scripts.places import PROJECT_DIR, CannotStart
 from scripts.test_run.lanes import Step, run_all
 from scripts.test_run.plugin import use_own_servers
 
@@ -123,3 +123,20 @@ def test_a_worker_has_a_redis_and_a_state_folder_of_its_own() -> None:
     alone = given | {"CHECK_REDIS_URL": "unix:///s/redis-{worker}.sock"}
     use_own_servers(alone)
     assert (alone["REDIS_URL"], alone["SPANWISE_VAR"]) == ("unix:///s/redis.sock", "/v")
+
+
+def test_a_firmware_has_a_network_of_its_own_and_no_other_run_takes_its_tests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(SITL, raising=False)
+    monkeypatch.setenv("SPANWISE_VAR", str(tmp_path))
+    firmware = tmp_path / "firmware"
+    with pytest.raises(CannotStart, match="ArduCopter"):
+        steps(["--sitl", str(firmware)])
+    firmware.touch(mode=0o755)
+    (step,) = steps(["--sitl", str(firmware), "-k", "wind"])
+    assert step.command[:2] == ["unshare", "--net"] and step.environment[SITL] == str(firmware)
+    assert step.command[step.command.index("scripts.test_run.loopback") + 1 :][:5] == [sys.executable, "-m", "pytest", "-m", "sitl"]
+    assert step.command[step.command.index("sitl") + 1 :][:3] == ["tests/sitl", "-k", "wind"]
+    collected = subprocess.run(
+        [sys.executable, "-m", "pytest", "--collect-only", "-q", "tests/sitl"], cwd=PROJECT_DIR, capture_output=True, text=True
+    )
+    assert collected.returncode == pytest.ExitCode.NO_TESTS_COLLECTED, collected.stdout

@@ -10,7 +10,7 @@ from missions.services import TargetRequest
 from missions.services.commands import queue_command
 from missions.services.dispatch import load_of
 from telemetry.ground_station.flavour import Flavour
-from telemetry.models import UavLink
+from telemetry.models import TelemetryRecord, UavLink
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.gateway.station import gateway_at_work, unsigned_uav, wait_for
@@ -58,6 +58,8 @@ def test_a_mission_with_a_fence_and_a_look_is_flown_to_its_end_by_an_arducopter(
         wait_for(lambda: mission.routes.get().flights_flown == 1, "the flight's end")
     mission.refresh_from_db()
     assert mission.state == MissionState.COMPLETED
+    winds = set(TelemetryRecord.objects.filter(uav=uav).values_list("wind_north_mps", flat=True))
+    assert winds == {None}, "no calm that nobody measured"
 
 
 def test_a_gateway_that_is_replaced_before_the_touch_down_knows_that_it_was_flown(uav, mission, tmp_path):

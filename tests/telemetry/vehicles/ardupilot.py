@@ -195,6 +195,10 @@ class ArduPilot(Vehicle):
         super().touch_down()
         self.current_item, self._touched_down_s = self.item_after_landing, self._now_s
 
+    def reports(self) -> list[Any]:
+        """Wind, too, which it neither measures nor estimates."""
+        return [*super().reports(), mavlink.MAVLink_wind_message(-180.0, 0.0, 0.0)]
+
     def restart(self) -> None:
         self.is_alive = True
         self.upload_kind = None
