@@ -30,7 +30,7 @@ from workspace.preferences import TIME_ZONES
 from workspace.serializers import Declared
 
 InvitationState = [state.value for state in State]
-LONGEST_TOKEN_DAYS = 365
+MAX_TOKEN_DAYS = 365
 
 
 class AccountSerializer(serializers.ModelSerializer):
@@ -104,7 +104,7 @@ class NewTokenSerializer(TokenSerializer):
 
 class TokenInputSerializer(serializers.Serializer):
     name = serializers.CharField(max_length=100)
-    days = serializers.IntegerField(min_value=1, max_value=LONGEST_TOKEN_DAYS, default=90)
+    days = serializers.IntegerField(min_value=1, max_value=MAX_TOKEN_DAYS, default=90)
     scopes = serializers.ListField(
         child=serializers.ChoiceField(choices=TokenScope.choices), min_length=1, max_length=len(TokenScope), required=False,
         help_text="what it may be used for, within one's role; all that the role has unless told",

@@ -9,7 +9,7 @@ from inspection.zones.geometry_gate import GeometryFault
 from inspection.zones.records import UnreadRecord
 from inspection.zones.texts import MAX_IDENTIFIER, MAX_NAME
 
-MOST_LOOKED_AT = 20_000  # parts of one zone
+MAX_LOOKED_AT = 20_000  # parts of one zone
 _PLACE = re.compile(r"(features|UASZoneList)\[(\d+)\]")
 
 
@@ -45,7 +45,7 @@ def _text(holders: Sequence[dict[str, Any]], keys: Sequence[str]) -> str:
 def _positions(geometry: Any) -> Iterator[tuple[float, float]]:
     """Pairs of numbers that can be longitude and latitude, wherever they stand in a geometry."""
     waiting = [geometry]
-    for _ in range(MOST_LOOKED_AT):
+    for _ in range(MAX_LOOKED_AT):
         if not waiting:
             return
         part = waiting.pop()

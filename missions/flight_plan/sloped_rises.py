@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 SLOPE = 1.0 / 6.0  # at 14 m/s a climb of 2.3 m/s, which does not slow a UAV that climbs at 2.5 m/s
-LEAST_RUN_M = 15.0  # across the ground: room to pitch up and down at speed
-MOST_RISE_M = 9.0  # what is higher stays straight up: a slope would begin too far before what it is for, and nearer to zones aloft
+MIN_RUN_M = 15.0  # across the ground: room to pitch up and down at speed
+MAX_RISE_M = 9.0  # what is higher stays straight up: a slope would begin too far before what it is for, and nearer to zones aloft
 
 
 class ProfilePoint(NamedTuple):
@@ -40,7 +40,7 @@ def _with_slopes_up(profile: list[ProfilePoint]) -> list[ProfilePoint]:
     while behind < len(profile):
         low, top = profile[-behind - 1], profile[-behind]
         rise_m = top.level_m - low.level_m
-        if low.along_m == top.along_m and 0.0 < rise_m <= MOST_RISE_M and not low.is_own:
+        if low.along_m == top.along_m and 0.0 < rise_m <= MAX_RISE_M and not low.is_own:
             profile = _sloped_to(profile, len(profile) - behind, rise_m)
         behind += 1
     return profile
@@ -48,7 +48,7 @@ def _with_slopes_up(profile: list[ProfilePoint]) -> list[ProfilePoint]:
 
 def _sloped_to(profile: list[ProfilePoint], top: int, rise_m: float) -> list[ProfilePoint]:
     """With a slope that ends at the top of a step; what it passes over is lifted onto it, or else nothing where that may not be."""
-    slope = rise_m / max(rise_m / SLOPE, LEAST_RUN_M)
+    slope = rise_m / max(rise_m / SLOPE, MIN_RUN_M)
 
     def sloped_m(point: ProfilePoint) -> float:
         return profile[top].level_m - slope * (profile[top].along_m - point.along_m)

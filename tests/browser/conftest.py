@@ -35,7 +35,7 @@ expect.set_options(timeout=PATIENCE_MS)
 # The processor draws maps and the 3D view: with a sixteenth of the pixels a map's page takes half as much of its time. The layout stays.
 COARSE_CANVASES = "Object.defineProperty(window, 'devicePixelRatio', { get: () => 0.25 });"
 PICTURE_SETTLES_MS = 800  # for documentation alone: a change of theme reaches the map a few frames later
-LONGEST_TEST_S = 300.0
+MAX_TEST_S = 300.0
 PASSWORD = "inspect-the-lines"
 USERS = {"opal": "operator", "rory": "operator", "vera": "viewer", "cora": "curator", "ada": "administrator"}
 NEW_USERS = f"""
@@ -193,7 +193,7 @@ class Visitor:
     def signs_in(self, name: str, **how: object) -> Page:
         """The page of missions; without the door where it was passed lately and nobody has closed the session since."""
         since_s, cookies = self.site.came_in.get(name, (-math.inf, None))
-        if time.monotonic() - since_s > PROOF_S - LONGEST_TEST_S:  # what wants the password again, some minutes later
+        if time.monotonic() - since_s > PROOF_S - MAX_TEST_S:  # what wants the password again, some minutes later
             since_s, cookies = time.monotonic(), None
         page = self.opens("/", cookies=cookies, **how)  # type: ignore[arg-type]
         if page.locator("form[action$='sign-in'], input[name=password]").count():

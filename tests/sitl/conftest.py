@@ -24,7 +24,7 @@ from tests.workspace.people import somebody
 
 BINARY = "SPANWISE_SITL"
 RALLY_AT = LonLat(UAV_AT.lon + 0.001, UAV_AT.lat)
-MOST_FIRMWARES = 10  # of one process of pytest
+MAX_FIRMWARES = 10  # of one process of pytest
 collect_ignore_glob = [] if os.environ.get(BINARY) else ["test_*.py"]
 
 
@@ -61,7 +61,7 @@ def mission(uav: Uav, region: Any) -> Mission:
 def firmware(tmp_path: Path) -> Iterator[Callable[..., Firmware]]:
     """Starts a firmware whose first link leads to a port, by UDP or TCP."""
     worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
-    instances = count(worker * MOST_FIRMWARES)
+    instances = count(worker * MAX_FIRMWARES)
     with ExitStack() as running:
 
         def start(port: int, transport: str = "udp", *, system: int = 7, **values: Any) -> Firmware:

@@ -24,7 +24,7 @@ from inspection.zones.records import UnreadRecord, ZoneRecord
 from inspection.zones.zone_file import ZoneFileError
 from workspace.models import User
 
-LEAST_DEG = 0.0005
+MIN_DEG = 0.0005
 ALL_ELSEWHERE = "say that all of them are to be replaced, or use another name"
 
 
@@ -145,7 +145,7 @@ def _not_read(record: UnreadRecord) -> Change:
     box = None
     if record.bbox is not None:
         west, south, east, north = record.bbox
-        box = Polygon.from_bbox((west - LEAST_DEG, south - LEAST_DEG, east + LEAST_DEG, north + LEAST_DEG))
+        box = Polygon.from_bbox((west - MIN_DEG, south - MIN_DEG, east + MIN_DEG, north + MIN_DEG))
         box.srid = 4326
     after = {"fault": record.fault.message, "place": record.fault.place}
     return Change(ChangeAction.NOT_READ, "zone", record.name or record.fault.place, geometry=box, after=after)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from missions.flight_plan.sloped_rises import LEAST_RUN_M, MOST_RISE_M, SLOPE, ProfilePoint, with_slopes
+from missions.flight_plan.sloped_rises import MAX_RISE_M, MIN_RUN_M, SLOPE, ProfilePoint, with_slopes
 
 LEG_M = 400.0
 
@@ -34,11 +34,11 @@ def test_a_small_step_up_and_down_is_a_slope_before_and_behind() -> None:
 
 def test_a_step_of_a_foot_has_room_to_be_flown_at_speed() -> None:
     drawn = with_slopes([own(0, 60.0), put_in(0, 0.5, 60.0), put_in(0, 0.5, 60.3), own(1, 60.3)])
-    assert seen(drawn) == [(0.0, 60.0), (200.0 - LEAST_RUN_M, 60.0), (200.0, 60.3), (400.0, 60.3)]
+    assert seen(drawn) == [(0.0, 60.0), (200.0 - MIN_RUN_M, 60.0), (200.0, 60.3), (400.0, 60.3)]
 
 
 def test_a_high_step_stays_straight_up() -> None:
-    steps = [own(0, 60.0), put_in(0, 0.5, 60.0), put_in(0, 0.5, 60.1 + MOST_RISE_M), own(1, 60.1 + MOST_RISE_M)]
+    steps = [own(0, 60.0), put_in(0, 0.5, 60.0), put_in(0, 0.5, 60.1 + MAX_RISE_M), own(1, 60.1 + MAX_RISE_M)]
     assert with_slopes(steps) == steps
 
 
