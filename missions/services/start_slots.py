@@ -11,6 +11,7 @@ from django.db.models import Max, Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from inspection.graph.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
 from missions.flight_plan.rules import SeparationRules
 from missions.flight_plan.separation import TimedRoute, conflicts, keep_apart
 from missions.flight_selectors import STILL_FLOWN, route_in_time
@@ -23,7 +24,6 @@ START_SLOT = "start-slot"  # what a command failed with
 OUT_OF_SLOT = "out_of_slot"  # a start's parameter: whoever gave it has answered that it is to take off all the same
 STARTS_LOCK = 0x05A7_0031  # advisory lock, with the organisation
 NOT_CONFIRMED = (CommandState.FAILED, CommandState.EXPIRED)
-METRES_PER_DEGREE = 111_195.0
 KEPT_SHARE = 0.5  # of the planned time between two UAVs, which has to be left after all that a start is late or early
 
 
@@ -91,15 +91,15 @@ def _in_the_air(uav: Uav, now: datetime, given_at: datetime | None) -> tuple[lis
     later = UavCommand.objects.filter(uav__in=uav_ids, sent_at__gt=since, axis__in=[CommandAxis.FLIGHT, CommandAxis.SPEED])
     last = dict(later.values_list("uav_id").annotate(Max("sequence")))
     in_the_air = uavs_in_the_air(uav_ids)
+    planned = Route.objects.filter(mission__in=[start.mission_id for start in starts], mission_uav__uav__in=uav_ids)
+    routes = {(route.mission_id, route.mission_uav.uav_id): route for route in planned.select_related("mission", "mission_uav")}
     timely, untimely = [], []
     for start in starts:
-        route = (
-            Route.objects.select_related("mission", "mission_uav").filter(mission=start.mission_id, mission_uav__uav=start.uav_id).first()
-        )
+        route = None if start.mission_id is None else routes.get((start.mission_id, start.uav_id))
         flight = int(start.parameters.get("flight", 1))
         if route is None or route.geometry is None:
             continue
-        has_ended = route.continued_by is not None or route.has_failed or flight <= route.flights_flown
+        has_ended = route.continued_by_id is not None or route.has_failed or flight <= route.flights_flown
         was_told_else = start.state in NOT_CONFIRMED or last.get(start.uav_id, 0) > start.sequence
         if has_ended or was_told_else or start.mission is None or start.mission.state not in ON_ITS_WAY:
             flown = _since(route, flight, started_s=0.0) if start.uav_id in in_the_air else None
@@ -115,8 +115,8 @@ def _share_an_area(one: TimedRoute, other: TimedRoute, margin_m: float) -> bool:
     """Whether the boxes about two routes come within the margin of each other: ways home are inside of them."""
     low, high = one.position.min(axis=0), one.position.max(axis=0)
     other_low, other_high = other.position.min(axis=0), other.position.max(axis=0)
-    north_deg = margin_m / METRES_PER_DEGREE
-    margin_deg = np.array([north_deg / max(math.cos(math.radians(low[1])), 0.01), north_deg])
+    metres_per_degree_lon = METRES_PER_DEGREE_LON * max(math.cos(math.radians(low[1])), 0.01)
+    margin_deg = margin_m / np.array([metres_per_degree_lon, METRES_PER_DEGREE_LAT])
     return bool(((low - margin_deg <= other_high) & (other_low <= high + margin_deg)).all())
 
 
