@@ -37,6 +37,9 @@ export class ApiError extends Error {
   }
 }
 
+/** An Idempotency-Key: the same act sent again has the same one. */
+export const freshKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
+
 /** Whether a request was stopped by its signal. @param {unknown} error */
 export const isAbort = (error) => error instanceof Error && error.name === "AbortError";
 

@@ -1,6 +1,6 @@
 /** Demo data on the list of missions: made where there are none, marked, and removed with one button. */
 
-import { get, post, remove } from "../api.js";
+import { freshKey, get, post, remove } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { followLive } from "../live/jobs.js";
 import { confirmAct } from "../page/confirm.js";
@@ -50,7 +50,7 @@ export function createDemo({ reload, showProblem, canChange }) {
 
   async function make() {
     try {
-      await post("/demo-data", {}, { headers: { "Idempotency-Key": crypto.randomUUID?.() ?? `${Date.now()}` } });
+      await post("/demo-data", {}, { headers: { "Idempotency-Key": freshKey() } });
       await load();
     } catch (error) {
       showProblem(error, t("The demo missions were not made."));

@@ -1,12 +1,10 @@
 /** A command to a UAV, sent once; a start that is refused for its slot is asked for once more. */
 
-import { ApiError, post } from "../api.js";
+import { ApiError, freshKey, post } from "../api.js";
 import { outOfSlotQuestion } from "../domain/command_questions.js";
 import { confirmAct } from "./confirm.js";
 
 /** @import { CommandKind } from "../api_types.d.ts" */
-
-export const freshKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 
 /**
  * Whether it is being told; not where somebody rather waits. Rejects with ApiError.

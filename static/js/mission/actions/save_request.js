@@ -1,5 +1,6 @@
 /** What a save sends: a whole new mission, or the parts of a stored one that differ. Values in, values out. */
 
+import { freshKey } from "../../api.js";
 import { t } from "../../text.js";
 import { clockText, dayText } from "../../units.js";
 import { UNSAID } from "../flight_options.js";
@@ -25,8 +26,6 @@ const PARTS = /** @type {(keyof PlanInputRequest)[]} */ ([
   "return_to_start",
   ...Object.keys(UNASKED),
 ]);
-
-const freshKey = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 
 /**
  * The parts of a selection that differ from what is stored, as the API takes them.

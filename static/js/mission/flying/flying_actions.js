@@ -3,12 +3,12 @@
  * listen to the store.
  */
 
-import { ApiError, get, post, signInAddress } from "../../api.js";
+import { ApiError, freshKey, get, post, signInAddress } from "../../api.js";
 import { LATE, questionOf, WHY } from "../../domain/command_questions.js";
 import { flyersOf, isFrozen, isOnItsWay, KINDS } from "../../domain/flying.js";
 import { returnLines, returnOf } from "../../domain/own_return.js";
 import { confirmAct } from "../../page/confirm.js";
-import { freshKey, tellUav } from "../../page/tell_uav.js";
+import { tellUav } from "../../page/tell_uav.js";
 import { say } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { lengthText } from "../../units.js";
