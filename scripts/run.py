@@ -11,6 +11,7 @@ from pathlib import Path
 from scripts.options import parse, port_problem
 
 PROJECT_DIR = Path(__file__).resolve().parent.parent
+PYTHON = PROJECT_DIR / ".venv" / "bin" / "python"
 
 
 def set_up(arguments: list[str]) -> int:
@@ -18,6 +19,8 @@ def set_up(arguments: list[str]) -> int:
     options = parse(arguments, PROJECT_DIR)
     os.environ["SPANWISE_VAR"] = str(options.var)
     is_start = not (options.status or options.stop)
+    if not is_start and PYTHON.exists():  # nothing new is needed to stop what runs, and compiling would keep it waiting
+        return 0
     # A state that has run before may hold the port itself; scripts.start looks into that.
     if is_start and not (options.var / "instance.json").exists() and (problem := port_problem(options.port)):
         print(problem, file=sys.stderr)
@@ -31,5 +34,4 @@ if __name__ == "__main__":
             sys.exit(code)
     except KeyboardInterrupt:
         sys.exit(130)
-    python = str(PROJECT_DIR / ".venv" / "bin" / "python")
-    os.execv(python, [python, "-m", "scripts.start", *sys.argv[1:]])  # noqa: S606 - no shell
+    os.execv(PYTHON, [str(PYTHON), "-m", "scripts.start", *sys.argv[1:]])  # noqa: S606 - no shell

@@ -17,6 +17,7 @@ from urllib.parse import urlsplit
 
 import pytest
 from playwright.sync_api import Browser, BrowserContext, ConsoleMessage, Page, expect, sync_playwright
+from playwright.sync_api import Error as PlaywrightError
 
 from scripts.places import Places
 from scripts.system_packages import BROWSERS
@@ -34,6 +35,9 @@ PATIENCE_MS = 45_000  # ./check runs other tests beside these
 expect.set_options(timeout=PATIENCE_MS)
 # The processor draws maps and the 3D view: with a sixteenth of the pixels a map's page takes half as much of its time. The layout stays.
 COARSE_CANVASES = "Object.defineProperty(window, 'devicePixelRatio', { get: () => 0.25 });"
+DESK = {"width": 1440, "height": 900}
+STORAGES = "local_storage,indexeddb,service_workers,cache_storage,file_systems"  # of Storage.clearDataForOrigin in Chrome's protocol
+EMPTY_PAGE = "about:blank"
 PICTURE_SETTLES_MS = 800  # for documentation alone: a change of theme reaches the map a few frames later
 MAX_TEST_S = 300.0
 PASSWORD = "inspect-the-lines"
@@ -155,20 +159,65 @@ def chromium() -> Iterator[Browser]:
         browser.close()
 
 
+class ContextPool:
+    """Browser contexts that one test leaves to the next, emptied of all but what the browser has cached of the static files."""
+
+    def __init__(self, browser: Browser, address: str) -> None:
+        self.browser, self.address = browser, address
+        self._idle: dict[bool, list[BrowserContext]] = {True: [], False: []}
+
+    def new(self, **options: Any) -> BrowserContext:
+        """A context of its own, which is closed after the test."""
+        context = self.browser.new_context(base_url=self.address, reduced_motion="reduce", **options)
+        if not HAS_PICTURES:
+            context.add_init_script(COARSE_CANVASES)
+        return context
+
+    def take(self, *, touch: bool) -> BrowserContext:
+        idle = self._idle[touch]
+        return idle.pop() if idle else self.new(viewport=DESK, has_touch=touch)
+
+    def give_back(self, context: BrowserContext, *, touch: bool) -> None:
+        """Close its pages, empty it and keep it; close it where that fails."""
+        try:
+            for page in context.pages:
+                page.close()
+            context.set_offline(False)
+            context.clear_cookies()
+            context.clear_permissions()
+            page = context.new_page()
+            wiped = {"origin": self.address, "storageTypes": STORAGES}
+            context.new_cdp_session(page).send("Storage.clearDataForOrigin", wiped)
+            page.close()
+            self._idle[touch].append(context)
+        except PlaywrightError:  # the test has closed it
+            context.close()
+
+
 @dataclass
 class Visitor:
     """Somebody at a browser. What their pages complained about, and what they asked of other hosts, is kept."""
 
     site: Site
-    browser: Browser
+    contexts: ContextPool
     complaints: list[str] = field(default_factory=list)
     requests_outside: list[str] = field(default_factory=list)
+    taken: list[tuple[BrowserContext, bool]] = field(default_factory=list)
+    own: list[BrowserContext] = field(default_factory=list)
 
     def new_context(self, **options: Any) -> BrowserContext:
-        context = self.browser.new_context(base_url=self.site.address, reduced_motion="reduce", **options)
-        if not HAS_PICTURES:
-            context.add_init_script(COARSE_CANVASES)
-        return context
+        """A context that no other test has used or will use."""
+        self.own.append(self.contexts.new(**options))
+        return self.own[-1]
+
+    def leaves(self) -> None:
+        """Close what was opened."""
+        for context in self.own:
+            context.close()
+        for context, touch in self.taken:
+            self.contexts.give_back(context, touch=touch)
+        self.own.clear()
+        self.taken.clear()
 
     def opens(
         self,
@@ -179,10 +228,13 @@ class Visitor:
         touch: bool = False,
         cookies: list[Any] | None = None,
     ) -> Page:
-        context = self.new_context(viewport={"width": size[0], "height": size[1]}, color_scheme=theme, has_touch=touch)
+        context = self.contexts.take(touch=touch)
+        self.taken.append((context, touch))
         if cookies:
             context.add_cookies(cookies)
         page = context.new_page()
+        page.set_viewport_size({"width": size[0], "height": size[1]})
+        page.emulate_media(color_scheme=theme)  # type: ignore[arg-type]
         page.set_default_timeout(PATIENCE_MS)
         page.on("console", self._heard)
         page.on("pageerror", lambda error: self.complaints.append(str(error)))
@@ -190,18 +242,23 @@ class Visitor:
         page.goto(path)
         return page
 
-    def signs_in(self, name: str, **how: object) -> Page:
-        """The page of missions; without the door where it was passed lately and nobody has closed the session since."""
-        since_s, cookies = self.site.came_in.get(name, (-math.inf, None))
-        if time.monotonic() - since_s > PROOF_S - MAX_TEST_S:  # what wants the password again, some minutes later
-            since_s, cookies = time.monotonic(), None
-        page = self.opens("/", cookies=cookies, **how)  # type: ignore[arg-type]
-        if page.locator("form[action$='sign-in'], input[name=password]").count():
+    def signs_in(self, name: str, path: str = EMPTY_PAGE, **how: Any) -> Page:
+        """A page of this user, empty unless it is named; by signing in, or with the session of an earlier test that is still open."""
+        since_s, cookies = self.site.came_in.get(name, (-math.inf, []))
+        page = self.opens(EMPTY_PAGE, cookies=cookies, **how)
+        is_recent = time.monotonic() - since_s < PROOF_S - MAX_TEST_S  # what wants the password again some minutes later
+        if not is_recent or not page.request.get("/api/v1/account").ok:
+            since_s = time.monotonic()
+            page.context.clear_cookies()
+            page.goto("/sign-in")
             page.get_by_label("User name").fill(name)
             page.get_by_label("Password").fill(PASSWORD)
             page.get_by_role("button", name="Sign in").click()
-        expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
-        page.locator("html[data-loaded]").wait_for(state="attached")  # the page listens to keys
+            expect(page.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
+            page.goto(EMPTY_PAGE)
+        if path != EMPTY_PAGE:
+            page.goto(path)
+            page.locator("html[data-loaded]").wait_for(state="attached")  # the page listens to keys
         self.site.came_in[name] = since_s, page.context.cookies()
         return page
 
@@ -210,16 +267,20 @@ class Visitor:
             self.complaints.append(message.text)
 
     def _asked(self, url: str) -> None:
-        if not url.startswith((self.site.address, "data:", "blob:")):
+        if not url.startswith((self.site.address, "data:", "blob:", "about:")):
             self.requests_outside.append(url)
 
 
+@pytest.fixture(scope="session")
+def contexts(site: Site, chromium: Browser) -> ContextPool:
+    return ContextPool(chromium, site.address)
+
+
 @pytest.fixture
-def visitor(site: Site, chromium: Browser) -> Iterator[Visitor]:
-    somebody = Visitor(site, chromium)
+def visitor(site: Site, contexts: ContextPool) -> Iterator[Visitor]:
+    somebody = Visitor(site, contexts)
     yield somebody
-    for context in chromium.contexts:
-        context.close()
+    somebody.leaves()
     assert somebody.complaints == []
     assert somebody.requests_outside == []
 

@@ -40,7 +40,7 @@ def mission(visitor: Visitor) -> Iterator[str]:
     made = posts(page, "/missions", body)
     assert made.status == 201, made.text()
     address = f"/missions/{made.json()['id']}"
-    page.context.close()
+    page.close()
     yield address
     page = visitor.signs_in("ada")
     if asks(page, address)["state"] in {"dispatched", "active"}:

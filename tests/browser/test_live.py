@@ -49,7 +49,7 @@ def flight(visitor: Visitor, site: Site) -> Iterator[tuple[str, list[Flyer]]]:
     for flyer in flyers:
         flyer.obeys()
         assert flyer.content is not None
-    page.context.close()
+    page.close()
     yield mission, flyers
     page = visitor.signs_in("ada")
     if asks(page, f"/missions/{mission}")["state"] in {"dispatched", "active"}:

@@ -171,7 +171,7 @@ def test_a_phone_scrolls_through_the_states_and_the_page_stays_as_wide_as_the_wi
 
 def test_viewers_open_missions_and_change_none(visitor: Visitor) -> None:
     stores_mission(visitor.signs_in("opal"), "Only to look at")
-    page = visitor.signs_in("vera")
+    page = visitor.signs_in("vera", "/")
     expect(row(page, "Only to look at")).to_be_visible()
     expect(page.get_by_role("checkbox", name=re.compile("Choose"))).to_have_count(0)
     row(page, "Only to look at").get_by_role("button", name="More for Only to look at").click()

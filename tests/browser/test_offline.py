@@ -52,9 +52,9 @@ def test_a_page_that_dies_without_a_network_finds_its_changes_again(visitor: Vis
     expect(page.locator("#save-state")).to_contain_text("Not saved")
     page.wait_for_function("() => Object.keys(localStorage).some((key) => key.startsWith('spanwise.draft.'))")
     left = targets(page)
+    context = page.context
     page.close()
     visitor.complaints.clear()
-    context = visitor.browser.contexts[-1]
     context.set_offline(False)
     again = opens_mission(context.new_page(), address)
     expect(again.get_by_text("Your unsaved changes are back.")).to_be_visible()

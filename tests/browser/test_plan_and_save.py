@@ -14,7 +14,7 @@ pytestmark = pytest.mark.browser
 
 
 def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
-    page = visitor.signs_in("opal")
+    page = visitor.signs_in("opal", "/")
     page.keyboard.press("n")
     page.wait_for_url(re.compile("/missions/new"))
     wait_for_map(page)
@@ -104,7 +104,7 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
 def test_the_mission_fits_a_phone(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     stores_mission(visitor.signs_in("opal"), "Towers on a phone")
     for theme in ("light", "dark"):
-        page = visitor.signs_in("opal", size=(390, 844), theme=theme, touch=True)
+        page = visitor.signs_in("opal", "/", size=(390, 844), theme=theme, touch=True)
         page.get_by_role("link", name="Towers on a phone").click()
         wait_for_map(page)
         expect(page.locator("#plan-sentence")).to_contain_text("All back in")

@@ -42,7 +42,7 @@ def planned(visitor: Visitor, site: Site) -> str:
             "return_to_start": True, "plan": True,
         }  # fmt: skip
         _planned[site.address] = posts(page, "/missions", body)["id"]
-        page.context.close()
+        page.close()
     return _planned[site.address]
 
 
@@ -60,7 +60,7 @@ def rehearsed(visitor: Visitor, planned: str) -> str:
             polling=1000,
         )
         assert asks(page, address)["state"] == "done"
-    page.context.close()
+    page.close()
     return planned
 
 

@@ -39,7 +39,7 @@ def towers(visitor: Visitor) -> Iterator[list[list[float]]]:
     page = visitor.signs_in("ada")
     found = [tower["geometry"]["coordinates"] for tower in two_towers(page)]
     uavs = simulated_uavs(page, NAME, at=found[0])
-    page.context.close()
+    page.close()
     yield found
     retires(visitor.signs_in("ada"), uavs)
 
@@ -191,4 +191,4 @@ def shows_more_of_it(visitor: Visitor, key: str, picture: Picture) -> None:
             wait_for_map(page)
             picture(page, f"flow-{stage}-{mark}")
         assert asks(page, f"/missions/{key}")["state"] == "completed"
-        page.context.close()
+        page.close()

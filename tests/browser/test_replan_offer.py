@@ -62,7 +62,7 @@ def flight(visitor: Visitor, site: Site) -> Iterator[Flight]:
             flying.enter_context(vehicle)
         writes(page, "POST", f"/missions/{mission}/approve")
         writes(page, "POST", f"/missions/{mission}/dispatch")
-        page.context.close()
+        page.close()
         yield Flight(mission, vehicles)
         page = visitor.signs_in("ada")
         for entry in asks(page, "/missions?limit=50")["results"]:
@@ -136,7 +136,7 @@ def test_what_one_uav_leaves_is_offered_taken_by_one_operator_and_seen_by_the_ot
     assert faults(watcher) == []
     accepts(watcher)
     expect(pilot.locator("#offers")).to_contain_text("The other plan is flown. Decided by rory")
-    pilot.context.close()
+    pilot.close()
     expect(watcher.locator("#mission-state")).to_have_text("Aborted")
     watcher.get_by_role("link", name="Watch it go on").click()
     wait_for_map(watcher)
@@ -158,7 +158,7 @@ def test_the_other_plan_is_flown_to_its_end_and_told_by_its_record(visitor: Visi
     in_both_themes(pilot, picture, "live-offer-phone")
     accepts(watcher)
     watcher.get_by_role("link", name="Watch it go on").click()
-    pilot.context.close()
+    pilot.close()
     wait_for_map(watcher)
     expect(watcher.locator("#mission-state")).to_have_text("Completed", timeout=LANDS_WITHIN_MS)
     expect(card(watcher, "Ruff").locator(".letter")).to_have_text("A")

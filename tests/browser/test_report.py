@@ -51,7 +51,7 @@ def flown(visitor: Visitor, site: Site) -> str:
         posts(page, f"/missions/{key}/approve", {})
         posts(page, f"/missions/{key}/dispatch", {})
         site.does(f"from tests.browser.flown_mission import fly_mission; fly_mission('{key}')")
-        page.context.close()
+        page.close()
         _flown[site.address] = f"/missions/{key}/report"
     return _flown[site.address]
 

@@ -57,7 +57,7 @@ def rehearsed(visitor: Visitor, site: Site) -> tuple[str, str]:
                 break
             page.wait_for_timeout(1_000)
         assert state == "done"
-        page.context.close()
+        page.close()
         _rehearsed[site.address] = mission, rehearsal
     return _rehearsed[site.address]
 

@@ -32,7 +32,7 @@ def towers(visitor: Visitor) -> Towers:
     """Of one line, by their number in it."""
     page = visitor.signs_in("ada")
     found = asks(page, f"/assets?kind=tower&bbox={region.picture_towers}&limit=400")["features"]
-    page.context.close()
+    page.close()
     numbers = [re.fullmatch(region.picture_line, tower["properties"]["label"]) for tower in found]
     return {int(number[1]): tower for number, tower in zip(numbers, found, strict=True) if number}
 

@@ -35,7 +35,7 @@ def mission(visitor: Visitor) -> Iterator[str]:
     towers = two_towers(page)
     uavs = simulated_uavs(page, *NAMES, at=towers[0]["geometry"]["coordinates"])
     key = stores_simulated_mission(page, "Beside the belt", uavs, towers)
-    page.context.close()
+    page.close()
     yield key
     retires(visitor.signs_in("ada"), uavs)
 
@@ -102,7 +102,7 @@ def looks_only(visitor: Visitor, mission: str, picture: Picture) -> None:
     picture(page, "simulation-viewer-phone-dark")
     assert page.evaluate(TOO_WIDE) == []
     assert faults(page) == []
-    page.context.close()
+    page.close()
 
 
 @pytest.mark.long

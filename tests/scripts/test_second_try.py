@@ -8,6 +8,7 @@ import pytest
 from scripts.check import with_second_try
 from scripts.second_try import COUNTED_RUNS, WAITING_TESTS, cache_arguments, note_late_passes
 from scripts.test_run.lanes import Result, Step, run_all
+from tests.scripts.test_skips import NO_OTHER_PLUGINS
 
 PROJECT_DIR = Path(__file__).resolve().parents[2]
 TRIES = """
@@ -25,10 +26,10 @@ def _step(folder: Path, *, late: int, patience: int, tests: int, place: str = "t
     module, cache = folder / place / "test_late.py", folder / "cache"
     module.parent.mkdir(parents=True)
     module.write_text(TRIES.format(tests=tests, late=late, patience=patience))
-    command = [sys.executable, "-m", "pytest", "--rootdir", str(folder), "-q", "-p", "no:django", str(module), *cache_arguments(cache)]
+    command = [sys.executable, "-m", "pytest", "--rootdir", str(folder), "-q", "-p", "xdist.plugin", str(module), *cache_arguments(cache)]
     if workers:
         command += [f"--numprocesses={workers}", "--dist=loadfile"]
-    return Step("step", command, cache=cache)
+    return Step("step", command, environment=NO_OTHER_PLUGINS, cache=cache)
 
 
 def _run(step: Step, folder: Path) -> Result:

@@ -1,5 +1,6 @@
 """Which skips ./check lets pass, and that it fails on others and on runs without any test."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -21,6 +22,7 @@ RUNS = "def test_it(): pass\n"
 SKIPS = "import pytest\ndef test_not():\n    pytest.skip({reason!r})\n"
 SKIPS_MODULE = "import pytest\npytest.importorskip('no_such_library')\ndef test_it(): pass\n"
 MARKED = "import pytest\n@pytest.mark.skipif(True, reason='no radio here')\ndef test_not(): pass\n"
+NO_OTHER_PLUGINS = {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # their imports take most of the time of so small a run
 EMPTY = "import pytest\n@pytest.mark.parametrize('model', [])\ndef test_each(model): pass\n"
 
 
@@ -30,9 +32,9 @@ def _run(folder: Path, *modules: str, workers: int = 0) -> tuple[int, str, Repor
     for number, module in enumerate(modules):
         (folder / f"test_{number}.py").write_text(module)
     report = folder / "report.json"
-    command = [sys.executable, "-m", "pytest", "-p", "scripts.test_run.plugin", "-p", "no:django", "-p", "no:cacheprovider"]
+    command = [sys.executable, "-m", "pytest", "-p", "xdist.plugin", "-p", "scripts.test_run.plugin", "-p", "no:cacheprovider"]
     command += [f"--check-report={report}", f"--rootdir={folder}", f"--numprocesses={workers}", str(folder)]
-    done = subprocess.run(command, cwd=PROJECT_DIR, capture_output=True, text=True, check=False)
+    done = subprocess.run(command, cwd=PROJECT_DIR, env=os.environ | NO_OTHER_PLUGINS, capture_output=True, text=True, check=False)
     return done.returncode, done.stdout + done.stderr, read_report(report)
 
 

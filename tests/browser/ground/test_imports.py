@@ -62,21 +62,10 @@ def many_towers(path: Path) -> Path:
     return path
 
 
-@pytest.fixture(scope="module")
-def session() -> list[Any]:
-    """Cora's cookies, once she has signed in."""
-    return []
-
-
 @pytest.fixture
-def curator(visitor: Visitor, session: list[Any]) -> Iterator[Page]:
+def curator(visitor: Visitor) -> Iterator[Page]:
     """Cora on the page; the sets that a test brings in are off the ground afterwards."""
-    if session:
-        page = visitor.opens()
-        page.context.add_cookies(session)
-    else:
-        page = visitor.signs_in("cora")
-        session.extend(page.context.cookies())
+    page = visitor.signs_in("cora")
     opens_imports(page)
     yield page
     for zone_set in asks(page, "/zone-sets?limit=1000")["results"]:
@@ -210,12 +199,10 @@ def test_a_file_with_a_fault_is_refused_and_the_place_is_one_click_away(curator:
     page.get_by_role("button", name="Discard").click()
 
 
-def test_somebody_slower_hears_who_decided(curator: Page, visitor: Visitor, session: list[Any], tmp_path: Path) -> None:
+def test_somebody_slower_hears_who_decided(curator: Page, visitor: Visitor, tmp_path: Path) -> None:
     sends(curator, written(tmp_path, "works.geojson", zone_file(NORTH)), set_name="Works")
     expect(curator.get_by_role("button", name="Apply 1 change")).to_be_visible()
-    other = visitor.opens()
-    other.context.add_cookies(session)
-    other.goto(curator.url.split("#")[0])
+    other = visitor.signs_in("cora", curator.url.split("#")[0])
     other.get_by_role("button", name="Discard").click()
     expect(other.get_by_text("is discarded.")).to_be_visible()
     curator.get_by_role("button", name="Apply 1 change").click()
@@ -337,14 +324,10 @@ def test_only_curators_have_the_tools_the_others_a_sentence(visitor: Visitor) ->
     expect(page.locator("#choose-file")).to_have_count(0)
 
 
-def test_a_phone_has_it_all_in_the_sheet(
-    visitor: Visitor, curator: Page, session: list[Any], tmp_path: Path, picture: Callable[[Page, str], None]
-) -> None:
+def test_a_phone_has_it_all_in_the_sheet(visitor: Visitor, curator: Page, tmp_path: Path, picture: Callable[[Page, str], None]) -> None:
     sends(curator, written(tmp_path, "works.geojson", zone_file(NORTH, EAST)), set_name="Phone works")
     expect(sentence(curator)).to_be_visible()
-    page = visitor.opens(size=(390, 844), touch=True, theme="dark")
-    page.context.add_cookies(session)
-    page.goto(curator.url.split("#")[0])
+    page = visitor.signs_in("cora", curator.url.split("#")[0], size=(390, 844), touch=True, theme="dark")
     wait_for_map(page)
     expect(sentence(page)).to_have_text("2\u00a0new.")
     assert page.evaluate("document.documentElement.scrollWidth") == 390

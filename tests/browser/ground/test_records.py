@@ -1,7 +1,6 @@
 """A curator corrects an asset, draws a zone, and takes changes back; of two at once nobody overwrites the other unseen."""
 
 from collections.abc import Callable
-from typing import Any
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
@@ -16,21 +15,8 @@ VOLTAGE = f"{region.voltage_kv} kV"
 Picture = Callable[[Page, str], None]
 
 
-_sessions: dict[tuple[str, str], Any] = {}
-
-
 def opens(visitor: Visitor, path: str, name: str = "cora", **how: object) -> Page:
-    """Everybody signs in once; later tests go on with the same session."""
-    key = (visitor.site.address, name)
-    if key in _sessions:
-        page = visitor.opens(**how)  # type: ignore[arg-type]
-        page.context.add_cookies(_sessions[key])
-    else:
-        page = visitor.signs_in(name, **how)
-        _sessions[key] = page.context.cookies()
-    page.goto(path)
-    page.locator("html[data-loaded]").wait_for(state="attached")
-    return page
+    return visitor.signs_in(name, path, **how)
 
 
 def finds(page: Page, text: str, row: str) -> None:

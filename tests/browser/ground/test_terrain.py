@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 from django.contrib.gis.gdal import GDALRaster
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Page, expect
 
-from tests.browser.conftest import Site, Visitor
+from tests.browser.conftest import ContextPool, Site, Visitor
 from tests.browser.operator_map import asks, look_at, place_of, wait_for_map
 from tests.browser.regions import region
 
@@ -81,11 +81,11 @@ def takes_all_away(page: Page) -> None:
 
 
 @pytest.fixture(scope="module", autouse=True)
-def no_model_stays(site: Site, chromium: Browser) -> Iterator[None]:
+def no_model_stays(site: Site, contexts: ContextPool) -> Iterator[None]:
     yield
-    page = Visitor(site, chromium).signs_in("cora")
-    takes_all_away(page)
-    page.context.close()
+    last = Visitor(site, contexts)
+    takes_all_away(last.signs_in("cora"))
+    last.leaves()
 
 
 @pytest.fixture
@@ -94,14 +94,14 @@ def model(visitor: Visitor, tmp_path: Path) -> None:
     page = visitor.signs_in("cora")
     if not asks(page, "/terrain")["features"]:
         brings_in(page, plane_file(tmp_path))
-    page.context.close()
+    page.close()
 
 
 @pytest.fixture
 def no_model(visitor: Visitor) -> None:
     page = visitor.signs_in("cora")
     takes_all_away(page)
-    page.context.close()
+    page.close()
 
 
 def opens_terrain(visitor: Visitor, name: str, *, size: tuple[int, int] = (1440, 900), theme: str = "light") -> Page:

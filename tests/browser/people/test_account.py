@@ -123,7 +123,7 @@ def test_a_token_is_shown_once_works_and_is_revoked(visitor: Visitor) -> None:
     page.get_by_role("button", name="Make a token").click()
     token = page.get_by_role("textbox", name="Token", exact=True).text_content() or ""
     expect(page.get_by_role("button", name="Copy")).to_be_focused()
-    stranger = visitor.browser.new_context(base_url=visitor.site.address, extra_http_headers={"Authorization": f"Bearer {token}"})
+    stranger = visitor.new_context(extra_http_headers={"Authorization": f"Bearer {token}"})
     assert stranger.request.get("/api/v1/account").json()["username"] == "tove"
 
     account(page)

@@ -193,7 +193,7 @@ def test_the_log_shows_tries_and_filters_them(visitor: Visitor) -> None:
 
 
 def test_only_administrators_find_the_administration(visitor: Visitor) -> None:
-    page = visitor.signs_in("cora")
+    page = visitor.signs_in("cora", "/")
     page.get_by_role("button", name=re.compile("^Account of")).click()
     expect(page.get_by_role("link", name="Account", exact=True)).to_be_visible()
     expect(page.get_by_role("link", name="Administration")).to_have_count(0)

@@ -37,7 +37,7 @@ def test_sign_in_follows_the_dark_theme_of_the_system(visitor: Visitor, picture:
 
 
 def test_a_viewer_sees_the_map_but_cannot_plan(visitor: Visitor) -> None:
-    page = visitor.signs_in("vera")
+    page = visitor.signs_in("vera", "/")
     expect(page.get_by_role("link", name="New mission")).to_have_count(0)
     page.goto("/missions/new")
     expect(page.get_by_text("Viewers cannot plan.")).to_be_visible()
