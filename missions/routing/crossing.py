@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from numba import njit
 
-from missions.routing.plan_state import Ground, Plan, RandomState, draw, draw_below
+from missions.routing.plan_state import NO, YES, Ground, Plan, RandomState, draw, draw_below
 from missions.routing.problem import IntArray
 from missions.routing.quantities import NO_WAY_M
 
@@ -107,8 +107,8 @@ def added_m(ground: Ground, plan: Plan, move: Move) -> float:
         longer_m = _joined_m(ground, uav, before, other_behind) + _joined_m(ground, other_uav, other_before, behind)
         longer_m -= plan.gap_m[uav, move.slot] + plan.gap_m[other_uav, first] * (other_size > 0)
         if ground.class_of[uav] != ground.class_of[other_uav]:
-            tail_m, own_tail_m, _, _, _ = _carried(ground, plan, other_uav, uav, move.slot, size, False)
-            other_tail_m, own_other_tail_m, _, _, _ = _carried(ground, plan, uav, other_uav, first, other_size, False)
+            tail_m, own_tail_m, _, _, _ = _carried(ground, plan, other_uav, uav, move.slot, size, NO)
+            other_tail_m, own_other_tail_m, _, _, _ = _carried(ground, plan, uav, other_uav, first, other_size, NO)
             longer_m += own_tail_m - tail_m + own_other_tail_m - other_tail_m
         if behind >= 0:
             last = plan.visit[uav, size - 1]
@@ -172,8 +172,8 @@ def measured(ground: Ground, plan: Plan, move: Move) -> Measured:
 def _with_other_tails(ground: Ground, plan: Plan, move: Move) -> Measured:
     uav, other_uav, cut, other_cut = move.uav, move.other_uav, move.slot, move.first
     size, other_size = plan.size[uav], plan.size[other_uav]
-    _, tail_m, tail_s, tail, may = _carried(ground, plan, other_uav, uav, cut, size, False)
-    _, other_tail_m, other_tail_s, other_tail, other_may = _carried(ground, plan, uav, other_uav, other_cut, other_size, False)
+    _, tail_m, tail_s, tail, may = _carried(ground, plan, other_uav, uav, cut, size, NO)
+    _, other_tail_m, other_tail_s, other_tail, other_may = _carried(ground, plan, uav, other_uav, other_cut, other_size, NO)
     if not (may and other_may):
         return Measured(NO_WAY_M, 0.0, 0, NO_WAY_M, 0.0, 0)
     before, behind = _around(plan, uav, cut, cut)
@@ -252,7 +252,7 @@ def make(ground: Ground, plan: Plan, old: Plan, move: Move) -> None:
         plan.visit[other_uav, first : other_size - length] = old.visit[other_uav, end:other_size]
         plan.size[uav], plan.size[other_uav] = size + length, other_size - length
     elif move.kind == TURN:
-        _lay(ground, plan.visit[uav], first, old.visit[uav], first, end, True)
+        _lay(ground, plan.visit[uav], first, old.visit[uav], first, end, YES)
     elif move.kind == WITHIN:
         _move_within(ground, plan.visit[uav], old.visit[uav], move)
 

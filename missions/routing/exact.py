@@ -5,6 +5,7 @@ from numba import njit
 
 from missions.routing.arcs import Arcs
 from missions.routing.limited_tours import Tours, limited_tours, settled_tours
+from missions.routing.plan_state import ABSENT
 from missions.routing.problem import BoolArray, FloatArray, IntArray, Problem, Routes
 from missions.routing.tours import walk_back
 
@@ -221,10 +222,10 @@ def _shared_out(
         _share_by_longest(flying, kind, own_s, longest_s)
         members = _heaviest(weights, longest_s[last - 1], longest_s[last - 1])
         _choose(length_m, duration_s, longest_s[last - 1, members], own_m, own_s, flown)
-        _share_by_total(flying, kind, own_m, own_s, members if members == sets - 1 else -1, total_m, longest_s)
+        _share_by_total(flying, kind, own_m, own_s, members if members == sets - 1 else ABSENT, total_m, longest_s)
     else:
         _choose(length_m, duration_s, np.inf, own_m, own_s, flown)
-        _share_by_total(flying, kind, own_m, own_s, -1, total_m, longest_s)
+        _share_by_total(flying, kind, own_m, own_s, ABSENT, total_m, longest_s)
         members = sets - 1
     if not np.isfinite(total_m[last - 1, members]) or members < sets - 1:  # of several sets that weigh the same the one of the least total
         members = _heaviest(weights, total_m[last - 1], longest_s[last - 1])

@@ -7,6 +7,8 @@ from numba import njit
 
 from missions.routing.plan_cost import raised_to
 from missions.routing.plan_state import (
+    ABSENT,
+    FIRST,
     NO_LIMIT_M,
     Ground,
     Plan,
@@ -53,7 +55,9 @@ def recreate(ground: Ground, work: Workspace, waiting: int, kind: int, power: in
         for number in range(waiting):
             if plan.uav_of[work.waiting[number]] < 0:
                 target = work.waiting[number]
-                if (is_near and _insert(ground, work, target, power, scale, True)) or _insert(ground, work, target, power, scale, False):
+                if _insert(ground, work, target, power, scale, is_near) or (
+                    is_near and _insert(ground, work, target, power, scale, not is_near)
+                ):
                     again = again or not is_first
                 else:
                     is_first = False
@@ -63,7 +67,7 @@ def recreate(ground: Ground, work: Workspace, waiting: int, kind: int, power: in
 def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: float, is_near: bool) -> bool:
     """Put a target in where it costs least: beside its neighbours and at the ends of routes, or anywhere."""
     plan = work.plan
-    least, least_m, at_uav, at_place, at_visit = np.inf, 0.0, -1, 0, 0
+    least, least_m, at_uav, at_place, at_visit = np.inf, 0.0, ABSENT, FIRST, FIRST
     blink = _next_blink(work.random)
     if ground.has_sorties and ground.is_makespan:
         _look_beside(ground, work)
@@ -81,7 +85,7 @@ def _insert(ground: Ground, work: Workspace, target: int, power: int, scale: flo
             else:
                 added_m = ground.first_m[uav, visit] + onward_m[plan.visit[uav, 0]] - plan.gap_m[uav, 0]
                 best_place = 0
-            if ground.is_limited and not _fits(ground, plan, uav, visit, 0):
+            if ground.is_limited and not _fits(ground, plan, uav, visit, FIRST):
                 added_m = math.inf
             if count:
                 last_m = back_m[plan.visit[uav, count - 1]] + ground.end_m[uav, visit] - plan.gap_m[uav, count]

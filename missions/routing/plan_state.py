@@ -1,6 +1,6 @@
 """A plan under change, as arrays: what the compiled searches read and write."""
 
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 from numba import njit
@@ -12,6 +12,9 @@ from missions.routing.quantities import NO_WAY_M
 
 RandomState = NDArray[np.uint64]  # one number
 
+# numba compiles a function once more for an argument that is a literal; these have its plain types.
+NO, YES = cast(bool, np.bool_(False)), cast(bool, np.bool_(True))
+FIRST, ABSENT = cast(int, np.int64(0)), cast(int, np.int64(-1))
 MOST_NEIGHBOURS = 60
 MOST_JOINED = 12
 ALIKE_M = 1e-7  # what arcs may differ by and count as the same: rounding

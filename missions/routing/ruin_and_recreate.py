@@ -13,6 +13,7 @@ from missions.routing.crossing import NONE, draw_move, make
 from missions.routing.insertion import recreate
 from missions.routing.plan_cost import cost_of, cost_of_routes, is_better, is_wanted, longest_of
 from missions.routing.plan_state import (
+    NO,
     NO_LIMIT_M,
     Ground,
     Workspace,
@@ -53,7 +54,7 @@ def construct(ground: Ground, work: Workspace, power: int, tries: int) -> None:
         for target in range(len(plan.uav_of)):
             work.waiting[target] = target
         work.is_saved[:] = True
-        recreate(ground, work, len(plan.uav_of), number % 3, power, scale, False)
+        recreate(ground, work, len(plan.uav_of), number % 3, power, scale, NO)
         for uav in range(len(plan.size)):
             settle(ground, plan, uav)
         if number == 0 or is_better(ground, plan, work.best):
