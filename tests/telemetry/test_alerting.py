@@ -308,7 +308,7 @@ def test_one_that_falls_is_told_though_it_was_told_to_land(tells_speed, uav, app
     for second in range(5, 9):
         in_flight(second, uav, approval, memories, altitude_relative_m=0.0, is_armed=False, is_in_air=False, **away)
     assert ("down-off-plan", "critical") in open_ones()
-    for second in range(9, 40):
+    for second in range(9, 25):
         in_flight(second, uav, approval, memories, altitude_relative_m=0.0, is_armed=False, is_in_air=False, **away)
     assert ("down-off-plan", "critical") in open_ones(), "until a person closes it"
 
