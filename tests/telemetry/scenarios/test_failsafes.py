@@ -1,6 +1,7 @@
 """What an ArduCopter does by itself in flight, with its battery low, without GPS, in wind, after a reboot: it is seen and told."""
 
 import math
+import time
 
 import pytest
 
@@ -13,6 +14,7 @@ from tests.telemetry.watch.program import watch_program
 
 pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 WATCHED_PACE = 5.0  # at which alerts have time to open before the vehicle is down
+SETTLED_S = 3.0  # in which an end that was seen is stored
 FAR_M = 100.0  # more than a UAV may be away from where it was planned to stand
 RETURNS = {"BATT_MONITOR": 4.0, "BATT_LOW_VOLT": 11.0, "BATT_LOW_TIMER": 3.0, "BATT_FS_LOW_ACT": 2.0}
 
@@ -75,6 +77,6 @@ def test_a_reboot_in_flight_is_no_end_of_the_flight(cause, uav, mission, new_veh
         getattr(vehicle, cause)()
         wait_until_ready(vehicle)
         wait_for(lambda: UavLink.objects.filter(uav=uav, is_in_air=False, is_armed=False).exists(), "that it stands")
-        wait_for(lambda: Alert.objects.filter(uav=uav).exists(), "an alert, though it may be over")
+        time.sleep(SETTLED_S)
     mission.refresh_from_db()
     assert (mission.state, mission.routes.get().flights_flown) == (MissionState.ACTIVE, 0)
