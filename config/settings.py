@@ -19,7 +19,7 @@ from inspection.zones.rules import ZoneRules
 from missions.command_rules import CommandRules
 from missions.flight_plan.rules import FlightRules, SeparationRules
 from missions.routing.rules import RoutingRules
-from operation.address_limits import operators_per_address, sockets_per_address
+from operation.address_limits import operators_per_address, sockets_per_address, trusted_proxies
 from telemetry.ground_station.rules import CommandRules as VehicleCommandRules
 from telemetry.ground_station.rules import TransferRules
 
@@ -64,6 +64,7 @@ SECRET_KEY_FALLBACKS = secret("SPANWISE_OLD_SECRET_KEYS").split()  # sessions an
 DEBUG = _flag("SPANWISE_DEBUG", default=False)
 ALLOWED_HOSTS = _list("SPANWISE_ALLOWED_HOSTS", "127.0.0.1,localhost,[::1]")
 CSRF_TRUSTED_ORIGINS = _list("SPANWISE_TRUSTED_ORIGINS", "")
+TRUSTED_PROXIES = trusted_proxies()
 PUBLIC_ADDRESS = os.environ.get("SPANWISE_PUBLIC_ADDRESS", "").rstrip("/")  # https://host: where links in mails lead
 
 # Plain HTTP is for one machine: SPANWISE_HTTPS=1 switches on what a public host needs.

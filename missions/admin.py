@@ -22,6 +22,7 @@ from missions.models import (
     UavType,
     Waypoint,
 )
+from missions.services.link_changes import removal_reasons
 from workspace.admin import ReadOnlyAdmin
 from workspace.admin_history import HistoryAdmin
 from workspace.services import record_change
@@ -53,6 +54,11 @@ class UavAdmin(_FleetAdmin):
         "state", "link", "mavlink_system_id", "allows_unsigned", "is_simulated", "is_demo",
         "autopilot_return", "autopilot_return_read_at", "revision", "created_at", "updated_at",
     ]  # fmt: skip
+
+    def get_deleted_objects(self, objs: Any, request: HttpRequest) -> tuple[Any, Any, Any, list[Any]]:
+        """With the reasons why a UAV has to stay among what protects it, so that neither the page nor the action deletes it."""
+        objects, counts, permissions, protected = super().get_deleted_objects(objs, request)
+        return objects, counts, permissions, [*protected, *(reason.message for uav in objs for reason in removal_reasons(uav))]
 
 
 @admin.register(UavType)

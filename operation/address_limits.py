@@ -3,11 +3,13 @@
 Operators behind one NAT share an address, so an address is allowed what OPERATORS_PER_ADDRESS of them use at the same time.
 """
 
+import ipaddress
 import os
 from dataclasses import dataclass
 from math import ceil
 
 OPERATORS_PER_ADDRESS = 50
+PRIVATE_NETWORKS = "127.0.0.0/8,10.0.0.0/8,172.16.0.0/12,192.168.0.0/16,100.64.0.0/10,::1/128,fc00::/7"
 SOCKETS_PER_OPERATOR = 12  # a page has one, and one more for each job that it follows
 
 
@@ -46,3 +48,9 @@ def requests_per_minute(kind: CostlyKind, operators: int) -> int:
 
 def sockets_per_address(operators: int) -> int:
     return SOCKETS_PER_OPERATOR * operators
+
+
+def trusted_proxies() -> list[ipaddress.IPv4Network | ipaddress.IPv6Network]:
+    """SPANWISE_TRUSTED_PROXIES: from where a proxy of ours may come by TCP. Raises ValueError for what is no network."""
+    named = os.environ.get("SPANWISE_TRUSTED_PROXIES", PRIVATE_NETWORKS)
+    return [ipaddress.ip_network(network.strip()) for network in named.split(",") if network.strip()]

@@ -3,7 +3,7 @@
 All steps run, even when one has failed. Tests that wait have a second try when all is over (scripts.second_try).
 
 python -m scripts.check [--fast | --long] [PYTEST ARGUMENT...]
-python -m scripts.check --sitl BINARY [PYTEST ARGUMENT...]      (the link's tests on a real firmware: tests/sitl)
+python -m scripts.check --sitl BINARY [PYTEST ARGUMENT...]      (the link's scenarios on a real firmware)
 python -m scripts.check --chaos [ROW...]      (the fault table: tests.chaos)
 """
 
@@ -36,7 +36,7 @@ PROGRAMS = PROJECT_DIR / ".venv" / "bin"
 TEST_WORKERS = min(8, (os.cpu_count() or 2) + 1)  # some of their tests mostly wait
 TYPE_CHECKER = str(PROJECT_DIR / "node_modules" / "typescript-native" / "bin" / "tsc")
 BROWSER_WORKERS = 2  # each with a whole installation
-SITL, SITL_TESTS = "SPANWISE_SITL", "tests/sitl"
+SITL, SITL_TESTS = "SPANWISE_SITL", "tests/telemetry/scenarios"
 
 
 def _python(*arguments: str) -> list[str]:

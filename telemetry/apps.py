@@ -12,5 +12,5 @@ class TelemetryConfig(AppConfig):
         from missions.in_air_hooks import register_source  # noqa: PLC0415
 
         register_flight_teller("telemetry.selectors.in_flight.is_in_flight")
-        register_source("telemetry.selectors.in_the_air.reported_in_the_air")
+        register_source("telemetry.selectors.in_the_air.places_in_the_air")
         register_check("telemetry.services.approved_vehicles.reasons_of_vehicles")

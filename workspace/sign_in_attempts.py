@@ -16,6 +16,7 @@ from django.core.cache.backends.locmem import LocMemCache
 from django.http import HttpRequest
 
 from workspace.cache_absence import CACHE_AWAY
+from workspace.visitors import visitor_address
 
 WINDOW_S = 15 * 60
 TRIES = 5  # of one name from one network, or from one known browser
@@ -56,9 +57,8 @@ class Try:
 
 
 def address_of(request: HttpRequest) -> str:
-    """Where the request came from. Over the proxy's unix socket REMOTE_ADDR is empty: then what the proxy itself appended last."""
-    address: str = request.META.get("REMOTE_ADDR", "")
-    return address or request.headers.get("X-Forwarded-For", "").rpartition(",")[2].strip()
+    """Where the request came from."""
+    return visitor_address(request.META.get("REMOTE_ADDR", ""), request.headers.get("X-Forwarded-For", ""))
 
 
 def network_of(address: str) -> str:

@@ -22,6 +22,7 @@ from workspace.browser_sessions import note_session
 from workspace.farewell import farewell_here
 from workspace.models import User
 from workspace.sign_in_attempts import network_of
+from workspace.visitors import visitor_address
 
 logger = logging.getLogger(__name__)
 
@@ -152,10 +153,10 @@ class SignedInSocket(AsyncWebsocketConsumer):
 
 
 def _address_of(scope: Any) -> str:
-    """Return where it came from: behind the proxy's unix socket, or a proxy in a network, what that proxy itself appended last."""
+    """Return where it came from."""
     told = [value.decode("latin-1") for name, value in scope["headers"] if name == b"x-forwarded-for"]
     client = scope.get("client")
-    return told[-1].rpartition(",")[2].strip() if told else client[0] if client else ""
+    return visitor_address(client[0] if client else "", told[-1] if told else "")
 
 
 def _facts_of(scope: Any) -> dict[str, Any]:

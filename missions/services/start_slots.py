@@ -11,11 +11,12 @@ from django.db.models import Max, Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from inspection.geodesy import LonLat
 from inspection.graph.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
 from missions.flight_plan.rules import SeparationRules
 from missions.flight_plan.separation import TimedRoute, conflicts, keep_apart
 from missions.flight_selectors import STILL_FLOWN, route_in_time
-from missions.in_air_hooks import uavs_in_the_air
+from missions.in_air_hooks import places_in_the_air
 from missions.models import CommandAxis, CommandKind, CommandState, Route, Uav, UavCommand
 from missions.services.flying import ON_ITS_WAY
 from missions.services.refused import Reason
@@ -24,6 +25,7 @@ START_SLOT = "start-slot"  # what a command failed with
 OUT_OF_SLOT = "out_of_slot"  # a start's parameter: whoever gave it has answered that it is to take off all the same
 STARTS_LOCK = 0x05A7_0031  # advisory lock, with the organisation
 NOT_CONFIRMED = (CommandState.FAILED, CommandState.EXPIRED)
+FREE_MARGIN_M = 300.0  # about a route, for UAVs of which no flight is known: they go where somebody steers them
 KEPT_SHARE = 0.5  # of the planned time between two UAVs, which has to be left after all that a start is late or early
 
 
@@ -44,7 +46,7 @@ def reasons_to_wait(*, uav: Uav, route: Route, flight: int, now: datetime, given
     own = _since(route, flight, started_s=0.0)
     if own is None:
         return []
-    timely, untimely = _in_the_air(uav, now, given_at)
+    timely, untimely, free = _in_the_air(uav, now, given_at)
     place = route.mission_uav.sequence
     planned = settings.SEPARATION_RULES
     values = {"uav": uav.name}
@@ -54,6 +56,13 @@ def reasons_to_wait(*, uav: Uav, route: Route, flight: int, now: datetime, given
                 "%(other)s is in the air, not at the times of its plan, and in the area of the route of %(uav)s. Wait until that is down."
             )
             return [Reason("start_slot", words % {**values, "other": other.uav}, place)]
+    for name, place_in_air in free:
+        if place_in_air is None or _is_near(own, place_in_air, FREE_MARGIN_M):
+            words = _(
+                "%(other)s is in the air without a flight of a mission, and perhaps in the area of the route of %(uav)s."
+                " Wait until that is down."
+            )
+            return [Reason("start_slot", words % {**values, "other": name}, place)]
     rules = SeparationRules(planned.lateral_m, planned.vertical_m, KEPT_SHARE * planned.time_s)
     found = conflicts([own], timely, rules=rules)
     if not found:
@@ -70,11 +79,14 @@ def reasons_to_wait(*, uav: Uav, route: Route, flight: int, now: datetime, given
     return [Reason("start_slot", words % values, place)]
 
 
-def _in_the_air(uav: Uav, now: datetime, given_at: datetime | None) -> tuple[list[TimedRoute], list[TimedRoute]]:
+def _in_the_air(
+    uav: Uav, now: datetime, given_at: datetime | None
+) -> tuple[list[TimedRoute], list[TimedRoute], list[tuple[str, LonLat | None]]]:
     """Flights of the organisation that were started and have not ended, in seconds from now; one that is about to start counts from now.
 
     First those that are where their plan has them by now, then those in the air of which that is not known: held, told to return or to
-    fly at another speed since, failed, aborted, or of a start that was sent and not confirmed.
+    fly at another speed since, failed, aborted, or of a start that was sent and not confirmed. Then UAVs in the air of which no such
+    flight is known, by their names, with where they were last: flown by hand, say.
     """
     since = now - timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s)
     waits = Q(state=CommandState.QUEUED) if given_at is None else Q(state=CommandState.QUEUED, created_at__lt=given_at)
@@ -90,10 +102,11 @@ def _in_the_air(uav: Uav, now: datetime, given_at: datetime | None) -> tuple[lis
     uav_ids = [start.uav_id for start in starts]
     later = UavCommand.objects.filter(uav__in=uav_ids, sent_at__gt=since, axis__in=[CommandAxis.FLIGHT, CommandAxis.SPEED])
     last = dict(later.values_list("uav_id").annotate(Max("sequence")))
-    in_the_air = uavs_in_the_air(uav_ids)
+    names = dict(Uav.objects.filter(organisation=uav.organisation_id).exclude(pk=uav.pk).values_list("pk", "name"))
+    in_the_air = places_in_the_air(names)
     planned = Route.objects.filter(mission__in=[start.mission_id for start in starts], mission_uav__uav__in=uav_ids)
     routes = {(route.mission_id, route.mission_uav.uav_id): route for route in planned.select_related("mission", "mission_uav")}
-    timely, untimely = [], []
+    timely, untimely, with_flight = [], [], set()
     for start in starts:
         route = None if start.mission_id is None else routes.get((start.mission_id, start.uav_id))
         flight = int(start.parameters.get("flight", 1))
@@ -104,17 +117,27 @@ def _in_the_air(uav: Uav, now: datetime, given_at: datetime | None) -> tuple[lis
         if has_ended or was_told_else or start.mission is None or start.mission.state not in ON_ITS_WAY:
             flown = _since(route, flight, started_s=0.0) if start.uav_id in in_the_air else None
             untimely += [] if flown is None else [flown]
+            with_flight |= set() if flown is None else {start.uav_id}
             continue
         started_s = 0.0 if start.finished_at is None else (start.finished_at - now).total_seconds()
         flown = _since(route, flight, started_s=started_s)
         timely += [] if flown is None else [flown]
-    return timely, untimely
+        with_flight |= set() if flown is None else {start.uav_id}
+    return timely, untimely, [(names[uav_id], place) for uav_id, place in in_the_air.items() if uav_id not in with_flight]
 
 
 def _share_an_area(one: TimedRoute, other: TimedRoute, margin_m: float) -> bool:
     """Whether the boxes about two routes come within the margin of each other: ways home are inside of them."""
-    low, high = one.position.min(axis=0), one.position.max(axis=0)
-    other_low, other_high = other.position.min(axis=0), other.position.max(axis=0)
+    return _come_near(one, other.position.min(axis=0), other.position.max(axis=0), margin_m)
+
+
+def _is_near(route: TimedRoute, place: LonLat, margin_m: float) -> bool:
+    return _come_near(route, np.array(place), np.array(place), margin_m)
+
+
+def _come_near(route: TimedRoute, other_low: np.ndarray, other_high: np.ndarray, margin_m: float) -> bool:
+    """Whether a box comes within the margin of the box about a route."""
+    low, high = route.position.min(axis=0), route.position.max(axis=0)
     metres_per_degree_lon = METRES_PER_DEGREE_LON * max(math.cos(math.radians(low[1])), 0.01)
     margin_deg = margin_m / np.array([metres_per_degree_lon, METRES_PER_DEGREE_LAT])
     return bool(((low - margin_deg <= other_high) & (other_low <= high + margin_deg)).all())

@@ -11,7 +11,8 @@ from django.utils import timezone
 from inspection.geodesy import LonLat
 from missions.models import Base, Uav, UavState, UavType
 from missions.services.fleet_rows import SystemIdQuota, deleted, facts_to_restore, locked, stored
-from missions.services.link_changes import refuse_to_cut_off
+from missions.services.link_changes import refuse_to_cut_off, removal_reasons
+from missions.services.refused import refuse_for
 from workspace.models import Organisation, User
 
 FIELDS = (
@@ -53,8 +54,13 @@ def change_uav(*, uav: Uav, actor: User, position: LonLat | None, values: dict[s
 
 
 def delete_uav(*, uav: Uav, actor: User, expected_revision: int | None = None) -> None:
-    """Its credentials go with it. Raises FleetChanged, or FleetRowInUse where a mission points at it."""
-    deleted(uav, actor=actor, expected_revision=expected_revision, facts=_facts)
+    """Its credentials go with it.
+
+    Raises FleetChanged, FleetRowInUse where a mission points at it, or Refused while it flies or a command to it is on its way.
+    """
+    with transaction.atomic():
+        refuse_for(removal_reasons(locked(uav, expected_revision)))
+        deleted(uav, actor=actor, expected_revision=expected_revision, facts=_facts)
 
 
 def restore_uav(*, organisation: Organisation, actor: User, key: int) -> Uav:

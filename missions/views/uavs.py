@@ -152,13 +152,13 @@ class UavDetail(APIView):
     @extend_schema(
         operation_id="delete_uav",
         summary="Remove a UAV that no mission uses",
-        description="Its credentials go with it and do not come back.",
+        description="Its credentials go with it and do not come back. One that flies or waits for a command stays (409).",
         parameters=[IF_MATCH_REQUIRED],
         responses=DELETE_ANSWERS,
     )
     def delete(self, request: SignedInRequest, uav_id: int) -> Response:
         uav, revision = uav_or_404(request.user, uav_id), expected_revision(request)
-        with fleet_problems(lambda: _feature_now(request.user, uav_id)):
+        with fleet_problems(lambda: _feature_now(request.user, uav_id)), refusals():
             services.delete_uav(uav=uav, actor=request.user, expected_revision=revision)
         return Response(status=204)
 

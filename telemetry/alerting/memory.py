@@ -10,6 +10,8 @@ from telemetry.estimation.report import Report
 
 INTERVALS_KEPT = 5
 UNKNOWN_INTERVAL_S = 10.0  # as slow as some links are
+FALL_MPS = 8.0  # multicopters are set to descend by 1 to 5 m/s
+SHORTEST_FALL_S = 0.2  # between two reports, for their heights to tell a speed
 BATTERY_STEP_PERCENT = 1.0  # of the flight's plan, between two entries
 BATTERY_STEPS_KEPT = 10
 
@@ -43,6 +45,8 @@ class Memory:
     jumped_s: float | None = None
     jump_m: float = 0.0
     was_in_flight: bool = False  # on this line
+    fell_s: float | None = None  # when it was last measured to come down faster than a UAV that is flown
+    down_s: float | None = None  # since when it is on the ground after it was in flight on this line; measured, too
     mode_words: tuple[str, str] = ("", "")  # a mode, and what the vehicle said about the time at which it changed to it
     drained: deque[tuple[float, float]] = field(default_factory=lambda: deque(maxlen=BATTERY_STEPS_KEPT + 1))
     causes: dict[tuple[str, str], Cause] = field(default_factory=dict)
@@ -53,6 +57,7 @@ class Memory:
         if line is not self.line:
             self.line, self.place = line, None
             self.was_in_flight = False
+            self.fell_s = self.down_s = None
             self.drained.clear()
             self.progress.clear()
         if report is None or (self.newest is not None and report.measured_s <= self.newest.measured_s):
@@ -60,8 +65,17 @@ class Memory:
         if self.newest is not None:
             self._intervals_s.append(report.received_s - self.newest.received_s)
         self.before, self.newest = self.newest, report
+        if _is_falling(report, self.before):
+            self.fell_s = report.measured_s
         self.place = None if line is None else _place(line, report, self.place)
         return True
+
+    def note_flight(self, *, is_in_flight: bool) -> None:
+        """Of a UAV with an approved flight, by the newest report."""
+        if is_in_flight:
+            self.was_in_flight, self.down_s = True, None
+        elif self.was_in_flight and self.down_s is None and self.newest is not None:
+            self.down_s = self.newest.measured_s
 
     def note_battery(self, planned_percent: float, left_percent: float) -> None:
         """What the plan had used by now, and what is left: kept once a step."""
@@ -77,6 +91,20 @@ class Memory:
 def position_of(report: Report) -> LonLat | None:
     told = report.measurement
     return None if told.longitude_deg is None or told.latitude_deg is None else LonLat(told.longitude_deg, told.latitude_deg)
+
+
+def _is_falling(report: Report, before: Report | None) -> bool:
+    """By the speed that it reports, else by its heights and its own clock."""
+    told = report.measurement
+    if told.velocity_down_mps is not None:
+        return told.velocity_down_mps > FALL_MPS
+    earlier_m = None if before is None else before.measurement.altitude_relative_m
+    if before is None or earlier_m is None or told.altitude_relative_m is None:
+        return False
+    seconds = report.measured_s - before.measured_s
+    if report.boot is not None and before.boot is not None and report.boot.stream == before.boot.stream:
+        seconds = report.boot.clock_s - before.boot.clock_s
+    return seconds >= SHORTEST_FALL_S and (earlier_m - told.altitude_relative_m) / seconds > FALL_MPS
 
 
 def _place(line: RouteLine, report: Report, before: Place | None) -> Place | None:

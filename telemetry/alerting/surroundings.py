@@ -31,6 +31,7 @@ class Order:
 
     kind: str
     done_s: float | None
+    given_s: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

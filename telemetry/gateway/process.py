@@ -14,8 +14,9 @@ from datetime import UTC, datetime
 from typing import Any
 
 from django.conf import settings
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from missions.mavlink.frames import Frame
+from missions.mavlink.frames import Frame, message_of
 from operation import pulse
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.desk import Desk
@@ -94,6 +95,7 @@ class Gateway:
             if uav is None:
                 self.damages["unknown-system"] += 1
                 self.unknown.receive(frame, peer, now_s)
+                self._note_station(frame, peer)
             else:
                 session = self.sessions.get(frame.system) or self._new_session(uav)
                 self._receive_known(session, frame, peer, now_s)
@@ -105,6 +107,12 @@ class Gateway:
                 self.leasing.wanted.set()
             return
         self.flights.watch(session, now_s)
+
+    def _note_station(self, frame: Frame, peer: Peer) -> None:
+        message = message_of(frame) if frame.message_id == mavlink.MAVLINK_MSG_ID_HEARTBEAT else None
+        if message is not None and message.type == mavlink.MAV_TYPE_GCS:
+            for session in self.sessions.values():
+                session.hear_station(peer)
 
     def _receive_radio(self, frame: Frame, peer: Peer, now_s: float) -> None:
         for session in self.sessions.values():

@@ -17,6 +17,8 @@ ASK_AGAIN_S = 5.0  # for positions that do not come; for other messages, and wha
 MISSING_INTERVALS = 3.0  # of a message, after which it does not come
 UNANSWERED_ROUNDS = 2  # of asking for intervals without a position, before streams are asked for
 ASK_SELDOM_S = 60.0
+LISTENS_S = 10.0  # for another ground station, before streams are stopped, which it may live by
+STATION_GONE_S = 60.0  # after its last heartbeat
 LIMIT_QUESTIONS = 3  # a vehicle that has no such parameters says nothing
 
 
@@ -30,6 +32,9 @@ class Questions:
     _ask_again_s: float = ASK_AGAIN_S
     _rounds: int = 0  # of asking for intervals since positions came last
     _are_intervals_refused: bool = False
+    _first_s: float | None = None  # when it was asked first
+    _station_s: float = -math.inf  # when another ground station was heard last
+    _are_streams_settled: bool = False  # stopped, or started as there is nothing else
     _heard_s: dict[int, float] = field(default_factory=dict)  # messages by their ids
     _questioned_s: float = -math.inf
     _question_again_s: float = ASK_AGAIN_S
@@ -39,6 +44,10 @@ class Questions:
         self._heard_s[message.get_msgId()] = now_s
         if message.get_type() == "COMMAND_ACK" and message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL:
             self._are_intervals_refused |= message.result == mavlink.MAV_RESULT_UNSUPPORTED
+
+    def hear_station(self, now_s: float) -> None:
+        """Another ground station speaks on the channel by which the vehicle is heard."""
+        self._station_s = now_s
 
     def due(self, state: VehicleState, now_s: float, *, has_position: bool) -> list[Message]:
         """Of a vehicle that is heard; `has_position`: it has told where it is a moment ago."""
@@ -58,6 +67,11 @@ class Questions:
         """Messages that do not come, by intervals. Streams bring many that nobody reads: only where intervals bring no position."""
         if has_position:
             self._rounds = 0
+        self._first_s = now_s if self._first_s is None else self._first_s
+        if flavour is Flavour.ARDUPILOT and has_position and self._may_stop_streams(now_s):
+            self._are_streams_settled, self._asked_s = True, now_s
+            asked = greeting.interval_requests(system, greeting.intervals_s(flavour, settings.LINK_BUDGET_BYTES_S))
+            return [greeting.streams(system, is_on=False), *asked]  # stopping ends intervals, too
         if now_s - self._asked_s < (self._ask_again_s if has_position else ASK_AGAIN_S):
             return []
         is_first = self._asked_s == -math.inf
@@ -73,8 +87,15 @@ class Questions:
             return asked
         needs_streams = not has_position and (self._are_intervals_refused or self._rounds > UNANSWERED_ROUNDS)
         if needs_streams:
+            self._are_streams_settled = True
             return [*asked, greeting.streams(system, is_on=True)]
-        return [greeting.streams(system, is_on=False), *asked] if is_first else asked
+        return asked
+
+    def _may_stop_streams(self, now_s: float) -> bool:
+        """Nobody else on the channel is known to need them: they are the channel's, not ours."""
+        if self._are_streams_settled or self._are_intervals_refused or self._first_s is None:
+            return False
+        return now_s - self._first_s >= LISTENS_S and now_s - self._station_s >= STATION_GONE_S
 
     def _is_missing(self, number: int, every_s: float, now_s: float) -> bool:
         return now_s - self._heard_s.get(number, -math.inf) > max(MISSING_INTERVALS * every_s, ASK_AGAIN_S)

@@ -116,6 +116,11 @@ class Session:
         self.losses[cause] += 1
         self.lost_here[cause] += 1
 
+    def hear_station(self, peer: Peer) -> None:
+        """Another ground station was heard from this address."""
+        if peer == self.peer:
+            self.questions.hear_station(time.monotonic())
+
     def receive_radio(self, frame: Frame, now_s: float) -> None:
         """Of the radio that the vehicle's frames come through; it cannot sign."""
         message = message_of(frame)

@@ -69,11 +69,11 @@ def closed_by_people(pairs: Collection[tuple[int, UUID]], code: str) -> set[tupl
 
 
 _ORDERS = """
-SELECT wanted.uav, command.kind, command.finished_at, command.state,
+SELECT wanted.uav, command.kind, command.created_at, command.finished_at, command.state,
     EXISTS (SELECT 1 FROM missions_uavcommand open WHERE open.uav_id = wanted.uav
         AND (open.axis = %(mission_axis)s OR open.parameters ? 'hand_over') AND open.state = ANY(%(open)s))
 FROM unnest(%(uavs)s::bigint[], %(missions)s::uuid[]) AS wanted(uav, mission) LEFT JOIN LATERAL (
-    SELECT kind, finished_at, state FROM missions_uavcommand command
+    SELECT kind, created_at, finished_at, state FROM missions_uavcommand command
     WHERE uav_id = wanted.uav AND axis = %(flight_axis)s AND state = ANY(%(counting)s)
         AND (mission_id = wanted.mission OR (mission_id IS NULL AND created_at > now() - interval '4 hours'))
     ORDER BY sequence DESC LIMIT 1
@@ -94,13 +94,14 @@ def orders_to(flying: Sequence[tuple[int, UUID]]) -> dict[int, tuple[Order | Non
     with connection.cursor() as cursor:
         cursor.execute(_ORDERS, values)
         rows = cursor.fetchall()
-    return {uav: (_order(kind, finished_at, state), is_changing) for uav, kind, finished_at, state, is_changing in rows}
+    return {uav: (_order(kind, given_at, finished_at, state), is_changing) for uav, kind, given_at, finished_at, state, is_changing in rows}
 
 
-def _order(kind: str | None, finished_at: datetime | None, state: str | None) -> Order | None:
+def _order(kind: str | None, given_at: datetime | None, finished_at: datetime | None, state: str | None) -> Order | None:
     if kind is None:
         return None
-    return Order(kind, finished_at.timestamp() if state == CommandState.APPLIED and finished_at is not None else None)
+    done_s = finished_at.timestamp() if state == CommandState.APPLIED and finished_at is not None else None
+    return Order(kind, done_s, None if given_at is None else given_at.timestamp())
 
 
 def stated_limits(pairs: Collection[tuple[int, UUID]]) -> dict[int, tuple[Mapping[str, float], Mapping[str, float]]]:

@@ -115,7 +115,8 @@ def _situations(
             zones=_zones(uav, limits, zones),
             said=said.get(uav.uav_id, ()),
         )
-        memory.was_in_flight |= situation.is_in_flight and model is not None
+        if model is not None:
+            memory.note_flight(is_in_flight=situation.is_in_flight)
         yield situation
 
 

@@ -11,11 +11,12 @@ from missions.services.flying import FlightEnd, mark_flight_ended
 from missions.services.refused import Refused
 from missions.services.start_slots import reasons_to_carry_later, reasons_to_wait
 from missions.services.steering import command_uav
-from telemetry.models import UavLink
+from telemetry.models import UavLink, UavWatch
+from telemetry.services.latest import time_text
 from telemetry.services.uav_outbox import handed_to
 from tests.missions.api import post
 from tests.missions.flights import an_operator, carry, dispatched, fleet
-from tests.missions.worlds import world
+from tests.missions.worlds import UAV_AT, world
 from tests.workspace.people import client_of
 from workspace.models import User
 
@@ -100,6 +101,20 @@ def test_one_that_is_not_where_its_plan_has_it_is_waited_for_while_it_is_in_the_
     reasons = reasons_to_wait(uav=second.uav, route=second.route, flight=1, now=timezone.now())
     assert [reason.code for reason in reasons] == (["start_slot"] if is_in_air else [])
     assert all("not at the times of its plan" in reason.message for reason in reasons)
+
+
+@pytest.mark.parametrize("place", ["near", "far", "untold", "on the ground"])
+def test_one_that_is_flown_by_hand_near_the_route_is_waited_for(crossing, person, place: str) -> None:
+    _, (first, _second) = crossing
+    (free,) = fleet("Gull")
+    UavLink.objects.create(uav=free, is_in_air=place != "on the ground", heard_at=timezone.now())
+    if place != "untold":
+        position = [UAV_AT.lon + (1.0 if place == "far" else 0.0), UAV_AT.lat]
+        told = {"measured_at": time_text(timezone.now()), "position": position}
+        UavWatch.objects.create(uav=free, organisation_id=free.organisation_id, measured={"position": told})
+    reasons = reasons_to_wait(uav=first.uav, route=first.route, flight=1, now=timezone.now())
+    assert [reason.code for reason in reasons] == (["start_slot"] if place in ("near", "untold") else [])
+    assert all("Gull is in the air without a flight of a mission" in reason.message for reason in reasons)
 
 
 def test_a_start_that_was_sent_is_not_taken_back_for_its_slot(crossing, person) -> None:

@@ -122,6 +122,11 @@ def in_flight(second: float, uav: Uav, approval: Approval, memories: Memories, *
     look(watched=[seen(uav, approval, second, **values)], now=at(second), memories=memories)
 
 
+def told_to_land(uav: Uav, approval: Approval, second: float) -> None:
+    command = queue_command(uav=uav, kind=CommandKind.LAND, actor=an_operator(), mission=Mission.objects.get(pk=approval.mission_id))
+    UavCommand.objects.filter(pk=command.pk).update(state="applied", created_at=at(second), finished_at=at(second))
+
+
 def open_ones() -> list[tuple[str, str]]:
     return sorted(Alert.objects.filter(closed_at=None).values_list("code", "level"))
 
@@ -285,8 +290,49 @@ def test_a_uav_that_was_told_to_land_or_has_not_started_is_not_missed(uav, appro
     for second in range(1, 6):
         in_flight(second, uav, approval, Memories(), **away)
     memories = watching(uav, approval)
-    command = queue_command(uav=uav, kind=CommandKind.LAND, actor=an_operator(), mission=Mission.objects.get(pk=approval.mission_id))
-    UavCommand.objects.filter(pk=command.pk).update(state="applied", finished_at=at(0))
+    told_to_land(uav, approval, 0)
     for second in range(1, 6):
         in_flight(second, uav, approval, memories, **away)
     assert open_ones() == []
+
+
+@pytest.mark.parametrize("tells_speed", [True, False])
+def test_one_that_falls_is_told_though_it_was_told_to_land(tells_speed, uav, approval):
+    memories = watching(uav, approval)
+    place = seen(uav, approval).newest.measurement
+    away = {"longitude_deg": place.longitude_deg + 0.01}
+    told_to_land(uav, approval, 1)
+    for second, height_m in enumerate([60.0, 45.0, 25.0, 4.0], start=1):
+        in_flight(second, uav, approval, memories, altitude_relative_m=height_m, velocity_down_mps=15.0 if tells_speed else None, **away)
+    UavLink.objects.update(is_in_air=False, is_armed=False)
+    for second in range(5, 9):
+        in_flight(second, uav, approval, memories, altitude_relative_m=0.0, is_armed=False, is_in_air=False, **away)
+    assert ("down-off-plan", "critical") in open_ones()
+    for second in range(9, 25):
+        in_flight(second, uav, approval, memories, altitude_relative_m=0.0, is_armed=False, is_in_air=False, **away)
+    assert ("down-off-plan", "critical") in open_ones(), "until a person closes it"
+
+
+def test_one_that_was_down_before_it_was_told_to_land_is_told(uav, approval):
+    memories = watching(uav, approval)
+    place = seen(uav, approval).newest.measurement
+    fallen = {"longitude_deg": place.longitude_deg + 0.01, "altitude_relative_m": 8.0, "is_armed": False, "is_in_air": False}
+    UavLink.objects.update(is_in_air=False, is_armed=False)
+    in_flight(1, uav, approval, memories, **fallen)
+    told_to_land(uav, approval, 4)
+    for second in range(5, 10):
+        in_flight(second, uav, approval, memories, **fallen)
+    assert open_ones() == [("down-off-plan", "critical")]
+
+
+def test_a_landing_that_was_asked_for_is_none(uav, approval):
+    memories = watching(uav, approval)
+    place = seen(uav, approval).newest.measurement
+    away = {"longitude_deg": place.longitude_deg + 0.01}
+    told_to_land(uav, approval, 1)
+    for second, height_m in enumerate([10.0, 6.0, 3.0, 1.0], start=1):
+        in_flight(second, uav, approval, memories, altitude_relative_m=height_m, velocity_down_mps=4.0, **away)
+    UavLink.objects.update(is_in_air=False, is_armed=False)
+    for second in range(5, 20):
+        in_flight(second, uav, approval, memories, altitude_relative_m=0.0, is_armed=False, is_in_air=False, **away)
+    assert ("down-off-plan", "critical") not in open_ones()

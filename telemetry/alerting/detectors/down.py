@@ -6,9 +6,10 @@ from collections.abc import Iterable
 from inspection.geodesy import LonLat
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, Finding
-from telemetry.alerting.memory import position_of
+from telemetry.alerting.memory import Memory, position_of
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.situation import Situation
+from telemetry.alerting.surroundings import Order
 
 CODE = "down-off-plan"
 WORDS = (
@@ -17,6 +18,8 @@ WORDS = (
 AWAY_M = 30.0  # of the places at which it was planned to stand; GPS and a landing by hand stay well within
 SETS_OFF = frozenset({"start", "take-off", "resume"})
 TOLD_TO = frozenset({"land"})  # by ourselves, and nobody has to be told
+FELL_WITHIN_S = 10.0  # before it was on the ground
+GIVEN_AFTER_S = 2.0  # that clocks and reports may differ by
 
 
 def detect(situation: Situation) -> Iterable[Finding] | None:
@@ -51,9 +54,17 @@ def away_from_plan_m(line: RouteLine, position: LonLat, rally_points: Iterable[L
 
 def _was_started(situation: Situation) -> bool:
     order = situation.order
-    if order is not None and order.kind in TOLD_TO:
+    if order is not None and order.kind in TOLD_TO and _could_land(situation.memory, order):
         return False
     return situation.memory.was_in_flight or (order is not None and order.kind in SETS_OFF and order.done_s is not None)
+
+
+def _could_land(memory: Memory, order: Order) -> bool:
+    """Whether its being down can be what the order was for: it did not fall there, nor was it down before it was told to."""
+    if memory.down_s is None:
+        return True
+    fell = memory.fell_s is not None and memory.down_s - memory.fell_s <= FELL_WITHIN_S
+    return not fell and (order.given_s is None or order.given_s <= memory.down_s + GIVEN_AFTER_S)
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=2.0, clear_after_s=0.0, needs_flight=False)

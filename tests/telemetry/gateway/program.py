@@ -18,8 +18,8 @@ from tests.telemetry.gateway.station import PATIENCE_S
 PROJECT_DIR = Path(__file__).resolve().parents[3]
 
 
-def free_port() -> int:
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+def free_port(transport: str = "udp") -> int:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM if transport == "udp" else socket.SOCK_STREAM) as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
 
@@ -35,9 +35,10 @@ def environment(log_dir: Path) -> dict[str, str]:
 
 
 @contextmanager
-def gateway_program(port: int, log_dir: Path, *, name: str = "test") -> Iterator[subprocess.Popen[str]]:
+def gateway_program(port: int, log_dir: Path, *, name: str = "test", transport: str = "udp") -> Iterator[subprocess.Popen[str]]:
     """Listens when it is given out; killed at the end unless it has ended by itself."""
-    command = [sys.executable, "manage.py", "run_gateway", "--udp", f"127.0.0.1:{port}", "--tcp", "", "--name", name]
+    listens = {"udp": "", "tcp": "", transport: f"127.0.0.1:{port}"}
+    command = [sys.executable, "manage.py", "run_gateway", "--udp", listens["udp"], "--tcp", listens["tcp"], "--name", name]
     with (log_dir / f"{name}.log").open("a") as log:
         process = subprocess.Popen(  # noqa: S603
             command, cwd=PROJECT_DIR, env=environment(log_dir), stdout=subprocess.PIPE, stderr=log, text=True, bufsize=1

@@ -3,7 +3,7 @@
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from telemetry.gateway.greeting import FRAME_BYTES, INTERVALS_S, LONGEST_STRETCH, intervals_s
-from telemetry.gateway.questions import ASK_AGAIN_S, Questions
+from telemetry.gateway.questions import ASK_AGAIN_S, LISTENS_S, STATION_GONE_S, Questions
 from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.vehicle_state import VehicleState
 
@@ -32,15 +32,27 @@ def refusal() -> object:
     return mavlink.MAVLink_command_ack_message(mavlink.MAV_CMD_SET_MESSAGE_INTERVAL, mavlink.MAV_RESULT_UNSUPPORTED)
 
 
-def test_an_ardupilot_is_asked_for_intervals_and_its_streams_are_stopped_before() -> None:
+def test_an_ardupilot_is_asked_for_intervals_and_its_streams_are_stopped_once_nobody_else_is_heard() -> None:
     questions = Questions()
-    messages = questions.due(copter(), 100.0, has_position=False)
-    assert asked(messages) == (WANTED, [0])
-    kinds = [message.get_type() for message in messages]
-    assert kinds.index("REQUEST_DATA_STREAM") < kinds.index("COMMAND_LONG")
+    assert asked(questions.due(copter(), 100.0, has_position=False)) == (WANTED, [])
     for second in range(1, 300):
         hear(questions, 100.0 + second, *WANTED)
-        assert asked(questions.due(copter(), 100.0 + second, has_position=True)) == (set(), [])
+        messages = questions.due(copter(), 100.0 + second, has_position=True)
+        assert asked(messages) == ((WANTED, [0]) if second == LISTENS_S else (set(), []))
+        if second == LISTENS_S:
+            kinds = [message.get_type() for message in messages]
+            assert kinds.index("REQUEST_DATA_STREAM") < kinds.index("COMMAND_LONG"), "stopping ends intervals"
+
+
+def test_streams_of_a_second_ground_station_are_stopped_once_it_is_gone_and_not_before() -> None:
+    questions, stopped_s = Questions(), []
+    for second in range(400):
+        hear(questions, float(second), *WANTED)
+        if 3 <= second < 200 and second % 4 == 0:
+            questions.hear_station(float(second))
+        _intervals, streams = asked(questions.due(copter(), float(second), has_position=second > 0))
+        stopped_s += [second] if streams else []
+    assert stopped_s == [196 + STATION_GONE_S]
 
 
 def test_a_message_that_does_not_come_is_asked_for_again_by_itself_ever_more_rarely() -> None:
@@ -49,7 +61,9 @@ def test_a_message_that_does_not_come_is_asked_for_again_by_itself_ever_more_rar
     for second in range(1, 200):
         hear(questions, float(second), *(WANTED - {BATTERY}))
         intervals, streams = asked(questions.due(copter(), float(second), has_position=True))
-        assert intervals <= {BATTERY} and not streams
+        if streams:  # all are asked for again as the streams are stopped
+            continue
+        assert intervals <= {BATTERY}
         times += [second] if intervals else []
     assert times and len(times) <= 6 and times[-1] - times[-2] > times[1] - times[0]
 
@@ -59,12 +73,13 @@ def test_streams_are_started_where_intervals_are_refused() -> None:
     questions.due(copter(), 0.0, has_position=False)
     questions.receive(refusal(), 0.5)
     assert asked(questions.due(copter(), ASK_AGAIN_S, has_position=False))[1] == [1]
+    assert asked(questions.due(copter(), 100.0, has_position=True))[1] == [], "they are not stopped: there is nothing else"
 
 
 def test_streams_are_started_where_intervals_bring_no_position() -> None:
     questions = Questions()
     found = [asked(questions.due(copter(), ASK_AGAIN_S * round_, has_position=False))[1] for round_ in range(4)]
-    assert found == [[0], [], [1], [1]]
+    assert found == [[], [], [1], [1]]
 
 
 def test_a_px4_is_never_asked_for_streams() -> None:

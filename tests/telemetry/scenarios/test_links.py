@@ -4,43 +4,49 @@ import signal
 
 import pytest
 
+from missions.flight_plan.lost_link import LostLink
 from missions.models import CommandKind, CommandState, MissionState
 from missions.services.approval import approve_mission
 from missions.services.dispatch import load_of
+from missions.services.requests import LostLinkRequest
 from telemetry.models import TelemetryRecord, TelemetryStream
 from tests.missions.flights import planned
-from tests.sitl.flights import FLIGHT_S, holds, lands, order, take_off, wait_until_ready
 from tests.telemetry.gateway.program import free_port, gateway_program
 from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for
 from tests.telemetry.gateway.test_commands import begin, dispatch, ended
+from tests.telemetry.scenarios.flights import FLIGHT_S, holds, lands, order, take_off, wait_until_ready
+from tests.telemetry.scenarios.vehicle import RALLY_AT
 from tests.workspace.people import somebody
 
-pytestmark = pytest.mark.django_db(transaction=True)
+pytestmark = [pytest.mark.django_db(transaction=True), pytest.mark.long]
 PACE = 5.0
 
 
-@pytest.mark.parametrize(("transport", "loss"), [("udp", 0.0), ("tcp", 0.0), ("udp", 0.3)])
-def test_more_than_200_items_are_brought(transport, loss, uav, region, firmware, lossy, tmp_path):
-    """Points on the legs make a mission of three towers so long."""
-    mission = planned(somebody(), [uav], region.towers[:3])
+@pytest.mark.parametrize(("transport", "loss"), [("udp", 0.0), ("tcp", 0.0), ("udp", 0.3), ("tcp", 0.3)])
+def test_more_than_200_items_are_brought(transport, loss, uav, region, new_vehicle, lossy, tmp_path):
+    """Points on the legs make a mission of three towers so long. With a fence and a rally point."""
+    mission = planned(somebody(), [uav], region.towers[:3], lost_link=LostLinkRequest(LostLink.RETURN, rally_points=(RALLY_AT,)))
     approve_mission(mission=mission, actor=mission.author, longest_leg_m=9.0)
     mission.refresh_from_db()
     with gateway_at_work(tmp_path) as gateway:
         port = port_of(gateway, transport)
-        vehicle = firmware(lossy(port, loss).port if loss else port, transport)
+        vehicle = new_vehicle(lossy(port, loss, transport).port if loss else port, transport)
         wait_until_ready(vehicle)
         vehicle.set("SIM_SPEEDUP", 1.0)
         upload = ended(dispatch(mission), patience_s=FLIGHT_S)
         assert upload.state == CommandState.APPLIED, upload.outcome
         load = load_of(upload).load
-        assert len(load.mission) >= 200 and load.fence
+        assert len(load.mission) >= 200 and load.fence and load.rally
         assert holds(vehicle, load)
 
 
-def test_a_mission_is_brought_and_flown_off_over_a_link_that_loses_three_of_ten_frames(uav, mission, firmware, lossy, tmp_path):
+@pytest.mark.parametrize("transport", ["udp", "tcp"])
+def test_a_mission_is_brought_and_flown_off_over_a_link_that_loses_three_of_ten_frames(
+    transport, uav, mission, new_vehicle, lossy, tmp_path
+):
     with gateway_at_work(tmp_path) as gateway:
-        link = lossy(port_of(gateway), 0.3)
-        vehicle = firmware(link.port)
+        link = lossy(port_of(gateway, transport), 0.3, transport)
+        vehicle = new_vehicle(link.port, transport)
         wait_until_ready(vehicle)
         vehicle.set("SIM_SPEEDUP", 1.0)
         upload = ended(dispatch(mission))
@@ -54,15 +60,17 @@ def test_a_mission_is_brought_and_flown_off_over_a_link_that_loses_three_of_ten_
     assert link.lost > 20
 
 
-def test_a_gateway_that_is_killed_in_flight_is_followed_by_one_that_knows_the_flight(uav, mission, firmware, tmp_path):
-    port = free_port()
-    with gateway_program(port, tmp_path, name="one") as program:
-        vehicle = firmware(port)
+@pytest.mark.parametrize("transport", ["udp", "tcp"])
+def test_a_gateway_that_is_killed_in_flight_is_followed_by_one_that_knows_the_flight(transport, uav, mission, new_vehicle, lossy, tmp_path):
+    """By TCP there is a radio between them that connects to the next gateway: the firmware itself does not connect twice."""
+    port = free_port(transport)
+    with gateway_program(port, tmp_path, name="one", transport=transport) as program:
+        vehicle = new_vehicle(lossy(port, 0.0, transport).port if transport == "tcp" else port, transport)
         take_off(vehicle, uav, mission)
         program.send_signal(signal.SIGKILL)
         program.wait()
     before = TelemetryRecord.objects.filter(uav=uav).count()
-    with gateway_program(port, tmp_path, name="one"):
+    with gateway_program(port, tmp_path, name="one", transport=transport):
         wait_for(lambda: TelemetryRecord.objects.filter(uav=uav).count() > before, "reports")
         wait_for(lambda: mission.routes.get().flights_flown == 1, "the flight's end", patience_s=FLIGHT_S)
     mission.refresh_from_db()

@@ -5,17 +5,17 @@ import pytest
 from missions.models import MissionState, TargetState
 from missions.services.dispatch import load_of
 from telemetry.models import TelemetryRecord, UavLink
-from tests.sitl.flights import FLIGHT_S, bring, take_off
 from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for
+from tests.telemetry.scenarios.flights import FLIGHT_S, bring, take_off
 
 pytestmark = pytest.mark.django_db(transaction=True)
 MAX_BYTES_S, MAX_MESSAGES_S = 800.0, 25.0  # 3,390 and 95 before streams were turned off
 
 
-@pytest.mark.parametrize("transport", ["udp", "tcp"])
-def test_a_mission_is_brought_and_flown_to_its_end(transport, uav, mission, firmware, tmp_path):
+@pytest.mark.parametrize("transport", ["udp", pytest.param("tcp", marks=pytest.mark.long)])
+def test_a_mission_is_brought_and_flown_to_its_end(transport, uav, mission, new_vehicle, tmp_path):
     with gateway_at_work(tmp_path) as gateway:
-        vehicle = firmware(port_of(gateway, transport), transport)
+        vehicle = new_vehicle(port_of(gateway, transport), transport)
         upload = take_off(vehicle, uav, mission)
         load = load_of(upload).load
         assert load.fence and load.rally
@@ -27,11 +27,11 @@ def test_a_mission_is_brought_and_flown_to_its_end(transport, uav, mission, firm
     assert TelemetryRecord.objects.filter(uav=uav).exists() and not vehicle.is_armed
 
 
-@pytest.mark.parametrize("transport", ["udp", "tcp"])
-def test_it_says_no_more_than_it_is_asked_for(transport, uav, mission, firmware, tmp_path):
+@pytest.mark.parametrize("transport", ["udp", pytest.param("tcp", marks=pytest.mark.long)])
+def test_it_says_no_more_than_it_is_asked_for(transport, uav, mission, new_vehicle, tmp_path):
     """At its own pace: a window of the rate is 10 s."""
     with gateway_at_work(tmp_path) as gateway:
-        vehicle = firmware(port_of(gateway, transport), transport)
+        vehicle = new_vehicle(port_of(gateway, transport), transport)
         bring(vehicle, mission)
         vehicle.set("SIM_SPEEDUP", 1.0)
         link = UavLink.objects.filter(uav=uav, received_bytes_s__gt=300.0, received_bytes_s__lt=MAX_BYTES_S)

@@ -5,17 +5,17 @@ import pytest
 from missions.models import CommandKind, CommandState
 from telemetry.ground_station.flavour import COPTER_MODES, Mode
 from telemetry.models import Alert
-from tests.sitl.flights import bring, lands, order, take_off
 from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for
 from tests.telemetry.gateway.test_commands import begin, ended
+from tests.telemetry.scenarios.flights import bring, lands, order, take_off
 
 pytestmark = pytest.mark.django_db(transaction=True)
 
 
-@pytest.mark.parametrize("transport", ["udp", "tcp"])
-def test_a_flight_is_held_goes_on_and_returns(transport, uav, mission, firmware, tmp_path):
+@pytest.mark.parametrize("transport", ["udp", pytest.param("tcp", marks=pytest.mark.long)])
+def test_a_flight_is_held_goes_on_and_returns(transport, uav, mission, new_vehicle, tmp_path):
     with gateway_at_work(tmp_path) as gateway:
-        vehicle = firmware(port_of(gateway, transport), transport)
+        vehicle = new_vehicle(port_of(gateway, transport), transport)
         upload = take_off(vehicle, uav, mission)
         order(uav, CommandKind.HOLD)
         wait_for(lambda: vehicle.custom_mode == COPTER_MODES[Mode.HOLD], "its hold")
@@ -27,27 +27,27 @@ def test_a_flight_is_held_goes_on_and_returns(transport, uav, mission, firmware,
 
 
 @pytest.mark.parametrize(("kind", "mode"), [(CommandKind.LAND, Mode.LAND), (CommandKind.ABORT, Mode.RETURN)])
-def test_a_flight_is_ended(kind, mode, uav, mission, firmware, tmp_path):
+def test_a_flight_is_ended(kind, mode, uav, mission, new_vehicle, tmp_path):
     with gateway_at_work(tmp_path) as gateway:
-        vehicle = firmware(port_of(gateway))
+        vehicle = new_vehicle(port_of(gateway))
         take_off(vehicle, uav, mission)
         order(uav, kind)
         wait_for(lambda: vehicle.custom_mode == COPTER_MODES[mode], f"{kind}")
         lands(vehicle)
 
 
-def test_a_refusal_to_arm_is_told_in_its_own_words(uav, mission, firmware, tmp_path):
+def test_a_refusal_to_arm_is_told_in_its_own_words(uav, mission, new_vehicle, tmp_path):
     with gateway_at_work(tmp_path) as gateway:
-        vehicle = firmware(port_of(gateway), parameters={"BATT_MONITOR": 4.0, "BATT_ARM_VOLT": 20.0})
+        vehicle = new_vehicle(port_of(gateway), parameters={"BATT_MONITOR": 4.0, "BATT_ARM_VOLT": 20.0})
         upload = bring(vehicle, mission)
         start = ended(begin(uav, mission, upload.approval))
         assert start.state == CommandState.FAILED and not vehicle.is_armed
         assert "below minimum arming voltage" in start.outcome, start.outcome
 
 
-def test_a_list_that_another_ground_station_has_changed_is_not_flown(uav, mission, firmware, tmp_path):
+def test_a_list_that_another_ground_station_has_changed_is_not_flown(uav, mission, new_vehicle, tmp_path):
     with gateway_at_work(tmp_path) as gateway:
-        vehicle = firmware(port_of(gateway))
+        vehicle = new_vehicle(port_of(gateway))
         upload = bring(vehicle, mission)
         vehicle.shorten()
         start = ended(begin(uav, mission, upload.approval))

@@ -1,5 +1,6 @@
-"""A flight on the firmware: brought, started, and in the air."""
+"""A flight of a scenario: brought, started, and in the air."""
 
+from inspection.geodesy.wgs84 import short_distance_m
 from missions.mavlink.content import FlightLoad, MissionType
 from missions.models import CommandKind, CommandState, Mission, Uav, UavCommand
 from missions.services.commands import queue_command
@@ -7,25 +8,26 @@ from missions.services.dispatch import load_of
 from telemetry.ground_station.compare import differences
 from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.wire import held_list
-from tests.sitl.firmware import READY_S, Firmware
 from tests.telemetry.gateway.station import wait_for
 from tests.telemetry.gateway.test_commands import begin, dispatch, ended
+from tests.telemetry.scenarios.vehicle import ScenarioVehicle
 
 FLIGHT_S = 400.0  # of patience, with a mission of some 250 s at five times its pace on a busy machine
 ALOFT_M = 15.0
+READY_S = 120.0
 
 
-def holds(vehicle: Firmware, load: FlightLoad) -> bool:
+def holds(vehicle: ScenarioVehicle, load: FlightLoad) -> bool:
     """By its second link."""
     flavour = Flavour.ARDUPILOT
     return all(not differences(load.of(kind), held_list(vehicle.held(kind), kind, flavour), flavour) for kind in MissionType)
 
 
-def wait_until_ready(vehicle: Firmware) -> None:
+def wait_until_ready(vehicle: ScenarioVehicle) -> None:
     wait_for(lambda: vehicle.is_ready, "that it may be armed", patience_s=READY_S)
 
 
-def bring(vehicle: Firmware, mission: Mission) -> UavCommand:
+def bring(vehicle: ScenarioVehicle, mission: Mission) -> UavCommand:
     wait_until_ready(vehicle)
     upload = ended(dispatch(mission))
     assert upload.state == CommandState.APPLIED, upload.outcome
@@ -33,7 +35,7 @@ def bring(vehicle: Firmware, mission: Mission) -> UavCommand:
     return upload
 
 
-def take_off(vehicle: Firmware, uav: Uav, mission: Mission) -> UavCommand:
+def take_off(vehicle: ScenarioVehicle, uav: Uav, mission: Mission) -> UavCommand:
     """Returns the upload, once it is on its way."""
     upload = bring(vehicle, mission)
     start = ended(begin(uav, mission, upload.approval))
@@ -48,6 +50,10 @@ def order(uav: Uav, kind: CommandKind, upload: UavCommand | None = None) -> None
     assert command.state == CommandState.APPLIED, f"{kind}: {command.outcome}"
 
 
-def lands(vehicle: Firmware) -> None:
+def from_home_m(vehicle: ScenarioVehicle) -> float:
+    return short_distance_m(*vehicle.at, *vehicle.place)
+
+
+def lands(vehicle: ScenarioVehicle) -> None:
     wait_for(lambda: not vehicle.is_armed, "that it has landed and disarmed", patience_s=FLIGHT_S)
     assert abs(vehicle.height_m) < 1.0

@@ -1,4 +1,4 @@
-"""Tests of the link on an ArduCopter that the user has: run by `./check --sitl BINARY` alone, and collected by nothing else."""
+"""Scenarios of the link: each flies on the scripted ArduCopter, and by `./check --sitl BINARY` on the real firmware that the user has."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -9,23 +9,22 @@ from typing import Any
 
 import pytest
 
-from inspection.geodesy import LonLat
 from missions.flight_plan.lost_link import LostLink
 from missions.models import Mission, Uav
 from missions.routing.problem import Task, TaskKind
 from missions.services import TargetRequest
 from missions.services.requests import LostLinkRequest
 from tests.missions.flights import approved, ground
-from tests.missions.worlds import UAV_AT, world, zone_around
-from tests.sitl.firmware import HOME_AMSL_M, Firmware
-from tests.sitl.lossy_link import LossyLink
+from tests.missions.worlds import world, zone_around
 from tests.telemetry.gateway.station import unsigned_uav
+from tests.telemetry.scenarios.emulated import Emulated
+from tests.telemetry.scenarios.firmware import Firmware
+from tests.telemetry.scenarios.lossy_link import LossyLink
+from tests.telemetry.scenarios.vehicle import HOME_AMSL_M, RALLY_AT, ScenarioVehicle
 from tests.workspace.people import somebody
 
 BINARY = "SPANWISE_SITL"
-RALLY_AT = LonLat(UAV_AT.lon + 0.001, UAV_AT.lat)
 MAX_FIRMWARES = 10  # of one process of pytest
-collect_ignore_glob = [] if os.environ.get(BINARY) else ["test_*.py"]
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -57,14 +56,16 @@ def mission(uav: Uav, region: Any) -> Mission:
     return approved(somebody(), [uav], tasks, lost_link=LostLinkRequest(LostLink.RETURN, rally_points=(RALLY_AT,)))[0]
 
 
-@pytest.fixture
-def firmware(tmp_path: Path) -> Iterator[Callable[..., Firmware]]:
-    """Starts a firmware whose first link leads to a port, by UDP or TCP."""
+@pytest.fixture(params=["firmware" if os.environ.get(BINARY) else "emulated"])
+def new_vehicle(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Callable[..., ScenarioVehicle]]:
+    """Starts a vehicle whose link leads to a port, by UDP or TCP."""
     worker = int(os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw"))
     instances = count(worker * MAX_FIRMWARES)
     with ExitStack() as running:
 
-        def start(port: int, transport: str = "udp", *, system: int = 7, **values: Any) -> Firmware:
+        def start(port: int, transport: str = "udp", *, system: int = 7, **values: Any) -> ScenarioVehicle:
+            if request.param == "emulated":
+                return running.enter_context(Emulated(port, transport, system=system, **values))
             link = f"{transport}client:127.0.0.1:{port}"
             made = Firmware(
                 Path(os.environ[BINARY]), tmp_path / f"firmware-{system}", link, system=system, instance=next(instances), **values
@@ -75,7 +76,7 @@ def firmware(tmp_path: Path) -> Iterator[Callable[..., Firmware]]:
 
 
 @pytest.fixture
-def lossy() -> Iterator[Callable[[int, float], LossyLink]]:
-    """Puts a link that loses a share of the frames before a gateway's port."""
+def lossy() -> Iterator[Callable[..., LossyLink]]:
+    """Puts a radio that loses a share of the frames before a gateway's port."""
     with ExitStack() as running:
-        yield lambda port, loss: running.enter_context(LossyLink(port, loss))
+        yield lambda port, loss, transport="udp": running.enter_context(LossyLink(port, loss, transport))

@@ -15,20 +15,20 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from inspection.geodesy.wgs84 import short_distance_m
 from missions.mavlink.content import MissionItem, MissionType
 from missions.mavlink.frames import frames_of_datagram, message_of
 from missions.mavlink.signing import FrameWriter
 from telemetry.ground_station.wire import HeldItem, held_item
 from tests.missions.worlds import UAV_AT
 from tests.telemetry.gateway.station import wait_for
+from tests.telemetry.scenarios.vehicle import HOME_AMSL_M
 
-HOME_AMSL_M = 100.0
 SECOND_STATION = (254, mavlink.MAV_COMP_ID_MISSIONPLANNER)
 ABSOLUTE_POSITION = 0x10  # of EKF_STATUS_REPORT: it may be armed in GUIDED only then
 READY_S = 120.0
 ANSWER_S, TRIES = 1.0, 20
 LOOP_S = 0.02
+REBOOT_IN_FLIGHT = 20_190_226.0  # without this figure it refuses
 CALIBRATED = {"ACCOFFS": 0.001, "ACC2OFFS": 0.001, "ACCSCAL": 1.001, "ACC2SCAL": 1.001}  # without, it does not arm
 SENSORS = {f"INS_{kind}_{axis}": value for kind, value in CALIBRATED.items() for axis in "XYZ"}
 
@@ -85,8 +85,14 @@ class Firmware:
         self._process.kill()
         self._process.wait()
 
-    def restart(self) -> None:
-        """Its power fails for a moment: it stands at its home again, with the lists and parameters it had."""
+    def reboot(self) -> None:
+        """Somebody insists on it in flight: its simulator begins anew with it, at home."""
+        self.command(mavlink.MAV_CMD_PREFLIGHT_REBOOT_SHUTDOWN, 1.0, six=REBOOT_IN_FLIGHT)
+        wait_for(lambda: not self.is_armed, "that it is switched on again")
+        self.newest.clear()
+
+    def lose_power(self) -> None:
+        """For a moment: it stands at its home again, with the lists and parameters it had."""
         self.kill()
         self.newest.clear()
         self._process = self._start(wipe=False)
@@ -181,10 +187,6 @@ class Firmware:
         """Longitude and latitude, as it tells them."""
         told = self.newest.get("GLOBAL_POSITION_INT")
         return self.at if told is None else (told.lon / 1e7, told.lat / 1e7)
-
-    @property
-    def from_home_m(self) -> float:
-        return short_distance_m(*self.at, *self.place)
 
     @property
     def is_ready(self) -> bool:
