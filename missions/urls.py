@@ -5,7 +5,7 @@ from django.urls import path
 from missions import views
 from missions.views.approvals import MissionAbort, MissionApproval, MissionApprove, MissionDispatch, MissionRevoke
 from missions.views.by_hand import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
-from missions.views.commands import CommandDetail, MissionCommands, UavCommands
+from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.reachability import Reachability
@@ -24,6 +24,7 @@ urlpatterns = [
     path("missions/filters", views.MissionFilterChoices.as_view(), name="api-mission-filters"),
     path("missions/delete", views.MissionsDelete.as_view(), name="api-missions-delete"),
     path("missions/restore", views.MissionsRestore.as_view(), name="api-missions-restore"),
+    path("missions/commands", MissionsCommands.as_view(), name="api-missions-commands"),
     path("missions/<uuid:mission_id>", views.MissionDetail.as_view(), name="api-mission"),
     path("missions/<uuid:mission_id>/plan", views.MissionPlan.as_view(), name="api-mission-plan"),
     path("missions/<uuid:mission_id>/restore", views.MissionRestore.as_view(), name="api-mission-restore"),

@@ -20,6 +20,14 @@ import { returnLines } from "./own_return.js";
  * @property {boolean} [isNeeded]
  */
 /**
+ * A choice that has to be made, with nothing chosen beforehand.
+ *
+ * @typedef {object} QuestionChoices
+ * @property {string} name
+ * @property {string} legend
+ * @property {{ value: string, words: string, detail?: string }[]} of
+ */
+/**
  * A question before an act; page/confirm.js asks it.
  *
  * @typedef {object} Question
@@ -28,6 +36,7 @@ import { returnLines } from "./own_return.js";
  * @property {string} act the words of the button
  * @property {string} [keep] the words of the way out
  * @property {QuestionField | null} [field]
+ * @property {QuestionChoices | null} [choices]
  * @property {boolean} [isDanger]
  * @property {boolean} [isBack] whether the act can be taken back: then it has the focus, else the way out
  * @property {string | null} [image] name of an icon
