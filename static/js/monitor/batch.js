@@ -1,7 +1,7 @@
 /** Whom a command to several UAVs reaches, mission by mission, and what the question before it says. Values in, values out. */
 
 import { inAir } from "../domain/in_air.js";
-import { returnLines, returnOf } from "../domain/own_return.js";
+import { returnLinesOfAll, returnOf } from "../domain/own_return.js";
 import { t, tn } from "../text.js";
 
 /** @import { BatchAnswer, LiveMission, LiveUav, ReturnCheck } from "../api_types.d.ts" */
@@ -71,16 +71,12 @@ export function scopeChoices(scopes) {
  * @param {BatchScope[]} scopes
  * @param {Map<string, ReturnCheck[] | undefined>} returns by mission
  */
-export function returnLinesOf(scopes, returns) {
-  /** @type {Map<string, string[]>} */
-  const said = new Map();
-  for (const { id, uavs } of scopes)
-    for (const { name, place } of uavs) {
-      const check = place === null ? undefined : returnOf(returns.get(id), place);
-      for (const line of returnLines(check)) said.set(line, [...(said.get(line) ?? []), name]);
-    }
-  return [...said].map(([line, uavs]) => `${uavs.join(", ")}: ${line}`);
-}
+export const returnLinesOf = (scopes, returns) =>
+  returnLinesOfAll(
+    scopes.flatMap(({ id, uavs }) =>
+      uavs.map(({ name, place }) => ({ name, check: place === null ? null : returnOf(returns.get(id), place) })),
+    ),
+  );
 
 /** @param {BatchScope[]} scopes */
 export const leftLines = (scopes) => scopes.flatMap(({ left }) => left.map(({ why }) => t("Not told: {why}", { why })));

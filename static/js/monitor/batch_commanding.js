@@ -91,6 +91,7 @@ export function createBatch(store, page) {
       lines: [
         page.mission !== null && `${uavs.map(({ name }) => name).join(", ")}.`,
         ...lines,
+        kind === "return" && uavs.length > 1 && t("All return at once: nothing keeps them apart on the way home."),
         ...(kind === "return" ? returnLinesOf(scopes, await waysHome(scopes)) : []),
         ...leftLines(scopes),
         ...unheardLines(silent, kind, store.state.now_ms),

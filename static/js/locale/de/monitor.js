@@ -18,6 +18,10 @@ export default {
   "Each flies back to where it took off and lands there. Targets that are not reached stay undone.":
     "Jedes fliegt zu seinem Startplatz zurück und landet dort. Ziele, die nicht erreicht sind, bleiben unerledigt.",
   "Return all": "Alle zurück",
+  "In the air: it returns and lands where it took off; an autopilot that refuses to return lands where it is. On the ground: its motors are switched off.":
+    "In der Luft: Es kehrt zurück und landet, wo es gestartet ist; ein Autopilot, der die Rückkehr verweigert, landet an Ort und Stelle. Am Boden: Seine Motoren werden abgeschaltet.",
+  "All return at once: nothing keeps them apart on the way home.":
+    "Alle kehren gleichzeitig zurück: Nichts hält sie auf dem Rückweg auseinander.",
   "{name} never connected.": "{name} war noch nie verbunden.",
   "{name} is on the ground.": "{name} ist am Boden.",
   "All {missions} missions: {uavs}": "Alle {missions} Missionen: {uavs}",
