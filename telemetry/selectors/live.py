@@ -7,6 +7,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from uuid import UUID
 
+from missions.command_selectors import SENT_LAST
 from workspace.prepared import prepared_rows
 
 Key = tuple[str, str]  # kind and id
@@ -36,13 +37,7 @@ flown AS (
     SELECT DISTINCT ON (place.uav_id) place.uav_id, mission.id AS mission_id, place.sequence
     FROM missions_mission mission JOIN missions_missionuav place ON place.mission_id = mission.id
     JOIN missions_route route ON route.mission_uav_id = place.id AND route.geometry IS NOT NULL
-    LEFT JOIN LATERAL (
-        SELECT command.mission_id FROM missions_uavcommand command
-        WHERE command.uav_id = place.uav_id AND command.mission_id IS NOT NULL
-            AND (command.kind IN ('upload-mission', 'start') OR command.parameters ? 'hand_over')
-            AND (command.state IN ('queued', 'sent', 'acknowledged', 'applied') OR command.sent_at IS NOT NULL)
-        ORDER BY command.sequence DESC LIMIT 1
-    ) sent ON true
+    {SENT_LAST}
     WHERE mission.organisation_id = (SELECT organisation_id FROM asked) AND mission.state IN ('dispatched', 'active')
         AND mission.deleted_at IS NULL AND place.uav_id IS NOT NULL
     ORDER BY place.uav_id, route.continued_by_id IS NOT NULL, sent.mission_id IS NOT DISTINCT FROM mission.id DESC,
