@@ -12,6 +12,7 @@ from missions.views.reachability import Reachability
 from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
 from missions.views.returns import MissionReturns
 from missions.views.selections import SelectionDetail, SelectionList
+from missions.views.starts import MissionPlannedStarts, PlannedStartsList
 
 urlpatterns = [
     path("plans", views.PlanList.as_view(), name="api-plans"),
@@ -41,6 +42,8 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/revoke", MissionRevoke.as_view(), name="api-mission-revoke"),
     path("missions/<uuid:mission_id>/dispatch", MissionDispatch.as_view(), name="api-mission-dispatch"),
     path("missions/<uuid:mission_id>/abort", MissionAbort.as_view(), name="api-mission-abort"),
+    path("missions/<uuid:mission_id>/planned-starts", MissionPlannedStarts.as_view(), name="api-mission-planned-starts"),
+    path("planned-starts", PlannedStartsList.as_view(), name="api-planned-starts"),
     path("missions/<uuid:mission_id>/returns", MissionReturns.as_view(), name="api-mission-returns"),
     path("missions/<uuid:mission_id>/commands", MissionCommands.as_view(), name="api-mission-commands"),
     path("missions/<uuid:mission_id>/replan-offers", MissionReplanOffers.as_view(), name="api-mission-replan-offers"),

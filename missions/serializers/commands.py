@@ -21,6 +21,7 @@ OUTCOMES = {
     "not-delivered": gettext_lazy("It could not be delivered in time."),
     "unconfirmed": gettext_lazy("It was sent; whether it was done is not known."),
     "unheard": gettext_lazy("Sent again and again; nothing is heard from the UAV, and whether it does it is not known."),
+    "withdrawn": gettext_lazy("It was withdrawn before it was sent."),
     "revoked": gettext_lazy("The approval was revoked."),
 }
 PRIORITIES = ("safety", "pause", "mission", "parameter")
