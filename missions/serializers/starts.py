@@ -1,10 +1,11 @@
 """Planned starts in the shapes of the API."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from rest_framework import serializers
 
-from missions.models import PlannedStarts, StartsEnd
+from missions.models import PlannedStarts, Route, StartsEnd
 from missions.services.planned_starts import StartState
 
 
@@ -33,6 +34,31 @@ class PlannedStartsSerializer(serializers.Serializer):
 class PlannedStartsListSerializer(serializers.Serializer):
     server_time = serializers.DateTimeField()
     results = PlannedStartsSerializer(many=True, help_text="that go on or ended within five minutes")
+
+
+class WaitingStartSerializer(serializers.Serializer):
+    uav = serializers.IntegerField()
+    name = serializers.CharField()
+    place = serializers.IntegerField(help_text="the UAV's in the mission")
+    after_s = serializers.FloatField(help_text="after the first one, by the plan")
+
+
+class MissionStartsSerializer(serializers.Serializer):
+    server_time = serializers.DateTimeField()
+    starts = PlannedStartsSerializer(allow_null=True, help_text="the newest; null: there were none")
+    waiting = WaitingStartSerializer(many=True, help_text="UAVs that would be started in planned order now")
+
+
+def waiting_json(routes: Sequence[Route]) -> list[dict[str, Any]]:
+    return [
+        {
+            "uav": route.mission_uav.uav_id,
+            "name": route.mission_uav.name,
+            "place": route.mission_uav.sequence,
+            "after_s": route.departs_s - routes[0].departs_s,
+        }
+        for route in routes
+    ]
 
 
 def planned_starts_json(starts: PlannedStarts) -> dict[str, Any]:

@@ -94,6 +94,12 @@ def begin_planned_starts(*, mission: Mission, actor: User) -> PlannedStarts:
     return starts
 
 
+def waiting_for_start(mission: Mission) -> list[Route]:
+    """Routes of the UAVs that would be started in planned order now, in that order; none where the mission is not on its way."""
+    approval = approval_in_force(mission)
+    return [] if approval is None or mission.state not in ON_ITS_WAY else _routes_to_start(mission, approval)
+
+
 def stop_planned_starts(*, mission: Mission, actor: User) -> PlannedStarts:
     """Start no further UAV; a start that was given and not sent yet is withdrawn. UAVs in the air fly on. Raises Refused."""
     with transaction.atomic():

@@ -10,11 +10,17 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from missions.models import PlannedStarts
-from missions.serializers.starts import PlannedStartsListSerializer, PlannedStartsSerializer, planned_starts_json
-from missions.services.planned_starts import begin_planned_starts, stop_planned_starts
+from missions.serializers.starts import (
+    MissionStartsSerializer,
+    PlannedStartsListSerializer,
+    PlannedStartsSerializer,
+    planned_starts_json,
+    waiting_json,
+)
+from missions.services.planned_starts import begin_planned_starts, stop_planned_starts, waiting_for_start
 from missions.views.approvals import REFUSED
 from missions.views.missions import mission_or_404
-from missions.views.problems import refusals
+from missions.views.problems import api_problems, refusals
 from workspace.idempotency import idempotent
 from workspace.permissions import FLYING
 from workspace.signed_in import SignedInRequest
@@ -40,6 +46,22 @@ class MissionPlannedStarts(APIView):
     write_scopes = FLYING
 
     @extend_schema(
+        operation_id="get_planned_starts",
+        summary="How the starts of a mission's UAVs stand",
+        responses=MissionStartsSerializer,
+    )
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
+        mission = mission_or_404(request.user, mission_id)
+        newest = mission.planned_starts.select_related("mission", "created_by", "ended_by").first()
+        return Response(
+            {
+                "server_time": timezone.now(),
+                "starts": None if newest is None else planned_starts_json(newest),
+                "waiting": waiting_json(waiting_for_start(mission)),
+            }
+        )
+
+    @extend_schema(
         operation_id="begin_planned_starts",
         summary="Start all UAVs of a mission in planned order",
         description="On the server: whoever closes the page stops nothing. Each start is checked when it is due as a single one is, also"
@@ -51,7 +73,7 @@ class MissionPlannedStarts(APIView):
     @idempotent
     def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
-        with refusals():
+        with api_problems(), refusals():
             starts = begin_planned_starts(mission=mission, actor=request.user)
         return Response(planned_starts_json(starts), status=201)
 

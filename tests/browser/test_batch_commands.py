@@ -20,45 +20,65 @@ pytestmark = [pytest.mark.browser, pytest.mark.long]  # UAVs fly in real time
 FLEET = {"South": ("Tern", "Kite"), "North": ("Crow", "Rook")}
 
 
-@pytest.fixture
-def two(visitor: Visitor, site: Site) -> Iterator[dict[str, tuple[str, list[Flyer]]]]:
-    """Two missions in flight with two UAVs each: by name the mission and those who fly it."""
-    page = visitor.signs_in("ada")
+Flown = tuple[str, list[Flyer]]
+
+
+def sent(page: Page, site: Site, name: str, row: int) -> Flown:
+    """A mission that is sent to its two UAVs, which have taken it, and the UAVs."""
     towers = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=5")["features"]
-    flown, made = {}, []
-    for row, (name, names) in enumerate(FLEET.items()):
-        uavs = []
-        for column, uav in enumerate(names):
-            at = [region.east[0] + 0.012 * column, region.east[1] - 0.006 * row]
-            uavs.append(writes(page, "POST", "/uavs", {"name": uav, "position": at, "is_simulated": True, "link": "http"})["id"])
-        tokens = [writes(page, "POST", f"/uavs/{uav}/credentials", {"kind": "link-token"})["secret"] for uav in uavs]
-        body = {
-            "name": name, "uavs": [{"id": uav, "most_targets": 2} for uav in uavs],
-            "targets": [{"asset": tower["id"]} for tower in towers[:3]], "objective": "makespan", "return_to_start": True, "plan": True,
-        }  # fmt: skip
-        mission = writes(page, "POST", "/missions", body)["id"]
-        writes(page, "POST", f"/missions/{mission}/approve")
-        writes(page, "POST", f"/missions/{mission}/dispatch")
-        flyers = [Flyer(HttpLink(site.address, token)) for token in tokens]
+    uavs = []
+    for column, uav in enumerate(FLEET[name]):
+        at = [region.east[0] + 0.012 * column, region.east[1] - 0.006 * row]
+        uavs.append(writes(page, "POST", "/uavs", {"name": uav, "position": at, "is_simulated": True, "link": "http"})["id"])
+    tokens = [writes(page, "POST", f"/uavs/{uav}/credentials", {"kind": "link-token"})["secret"] for uav in uavs]
+    body = {
+        "name": name, "uavs": [{"id": uav, "most_targets": 2} for uav in uavs], "targets": [{"asset": tower["id"]} for tower in towers[:3]],
+        "objective": "makespan", "return_to_start": True, "plan": True,
+    }  # fmt: skip
+    mission = writes(page, "POST", "/missions", body)["id"]
+    writes(page, "POST", f"/missions/{mission}/approve")
+    writes(page, "POST", f"/missions/{mission}/dispatch")
+    flyers = [Flyer(HttpLink(site.address, token)) for token in tokens]
+    for flyer in flyers:
+        flyer.obeys()
+    return mission, flyers
+
+
+def ends(visitor: Visitor, mission: str, flyers: list[Flyer]) -> None:
+    page = visitor.signs_in("ada")
+    if asks(page, f"/missions/{mission}")["state"] in {"dispatched", "active"}:
+        writes(page, "POST", f"/missions/{mission}/abort")
         for flyer in flyers:
             flyer.obeys()
-        for uav in uavs:
-            writes(page, "POST", f"/uavs/{uav}/commands", {"kind": "start", "parameters": {"out_of_slot": True}})
-        for flyer in flyers:
+    for uav in asks(page, f"/missions/{mission}")["uavs"]:
+        writes(page, "PATCH", f"/uavs/{uav['id']}", {"state": "retired", "name": f"Flown {uav['id']}"})
+    page.context.close()
+
+
+@pytest.fixture
+def two(visitor: Visitor, site: Site) -> Iterator[dict[str, Flown]]:
+    """Two missions in flight with two UAVs each."""
+    page = visitor.signs_in("ada")
+    flown = {name: sent(page, site, name, row) for row, name in enumerate(FLEET)}
+    for mission, flyers in flown.values():
+        for uav, flyer in zip(asks(page, f"/missions/{mission}")["uavs"], flyers, strict=True):
+            writes(page, "POST", f"/uavs/{uav['id']}/commands", {"kind": "start", "parameters": {"out_of_slot": True}})
             flyer.obeys()
             flyer.reports(20.0)
-        flown[name] = (mission, flyers)
-        made += uavs
     page.context.close()
     yield flown
-    page = visitor.signs_in("ada")
     for mission, flyers in flown.values():
-        if asks(page, f"/missions/{mission}")["state"] in {"dispatched", "active"}:
-            writes(page, "POST", f"/missions/{mission}/abort")
-            for flyer in flyers:
-                flyer.obeys()
-    for uav in made:
-        writes(page, "PATCH", f"/uavs/{uav}", {"state": "retired", "name": f"Flown {uav}"})
+        ends(visitor, mission, flyers)
+
+
+@pytest.fixture
+def waiting(visitor: Visitor, site: Site) -> Iterator[Flown]:
+    """A mission whose two UAVs wait for their start."""
+    page = visitor.signs_in("ada")
+    flown = sent(page, site, "South", 0)
+    page.context.close()
+    yield flown
+    ends(visitor, *flown)
 
 
 def opened(page: Page, path: str) -> Page:
@@ -107,3 +127,29 @@ def test_live_asks_of_which_mission_with_nothing_chosen(visitor: Visitor, two: d
     expect(page.locator(".toast")).to_contain_text("2 UAVs are being told.")
     assert told(of_south) == [[], []]
     assert told(of_north) == [["return"], ["return"]]
+
+
+def test_starts_in_planned_order_go_on_without_the_page_and_are_stopped_from_another(
+    visitor: Visitor, waiting: Flown, picture: Picture
+) -> None:
+    mission, flyers = waiting
+    page = opened(visitor.signs_in("opal"), f"/missions/{mission}/fly")
+    page.get_by_role("button", name="Start in planned order").click()
+    question = page.get_by_role("dialog", name="Start 2 UAVs in planned order?")
+    expect(question).to_contain_text("in 10 s")
+    question.get_by_role("button", name="Start in planned order").click()
+    starts = page.locator("#planned-starts")
+    expect(starts.locator("li").first).to_contain_text(re.compile(r"in 0:0\d"))
+    in_both_themes(page, picture, "live-starts")
+    assert faults(page) == []
+    page.context.close()
+
+    other = opened(visitor.signs_in("rory"), "/live")
+    row = other.locator("#planned-starts")
+    expect(row.get_by_text("Start given").first).to_be_visible(timeout=20_000)
+    for flyer in flyers:
+        flyer.obeys()
+    assert sorted(flyer.told.count("start") for flyer in flyers) in ([0, 1], [1, 1])
+    if row.get_by_role("button", name="Stop starting").count():
+        row.get_by_role("button", name="Stop starting").click()
+        expect(row).to_contain_text("No further UAV is started")

@@ -21,9 +21,9 @@ test("what became of a start is said, and of one that was stopped that it was no
 });
 
 test("the question names each UAV in its order with its time after the first", () => {
-  const departures = [
-    { name: "Kite", departs_s: 190 },
-    { name: "Tern", departs_s: 10 },
+  const waiting = [
+    { name: "Tern", after_s: 0 },
+    { name: "Kite", after_s: 180 },
   ];
-  assert.deepEqual(orderLines(departures), ["Tern: in 10 s", "Kite: 3:00 after the first"]);
+  assert.deepEqual(orderLines(waiting), ["Tern: in 10 s", "Kite: 3:00 after the first"]);
 });

@@ -196,6 +196,9 @@ def test_nothing_begins_before_each_has_its_route(person) -> None:
 def test_over_the_api(crossing, person) -> None:
     mission, first, second = crossing
     client, path = client_of(person), f"missions/{mission.pk}/planned-starts"
+    told = client.get(f"/api/v1/{path}").json()
+    assert (told["starts"], [entry["name"] for entry in told["waiting"]]) == (None, [first.name, second.name])
+    assert told["waiting"][1]["after_s"] == pytest.approx(second.route.departs_s - first.route.departs_s)
     begun = post(client, path)
     assert begun.status_code == 201, begun.content
     assert [entry["name"] for entry in begun.json()["uavs"]] == [first.name, second.name]
@@ -204,6 +207,7 @@ def test_over_the_api(crossing, person) -> None:
     assert (listed["mission"], listed["mission_name"], listed["end"]) == (str(mission.pk), mission.name, "")
     stopped = client.delete(f"/api/v1/{path}")
     assert (stopped.status_code, stopped.json()["end"], stopped.json()["ended_by"]) == (200, "stopped", person.username)
+    assert client.get(f"/api/v1/{path}").json()["starts"]["end"] == "stopped"
     assert client.delete(f"/api/v1/{path}").status_code == 409
     assert client_of(somebody(role=Role.VIEWER)).delete(f"/api/v1/{path}").status_code == 403
     stranger = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))

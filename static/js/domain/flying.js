@@ -82,12 +82,6 @@ export function flightOf(commands, uav) {
   return commands.find((command) => command.uav.id === uav && !isOfMission(command)) ?? null;
 }
 
-/** Whether a start was given that counts still. @param {readonly Command[]} commands @param {number | null} uav */
-export const isStarted = (commands, uav) =>
-  commands.some(
-    (command) => command.uav.id === uav && command.kind === "start" && (isOpen(command) || command.state === "applied"),
-  );
-
 /** A mix is what nobody approved: it is said loudest. @param {Command} command */
 export const isMixed = ({ state, outcome_code }) => state === "failed" && outcome_code.includes("mix");
 

@@ -2,7 +2,6 @@
 
 import { ApiError, get } from "../api.js";
 import { byId } from "../dom.js";
-import { flyersOf, isOnItsWay, isStarted } from "../domain/flying.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { mountPlannedStarts } from "../page/planned_starts.js";
 import { KEEP_NO_MORE, KEEP_NOW } from "../page/signing_out.js";
@@ -115,16 +114,7 @@ mountHeader(store, actions, page.canPlan, {
 const flyingKeys = page.isFrozen
   ? mountFlying(store, flying, { canFly: page.canFly, saveCopy: () => void actions.save({ asCopy: true }) })
   : [];
-if (page.isFrozen) mountPlannedStarts({ mission: page.mission, canFly: page.canFly, departures });
-
-/** Of UAVs of the mission to which no start was given yet. */
-function departures() {
-  const { mission, commands } = store.state;
-  if (!mission || !isOnItsWay(mission)) return [];
-  return flyersOf(mission)
-    .filter(({ uav, flown }) => flown === 0 && !isStarted(commands ?? [], uav))
-    .map(({ name, route }) => ({ name, departs_s: route.departs_s }));
-}
+if (page.isFrozen) mountPlannedStarts({ mission: page.mission, canFly: page.canFly });
 
 if (page.canPlan) mountApprove(store, flying);
 const scene = mountSceneOpener(sceneOfMission);

@@ -1,8 +1,6 @@
 /** What flies now: composes the page, listens to the feed, keeps the time. */
 
 import { ApiError, get } from "../api.js";
-import { isOnItsWay } from "../domain/flying.js";
-import { inAir } from "../domain/in_air.js";
 import { openFeed } from "../live/feed.js";
 import { KINDS } from "../live/shown.js";
 import { staleWords } from "../live/stale.js";
@@ -86,7 +84,7 @@ mountBoard(store, {
   },
 });
 mountSimulation(page);
-mountPlannedStarts({ mission: page.mission, canFly: page.canFly, departures });
+mountPlannedStarts({ mission: page.mission, canFly: page.canFly });
 mountUrgent(store, { open: narrow.showBoard });
 const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
 
@@ -94,18 +92,6 @@ const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
 const missionSeen = ({ uavs, chosen, missions }) =>
   page.mission ?? uavs.find(({ id }) => id === chosen)?.mission ?? missions[0]?.id ?? null;
 store.listen(["missions"], (state) => scene.show(missionSeen(state) !== null));
-
-/** Of UAVs of the page's mission that stand on the ground with their route. */
-function departures() {
-  const { missions, details, uavs } = store.state;
-  const mission = missions.find(({ id }) => id === page.mission);
-  if (!mission || !isOnItsWay(mission)) return [];
-  const routes = details.get(mission.id)?.plan?.routes ?? [];
-  return uavs
-    .filter((uav) => uav.mission === mission.id && uav.place !== null && inAir(uav) !== true)
-    .flatMap(({ name, place }) => routes[place ?? -1] ?? [])
-    .map(({ uav, departs_s }) => ({ name: uav, departs_s }));
-}
 
 /** The 3D view is told what the page is told. @param {Stage} stage */
 function followFeed(stage) {

@@ -7,18 +7,17 @@ import { confirmAct } from "./confirm.js";
 import { toast } from "./toast.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { PlannedStart, PlannedStarts, PlannedStartsList } from "../api_types.d.ts" */
+/** @import { PlannedStart, PlannedStarts, PlannedStartsList, MissionStarts, WaitingStart } from "../api_types.d.ts" */
 
-/** @typedef {{ name: string, departs_s: number }} Departure a UAV of the mission and when it takes off by its plan */
 /**
  * @typedef {object} StartsContext
  * @property {string | null} mission the only one of the page; null: all
  * @property {boolean} canFly
- * @property {() => Departure[]} departures of UAVs that can be started; none: nothing can be begun
  */
 
 const POLL_MS = 2000;
 const TICK_MS = 500;
+const SHOWN_AFTER_MS = 300_000; // as the server lists them
 
 /** @type {Record<string, string>} */
 const ENDS = {
@@ -28,6 +27,9 @@ const ENDS = {
   "mission-over": t("Stopped: the mission is over."),
   interrupted: t("Stopped: the server could not look after it for a minute."),
 };
+
+/** Those that go on, or ended a moment ago. @param {PlannedStarts} starts @param {number} now_ms */
+const isShown = ({ ended_at }, now_ms) => !ended_at || now_ms - Date.parse(ended_at) < SHOWN_AFTER_MS;
 
 /** "0:07" @param {number} ms */
 const countdown = (ms) => {
@@ -45,16 +47,13 @@ export function startWords({ state, due_at, why }, goesOn, now_ms) {
   return why ? t("Waits: {why}", { why }) : t("now");
 }
 
-/** By their plan, the first one at once: lines of the question. @param {Departure[]} departures */
-export function orderLines(departures) {
-  const sorted = [...departures].sort((a, b) => a.departs_s - b.departs_s);
-  return sorted.map(({ name, departs_s }, place) => {
-    const after_s = Math.round(departs_s - sorted[0].departs_s);
-    return place === 0
+/** By their plan, the first one at once: lines of the question. @param {Pick<WaitingStart, "name" | "after_s">[]} waiting */
+export const orderLines = (waiting) =>
+  waiting.map(({ name, after_s }, place) =>
+    place === 0
       ? t("{name}: in 10 s", { name })
-      : t("{name}: {time} after the first", { name, time: countdown(after_s * 1000) });
-  });
-}
+      : t("{name}: {time} after the first", { name, time: countdown(after_s * 1000) }),
+  );
 
 /** @param {() => Promise<unknown>} act @param {string} failed */
 async function tried(act, failed) {
@@ -66,9 +65,8 @@ async function tried(act, failed) {
   }
 }
 
-/** @param {StartsContext} context @param {HTMLElement} opener */
-async function begin({ mission, departures }, opener) {
-  const waiting = departures();
+/** @param {string} mission @param {WaitingStart[]} waiting @param {HTMLElement} opener */
+async function begin(mission, waiting, opener) {
   const asked = await confirmAct({
     title: tn(waiting.length, "Start {count} UAV in planned order?", "Start {count} UAVs in planned order?"),
     lines: [
@@ -118,19 +116,32 @@ const startsPart = ({ ended_at, ended_by, end, mission_name, uavs }, { now_ms, i
 ];
 
 /** @param {StartsContext} context */
-export function mountPlannedStarts(context) {
+export function mountPlannedStarts({ mission, canFly }) {
   const place = byId("planned-starts");
   /** @type {PlannedStarts[]} */
   let shown = [];
+  /** @type {WaitingStart[]} */
+  let waiting = [];
   let ahead_ms = 0; // the server's clock before this one
   let drawn = "";
 
+  async function readMission() {
+    const { data } = /** @type {Answer<MissionStarts>} */ (await get(`/missions/${mission}/planned-starts`));
+    const newest = data.starts;
+    shown = newest && isShown(newest, Date.parse(data.server_time)) ? [newest] : [];
+    waiting = data.waiting;
+    return data.server_time;
+  }
+
+  async function readAll() {
+    const { data } = /** @type {Answer<PlannedStartsList>} */ (await get("/planned-starts"));
+    shown = data.results;
+    return data.server_time;
+  }
+
   async function read() {
     try {
-      const { data } = /** @type {Answer<PlannedStartsList>} */ (await get("/planned-starts"));
-      ahead_ms = Date.parse(data.server_time) - Date.now();
-      shown = data.results.filter(({ mission }) => context.mission === null || mission === context.mission);
-      if (context.mission !== null) shown = shown.slice(0, 1); // the newest
+      ahead_ms = Date.parse(await (mission === null ? readAll() : readMission())) - Date.now();
       draw();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error; // the page says itself that the server is away
@@ -139,32 +150,29 @@ export function mountPlannedStarts(context) {
 
   function draw() {
     const now_ms = Date.now() + ahead_ms;
-    const goesOn = shown.some(({ ended_at }) => !ended_at);
-    const canBegin = context.mission !== null && context.canFly && !goesOn && context.departures().length > 1;
+    const canBegin = canFly && waiting.length > 1 && shown.every(({ ended_at }) => ended_at);
     place.hidden = shown.length === 0 && !canBegin;
     const words = shown.flatMap((starts) => starts.uavs.map((start) => startWords(start, !starts.ended_at, now_ms)));
     const key = JSON.stringify([words, shown.map(({ id, end }) => [id, end]), canBegin]);
     if (key === drawn) return;
     const hadFocus = place.contains(document.activeElement);
     drawn = key;
-    const how = { now_ms, isNamed: context.mission === null };
-    place.replaceChildren(
-      ...shown.flatMap((starts) => [
-        ...startsPart(starts, how),
-        ...(context.canFly && !starts.ended_at
-          ? [actButton("stop", "octagon-alert", t("Stop starting"), () => stop(starts).then(read))]
-          : []),
-      ]),
-      ...(canBegin
-        ? [
-            actButton("begin", "plane-takeoff", t("Start in planned order"), (opener) =>
-              begin(context, opener).then(read),
-            ),
-          ]
-        : []),
-    );
+    place.replaceChildren(...shown.flatMap((starts) => partOf(starts, now_ms)), ...(canBegin ? [beginButton()] : []));
     if (hadFocus) place.querySelector("button")?.focus({ preventScroll: true });
   }
+
+  /** @param {PlannedStarts} starts @param {number} now_ms */
+  const partOf = (starts, now_ms) => [
+    ...startsPart(starts, { now_ms, isNamed: mission === null }),
+    ...(canFly && !starts.ended_at
+      ? [actButton("stop", "octagon-alert", t("Stop starting"), () => stop(starts).then(read))]
+      : []),
+  ];
+
+  const beginButton = () =>
+    actButton("begin", "plane-takeoff", t("Start in planned order"), (opener) =>
+      begin(mission ?? "", waiting, opener).then(read),
+    );
 
   void read();
   setInterval(() => !document.hidden && void read(), POLL_MS);
