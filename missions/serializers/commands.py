@@ -188,7 +188,7 @@ class ScopeSerializer(KnownFieldsSerializer):
 
 class MissionsBatchInputSerializer(WhyInputSerializer):
     kind = serializers.ChoiceField(choices=sorted(BATCH_KINDS))
-    missions = ScopeSerializer(many=True, allow_empty=False, max_length=MOST_UAVS)
+    missions = ScopeSerializer(many=True, allow_empty=False)
 
 
 class RefusedReasonSerializer(serializers.Serializer):

@@ -172,7 +172,7 @@ function wordsOfFlying({ action, after }) {
   if (action === "begin-starts")
     return {
       title: t("Starts in planned order begun"),
-      detail: tn(after?.uavs?.length ?? 0, "{count} UAV", "{count} UAVs"),
+      detail: tn(Array.isArray(after?.uavs) ? after.uavs.length : 0, "{count} UAV", "{count} UAVs"),
     };
   if (action === "stop-starts") return { title: t("Starts in planned order stopped"), detail: "" };
   if (action === "start") return { title: t("Started"), detail: "" };
