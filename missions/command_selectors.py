@@ -1,9 +1,24 @@
 """Reads of the outbox, always within one organisation."""
 
-from django.db.models import QuerySet
+from django.db.models import OuterRef, Q, QuerySet
 
-from missions.models import Mission, Uav, UavCommand
+from missions.command_rules import HAND_OVER
+from missions.models import OPEN_COMMANDS, CommandKind, CommandState, Mission, Route, Uav, UavCommand
 from workspace.models import Organisation
+
+_REACHED = Q(state__in=OPEN_COMMANDS) | Q(state=CommandState.APPLIED) | Q(sent_at__isnull=False)
+_SENDS_A_ROUTE = _REACHED & (Q(kind__in=[CommandKind.UPLOAD_MISSION, CommandKind.START]) | Q(parameters__has_key=HAND_OVER))
+_TAKES_IT_OFF = Q(kind=CommandKind.CLEAR_MISSION, state=CommandState.APPLIED)
+
+# For statements in which `place` is a row of missions_missionuav: the mission of which its UAV was sent a route last, as `route_commands`
+# has it but for a route that was taken off since.
+SENT_LAST = """LEFT JOIN LATERAL (
+        SELECT command.mission_id FROM missions_uavcommand command
+        WHERE command.uav_id = place.uav_id AND command.mission_id IS NOT NULL
+            AND (command.kind IN ('upload-mission', 'start') OR command.parameters ? 'hand_over')
+            AND (command.state IN ('queued', 'sent', 'acknowledged', 'applied') OR command.sent_at IS NOT NULL)
+        ORDER BY command.sequence DESC LIMIT 1
+    ) sent ON true"""
 
 
 def commands_of_organisation(organisation: Organisation) -> QuerySet[UavCommand]:
@@ -16,3 +31,17 @@ def commands_of_mission(mission: Mission) -> QuerySet[UavCommand]:
 
 def commands_of_uav(uav: Uav) -> QuerySet[UavCommand]:
     return uav.commands.select_related("uav", "created_by")
+
+
+def route_commands(uav: Uav | OuterRef) -> QuerySet[UavCommand]:
+    """Those that decide of which mission a UAV has a route, the newest first: sent or about to be, or taken off."""
+    return UavCommand.objects.filter(_SENDS_A_ROUTE | _TAKES_IT_OFF, uav=uav, mission__isnull=False).order_by("-sequence")
+
+
+def places_in_flight(mission: Mission) -> dict[int, int]:
+    """The places in a mission, by UAV, of those that have a route of it sent or in flight, and none of another mission since."""
+    flown = Route.objects.filter(mission=mission, mission_uav__uav__isnull=False, geometry__isnull=False, continued_by=None)
+    places = dict(flown.values_list("mission_uav__uav", "mission_uav__sequence"))
+    found = UavCommand.objects.filter(_SENDS_A_ROUTE | _TAKES_IT_OFF, uav__in=places, mission__isnull=False)
+    newest = found.order_by("uav", "-sequence").distinct("uav").values_list("uav", "mission", "kind")
+    return {uav: places[uav] for uav, of_mission, kind in newest if of_mission == mission.pk and kind != CommandKind.CLEAR_MISSION}

@@ -1,12 +1,14 @@
-"""What a later app knows of UAVs that are in the air while a mission is planned for them or another UAV is started."""
+"""What a later app knows of UAVs: which are in the air and where, which stand on the ground, which never connected."""
 
+from collections import defaultdict
 from collections.abc import Collection
 
 from django.utils.module_loading import import_string
 
 from inspection.geodesy import LonLat
 
-_sources: list[str] = []
+_IN_THE_AIR, _ON_THE_GROUND, _NEVER_HEARD = "in the air", "on the ground", "never heard"
+_sources: dict[str, list[str]] = defaultdict(list)
 
 
 def register_source(name: str) -> None:
@@ -14,14 +16,41 @@ def register_source(name: str) -> None:
 
     With where each was last, None where it has told no place.
     """
-    if name not in _sources:
-        _sources.append(name)
+    _register(_IN_THE_AIR, name)
+
+
+def register_ground_source(name: str) -> None:
+    """Of a function that returns those that are reported to stand on the ground and may not have taken off since."""
+    _register(_ON_THE_GROUND, name)
+
+
+def register_never_heard_source(name: str) -> None:
+    """Of a function that returns those of which nothing was ever received."""
+    _register(_NEVER_HEARD, name)
 
 
 def uavs_in_the_air(uav_ids: Collection[int]) -> set[int]:
-    return set(places_in_the_air(uav_ids))
+    return _asked(_IN_THE_AIR, uav_ids)
 
 
 def places_in_the_air(uav_ids: Collection[int]) -> dict[int, LonLat | None]:
     """Where those of these UAVs that are in the air were last."""
-    return {uav_id: place for name in _sources for uav_id, place in import_string(name)(uav_ids).items()} if uav_ids else {}
+    return {uav_id: place for name in _sources[_IN_THE_AIR] for uav_id, place in import_string(name)(uav_ids).items()} if uav_ids else {}
+
+
+def uavs_on_the_ground(uav_ids: Collection[int]) -> set[int]:
+    """One of which nobody knows where it is, is in neither set."""
+    return _asked(_ON_THE_GROUND, uav_ids)
+
+
+def uavs_never_heard(uav_ids: Collection[int]) -> set[int]:
+    return _asked(_NEVER_HEARD, uav_ids)
+
+
+def _register(about: str, name: str) -> None:
+    if name not in _sources[about]:
+        _sources[about].append(name)
+
+
+def _asked(about: str, uav_ids: Collection[int]) -> set[int]:
+    return {uav_id for name in _sources[about] for uav_id in import_string(name)(uav_ids)} if uav_ids else set()

@@ -11,6 +11,7 @@ from missions import services
 from missions.models import Mission
 from missions.services import GraphOutdated, InvalidRequest, MissionChanged, MissionFrozen, NothingToPlan, commands, replanning
 from missions.services.best_so_far import OnPlanProgress, PlanProgress
+from missions.services.planned_starts import carry_on_planned_starts
 from workspace.errors import DATABASE_AWAY
 from workspace.job_watch import JobWatch
 from workspace.models import Job, JobState
@@ -119,3 +120,8 @@ def look_after_offers() -> None:
 @shared_task(time_limit=30, soft_time_limit=25)
 def expire_commands() -> None:
     commands.expire_overdue()
+
+
+@shared_task(time_limit=30, soft_time_limit=25)
+def start_in_planned_order() -> None:
+    carry_on_planned_starts()

@@ -5,13 +5,14 @@ from django.urls import path
 from missions import views
 from missions.views.approvals import MissionAbort, MissionApproval, MissionApprove, MissionDispatch, MissionRevoke
 from missions.views.by_hand import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
-from missions.views.commands import CommandDetail, MissionCommands, UavCommands
+from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.reachability import Reachability
 from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
 from missions.views.returns import MissionReturns
 from missions.views.selections import SelectionDetail, SelectionList
+from missions.views.starts import MissionPlannedStarts, PlannedStartsList
 
 urlpatterns = [
     path("plans", views.PlanList.as_view(), name="api-plans"),
@@ -24,6 +25,7 @@ urlpatterns = [
     path("missions/filters", views.MissionFilterChoices.as_view(), name="api-mission-filters"),
     path("missions/delete", views.MissionsDelete.as_view(), name="api-missions-delete"),
     path("missions/restore", views.MissionsRestore.as_view(), name="api-missions-restore"),
+    path("missions/commands", MissionsCommands.as_view(), name="api-missions-commands"),
     path("missions/<uuid:mission_id>", views.MissionDetail.as_view(), name="api-mission"),
     path("missions/<uuid:mission_id>/plan", views.MissionPlan.as_view(), name="api-mission-plan"),
     path("missions/<uuid:mission_id>/restore", views.MissionRestore.as_view(), name="api-mission-restore"),
@@ -40,6 +42,8 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/revoke", MissionRevoke.as_view(), name="api-mission-revoke"),
     path("missions/<uuid:mission_id>/dispatch", MissionDispatch.as_view(), name="api-mission-dispatch"),
     path("missions/<uuid:mission_id>/abort", MissionAbort.as_view(), name="api-mission-abort"),
+    path("missions/<uuid:mission_id>/planned-starts", MissionPlannedStarts.as_view(), name="api-mission-planned-starts"),
+    path("planned-starts", PlannedStartsList.as_view(), name="api-planned-starts"),
     path("missions/<uuid:mission_id>/returns", MissionReturns.as_view(), name="api-mission-returns"),
     path("missions/<uuid:mission_id>/commands", MissionCommands.as_view(), name="api-mission-commands"),
     path("missions/<uuid:mission_id>/replan-offers", MissionReplanOffers.as_view(), name="api-mission-replan-offers"),

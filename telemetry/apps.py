@@ -9,8 +9,10 @@ class TelemetryConfig(AppConfig):
     def ready(self) -> None:
         from missions.approval_hooks import register_check  # noqa: PLC0415 (models are there by then)
         from missions.flight_hooks import register_flight_teller  # noqa: PLC0415
-        from missions.in_air_hooks import register_source  # noqa: PLC0415
+        from missions.in_air_hooks import register_ground_source, register_never_heard_source, register_source  # noqa: PLC0415
 
         register_flight_teller("telemetry.selectors.in_flight.is_in_flight")
         register_source("telemetry.selectors.in_the_air.places_in_the_air")
+        register_ground_source("telemetry.selectors.in_the_air.reported_on_the_ground")
+        register_never_heard_source("telemetry.selectors.in_the_air.never_heard")
         register_check("telemetry.services.approved_vehicles.reasons_of_vehicles")

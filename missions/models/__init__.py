@@ -25,6 +25,7 @@ from missions.models.missions import (
     WaypointKind,
 )
 from missions.models.offers import OfferState, ReplanOffer
+from missions.models.starts import PlannedStarts, StartsEnd
 
 __all__ = [
     "OPEN_COMMANDS",
@@ -43,9 +44,11 @@ __all__ = [
     "MissionUav",
     "Objective",
     "OfferState",
+    "PlannedStarts",
     "ReplanOffer",
     "Route",
     "SavedSelection",
+    "StartsEnd",
     "TargetPriority",
     "TargetState",
     "Uav",

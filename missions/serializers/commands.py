@@ -9,16 +9,19 @@ from rest_framework import serializers
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import LONGEST_LEG_M, SHORTEST_LEG_M
+from missions.services.batch_commands import BATCH_KINDS, UavAnswer
 from missions.stored_outcomes import outcome_in_words
 
 LONGEST_WHY = 300
 MOST_FLIGHTS = 100
+MOST_UAVS = 1_000
 # What the outbox itself ends commands with; a link says in its own words why a command failed.
 OUTCOMES = {
     "superseded": gettext_lazy("A later command took its place."),
     "not-delivered": gettext_lazy("It could not be delivered in time."),
     "unconfirmed": gettext_lazy("It was sent; whether it was done is not known."),
     "unheard": gettext_lazy("Sent again and again; nothing is heard from the UAV, and whether it does it is not known."),
+    "withdrawn": gettext_lazy("It was withdrawn before it was sent."),
     "revoked": gettext_lazy("The approval was revoked."),
 }
 PRIORITIES = ("safety", "pause", "mission", "parameter")
@@ -161,6 +164,54 @@ class CommandPageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
+class BatchInputSerializer(WhyInputSerializer):
+    kind = serializers.ChoiceField(choices=sorted(BATCH_KINDS))
+    uavs = serializers.ListField(
+        child=serializers.IntegerField(),
+        required=False,
+        allow_empty=False,
+        max_length=MOST_UAVS,
+        help_text="ids; without it: all with a route of the mission sent or in flight",
+    )
+
+
+class ScopeSerializer(KnownFieldsSerializer):
+    mission = serializers.UUIDField()
+    uavs = serializers.ListField(
+        child=serializers.IntegerField(),
+        required=False,
+        allow_empty=False,
+        max_length=MOST_UAVS,
+        help_text="ids; without it: all with a route of the mission sent or in flight",
+    )
+
+
+class MissionsBatchInputSerializer(WhyInputSerializer):
+    kind = serializers.ChoiceField(choices=sorted(BATCH_KINDS))
+    missions = ScopeSerializer(many=True, allow_empty=False)
+
+
+class RefusedReasonSerializer(serializers.Serializer):
+    code = serializers.CharField()
+    message = serializers.CharField()
+
+
+class BatchAnswerSerializer(serializers.Serializer):
+    """What became of a batch for one UAV."""
+
+    mission = serializers.UUIDField()
+    uav = serializers.IntegerField()
+    name = serializers.CharField(allow_blank=True, help_text="empty for a UAV that is not known here")
+    place = serializers.IntegerField(allow_null=True, help_text="the UAV's in the mission; null: it flies nothing of it")
+    is_accepted = serializers.BooleanField()
+    command = CommandSerializer(allow_null=True)
+    reasons = RefusedReasonSerializer(many=True, help_text="why it was given no command")
+
+
+class BatchAnswersSerializer(serializers.Serializer):
+    results = BatchAnswerSerializer(many=True)
+
+
 class SentSerializer(serializers.Serializer):
     """What became of a mission that was sent or aborted."""
 
@@ -207,4 +258,16 @@ def command_json(command: UavCommand) -> dict[str, Any]:
         "progress": command.progress,
         "outcome_code": command.outcome_code,
         "outcome": str(OUTCOMES.get(command.outcome_code) or outcome_in_words(command.outcome)),
+    }
+
+
+def batch_answer_json(answer: UavAnswer) -> dict[str, Any]:
+    return {
+        "mission": str(answer.mission),
+        "uav": answer.uav,
+        "name": answer.name,
+        "place": answer.place,
+        "is_accepted": answer.is_accepted,
+        "command": None if answer.command is None else command_json(answer.command),
+        "reasons": [{"code": reason.code, "message": reason.message} for reason in answer.reasons],
     }

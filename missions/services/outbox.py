@@ -37,6 +37,7 @@ from workspace.services import record_change
 
 CHANNEL = "spanwise_uav_commands"  # PostgreSQL's NOTIFY: the key of a UAV for which something waits, or no longer counts
 SUPERSEDED, NOT_DELIVERED, UNCONFIRMED, UNHEARD = "superseded", "not-delivered", "unconfirmed", "unheard"
+WITHDRAWN = "withdrawn"
 
 _CLAIM = """
     WITH wanted AS (
@@ -275,6 +276,17 @@ def _note(
         UavCommandEvent.objects.create(command_id=command_id, state=state, attempt=attempt, holder=holder, note=note[:500])
         _tell_pages([_organisation_of(command_id)])
     return True
+
+
+def withdraw(command_ids: Collection[UUID]) -> int:
+    """End those of these commands that were not sent; how many. Whoever carries one is told that it no longer counts."""
+    with transaction.atomic():
+        unsent = UavCommand.objects.filter(pk__in=command_ids, sent_at=None)
+        uavs = list(unsent.filter(state__in=OPEN_COMMANDS).values_list("uav", flat=True))
+        ended = _end(unsent, WITHDRAWN, "It was withdrawn before it was sent.")
+        for uav_id in uavs:
+            _tell(uav_id)
+    return ended
 
 
 def _end(commands: QuerySet[UavCommand], code: str, words: str, *, skip_locked: bool = False) -> int:

@@ -9,6 +9,7 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from missions.command_rules import SETS_IN_MOTION
+from missions.command_selectors import route_commands
 from missions.fleet_selectors import performance_of
 from missions.models import (
     Approval,
@@ -62,18 +63,18 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
 
 
 def mission_in_hand(uav: Uav) -> Mission | None:
-    """The dispatched or active mission in which it flies a route."""
-    return (
+    """The dispatched or active mission in which it flies a route: that of which it was sent one last, else the newest that plans one."""
+    missions = list(
         Mission.objects.filter(
             deleted_at=None,
             state__in=ON_ITS_WAY,
             mission_uavs__uav=uav,
             mission_uavs__route__geometry__isnull=False,
             mission_uavs__route__continued_by=None,
-        )
-        .order_by("-updated_at")
-        .first()
+        ).order_by("-updated_at")
     )
+    sent = route_commands(uav).values_list("mission", flat=True).first() if len(missions) > 1 else None
+    return next((mission for mission in missions if mission.pk == sent), missions[0] if missions else None)
 
 
 def speed_limits_mps(uav: Uav) -> tuple[float, float]:

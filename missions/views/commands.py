@@ -1,5 +1,6 @@
 """Commands to UAVs: given, listed, followed."""
 
+from typing import Any
 from uuid import UUID
 
 from django.shortcuts import get_object_or_404
@@ -11,6 +12,7 @@ from rest_framework.views import APIView
 from missions.command_selectors import commands_of_mission, commands_of_organisation, commands_of_uav
 from missions.models import CommandKind, UavCommand
 from missions.serializers import commands as shapes
+from missions.services.batch_commands import Scope, command_missions
 from missions.services.steering import command_uav
 from missions.views.approvals import REFUSED
 from missions.views.missions import mission_or_404
@@ -32,7 +34,15 @@ def _detail(command: UavCommand) -> dict[str, object]:
     }
 
 
+def _batch(request: SignedInRequest, scopes: list[Scope], values: dict[str, Any]) -> Response:
+    with refusals():
+        answers = command_missions(scopes=scopes, kind=CommandKind(values["kind"]), actor=request.user, why=values["why"])
+    return Response({"results": [shapes.batch_answer_json(answer) for answer in answers]})
+
+
 class MissionCommands(APIView):
+    write_scopes = FLYING
+
     @extend_schema(
         operation_id="list_commands_of_mission",
         summary="What its UAVs were told, the newest first",
@@ -42,6 +52,40 @@ class MissionCommands(APIView):
     def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         page = page_of(request, commands_of_mission(mission_or_404(request.user, mission_id)), order=NEWEST_FIRST)
         return Response({"results": [shapes.command_json(command) for command in page.rows], "next": page.next})
+
+    @extend_schema(
+        operation_id="command_mission",
+        summary="Give several UAVs of a mission a command in one request",
+        description="Reached are UAVs with a route of this mission sent or in flight; each other one that is named is refused by itself,"
+        " as are those on the ground and those that never connected. All are given theirs in one transaction.",
+        request=shapes.BatchInputSerializer,
+        responses={200: shapes.BatchAnswersSerializer, **REFUSED},
+    )
+    @idempotent
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
+        mission = mission_or_404(request.user, mission_id)
+        body = shapes.BatchInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        return _batch(request, [Scope(mission, body.validated_data.get("uavs"))], body.validated_data)
+
+
+class MissionsCommands(APIView):
+    write_scopes = FLYING
+
+    @extend_schema(
+        operation_id="command_missions",
+        summary="Give UAVs of several missions a command in one request",
+        description="As for one mission; each mission is named.",
+        request=shapes.MissionsBatchInputSerializer,
+        responses={200: shapes.BatchAnswersSerializer, **REFUSED},
+    )
+    @idempotent
+    def post(self, request: SignedInRequest) -> Response:
+        body = shapes.MissionsBatchInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        asked = body.validated_data["missions"]
+        scopes = [Scope(mission_or_404(request.user, entry["mission"]), entry.get("uavs")) for entry in asked]
+        return _batch(request, scopes, body.validated_data)
 
 
 class UavCommands(APIView):

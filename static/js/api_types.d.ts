@@ -486,6 +486,31 @@ export interface components {
             position: number[];
             note?: string;
         };
+        /** @description What became of a batch for one UAV. */
+        BatchAnswer: {
+            /** Format: uuid */
+            mission: string;
+            uav: number;
+            /** @description empty for a UAV that is not known here */
+            name: string;
+            /** @description the UAV's in the mission; null: it flies nothing of it */
+            place: number | null;
+            is_accepted: boolean;
+            command: components["schemas"]["Command"] | null;
+            /** @description why it was given no command */
+            reasons: components["schemas"]["RefusedReason"][];
+        };
+        BatchAnswers: {
+            results: components["schemas"]["BatchAnswer"][];
+        };
+        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        BatchInputRequest: {
+            /** @default  */
+            why: string;
+            kind: components["schemas"]["Kind5d1Enum"];
+            /** @description ids; without it: all with a route of the mission sent or in flight */
+            uavs?: number[];
+        };
         /**
          * @description * `go_on` - go_on
          *     * `hold` - hold
@@ -866,6 +891,15 @@ export interface components {
          * @enum {string}
          */
         EndActionEnum: "hover" | "return" | "land" | "base";
+        /**
+         * @description * `done` - Every UAV was started or refused
+         *     * `stopped` - Stopped by a user
+         *     * `commanded` - A UAV of the mission was told to stop, hold, return or land
+         *     * `mission-over` - The mission is not on its way any more
+         *     * `interrupted` - Nobody could look after it for too long
+         * @enum {string}
+         */
+        EndEnum: "done" | "stopped" | "commanded" | "mission-over" | "interrupted";
         /**
          * @description * `flown` - flown
          *     * `failed` - failed
@@ -1842,6 +1876,15 @@ export interface components {
          */
         JobState: "queued" | "running" | "done" | "failed" | "cancelled";
         /**
+         * @description * `hold` - hold
+         *     * `land` - land
+         *     * `pause` - pause
+         *     * `resume` - resume
+         *     * `return` - return
+         * @enum {string}
+         */
+        Kind5d1Enum: "hold" | "land" | "pause" | "resume" | "return";
+        /**
          * @description * `` - As the browser
          *     * `en` - English
          *     * `de` - Deutsch
@@ -2542,6 +2585,14 @@ export interface components {
             targets: components["schemas"]["RecordTarget"][];
             results: components["schemas"]["RecordResult"][];
         };
+        MissionStarts: {
+            /** Format: date-time */
+            server_time: string;
+            /** @description the newest; null: there were none */
+            starts: components["schemas"]["PlannedStarts"] | null;
+            /** @description UAVs that would be started in planned order now */
+            waiting: components["schemas"]["WaitingStart"][];
+        };
         /**
          * @description * `draft` - Draft
          *     * `planned` - Planned
@@ -2675,6 +2726,13 @@ export interface components {
             hover_power_w: number | null;
             /** @description meant for this mission alone, whatever becomes of the stored UAV */
             own_figures: components["schemas"]["UavFigure"][];
+        };
+        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        MissionsBatchInputRequest: {
+            /** @default  */
+            why: string;
+            kind: components["schemas"]["Kind5d1Enum"];
+            missions: components["schemas"]["ScopeRequest"][];
         };
         MissionsDone: {
             done: string[];
@@ -3385,6 +3443,59 @@ export interface components {
             /** Format: double */
             energy_wh: number | null;
         };
+        PlannedStart: {
+            uav: number;
+            name: string;
+            /** @description the UAV's in the mission */
+            place: number;
+            /** Format: date-time */
+            due_at: string;
+            state: components["schemas"]["PlannedStartStateEnum"];
+            /**
+             * Format: uuid
+             * @description the start that it was given
+             */
+            command: string | null;
+            /** @description what it waits for after its time, or why it was refused */
+            why: string;
+        };
+        /**
+         * @description * `waiting` - waiting
+         *     * `started` - started
+         *     * `refused` - refused
+         * @enum {string}
+         */
+        PlannedStartStateEnum: "waiting" | "started" | "refused";
+        PlannedStarts: {
+            /** Format: uuid */
+            id: string;
+            /** Format: uuid */
+            mission: string;
+            mission_name: string;
+            created_by: string | null;
+            /** Format: date-time */
+            created_at: string;
+            /** Format: date-time */
+            ended_at: string | null;
+            /**
+             * @description why it ended; empty: it goes on
+             *
+             *     * `done` - Every UAV was started or refused
+             *     * `stopped` - Stopped by a user
+             *     * `commanded` - A UAV of the mission was told to stop, hold, return or land
+             *     * `mission-over` - The mission is not on its way any more
+             *     * `interrupted` - Nobody could look after it for too long
+             */
+            end: components["schemas"]["EndEnum"] | components["schemas"]["BlankEnum"];
+            ended_by: string | null;
+            uavs: components["schemas"]["PlannedStart"][];
+        };
+        PlannedStartsList: {
+            /** Format: date-time */
+            server_time: string;
+            /** @description that go on or ended within five minutes */
+            results: components["schemas"]["PlannedStarts"][];
+        };
         Point: {
             type: components["schemas"]["PointTypeEnum"];
             /**
@@ -3968,6 +4079,10 @@ export interface components {
         RefusedMission: {
             /** Format: uuid */
             id: string;
+            code: string;
+            message: string;
+        };
+        RefusedReason: {
             code: string;
             message: string;
         };
@@ -4915,6 +5030,13 @@ export interface components {
             endDateTime: string | null;
             /** @description empty: all the time */
             schedule: components["schemas"]["ScheduleEntry"][];
+        };
+        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        ScopeRequest: {
+            /** Format: uuid */
+            mission: string;
+            /** @description ids; without it: all with a route of the mission sent or in flight */
+            uavs?: number[];
         };
         SecondFactorRule: {
             /** @description of everybody in the organisation, from their next sign-in on */
@@ -6416,6 +6538,17 @@ export interface components {
              */
             expires_at: string | null;
         };
+        WaitingStart: {
+            uav: number;
+            name: string;
+            /** @description the UAV's in the mission */
+            place: number;
+            /**
+             * Format: double
+             * @description after the first one, by the plan
+             */
+            after_s: number;
+        };
         Warning: {
             code: components["schemas"]["WarningCodeEnum"];
             /** @description index of the UAV; null: of the whole plan */
@@ -6891,6 +7024,9 @@ export type AssetProperties = components['schemas']['AssetProperties'];
 export type Base = components['schemas']['Base'];
 export type BasePage = components['schemas']['BasePage'];
 export type BaseRequest = components['schemas']['BaseRequest'];
+export type BatchAnswer = components['schemas']['BatchAnswer'];
+export type BatchAnswers = components['schemas']['BatchAnswers'];
+export type BatchInputRequest = components['schemas']['BatchInputRequest'];
 export type BehaviourEnum = components['schemas']['BehaviourEnum'];
 export type BindsEnum = components['schemas']['BindsEnum'];
 export type BlankEnum = components['schemas']['BlankEnum'];
@@ -6931,6 +7067,7 @@ export type DispatchInputRequest = components['schemas']['DispatchInputRequest']
 export type DrawnAreaRequest = components['schemas']['DrawnAreaRequest'];
 export type DrawnAreaTypeEnum = components['schemas']['DrawnAreaTypeEnum'];
 export type EndActionEnum = components['schemas']['EndActionEnum'];
+export type EndEnum = components['schemas']['EndEnum'];
 export type EndedFlightOutcomeEnum = components['schemas']['EndedFlightOutcomeEnum'];
 export type EndedFlightRequest = components['schemas']['EndedFlightRequest'];
 export type Error = components['schemas']['Error'];
@@ -7011,6 +7148,7 @@ export type JobError = components['schemas']['JobError'];
 export type JobLink = components['schemas']['JobLink'];
 export type JobPage = components['schemas']['JobPage'];
 export type JobState = components['schemas']['JobState'];
+export type Kind5d1Enum = components['schemas']['Kind5d1Enum'];
 export type Language = components['schemas']['Language'];
 export type LastPlan = components['schemas']['LastPlan'];
 export type LastRoute = components['schemas']['LastRoute'];
@@ -7063,10 +7201,12 @@ export type MissionInputRequest = components['schemas']['MissionInputRequest'];
 export type MissionPage = components['schemas']['MissionPage'];
 export type MissionPlace = components['schemas']['MissionPlace'];
 export type MissionRecord = components['schemas']['MissionRecord'];
+export type MissionStarts = components['schemas']['MissionStarts'];
 export type MissionState = components['schemas']['MissionState'];
 export type MissionSummary = components['schemas']['MissionSummary'];
 export type MissionTarget = components['schemas']['MissionTarget'];
 export type MissionUav = components['schemas']['MissionUav'];
+export type MissionsBatchInputRequest = components['schemas']['MissionsBatchInputRequest'];
 export type MissionsDone = components['schemas']['MissionsDone'];
 export type MissionsInputRequest = components['schemas']['MissionsInputRequest'];
 export type ModelCollection = components['schemas']['ModelCollection'];
@@ -7111,6 +7251,10 @@ export type PlanLock = components['schemas']['PlanLock'];
 export type PlanTotals = components['schemas']['PlanTotals'];
 export type PlannedPoint = components['schemas']['PlannedPoint'];
 export type PlannedRoute = components['schemas']['PlannedRoute'];
+export type PlannedStart = components['schemas']['PlannedStart'];
+export type PlannedStartStateEnum = components['schemas']['PlannedStartStateEnum'];
+export type PlannedStarts = components['schemas']['PlannedStarts'];
+export type PlannedStartsList = components['schemas']['PlannedStartsList'];
 export type Point = components['schemas']['Point'];
 export type PointRequest = components['schemas']['PointRequest'];
 export type PointTypeEnum = components['schemas']['PointTypeEnum'];
@@ -7152,6 +7296,7 @@ export type RecordTargetCounts = components['schemas']['RecordTargetCounts'];
 export type RecordWaypoint = components['schemas']['RecordWaypoint'];
 export type Refused = components['schemas']['Refused'];
 export type RefusedMission = components['schemas']['RefusedMission'];
+export type RefusedReason = components['schemas']['RefusedReason'];
 export type RegionCounts = components['schemas']['RegionCounts'];
 export type RegionInputRequest = components['schemas']['RegionInputRequest'];
 export type Rehearsal = components['schemas']['Rehearsal'];
@@ -7209,6 +7354,7 @@ export type SceneRules = components['schemas']['SceneRules'];
 export type SceneZone = components['schemas']['SceneZone'];
 export type ScheduleEntry = components['schemas']['ScheduleEntry'];
 export type SchedulePeriod = components['schemas']['SchedulePeriod'];
+export type ScopeRequest = components['schemas']['ScopeRequest'];
 export type SecondFactorRule = components['schemas']['SecondFactorRule'];
 export type SecondFactorRuleRequest = components['schemas']['SecondFactorRuleRequest'];
 export type Selection = components['schemas']['Selection'];
@@ -7305,6 +7451,7 @@ export type VehicleTextPage = components['schemas']['VehicleTextPage'];
 export type Verdict = components['schemas']['Verdict'];
 export type VerdictLevel = components['schemas']['VerdictLevel'];
 export type WaitingCommand = components['schemas']['WaitingCommand'];
+export type WaitingStart = components['schemas']['WaitingStart'];
 export type Warning = components['schemas']['Warning'];
 export type WarningCodeEnum = components['schemas']['WarningCodeEnum'];
 export type Waypoint = components['schemas']['Waypoint'];

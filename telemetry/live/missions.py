@@ -15,7 +15,8 @@ def missions_json(mission_ids: Iterable[UUID]) -> list[dict[str, Any]]:
     for target in InspectionTarget.objects.filter(mission__in=ids).defer("position", "stretch", "task"):
         targets[target.mission_id].append(target)
     uavs: dict[UUID, list[dict[str, Any]]] = defaultdict(list)
-    for mission, place, name, uav in MissionUav.objects.filter(mission__in=ids).values_list("mission", "sequence", "name", "uav"):
+    flying = MissionUav.objects.filter(mission__in=ids, route__geometry__isnull=False)
+    for mission, place, name, uav in flying.values_list("mission", "sequence", "name", "uav"):
         uavs[mission].append({"place": place, "name": name, "uav": uav})
     places = _places(ids)
     return [_mission_json(mission, uavs[mission.pk], targets[mission.pk], places) for mission in missions]

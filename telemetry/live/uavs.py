@@ -3,8 +3,9 @@
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from django.db.models import Case, F, IntegerField, Value, When
+from django.db.models import Case, F, IntegerField, OuterRef, Subquery, Value, When
 
+from missions.command_selectors import route_commands
 from missions.models import LinkKind, MissionState, MissionUav, Uav
 from telemetry.alerting.detectors.link import late_after_s
 from telemetry.alerting.limits import sound_limits
@@ -52,15 +53,17 @@ def rhythm_of(interval_s: float, stated: Sequence[Mapping[str, float]]) -> dict[
 
 
 def _flown(uav_ids: list[int]) -> dict[int, tuple[str, int, Mapping[str, float]]]:
-    """The mission that each flies, its place in it, and the limits of alerts that the mission states."""
-    rows = MissionUav.objects.filter(uav__in=uav_ids, mission__state__in=FLYING, mission__deleted_at=None)
+    """The mission that each flies, as selectors/live.py has it, its place in it, and the limits of alerts that the mission states."""
+    rows = MissionUav.objects.filter(uav__in=uav_ids, mission__state__in=FLYING, mission__deleted_at=None, route__geometry__isnull=False)
+    sent = Subquery(route_commands(OuterRef("uav")).values("mission")[:1])
     first = Case(
-        When(route__continued_by__isnull=False, then=Value(2)),
-        When(mission__state=MissionState.ACTIVE, then=Value(0)),
-        default=Value(1),
+        When(route__continued_by__isnull=False, then=Value(3)),
+        When(mission=F("sent"), then=Value(0)),
+        When(mission__state=MissionState.ACTIVE, then=Value(1)),
+        default=Value(2),
         output_field=IntegerField(),
     )
-    newest = rows.order_by("uav", first, F("mission__updated_at").desc()).distinct("uav")
+    newest = rows.alias(sent=sent).order_by("uav", first, F("mission__updated_at").desc()).distinct("uav")
     found = newest.values_list("uav", "mission", "sequence", "mission__alert_limits")
     return {uav: (str(mission), place, limits or {}) for uav, mission, place, limits in found}
 

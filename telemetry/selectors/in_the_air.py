@@ -1,11 +1,14 @@
-"""Which UAVs are in the air by their last word."""
+"""Which UAVs are in the air, on the ground, or were never heard, by their last word."""
 
 from collections.abc import Collection
 from datetime import timedelta
 
+from django.db.models import Exists, OuterRef
 from django.db.models.functions import Now
 
 from inspection.geodesy import LonLat
+from missions.command_rules import SETS_IN_MOTION
+from missions.models import UavCommand
 from telemetry.models import UavLink, UavWatch
 
 BELIEVED_FOR = timedelta(minutes=10)  # after its last word: longer flights without a word are rare
@@ -26,3 +29,17 @@ def places_in_the_air(uav_ids: Collection[int]) -> dict[int, LonLat | None]:
         "uav_id", "measured__position__position"
     )
     return dict.fromkeys(in_the_air) | {uav_id: LonLat(*place) for uav_id, place in told}
+
+
+def reported_on_the_ground(uav_ids: Collection[int]) -> set[int]:
+    """Of these UAVs, by link; not those to which something was sent since that may have set them in motion."""
+    moved = UavCommand.objects.filter(uav=OuterRef("uav"), kind__in=SETS_IN_MOTION, sent_at__gt=OuterRef("heard_at"))
+    links = UavLink.objects.filter(~Exists(moved), uav__in=uav_ids, is_in_air=False, heard_at__isnull=False)
+    return set(links.values_list("uav_id", flat=True))
+
+
+def never_heard(uav_ids: Collection[int]) -> set[int]:
+    """Of these UAVs, neither by a link nor by a report."""
+    by_link = UavLink.objects.filter(uav__in=uav_ids, heard_at__isnull=False).values_list("uav_id", flat=True)
+    by_report = UavWatch.objects.filter(uav__in=uav_ids, measured__isnull=False).values_list("uav_id", flat=True)
+    return set(uav_ids) - set(by_link) - set(by_report)

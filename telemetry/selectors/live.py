@@ -7,6 +7,7 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from uuid import UUID
 
+from missions.command_selectors import SENT_LAST
 from workspace.prepared import prepared_rows
 
 Key = tuple[str, str]  # kind and id
@@ -28,22 +29,30 @@ class Shown:
 MOST_CLOSED = 100
 # UAVs that fly a mission or were heard within a day; missions on their way or ended within the hour; alerts that are open, and the newest
 # that were closed within the hour, of the organisation and of each mission asked for; commands and offers that are open or ended within
-# ten minutes. And all of it that belongs to the missions asked for.
+# ten minutes. And all of it that belongs to the missions asked for: to these belong UAVs with a route of theirs that fly no other mission.
+# A UAV flies the mission of which it was sent a route last (missions/command_selectors.py).
 _LOOK = f"""
 WITH asked AS (SELECT %s::bigint AS organisation_id, %s::uuid[] AS missions),
 flown AS (
     SELECT DISTINCT ON (place.uav_id) place.uav_id, mission.id AS mission_id, place.sequence
     FROM missions_mission mission JOIN missions_missionuav place ON place.mission_id = mission.id
+    JOIN missions_route route ON route.mission_uav_id = place.id AND route.geometry IS NOT NULL
+    {SENT_LAST}
     WHERE mission.organisation_id = (SELECT organisation_id FROM asked) AND mission.state IN ('dispatched', 'active')
         AND mission.deleted_at IS NULL AND place.uav_id IS NOT NULL
-    ORDER BY place.uav_id, mission.state, mission.updated_at DESC
+    ORDER BY place.uav_id, route.continued_by_id IS NOT NULL, sent.mission_id IS NOT DISTINCT FROM mission.id DESC,
+        mission.state, mission.updated_at DESC
 ),
 member AS (
     SELECT place.uav_id, array_agg(DISTINCT mission.id ORDER BY mission.id) AS missions
     FROM asked JOIN missions_mission mission ON mission.id = ANY(asked.missions) AND mission.organisation_id = asked.organisation_id
         AND mission.deleted_at IS NULL
     JOIN missions_missionuav place ON place.mission_id = mission.id
-    WHERE place.uav_id IS NOT NULL GROUP BY place.uav_id
+    LEFT JOIN missions_route route ON route.mission_uav_id = place.id
+    LEFT JOIN flown ON flown.uav_id = place.uav_id
+    WHERE place.uav_id IS NOT NULL AND (mission.state = 'draft' OR route.geometry IS NOT NULL)
+        AND (flown.mission_id IS NULL OR flown.mission_id = mission.id)
+    GROUP BY place.uav_id
 ),
 told AS (
     SELECT id, bool_or(is_in_whole) AS is_in_whole FROM (

@@ -9,6 +9,7 @@ from uuid import UUID
 from django.db import connection
 
 from inspection.geodesy import LonLat
+from missions.command_selectors import SENT_LAST
 from missions.models import MissionState
 from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.contact import PROMPT_S
@@ -43,7 +44,7 @@ class WatchedFlight:
     clock_rate: float | None
 
 
-_FLYING = """
+_FLYING = f"""
 SELECT DISTINCT ON (place.uav_id) place.uav_id, mission.organisation_id, uav.name, mission.id, approval.id,
     CASE WHEN link.loaded_approval = approval.id AND link.loaded_flight IS NOT NULL THEN link.loaded_flight
         ELSE route.flights_flown + 1 END,
@@ -55,12 +56,14 @@ JOIN missions_uav uav ON uav.id = place.uav_id
 JOIN missions_route route ON route.mission_uav_id = place.id AND route.geometry IS NOT NULL
 JOIN missions_approval approval ON approval.mission_id = mission.id AND approval.revoked_at IS NULL
 LEFT JOIN telemetry_uavlink link ON link.uav_id = place.uav_id
+{SENT_LAST}
 WHERE mission.deleted_at IS NULL AND (mission.state = ANY(%(on_its_way)s)
     OR (mission.state = ANY(%(over)s) AND coalesce(mission.ended_at, mission.updated_at) > now() - make_interval(secs => %(longest_s)s)
         AND link.is_in_air AND link.heard_at > now() - make_interval(secs => %(longest_s)s)))
-ORDER BY place.uav_id, route.continued_by_id IS NOT NULL, coalesce(array_position(%(on_its_way)s, mission.state::text), 9),
+ORDER BY place.uav_id, route.continued_by_id IS NOT NULL, mission.state = ANY(%(over)s),
+    sent.mission_id IS NOT DISTINCT FROM mission.id DESC, coalesce(array_position(%(on_its_way)s, mission.state::text), 9),
     mission.updated_at DESC
-"""
+"""  # noqa: S608 (texts of ours)
 _BOOT_MS = "CASE WHEN stream.link = 'mavlink' THEN record.sequence END"  # others count something else
 _VALUES = "ST_X(position), ST_Y(position), " + ", ".join(REPORTED)
 _STREAMS = "JOIN telemetry_telemetrystream stream ON stream.id = record.stream_id"

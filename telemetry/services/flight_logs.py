@@ -6,7 +6,8 @@ from pathlib import Path
 from django.conf import settings
 from django.db import transaction
 
-from missions.models import Mission, MissionState, Uav
+from missions.models import Uav
+from missions.services.steering import mission_in_hand
 from telemetry.models import FlightLog
 
 
@@ -18,9 +19,7 @@ def begin_flight_log(*, uav_id: int, path: str, started_at: datetime) -> None:
         return
     for left_open in FlightLog.objects.filter(uav=uav, ended_at=None):
         end_flight_log(path=left_open.path, ended_at=_last_written(left_open.path) or started_at)
-    flying = Mission.objects.filter(mission_uavs__uav=uav, deleted_at=None, state__in=[MissionState.ACTIVE, MissionState.DISPATCHED])
-    mission = flying.order_by("state", "-updated_at").first()
-    FlightLog.objects.create(organisation_id=uav.organisation_id, uav=uav, mission=mission, path=path, started_at=started_at)
+    FlightLog.objects.create(organisation_id=uav.organisation_id, uav=uav, mission=mission_in_hand(uav), path=path, started_at=started_at)
 
 
 def end_flight_log(*, path: str, ended_at: datetime) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 from django.db import connection, transaction
 
 from inspection.selectors import ground_heights_m
+from missions.command_selectors import SENT_LAST
 from missions.models import MissionState
 from missions.services.reports import ReportedPosition, note_reported_positions
 from telemetry.decoding.measurement import Measurement, believable
@@ -88,13 +89,15 @@ def _known_with_missions(uav_ids: set[int]) -> tuple[dict[int, UUID | None], set
         found = cursor.fetchall()
         known: dict[int, UUID | None] = {uav_id: None for uav_id, _ in found}
         cursor.execute(
-            """
-            SELECT DISTINCT ON (mission_uav.uav_id) mission_uav.uav_id, mission.id
-            FROM missions_missionuav mission_uav JOIN missions_mission mission ON mission.id = mission_uav.mission_id
-            LEFT JOIN missions_route route ON route.mission_uav_id = mission_uav.id
-            WHERE mission_uav.uav_id = ANY(%s) AND mission.state = ANY(%s) AND mission.deleted_at IS NULL
-            ORDER BY mission_uav.uav_id, route.continued_by_id IS NOT NULL, array_position(%s, mission.state::text), mission.updated_at DESC
-            """,
+            f"""
+            SELECT DISTINCT ON (place.uav_id) place.uav_id, mission.id
+            FROM missions_missionuav place JOIN missions_mission mission ON mission.id = place.mission_id
+            JOIN missions_route route ON route.mission_uav_id = place.id AND route.geometry IS NOT NULL
+            {SENT_LAST}
+            WHERE place.uav_id = ANY(%s) AND mission.state = ANY(%s) AND mission.deleted_at IS NULL
+            ORDER BY place.uav_id, route.continued_by_id IS NOT NULL, sent.mission_id IS NOT DISTINCT FROM mission.id DESC,
+                array_position(%s, mission.state::text), mission.updated_at DESC
+            """,  # noqa: S608 - a text of ours
             [list(known), list(FLYING), list(FLYING)],
         )
         known.update(dict(cursor.fetchall()))

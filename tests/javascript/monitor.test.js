@@ -11,7 +11,7 @@ import { between } from "../../static/js/monitor/map/glide.js";
 import { addReport, flownParts } from "../../static/js/monitor/mission_details.js";
 import { causeWords, overWords, sentenceOf, targetLines } from "../../static/js/monitor/offer_words.js";
 import { alertsInOrder, inOrder, newAlerts } from "../../static/js/monitor/order.js";
-import { placed } from "../../static/js/monitor/placed.js";
+import { ofPage, placed } from "../../static/js/monitor/placed.js";
 import { ageWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
 import { unheardLines } from "../../static/js/monitor/unheard.js";
 
@@ -115,8 +115,10 @@ test("a UAV keeps its letter after its mission, until it flies another that is o
     placed([over], [mission("a", ago(900), 1), mission("b", ago(60), 2)]).map((one) => [one.mission, one.place]),
     [["b", 2]],
   );
-  const [elsewhere] = placed([{ ...over, mission: "other", place: 5 }], [mission("a", ago(900), 1)]);
-  assert.deepEqual([elsewhere.mission, elsewhere.place, elsewhere.estimated.along_route_m], ["a", 1, null]);
+  const elsewhere = { ...over, mission: "other", place: 5 };
+  assert.equal(placed([elsewhere], [mission("a", ago(900), 1)])[0], elsewhere, "it flies another mission");
+  assert.deepEqual(ofPage([elsewhere, over], "a"), [over], "and is not on the page of this one");
+  assert.deepEqual(ofPage([elsewhere, over], null), [elsewhere, over]);
   const flying = { ...over, mission: "a", place: 1 };
   assert.equal(placed([flying], [mission("a", null, 1), mission("b", ago(60), 2)])[0], flying);
   assert.equal(placed([over], [])[0], over);

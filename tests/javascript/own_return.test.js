@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { questionOf } from "../../static/js/domain/command_questions.js";
+import { abortQuestion, questionOf } from "../../static/js/domain/command_questions.js";
 import { returnLines, returnOf, returnSaid } from "../../static/js/domain/own_return.js";
 
 const check = (state, warnings = []) => ({ place: 1, state, warnings, height_m: 30, read_at: "2027-05-04T09:00:00Z" });
@@ -44,4 +44,21 @@ test("each UAV has its own", () => {
   assert.equal(returnOf([check("clear")], 1).state, "clear");
   assert.equal(returnOf([check("clear")], 0), undefined);
   assert.equal(returnOf(null, 0), undefined);
+});
+
+test("an abort says what each aircraft does, and what is in the way of each", () => {
+  const wires = "Between waypoints 2 and 4, the way home passes wires too low.";
+  const inTheWay = check("in_the_way", [wires]);
+  const uavs = [
+    { name: "Tern", check: inTheWay },
+    { name: "Kite", check: inTheWay },
+    { name: "Crow", check: undefined },
+  ];
+  const { lines } = abortQuestion({ name: "South", isActive: true, uavs });
+  assert.match(lines[1], /^In the air: it returns and lands where it took off/);
+  assert.match(lines[2], /^All return at once/);
+  assert.equal(lines[3], `Tern, Kite: ${wires}`);
+  assert.match(lines[4], /^Crow: Its way home has not been checked/);
+  assert.match(questionOf("abort", { name: "Tern", returns: inTheWay }).lines[0], /^In the air: it returns/);
+  assert.equal(abortQuestion({ name: "South", isActive: true, uavs: uavs.slice(0, 1) }).lines[2], false);
 });

@@ -1,11 +1,15 @@
 """The command line of ./run: what it refuses before anything is installed or started."""
 
 import socket
+import sys
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 
+from scripts import run
 from scripts.options import parse, port_problem
+from tests.scripts.ports import free_port
 
 
 def test_a_file_that_is_not_there_is_refused_with_its_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -25,6 +29,19 @@ def test_what_is_no_port_is_refused(port: str, tmp_path: Path) -> None:
 def test_detach_status_and_stop_exclude_each_other(tmp_path: Path) -> None:
     with pytest.raises(SystemExit):
         parse(["--status", "--stop"], tmp_path)
+
+
+def test_stopping_sets_nothing_up(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("SPANWISE_VAR", str(tmp_path))
+    monkeypatch.setattr(run, "PYTHON", Path(sys.executable))
+
+    def set_up(*_command: object, **_options: object) -> NoReturn:
+        raise AssertionError("set-up was called")
+
+    monkeypatch.setattr(run.subprocess, "run", set_up)
+    assert run.set_up(["--stop", "--var", str(tmp_path)]) == 0
+    with pytest.raises(AssertionError, match="set-up was called"):
+        run.set_up(["--var", str(tmp_path), f"--port={free_port()}"])
 
 
 def test_a_shortened_option_is_refused(tmp_path: Path) -> None:

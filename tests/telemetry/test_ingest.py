@@ -9,11 +9,14 @@ from django.db.models import F
 from django.utils import timezone
 
 from inspection.services import import_terrain
-from missions.models import LinkKind, Mission, MissionState, MissionUav, Uav
+from missions.models import Approval, CommandKind, LinkKind, Mission, MissionState, MissionUav, Uav
+from missions.services.commands import queue_command
 from telemetry.decoding.measurement import Measurement, believable
 from telemetry.models import TelemetryRecord, TelemetryStream
+from telemetry.selectors.watched import watched_flights
 from telemetry.services import StoredCount, store_records
 from tests.inspection.terrain.tiffs import write_geotiff
+from tests.telemetry.flown_missions import flies_route
 from tests.telemetry.records import START, at, record
 
 pytestmark = pytest.mark.django_db
@@ -110,13 +113,37 @@ def test_a_record_is_of_the_mission_that_is_flown(uav):
         for state in (MissionState.DISPATCHED, MissionState.ACTIVE, MissionState.PLANNED)
     )
     for mission in (dispatched, active, planned):
-        MissionUav.objects.create(mission=mission, uav=uav, sequence=0, name="One", start=Point(0, 0), cruise_speed_mps=5)
+        flies_route(mission, uav)
     store_records([record(uav, 1)])
     Mission.objects.filter(pk=active.pk).update(state=MissionState.COMPLETED)
     store_records([record(uav, 2)])
     Mission.objects.filter(pk=dispatched.pk).update(deleted_at=timezone.now())
     store_records([record(uav, 3)])
     assert list(TelemetryRecord.objects.order_by("sequence").values_list("mission", flat=True)) == [active.pk, dispatched.pk, None]
+
+
+def test_a_record_is_of_no_mission_that_lists_the_uav_and_has_no_route_for_it(uav):
+    mission = Mission.objects.create(name="South", state=MissionState.ACTIVE, planned_at=timezone.now(), graph_version=1)
+    MissionUav.objects.create(mission=mission, uav=uav, sequence=0, name="One", start=Point(0, 0), cruise_speed_mps=5)
+    store_records([record(uav, 1)])
+    assert TelemetryRecord.objects.get().mission is None
+
+
+def test_a_record_is_of_the_mission_of_which_a_route_was_sent_last(uav):
+    """South was started later, by its other UAV; its route of this one was never sent."""
+    north, south = (
+        Mission.objects.create(name=name, state=MissionState.ACTIVE, planned_at=timezone.now(), graph_version=1)
+        for name in ("North", "South")
+    )
+    for mission in (north, south):
+        flies_route(mission, uav)
+    approval = Approval.objects.create(mission=north, document={}, content_sha256="a" * 64)
+    queue_command(uav=uav, kind=CommandKind.UPLOAD_MISSION, actor=None, mission=north, approval=approval)
+    Mission.objects.filter(pk=south.pk).update(updated_at=timezone.now())
+    store_records([record(uav, 1)])
+    assert TelemetryRecord.objects.get().mission == north
+    Approval.objects.create(mission=south, document={}, content_sha256="b" * 64)
+    assert [flight.mission_id for flight in watched_flights()] == [north.pk], "and the watch follows it on that route"
 
 
 def test_what_cannot_be_is_not_believed(uav):

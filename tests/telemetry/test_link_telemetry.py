@@ -6,8 +6,9 @@ from typing import Any
 import pytest
 from django.utils import timezone
 
-from missions.models import LinkKind, Mission, MissionUav, Uav
+from missions.models import LinkKind, Mission, Uav
 from telemetry.models import TelemetryRecord
+from tests.telemetry.flown_missions import flies_route
 from tests.telemetry.uav_clients import UavClient, linked_uav, report, seconds_ago
 
 pytestmark = pytest.mark.django_db
@@ -129,7 +130,7 @@ def test_records_out_of_order_are_kept_and_flagged(kite: UavClient) -> None:
 
 def test_a_record_names_only_a_mission_of_its_own_uav(kite: UavClient) -> None:
     own, other = Mission.objects.create(name="Own"), Mission.objects.create(name="Other")
-    MissionUav.objects.create(mission=own, uav=kite.uav, sequence=0, name="Kite", start=kite.uav.location, cruise_speed_mps=12)
+    flies_route(own, kite.uav)
     answer = kite.report(report(1, mission=str(own.pk)), report(2, mission=str(other.pk)), report(3, mission="x")).json()
     assert [refused["index"] for refused in answer["refused"]] == [1, 2]
     assert TelemetryRecord.objects.get().mission == own

@@ -7,10 +7,11 @@ from django.contrib.gis.geos import Point
 from django.db import connections, transaction
 from django.utils import timezone
 
-from missions.models import Mission, MissionState, MissionUav, Uav
+from missions.models import Mission, MissionState, Uav
 from missions.services.approval import held_mission
 from telemetry.models import TelemetryRecord
 from telemetry.services import store_records
+from tests.telemetry.flown_missions import flies_route
 from tests.telemetry.records import record
 
 PATIENCE_S = 60.0
@@ -20,7 +21,7 @@ PATIENCE_S = 60.0
 def test_a_report_is_stored_while_its_mission_is_held():
     uav = Uav.objects.create(name="One", location=Point(0, 0))
     mission = Mission.objects.create(name="Held", state=MissionState.DISPATCHED, planned_at=timezone.now(), graph_version=1)
-    MissionUav.objects.create(mission=mission, uav=uav, sequence=0, name="One", start=uav.location, cruise_speed_mps=12.0)
+    flies_route(mission, uav)
 
     def report() -> None:
         store_records([record(uav, 1)])

@@ -2,7 +2,7 @@
 
 import { t } from "../text.js";
 import { durationText, lengthText, speedText } from "../units.js";
-import { returnLines } from "./own_return.js";
+import { returnLines, returnLinesOfAll } from "./own_return.js";
 
 /** @import { CommandKind, ReturnCheck, Route } from "../api_types.d.ts" */
 
@@ -20,6 +20,14 @@ import { returnLines } from "./own_return.js";
  * @property {boolean} [isNeeded]
  */
 /**
+ * A choice that has to be made, with nothing chosen beforehand.
+ *
+ * @typedef {object} QuestionChoices
+ * @property {string} name
+ * @property {string} legend
+ * @property {{ value: string, words: string, detail?: string }[]} of
+ */
+/**
  * A question before an act; page/confirm.js asks it.
  *
  * @typedef {object} Question
@@ -28,6 +36,7 @@ import { returnLines } from "./own_return.js";
  * @property {string} act the words of the button
  * @property {string} [keep] the words of the way out
  * @property {QuestionField | null} [field]
+ * @property {QuestionChoices | null} [choices]
  * @property {boolean} [isDanger]
  * @property {boolean} [isBack] whether the act can be taken back: then it has the focus, else the way out
  * @property {string | null} [image] name of an icon
@@ -35,6 +44,10 @@ import { returnLines } from "./own_return.js";
  */
 
 export const LATE = t("If it cannot be reached in time, the command expires and is not carried out later.");
+// what a gateway sends: telemetry/ground_station/orders.py
+const ABORT_DOES = t(
+  "In the air: it returns and lands where it took off; an autopilot that refuses to return lands where it is. On the ground: its motors are switched off.",
+);
 export const WHY = { name: "why", label: t("Why (kept in the history)") };
 
 /**
@@ -129,6 +142,7 @@ const ASKED = {
   abort: ({ name, returns }) => ({
     title: t("Abort the flight of {name}?", { name }),
     lines: [
+      ABORT_DOES,
       t(
         "Whatever else it was told no longer counts. Targets that it has not reached stay undone; the other UAVs go on.",
       ),
@@ -177,6 +191,31 @@ export const outOfSlotQuestion = (name, why) => ({
   keep: t("Wait"),
   act: t("Start {name} all the same", { name }),
   isDanger: true,
+});
+
+/**
+ * Before a mission is aborted: what each aircraft does, and what is in its way home.
+ *
+ * @param {{ name: string, isActive: boolean, uavs: { name: string, check: ReturnCheck | null | undefined }[] }} mission
+ * @returns {Omit<Question, "opener">}
+ */
+export const abortQuestion = ({ name, isActive, uavs }) => ({
+  title: t("Abort “{name}”?", { name }),
+  lines: [
+    t(
+      "{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.",
+      { names: uavs.map((uav) => uav.name).join(", ") },
+    ),
+    ABORT_DOES,
+    uavs.length > 1 && t("All return at once: nothing keeps them apart on the way home."),
+    ...returnLinesOfAll(uavs),
+    LATE,
+  ],
+  field: WHY,
+  keep: isActive ? t("Keep flying") : t("Keep it"),
+  act: t("Abort the mission"),
+  isDanger: true,
+  image: "octagon-alert",
 });
 
 /**

@@ -20,6 +20,20 @@ export function returnLines(check) {
 }
 
 /**
+ * The same of several UAVs: each sentence once, after the names of those of which it is true.
+ *
+ * @param {{ name: string, check: ReturnCheck | null | undefined }[]} uavs
+ */
+export function returnLinesOfAll(uavs) {
+  /** @type {Map<string, string[]>} */
+  const said = new Map();
+  for (const { name, check } of uavs)
+    for (const line of [...returnLines(check), check?.fence_warning ?? ""].filter(Boolean))
+      said.set(line, [...(said.get(line) ?? []), name]);
+  return [...said].map(([line, names]) => `${names.join(", ")}: ${line}`);
+}
+
+/**
  * Under its name on the panel: { words, image, level }; null while nothing is known.
  *
  * @param {ReturnCheck | null | undefined} check

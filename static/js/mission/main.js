@@ -3,6 +3,7 @@
 import { ApiError, get } from "../api.js";
 import { byId } from "../dom.js";
 import { readPage, startChrome } from "../page/chrome.js";
+import { mountPlannedStarts } from "../page/planned_starts.js";
 import { KEEP_NO_MORE, KEEP_NOW } from "../page/signing_out.js";
 import { mountWorkbench } from "../page/workbench.js";
 import { mountSceneOpener } from "../scene/opener.js";
@@ -113,6 +114,8 @@ mountHeader(store, actions, page.canPlan, {
 const flyingKeys = page.isFrozen
   ? mountFlying(store, flying, { canFly: page.canFly, saveCopy: () => void actions.save({ asCopy: true }) })
   : [];
+if (page.isFrozen) mountPlannedStarts({ mission: page.mission, canFly: page.canFly });
+
 if (page.canPlan) mountApprove(store, flying);
 const scene = mountSceneOpener(sceneOfMission);
 const rehearsalKeys = mountRehearsal(store, createRehearsing(store, { isStage }), {

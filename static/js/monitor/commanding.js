@@ -1,37 +1,20 @@
 /** What an operator tells UAVs from the live page. Each asks first; nothing acts at once. */
 
-import { ApiError, get } from "../api.js";
+import { ApiError } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
-import { LATE, questionOf } from "../domain/command_questions.js";
+import { questionOf } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
-import { flyingUavs } from "../domain/in_air.js";
 import { returnOf } from "../domain/own_return.js";
 import { confirmAct } from "../page/confirm.js";
 import { tellUav } from "../page/tell_uav.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
+import { createBatch, returnsOf } from "./batch_commanding.js";
 import { unheardLines } from "./unheard.js";
 
-/** @import { CommandKind, LiveMission, LiveUav, Mission, ReturnCheck, ReturnChecks } from "../api_types.d.ts" */
-/** @import { Answer } from "../api.js" */
-/** @import { Commanding, MonitorStore } from "./types.d.ts" */
-
-/** @type {Record<"pause" | "return", { title: (uavs: number) => string, lines: string[], act: string, isBack: boolean }>} */
-const ALL = {
-  pause: {
-    title: (uavs) => tn(uavs, "Pause {count} UAV?", "Pause all {count} UAVs?"),
-    lines: [t("Each stops on its route and waits for Resume, as long as its battery lasts.")],
-    act: t("Pause all"),
-    isBack: true,
-  },
-  return: {
-    title: (uavs) => tn(uavs, "Return {count} UAV?", "Return all {count} UAVs?"),
-    lines: [t("Each flies back to where it took off and lands there. Targets that are not reached stay undone.")],
-    act: t("Return all"),
-    isBack: true,
-  },
-};
+/** @import { CommandKind, LiveMission, LiveUav, Mission, ReturnCheck } from "../api_types.d.ts" */
+/** @import { Commanding, MonitorPage, MonitorStore } from "./types.d.ts" */
 
 /**
  * Figures of now in a question: the battery, what is left, the targets that stay open.
@@ -57,8 +40,8 @@ export function figuresLine({ measured, estimated, place }, mission) {
 /** The UAV in its mission's plan. @param {LiveUav} uav @param {Map<string, Mission>} details */
 const plannedOf = ({ mission, place }, details) => details.get(mission ?? "")?.uavs[place ?? -1];
 
-/** @param {MonitorStore} store @returns {Commanding} */
-export function createCommanding(store) {
+/** @param {MonitorStore} store @param {MonitorPage} page @returns {Commanding} */
+export function createCommanding(store, page) {
   /** @param {LiveUav} uav */
   const certainty = (uav) => certaintyOf(uav, store.state.now_ms);
 
@@ -78,13 +61,7 @@ export function createCommanding(store) {
   /** @param {LiveUav} uav @param {CommandKind} kind @returns {Promise<ReturnCheck | undefined>} */
   async function wayHome(uav, kind) {
     if (!["return", "abort"].includes(kind) || uav.mission === null || uav.place === null) return undefined;
-    try {
-      const { data } = /** @type {Answer<ReturnChecks>} */ (await get(`/missions/${uav.mission}/returns`));
-      return returnOf(data.results, uav.place);
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      return undefined; // the question says that nobody has looked
-    }
+    return returnOf(await returnsOf(uav.mission), uav.place);
   }
 
   /** @type {Commanding["ask"]} */
@@ -104,28 +81,5 @@ export function createCommanding(store) {
     if (asked) await told(uav, kind, asked);
   }
 
-  /** @type {Commanding["askAll"]} */
-  async function askAll(kind, opener = null) {
-    const uavs = flyingUavs(store.state);
-    const { title, lines, ...rest } = ALL[kind];
-    if (!uavs.length) return void toast(t("No UAV is in the air."));
-    const silent = uavs.filter((uav) => certainty(uav) !== MEASURED);
-    const asked = await confirmAct({
-      ...rest,
-      title: title(uavs.length),
-      lines: [
-        `${uavs.map(({ name }) => name).join(", ")}.`,
-        ...lines,
-        ...unheardLines(silent, kind, store.state.now_ms),
-        LATE,
-      ],
-      keep: t("Keep flying"),
-      opener,
-    });
-    if (!asked) return;
-    const done = await Promise.all(uavs.map((uav) => told(uav, kind)));
-    if (done.every(Boolean)) toast(tn(done.length, "{count} UAV is being told.", "{count} UAVs are being told."));
-  }
-
-  return { ask, askAll };
+  return { ask, askAll: createBatch(store, page) };
 }

@@ -5,6 +5,7 @@ import { openFeed } from "../live/feed.js";
 import { KINDS } from "../live/shown.js";
 import { staleWords } from "../live/stale.js";
 import { readPage, startChrome } from "../page/chrome.js";
+import { mountPlannedStarts } from "../page/planned_starts.js";
 import { mountWorkbench } from "../page/workbench.js";
 import { mountSceneOpener } from "../scene/opener.js";
 import { createStore } from "../store.js";
@@ -22,7 +23,7 @@ import { mountHead } from "./panels/head.js";
 import { mountOffers } from "./panels/offers.js";
 import { mountSimulation } from "./panels/simulation.js";
 import { mountUrgent } from "./panels/urgent.js";
-import { placed } from "./placed.js";
+import { ofPage, placed } from "./placed.js";
 
 /** @import { Stage } from "../scene/stage.js" */
 
@@ -64,7 +65,7 @@ const scene = mountSceneOpener(() => {
   const mission = missionSeen(store.state);
   return mission !== null && { mission, now_ms: () => feed.now_ms(), follow: followFeed };
 });
-const commanding = page.canFly ? createCommanding(store) : null;
+const commanding = page.canFly ? createCommanding(store, page) : null;
 const narrow = mountNarrow();
 createMissionDetails(store);
 mountHead(store, page);
@@ -83,6 +84,7 @@ mountBoard(store, {
   },
 });
 mountSimulation(page);
+mountPlannedStarts({ mission: page.mission, canFly: page.canFly });
 mountUrgent(store, { open: narrow.showBoard });
 const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
 
@@ -175,7 +177,9 @@ function take(touched) {
 function show() {
   /** @type {Partial<Live>} */
   const told = Object.fromEntries([...(waiting ?? [])].map((kind) => [kind, [...feed.shown[kind].values()]]));
-  if (told.uavs || told.missions) told.uavs = placed([...feed.shown.uavs.values()], [...feed.shown.missions.values()]);
+  if (told.uavs || told.missions) {
+    told.uavs = ofPage(placed([...feed.shown.uavs.values()], [...feed.shown.missions.values()]), page.mission);
+  }
   waiting = null;
   store.update({ ...told, now_ms: feed.now_ms() });
   store.update({ isWhole: true }); // from here on what comes is news

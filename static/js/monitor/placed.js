@@ -1,6 +1,6 @@
 /** UAVs whose mission is over keep the letter and colour that they had in it, as long as they fly no other. Values in, values out. */
 
-/** @import { EstimateShape, LiveMission, LiveUav } from "../api_types.d.ts" */
+/** @import { LiveMission, LiveUav } from "../api_types.d.ts" */
 
 /** @param {Pick<LiveMission, "ended_at">} mission */
 const endedAt_ms = ({ ended_at }) => (ended_at ? Date.parse(ended_at) : Infinity);
@@ -15,23 +15,18 @@ const endedAt_ms = ({ ended_at }) => (ended_at ? Date.parse(ended_at) : Infinity
 export function placed(uavs, missions) {
   const newest = [...missions].sort((a, b) => endedAt_ms(b) - endedAt_ms(a));
   return uavs.map((uav) => {
-    if (missions.some(({ id }) => id === uav.mission)) return uav;
+    if (uav.mission !== null) return uav;
     const last = newest.find((mission) => mission.uavs.some((entry) => entry.uav === uav.id));
     const entry = last?.uavs.find((one) => one.uav === uav.id);
-    if (!last || !entry) return uav;
-    return {
-      ...uav,
-      mission: last.id,
-      place: entry.place,
-      estimated: uav.mission === null ? uav.estimated : offRoute(uav.estimated),
-    };
+    return last && entry ? { ...uav, mission: last.id, place: entry.place } : uav;
   });
 }
 
 /**
- * What is estimated of it along the route of a mission that is not on the page says nothing here.
+ * On the page of one mission: its UAVs, and those that fly no mission; one that flies another mission is no business of this page.
  *
- * @param {EstimateShape | null} estimated
+ * @param {LiveUav[]} uavs
+ * @param {string | null} mission the only one of the page; null: all
  */
-const offRoute = (estimated) =>
-  estimated && { ...estimated, along_route_m: null, to_go_m: null, arrivals: [], waypoint_sequence: null };
+export const ofPage = (uavs, mission) =>
+  mission === null ? uavs : uavs.filter((uav) => uav.mission === null || uav.mission === mission);

@@ -4,7 +4,7 @@ import { h, icon } from "../dom.js";
 import { t } from "../text.js";
 import { open } from "./keyboard.js";
 
-/** @import { Question, QuestionField } from "../domain/command_questions.js" */
+/** @import { Question, QuestionChoices, QuestionField } from "../domain/command_questions.js" */
 
 const EDGE_PX = 12;
 
@@ -15,9 +15,21 @@ const EDGE_PX = 12;
  * @returns {Promise<Record<string, any> | null>}
  */
 export function confirmAct(question) {
-  const { title, lines, act, keep = t("Not yet"), field = null, isDanger, isBack, image, opener } = question;
+  const {
+    title,
+    lines,
+    act,
+    keep = t("Not yet"),
+    field = null,
+    choices = null,
+    isDanger,
+    isBack,
+    image,
+    opener,
+  } = question;
   return new Promise((resolve) => {
     const input = field && fieldInput(field);
+    const group = choices && choiceGroup(choices);
     const out = h(
       "button",
       { class: "button", value: "out", type: "button", onclick: () => dialog.close("out") },
@@ -32,6 +44,7 @@ export function confirmAct(question) {
         { id: "confirm-lines", class: "confirm-lines" },
         lines.filter(Boolean).map((line) => h("p", {}, line)),
       ),
+      group,
       input && h("div", { class: "field" }, h("label", { for: "confirm-field" }, field.label), input),
       h("div", { class: "acts" }, out, go),
     );
@@ -43,12 +56,22 @@ export function confirmAct(question) {
       form,
     );
     dialog.addEventListener("close", () => {
-      if (dialog.returnValue !== "go") resolve(null);
-      else resolve(input ? { [field.name]: field.type === "number" ? input.valueAsNumber : input.value.trim() } : {});
+      if (dialog.returnValue !== "go") return resolve(null);
+      const filled = input && { [field.name]: field.type === "number" ? input.valueAsNumber : input.value.trim() };
+      resolve({ ...filled, ...(choices && { [choices.name]: new FormData(form).get(choices.name) }) });
     });
     open(dialog);
     if (opener) growFrom(dialog, opener);
-    (input && field.isNeeded ? input : isBack ? go : out).focus();
+    const first = group?.querySelector("input");
+    if (first) {
+      go.disabled = true;
+      go.title = t("Choose whom it is for first.");
+      group?.addEventListener("change", () => {
+        go.disabled = false;
+        go.removeAttribute("title");
+      });
+    }
+    (first ?? (input && field.isNeeded ? input : isBack ? go : out)).focus();
   });
 }
 
@@ -66,6 +89,23 @@ function fieldInput(field) {
     maxlength: field.type === "number" ? null : 300,
     required: field.isNeeded,
   });
+}
+
+/** Radios of which none is chosen: Enter does nothing before one is. @param {QuestionChoices} choices */
+function choiceGroup({ name, legend, of }) {
+  return h(
+    "fieldset",
+    { class: "confirm-choices" },
+    h("legend", {}, legend),
+    of.map(({ value, words, detail }) =>
+      h(
+        "label",
+        {},
+        h("input", { type: "radio", name, value, required: true }),
+        h("span", {}, h("strong", {}, words), detail && h("small", {}, detail)),
+      ),
+    ),
+  );
 }
 
 /**

@@ -8,12 +8,15 @@ import pytest
 from django.utils import timezone
 
 from missions.models import CommandKind, LinkKind, Mission, MissionUav, OfferState, ReplanOffer, Uav, UavCommand
+from missions.services.dispatch import dispatch_mission
 from missions.services.flying import mark_started, mark_target
+from missions.services.refused import Refused
+from missions.services.steering import command_uav
 from telemetry.models import Alert, AlertLevel, UavLink, UavWatch
 from telemetry.selectors.live import MOST_CLOSED
 from telemetry.serializers.live import LiveAnswerSerializer
 from telemetry.services import store_records
-from tests.missions.flights import carry, dispatched, fleet, ground
+from tests.missions.flights import approved, carry, dispatched, fleet, ground
 from tests.missions.outbox import a_uav, give
 from tests.missions.worlds import world
 from tests.telemetry.records import record
@@ -147,3 +150,27 @@ def test_while_nothing_changes_nothing_is_sent_again() -> None:
     assert (again.status_code, again.content, again["ETag"]) == (304, b"", etag)
     store_records([record(uav, 2)])
     assert asked(user, **{"If-None-Match": etag}).status_code == 200
+
+
+def test_a_page_of_a_mission_shows_no_uav_that_has_no_route_of_it_or_flies_another() -> None:
+    """South is planned for Tern and Kite, lists Crow without a route, and is sent to Tern alone; Kite and Crow fly North."""
+    user, here = somebody(), world()
+    tern, kite, crow = fleet("Tern", "Kite", "Crow")
+    north = dispatched(user, [kite, crow], here.towers[1:3], name="North")
+    carry(kite, crow)
+    for uav in (kite, crow):
+        command_uav(uav=uav, kind=CommandKind.START, actor=user, parameters={"out_of_slot": True})
+        carry(uav)
+    south, _approval = approved(user, [tern, kite], here.towers[1:3], name="South")
+    with pytest.raises(Refused):
+        dispatch_mission(mission=south, actor=user)
+    assert [uav["name"] for uav in shown(user, f"?mission={south.pk}")["uavs"]] == ["Tern"]
+    dispatch_mission(mission=south, actor=user, place=0)
+    MissionUav.objects.create(mission=south, uav=crow, sequence=2, name="Crow", start=crow.location, cruise_speed_mps=10.0)
+    [of_south] = shown(user, f"?mission={south.pk}")["missions"]
+    assert [entry["name"] for entry in of_south["uavs"]] == ["Tern", "Kite"]
+    assert [uav["name"] for uav in shown(user, f"?mission={south.pk}")["uavs"]] == ["Tern"]
+    assert {uav["name"]: uav["mission"] for uav in shown(user)["uavs"]} == {
+        "Tern": str(south.pk), "Kite": str(north.pk), "Crow": str(north.pk),
+    }  # fmt: skip
+    assert sorted(uav["name"] for uav in shown(user, f"?mission={north.pk}")["uavs"]) == ["Crow", "Kite"]

@@ -18,6 +18,47 @@ export default {
   "Each flies back to where it took off and lands there. Targets that are not reached stay undone.":
     "Jedes fliegt zu seinem Startplatz zurück und landet dort. Ziele, die nicht erreicht sind, bleiben unerledigt.",
   "Return all": "Alle zurück",
+  "In the air: it returns and lands where it took off; an autopilot that refuses to return lands where it is. On the ground: its motors are switched off.":
+    "In der Luft: Es kehrt zurück und landet, wo es gestartet ist; ein Autopilot, der die Rückkehr verweigert, landet an Ort und Stelle. Am Boden: Seine Motoren werden abgeschaltet.",
+  "All return at once: nothing keeps them apart on the way home.":
+    "Alle kehren gleichzeitig zurück: Nichts hält sie auf dem Rückweg auseinander.",
+  "Starts in planned order begun": "Starts in geplanter Reihenfolge begonnen",
+  "Starts in planned order stopped": "Starts in geplanter Reihenfolge angehalten",
+  "All starts were given.": "Alle Startbefehle sind gegeben.",
+  "Stopped. No further UAV is started.": "Angehalten. Kein weiteres UAV wird gestartet.",
+  "Stopped: a UAV of the mission was told to pause, hold, return, land or abort.":
+    "Angehalten: Ein UAV der Mission bekam Pause, Halten, Rückkehr, Landen oder Abbruch befohlen.",
+  "Stopped: the mission is over.": "Angehalten: Die Mission ist zu Ende.",
+  "Stopped: the server could not look after it for a minute.":
+    "Angehalten: Der Server konnte eine Minute lang nicht danach sehen.",
+  "Start given": "Start befohlen",
+  "Not started: {why}": "Nicht gestartet: {why}",
+  "Not started": "Nicht gestartet",
+  "Not started.": "Nicht gestartet.",
+  "in {time}": "in {time}",
+  "Waits: {why}": "Wartet: {why}",
+  "{name}: in 10 s": "{name}: in 10 s",
+  "{name}: {time} after the first": "{name}: {time} nach dem ersten",
+  "Each start is checked against the UAVs in the air and waits where it has to. Closing this page stops nothing.":
+    "Jeder Start wird gegen die UAVs in der Luft geprüft und wartet, wo er muss. Diese Seite zu schließen hält nichts an.",
+  "Stop, or any Pause, Hold, Return, Land or Abort of this mission ends it: no further UAV is started.":
+    "„Starts anhalten“ oder jeder Befehl Pause, Halten, Rückkehr, Landen oder Abbruch in dieser Mission beendet es: Kein weiteres UAV wird gestartet.",
+  "Start in planned order": "In geplanter Reihenfolge starten",
+  "Stop starting": "Starts anhalten",
+  "Start {count} UAV in planned order?": [
+    "{count} UAV in geplanter Reihenfolge starten?",
+    "{count} UAVs in geplanter Reihenfolge starten?",
+  ],
+  "{name} never connected.": "{name} war noch nie verbunden.",
+  "{name} is on the ground.": "{name} ist am Boden.",
+  "All {missions} missions: {uavs}": "Alle {missions} Missionen: {uavs}",
+  "Not told: {why}": "Nicht gesendet: {why}",
+  "{name} was not told: {why}": "Nicht gesendet an {name}: {why}",
+  "{act}: of which mission?": "{act}: welche Mission?",
+  "Whom it is for": "Für wen",
+  "{act}: not confirmed.": "{act}: nicht bestätigt.",
+  "No UAV of a mission is in the air.": "Kein UAV einer Mission ist in der Luft.",
+  "Choose whom it is for first.": "Erst wählen, für wen es gilt.",
   "battery {figure}": "Akku {figure}",
   "{distance} of its route to go": "noch {distance} seiner Route",
   "would land {time}": "würde {time} landen",

@@ -4,7 +4,7 @@
  */
 
 import { ApiError, freshKey, get, post, signInAddress } from "../../api.js";
-import { LATE, questionOf, WHY } from "../../domain/command_questions.js";
+import { abortQuestion, questionOf } from "../../domain/command_questions.js";
 import { flyersOf, isFrozen, isOnItsWay, KINDS } from "../../domain/flying.js";
 import { returnLines, returnOf } from "../../domain/own_return.js";
 import { confirmAct } from "../../page/confirm.js";
@@ -210,23 +210,11 @@ async function send(acting, flyer, flight) {
 async function abort(acting) {
   const { mission } = acting.store.state;
   if (!mission) return;
-  const flyers = flyersOf(mission);
-  const asked = await confirmAct({
-    title: t("Abort “{name}”?", { name: mission.name }),
-    lines: [
-      t(
-        "{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.",
-        { names: uavsWords(flyers) },
-      ),
-      ...returnsOf(acting.store.state.returns, flyers),
-      LATE,
-    ],
-    field: WHY,
-    keep: mission.state === "active" ? t("Keep flying") : t("Keep it"),
-    act: t("Abort the mission"),
-    isDanger: true,
-    image: "octagon-alert",
-  });
+  const uavs = flyersOf(mission).map(({ name, place }) => ({
+    name,
+    check: returnOf(acting.store.state.returns, place),
+  }));
+  const asked = await confirmAct(abortQuestion({ name: mission.name, isActive: mission.state === "active", uavs }));
   if (!asked) return;
   await tried(acting, t("Not aborted."), async () => {
     await post(`/missions/${mission.id}/abort`, { why: asked.why }, whateverChanged());

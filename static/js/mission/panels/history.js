@@ -169,6 +169,12 @@ function wordsOfFlying({ action, after }) {
       title: t("Sent to UAVs"),
       detail: [tn(after?.sent?.length ?? 0, "{count} UAV", "{count} UAVs"), after?.why].filter(Boolean).join(", "),
     };
+  if (action === "begin-starts")
+    return {
+      title: t("Starts in planned order begun"),
+      detail: tn(Array.isArray(after?.uavs) ? after.uavs.length : 0, "{count} UAV", "{count} UAVs"),
+    };
+  if (action === "stop-starts") return { title: t("Starts in planned order stopped"), detail: "" };
   if (action === "start") return { title: t("Started"), detail: "" };
   if (action === "complete") return { title: t("Completed"), detail: "" };
   if (action === "fail") return { title: t("Failed"), detail: "" };

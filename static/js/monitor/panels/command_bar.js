@@ -2,9 +2,9 @@
 
 import { byId, h, icon } from "../../dom.js";
 import { KINDS } from "../../domain/flying.js";
-import { flyingUavs } from "../../domain/in_air.js";
 import { routeLetter, routeNumber } from "../../domain/palette.js";
 import { t } from "../../text.js";
+import { batchScopes, whyNot } from "../batch.js";
 import { isHeld } from "../uav_words.js";
 
 /** @import { AskedKind } from "../../domain/command_questions.js" */
@@ -24,7 +24,13 @@ const BUTTONS = [
 ];
 
 /** @param {Readonly<MonitorState>} state @returns {LiveUav | null} */
-const chosenFlyer = (state) => flyingUavs(state).find(({ id }) => id === state.chosen) ?? null;
+const chosenUav = (state) => state.uavs.find(({ id }) => id === state.chosen) ?? null;
+
+/** That can be told something now. @param {Readonly<MonitorState>} state @returns {LiveUav | null} */
+function chosenFlyer(state) {
+  const uav = chosenUav(state);
+  return uav && !whyNot(uav) ? uav : null;
+}
 
 /** What Pause asks for now: a UAV that holds is resumed. @param {LiveUav} uav */
 const pauseOrResume = (uav) => (isHeld(uav) ? "resume" : "pause");
@@ -51,9 +57,11 @@ function mountAll(store, commanding) {
   pause.addEventListener("click", () => void commanding.askAll("pause", pause));
   home.addEventListener("click", () => void commanding.askAll("return", home));
   store.listen(["uavs", "missions"], (state) => {
-    const isIdle = flyingUavs(state).length === 0;
-    pause.disabled = isIdle;
-    home.disabled = isIdle;
+    const isIdle = batchScopes(state.uavs, state.missions).length === 0;
+    for (const button of [pause, home]) {
+      button.disabled = isIdle;
+      button.title = isIdle ? t("No UAV of a mission is in the air.") : "";
+    }
   });
 }
 
@@ -64,11 +72,12 @@ export function mountCommandBar(store, commanding) {
   const buttons = makeButtons(store, commanding);
   const [pause] = buttons;
   const who = h("span", { class: "command-who" }, letter, name);
-  const bar = h("div", { class: "command-bar float", role: "group", hidden: true }, who, buttons);
+  const why = h("p", { class: "command-why caption", hidden: true });
+  const bar = h("div", { class: "command-bar float", role: "group", hidden: true }, who, buttons, why);
   byId("main").append(bar);
 
   store.listen(["chosen", "uavs", "missions"], (state) => {
-    const uav = chosenFlyer(state);
+    const uav = chosenUav(state);
     bar.hidden = uav === null;
     document.documentElement.toggleAttribute("data-commanding", uav !== null);
     if (!uav) return;
@@ -79,6 +88,13 @@ export function mountCommandBar(store, commanding) {
       letter.className = `letter route-${routeNumber(uav.place)}`;
     }
     name.textContent = uav.name;
+    const reason = whyNot(uav);
+    for (const button of buttons) {
+      button.disabled = reason !== "";
+      button.title = reason;
+    }
+    why.hidden = reason === "";
+    why.textContent = reason;
     const kind = pauseOrResume(uav);
     if (pause.dataset.kind === kind) return;
     pause.dataset.kind = kind;

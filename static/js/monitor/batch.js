@@ -1,0 +1,107 @@
+/** Whom a command to several UAVs reaches, mission by mission, and what the question before it says. Values in, values out. */
+
+import { inAir } from "../domain/in_air.js";
+import { returnLinesOfAll, returnOf } from "../domain/own_return.js";
+import { t, tn } from "../text.js";
+
+/** @import { BatchAnswer, LiveMission, LiveUav, ReturnCheck } from "../api_types.d.ts" */
+
+/**
+ * UAVs of one mission that a batch would reach, and those it would not, with the reason.
+ *
+ * @typedef {{ id: string, name: string, uavs: LiveUav[], left: { name: string, why: string }[] }} BatchScope
+ */
+
+const REACHABLE = ["dispatched", "active", "aborted", "failed"];
+
+/** Why a command to a UAV makes no sense now; "" where it does. @param {Pick<LiveUav, "name" | "measured" | "link">} uav */
+export function whyNot({ name, measured, link }) {
+  if (!measured && !link?.heard_at) return t("{name} never connected.", { name });
+  return inAir({ measured, link }) === false ? t("{name} is on the ground.", { name }) : "";
+}
+
+/**
+ * Missions that have a UAV a batch can reach, in the order of the page. Only UAVs that fly the mission belong to it.
+ *
+ * @param {LiveUav[]} uavs
+ * @param {LiveMission[]} missions
+ * @returns {BatchScope[]}
+ */
+export function batchScopes(uavs, missions) {
+  return missions
+    .filter(({ state }) => REACHABLE.includes(state))
+    .map(({ id, name }) => {
+      const own = uavs.filter(({ mission }) => mission === id);
+      return {
+        id,
+        name,
+        uavs: own.filter((uav) => !whyNot(uav)),
+        left: own.filter(whyNot).map((uav) => ({ name: uav.name, why: whyNot(uav) })),
+      };
+    })
+    .filter((scope) => scope.uavs.length > 0);
+}
+
+/** @param {{ name: string }[]} uavs */
+const names = (uavs) => uavs.map(({ name }) => name).join(", ");
+
+/**
+ * What stands beside each choice of a scope: { value, words, detail }. Every choice names its mission and its UAVs.
+ *
+ * @param {BatchScope[]} scopes
+ */
+export function scopeChoices(scopes) {
+  const each = scopes.map(({ id, name, uavs }) => ({
+    value: id,
+    words: `${name}: ${tn(uavs.length, "{count} UAV", "{count} UAVs")}`,
+    detail: names(uavs),
+  }));
+  if (scopes.length < 2) return each;
+  const all = scopes.flatMap(({ uavs }) => uavs);
+  const words = t("All {missions} missions: {uavs}", {
+    missions: scopes.length,
+    uavs: tn(all.length, "{count} UAV", "{count} UAVs"),
+  });
+  return [...each, { value: "all", words, detail: scopes.map(({ name }) => name).join(", ") }];
+}
+
+/**
+ * What is in each UAV's way home, as the question of one UAV says it; those that say the same stand together.
+ *
+ * @param {BatchScope[]} scopes
+ * @param {Map<string, ReturnCheck[] | undefined>} returns by mission
+ */
+export const returnLinesOf = (scopes, returns) =>
+  returnLinesOfAll(
+    scopes.flatMap(({ id, uavs }) =>
+      uavs.map(({ name, place }) => ({ name, check: place === null ? null : returnOf(returns.get(id), place) })),
+    ),
+  );
+
+/** @param {BatchScope[]} scopes */
+export const leftLines = (scopes) => scopes.flatMap(({ left }) => left.map(({ why }) => t("Not told: {why}", { why })));
+
+/**
+ * The request of a batch: { path, body }. It names the UAVs that the question named, and no others.
+ *
+ * @param {"pause" | "return"} kind
+ * @param {BatchScope[]} scopes
+ */
+export function batchRequest(kind, scopes) {
+  const missions = scopes.map(({ id, uavs }) => ({ mission: id, uavs: uavs.map((uav) => uav.id) }));
+  if (missions.length > 1) return { path: "/missions/commands", body: { kind, missions } };
+  const [{ mission, uavs }] = missions;
+  return { path: `/missions/${mission}/commands`, body: { kind, uavs } };
+}
+
+/** What became of it, in words. @param {BatchAnswer[]} results */
+export function answerWords(results) {
+  const told = results.filter((answer) => answer.is_accepted).length;
+  const refused = results.filter((answer) => !answer.is_accepted);
+  return [
+    tn(told, "{count} UAV is being told.", "{count} UAVs are being told."),
+    ...refused.map(({ name, reasons }) =>
+      t("{name} was not told: {why}", { name, why: reasons.map(({ message }) => message).join(" ") }),
+    ),
+  ].join(" ");
+}

@@ -1,0 +1,180 @@
+/** Starts in planned order, which the server carries out: a countdown for each UAV and Stop, on every page that shows the mission. */
+
+import { ApiError, freshKey, get, post, remove } from "../api.js";
+import { byId, h, icon } from "../dom.js";
+import { t, tn } from "../text.js";
+import { confirmAct } from "./confirm.js";
+import { toast } from "./toast.js";
+
+/** @import { Answer } from "../api.js" */
+/** @import { PlannedStart, PlannedStarts, PlannedStartsList, MissionStarts, WaitingStart } from "../api_types.d.ts" */
+
+/**
+ * @typedef {object} StartsContext
+ * @property {string | null} mission the only one of the page; null: all
+ * @property {boolean} canFly
+ */
+
+const POLL_MS = 2000;
+const TICK_MS = 500;
+const SHOWN_AFTER_MS = 300_000; // as the server lists them
+
+/** @type {Record<string, string>} */
+const ENDS = {
+  done: t("All starts were given."),
+  stopped: t("Stopped. No further UAV is started."),
+  commanded: t("Stopped: a UAV of the mission was told to pause, hold, return, land or abort."),
+  "mission-over": t("Stopped: the mission is over."),
+  interrupted: t("Stopped: the server could not look after it for a minute."),
+};
+
+/** Those that go on, or ended a moment ago. @param {PlannedStarts} starts @param {number} now_ms */
+const isShown = ({ ended_at }, now_ms) => !ended_at || now_ms - Date.parse(ended_at) < SHOWN_AFTER_MS;
+
+/** "0:07" @param {number} ms */
+const countdown = (ms) => {
+  const seconds = Math.max(0, Math.ceil(ms / 1000));
+  return `${Math.floor(seconds / 60)}:${`${seconds % 60}`.padStart(2, "0")}`;
+};
+
+/** What is said of one UAV's start. @param {PlannedStart} start @param {boolean} goesOn @param {number} now_ms */
+export function startWords({ state, due_at, why }, goesOn, now_ms) {
+  if (state === "started") return t("Start given");
+  if (state === "refused") return t("Not started: {why}", { why });
+  if (!goesOn) return t("Not started");
+  const left_ms = Date.parse(due_at) - now_ms;
+  if (left_ms > 0) return t("in {time}", { time: countdown(left_ms) });
+  return why ? t("Waits: {why}", { why }) : t("now");
+}
+
+/** By their plan, the first one at once: lines of the question. @param {Pick<WaitingStart, "name" | "after_s">[]} waiting */
+export const orderLines = (waiting) =>
+  waiting.map(({ name, after_s }, place) =>
+    place === 0
+      ? t("{name}: in 10 s", { name })
+      : t("{name}: {time} after the first", { name, time: countdown(after_s * 1000) }),
+  );
+
+/** @param {() => Promise<unknown>} act @param {string} failed */
+async function tried(act, failed) {
+  try {
+    await act();
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    toast(`${failed} ${error.message}`);
+  }
+}
+
+/** @param {string} mission @param {WaitingStart[]} waiting @param {HTMLElement} opener */
+async function begin(mission, waiting, opener) {
+  const asked = await confirmAct({
+    title: tn(waiting.length, "Start {count} UAV in planned order?", "Start {count} UAVs in planned order?"),
+    lines: [
+      ...orderLines(waiting),
+      t(
+        "Each start is checked against the UAVs in the air and waits where it has to. Closing this page stops nothing.",
+      ),
+      t("Stop, or any Pause, Hold, Return, Land or Abort of this mission ends it: no further UAV is started."),
+    ],
+    act: t("Start in planned order"),
+    image: "plane-takeoff",
+    opener,
+  });
+  const headers = { "Idempotency-Key": freshKey() };
+  if (asked) await tried(() => post(`/missions/${mission}/planned-starts`, {}, { headers }), t("Not started."));
+}
+
+/** @param {PlannedStarts} starts */
+const stop = ({ mission }) => tried(() => remove(`/missions/${mission}/planned-starts`), t("Not stopped."));
+
+/** @param {string} act @param {string} image @param {string} words @param {(button: HTMLElement) => unknown} does */
+const actButton = (act, image, words, does) =>
+  h(
+    "button",
+    {
+      type: "button",
+      class: "button",
+      "data-act": act,
+      /** @param {Event} event */
+      onclick: ({ currentTarget }) => void does(/** @type {HTMLElement} */ (currentTarget)),
+    },
+    icon(image, "small"),
+    words,
+  );
+
+/** @param {PlannedStarts} starts @param {{ now_ms: number, isNamed: boolean }} how */
+const startsPart = ({ ended_at, ended_by, end, mission_name, uavs }, { now_ms, isNamed }) => [
+  h("h3", {}, isNamed ? `${mission_name}: ` : "", t("Start in planned order")),
+  h(
+    "ol",
+    {},
+    uavs.map((start) =>
+      h("li", { class: start.state }, h("strong", {}, start.name), ` ${startWords(start, !ended_at, now_ms)}`),
+    ),
+  ),
+  h("p", { class: "caption", hidden: !end }, end && ENDS[end], ended_by && ` (${ended_by})`),
+];
+
+/** @param {StartsContext} context */
+export function mountPlannedStarts({ mission, canFly }) {
+  const place = byId("planned-starts");
+  /** @type {PlannedStarts[]} */
+  let shown = [];
+  /** @type {WaitingStart[]} */
+  let waiting = [];
+  let ahead_ms = 0; // the server's clock before this one
+  let drawn = "";
+
+  async function readMission() {
+    const { data } = /** @type {Answer<MissionStarts>} */ (await get(`/missions/${mission}/planned-starts`));
+    const newest = data.starts;
+    shown = newest && isShown(newest, Date.parse(data.server_time)) ? [newest] : [];
+    waiting = data.waiting;
+    return data.server_time;
+  }
+
+  async function readAll() {
+    const { data } = /** @type {Answer<PlannedStartsList>} */ (await get("/planned-starts"));
+    shown = data.results;
+    return data.server_time;
+  }
+
+  async function read() {
+    try {
+      ahead_ms = Date.parse(await (mission === null ? readAll() : readMission())) - Date.now();
+      draw();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error; // the page says itself that the server is away
+    }
+  }
+
+  function draw() {
+    const now_ms = Date.now() + ahead_ms;
+    const canBegin = canFly && waiting.length > 1 && shown.every(({ ended_at }) => ended_at);
+    place.hidden = shown.length === 0 && !canBegin;
+    const words = shown.flatMap((starts) => starts.uavs.map((start) => startWords(start, !starts.ended_at, now_ms)));
+    const key = JSON.stringify([words, shown.map(({ id, end }) => [id, end]), canBegin]);
+    if (key === drawn) return;
+    const hadFocus = place.contains(document.activeElement);
+    drawn = key;
+    place.replaceChildren(...shown.flatMap((starts) => partOf(starts, now_ms)), ...(canBegin ? [beginButton()] : []));
+    if (hadFocus) place.querySelector("button")?.focus({ preventScroll: true });
+  }
+
+  /** @param {PlannedStarts} starts @param {number} now_ms */
+  const partOf = (starts, now_ms) => [
+    ...startsPart(starts, { now_ms, isNamed: mission === null }),
+    ...(canFly && !starts.ended_at
+      ? [actButton("stop", "octagon-alert", t("Stop starting"), () => stop(starts).then(read))]
+      : []),
+  ];
+
+  const beginButton = () =>
+    actButton("begin", "plane-takeoff", t("Start in planned order"), (opener) =>
+      begin(mission ?? "", waiting, opener).then(read),
+    );
+
+  void read();
+  setInterval(() => !document.hidden && void read(), POLL_MS);
+  setInterval(() => !document.hidden && draw(), TICK_MS);
+}
