@@ -106,9 +106,8 @@ function tokenForm({ role }) {
     { class: "input", id: "service-token-days" },
     DAYS.map((number) => h("option", { value: number, selected: number === 90 }, t("{days} days", { days: number }))),
   );
-  const scopes = SCOPES_OF_ROLE[role].map((scope) =>
-    h("input", { type: "checkbox", name: "scope", value: scope, checked: scope === "read" }),
-  );
+  const scopes = SCOPES_OF_ROLE[role].map((scope) => h("input", { type: "checkbox", name: "scope", value: scope }));
+  scopes[0].defaultChecked = true; // to read, also after the form is reset
   const labels = scopes.map((input) =>
     h("label", { class: "switch-line" }, input, h("span", {}, SCOPES[/** @type {Scope} */ (input.value)])),
   );

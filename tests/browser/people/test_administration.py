@@ -177,18 +177,18 @@ def test_a_program_works_with_a_service_account_until_it_is_disabled(visitor: Vi
     tokens.get_by_label("Name").fill("night run")
     tokens.get_by_role("button", name="Make a token").click()
     token = tokens.get_by_role("textbox", name="Token", exact=True).text_content() or ""
-    program = visitor.browser.new_context(base_url=visitor.site.address, extra_http_headers={"Authorization": f"Bearer {token}"})
+    program = visitor.new_context(extra_http_headers={"Authorization": f"Bearer {token}"})
     assert program.request.get("/api/v1/missions").status == 200
+    expect(tokens.get_by_role("checkbox", name="Read")).to_be_checked()  # again, for the next one
     assert faults(page) == []
     tokens.get_by_role("button", name="Close").click()
     row = row_of(page, "erp")
     expect(row.locator(".tokens")).to_have_text("1")
-    page.get_by_role("button", name="More for erp").click()
+    page.get_by_role("button", name="More for erp", exact=True).click()
     page.get_by_role("button", name="Disable").click()
     expect(page.get_by_text("erp is disabled: none of its tokens works.")).to_be_visible()
     expect(row).to_contain_text("Disabled")
     assert program.request.get("/api/v1/missions").status == 401
-    program.close()
 
 
 def test_the_log_shows_tries_and_filters_them(visitor: Visitor) -> None:
