@@ -121,6 +121,7 @@ MIDDLEWARE = [
     "django.middleware.csrf.CsrfViewMiddleware",
     "django.contrib.auth.middleware.AuthenticationMiddleware",
     "workspace.preferences.PreferencesMiddleware",
+    "workspace.query_parameters.KnownQueryParameters",
     "django.contrib.messages.middleware.MessageMiddleware",
     "django.middleware.clickjacking.XFrameOptionsMiddleware",
 ]
@@ -312,6 +313,7 @@ CELERY_BEAT_SCHEDULE = {
     "forget old sign-ins": {"task": "workspace.tasks.forget_old_sign_ins", "schedule": 3_600.0},
     "forget ended sessions": {"task": "workspace.tasks.forget_ended_sessions", "schedule": 3_600.0},
     "seal second factors with the key of today": {"task": "workspace.tasks.seal_second_factors", "schedule": 3_600.0},
+    "store when targets were reached that no watch has looked at": {"task": "telemetry.tasks.store_visits", "schedule": 3_600.0},
     "forget old telemetry": {"task": "telemetry.tasks.forget_old_telemetry", "schedule": 3_600.0},
     "forget old idempotency keys": {"task": "workspace.tasks.forget_old_idempotency_keys", "schedule": 3_600.0},
 }

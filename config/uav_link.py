@@ -9,7 +9,11 @@ from operation.tracing import begin_tracing
 
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
 settings.ROOT_URLCONF = "config.uav_link_urls"
-settings.MIDDLEWARE = ["config.observed_requests.ObservedRequests", "django.middleware.security.SecurityMiddleware"]
+settings.MIDDLEWARE = [
+    "config.observed_requests.ObservedRequests",
+    "django.middleware.security.SecurityMiddleware",
+    "workspace.query_parameters.KnownQueryParameters",
+]
 begin_tracing("uav-link")  # before the middleware is put together, of which it is a part
 application = get_wsgi_application()
 

@@ -62,8 +62,8 @@ def end_sessions(*, user: User, actor: User | None) -> None:
         _record(user, actor, "signed out everywhere")
 
 
-def make_token(*, user: User, name: str, days: int, scopes: Iterable[str] | None = None) -> tuple[ApiToken, str]:
-    """The row and the token itself, which cannot be shown again. Raises TooManyTokens."""
+def make_token(*, user: User, name: str, days: int, scopes: Iterable[str] | None = None, actor: User | None = None) -> tuple[ApiToken, str]:
+    """The row and the token itself, which cannot be shown again. The actor is its user unless told. Raises TooManyTokens."""
     expires_at = timezone.now() + timedelta(days=days)
     with transaction.atomic():
         User.objects.select_for_update().get(pk=user.pk)
@@ -71,7 +71,7 @@ def make_token(*, user: User, name: str, days: int, scopes: Iterable[str] | None
             raise TooManyTokens
         token = create_api_token(user=user, name=name, expires_at=expires_at, scopes=scopes)
         row = user.api_tokens.latest("pk")
-        _record_token(row, user, "created", {"name": name, "expires_at": _seconds(expires_at), "scopes": row.scopes})
+        _record_token(row, actor or user, "created", {"name": name, "expires_at": _seconds(expires_at), "scopes": row.scopes})
     return row, token
 
 
@@ -109,6 +109,7 @@ def _record(user: User, actor: User | None, action: str) -> None:
 
 
 def _record_token(token: ApiToken, actor: User, action: str, facts: dict[str, Any]) -> None:
+    facts |= {"of": token.user.username} if token.user_id != actor.pk else {}
     before, after = (None, facts) if action == "created" else (facts, None)
     record_change(
         organisation=actor.organisation, actor=actor, action=action, subject_type="token", subject_id=token.pk, before=before, after=after

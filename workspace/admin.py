@@ -68,14 +68,19 @@ class UserAdmin(HistoryAdmin):
     list_select_related = ["organisation"]
     search_fields = ["username", "first_name", "last_name", "email", "organisation__name"]
     filter_horizontal = []
-    readonly_fields = ["organisation", "last_login", "last_seen_at", "date_joined"]
+    readonly_fields = ["organisation", "is_service", "last_login", "last_seen_at", "date_joined"]
     fieldsets = [
-        (None, {"fields": ["username", "role", "organisation", "is_active"]}),
+        (None, {"fields": ["username", "role", "organisation", "is_active", "is_service"]}),
         ("Person", {"fields": ["first_name", "last_name", "email"]}),
         ("Preferences", {"fields": ["theme", "units", "time_zone", "language", "single_keys"]}),
         ("Times", {"fields": ["last_login", "last_seen_at", "date_joined"]}),
     ]
     actions = ["let_in", "keep_out", "make_viewers", "make_operators", "make_curators", "make_administrators"]
+
+    def get_readonly_fields(self, request: HttpRequest, obj: Any = None) -> Any:
+        """A service account keeps its name, and has neither a person's name nor an address to which a link could be mailed."""
+        fixed = ["username", "first_name", "last_name", "email"] if obj is not None and obj.is_service else []
+        return [*super().get_readonly_fields(request, obj), *fixed]
 
     def lookup_allowed(self, lookup: str, value: str, request: HttpRequest) -> bool:
         return not lookup.startswith("password") and super().lookup_allowed(lookup, value, request)

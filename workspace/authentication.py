@@ -126,6 +126,10 @@ class BearerTokenScheme(OpenApiAuthenticationExtension):
 class RoleBackend(ModelBackend):
     """Signs in by name and password; permissions in the admin follow from the role and from nothing else."""
 
+    def user_can_authenticate(self, user: Any) -> bool:
+        """Whether somebody may sign in as this user, and keep a session: nobody as a service account."""
+        return not user.is_service and super().user_can_authenticate(user)
+
     def has_perm(self, user_obj: Any, perm: str, obj: Any = None) -> bool:
         return self.has_module_perms(user_obj, perm.partition(".")[0])
 

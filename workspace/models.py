@@ -72,7 +72,7 @@ class UserManager(DjangoUserManager["User"]):
 
 
 class User(AbstractUser):
-    """Somebody who signs in. The role says what they may do: see workspace/permissions.py."""
+    """Somebody who signs in, or a program (`is_service`). The role says what they may do: see workspace/permissions.py."""
 
     groups = None  # type: ignore[assignment]
     user_permissions = None  # type: ignore[assignment]
@@ -81,6 +81,7 @@ class User(AbstractUser):
     is_installation_operator = models.BooleanField(
         default=False, db_default=False, editable=False, help_text="as administrator: of all organisations, in the admin"
     )
+    is_service = models.BooleanField(default=False, db_default=False, editable=False, help_text="of a program: nobody signs in with it")
     theme = models.CharField(max_length=10, choices=Theme.choices, default=Theme.SYSTEM)
     units = models.CharField(
         max_length=10, choices=Units.choices, default=Units.METRIC, help_text="what is shown; what is stored is metric"
@@ -94,7 +95,13 @@ class User(AbstractUser):
     objects: ClassVar[UserManager] = UserManager()
 
     class Meta:
-        constraints = [models.CheckConstraint(condition=models.Q(role__in=Role.values), name="user_role_known")]
+        constraints = [
+            models.CheckConstraint(condition=models.Q(role__in=Role.values), name="user_role_known"),
+            models.CheckConstraint(
+                condition=models.Q(is_service=False) | models.Q(password__startswith="!", is_installation_operator=False),  # noqa: S106 - no password
+                name="service_without_password",
+            ),
+        ]
 
     def _get_session_auth_hash(self, secret: str | None = None) -> str:
         """Sessions end with a new password, as in Django, and with a new generation."""

@@ -1,7 +1,7 @@
 """Shapes of the API about accounts, people, invitations and sign-ins."""
 
 from datetime import datetime
-from typing import Any
+from typing import Any, ClassVar
 
 from django.contrib.auth.password_validation import validate_password
 from django.utils import timezone
@@ -28,6 +28,7 @@ from workspace.models import (
 )
 from workspace.preferences import TIME_ZONES
 from workspace.serializers import Declared
+from workspace.service_accounts import name_of
 
 InvitationState = [state.value for state in State]
 MAX_TOKEN_DAYS = 365
@@ -107,13 +108,13 @@ class TokenInputSerializer(serializers.Serializer):
     days = serializers.IntegerField(min_value=1, max_value=MAX_TOKEN_DAYS, default=90)
     scopes = serializers.ListField(
         child=serializers.ChoiceField(choices=TokenScope.choices), min_length=1, max_length=len(TokenScope), required=False,
-        help_text="what it may be used for, within one's role; all that the role has unless told",
+        help_text="what it may be used for, within the role; all that the role has unless told",
     )  # fmt: skip
 
     def validate_scopes(self, scopes: list[str]) -> list[str]:
         own = SCOPES_OF_ROLE[self.context["user"].role]
         if beyond := sorted(set(scopes) - set(own)):
-            raise serializers.ValidationError(_("Your role does not have {scopes}.").format(scopes=", ".join(beyond)))
+            raise serializers.ValidationError(_("The role does not have {scopes}.").format(scopes=", ".join(beyond)))
         return [scope for scope in own if scope in scopes]
 
 
@@ -188,6 +189,47 @@ class PersonChangeSerializer(serializers.Serializer):
 
 class PersonPageSerializer(serializers.Serializer):
     results = PersonSerializer(many=True)
+    next = serializers.CharField(allow_null=True, help_text="address of the next page")
+
+
+class ServiceAccountSerializer(serializers.ModelSerializer):
+    """An account for a program."""
+
+    name = serializers.SerializerMethodField()
+    created_at = serializers.DateTimeField(source="date_joined")
+    last_used_at = serializers.DateTimeField(read_only=True, allow_null=True, help_text="any of its tokens; to the minute")
+    valid_tokens = serializers.IntegerField(read_only=True)
+    revision = serializers.SerializerMethodField(help_text="for If-Match")
+
+    class Meta:
+        model = User
+        fields = ["id", "name", "username", "role", "is_active", "created_at", "last_used_at", "valid_tokens", "revision"]
+        read_only_fields = fields
+        extra_kwargs: ClassVar = {"username": {"help_text": "by which the history names it"}}
+
+    def get_name(self, account: User) -> str:
+        return name_of(account)
+
+    def get_revision(self, account: User) -> int:
+        return revision_of_person(account)
+
+
+class ServiceAccountInputSerializer(serializers.Serializer):
+    name = serializers.RegexField(
+        r"^[A-Za-z0-9][A-Za-z0-9._-]*\Z", max_length=60, help_text="letters, digits, dots, hyphens and underscores"
+    )
+    role = serializers.ChoiceField(choices=Role.choices)
+
+
+class ServiceAccountChangeSerializer(serializers.Serializer):
+    """Only what is to change."""
+
+    role = serializers.ChoiceField(choices=Role.choices, required=False)
+    is_active = serializers.BooleanField(required=False, help_text="false: none of its tokens works")
+
+
+class ServiceAccountPageSerializer(serializers.Serializer):
+    results = ServiceAccountSerializer(many=True)
     next = serializers.CharField(allow_null=True, help_text="address of the next page")
 
 

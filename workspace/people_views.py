@@ -52,7 +52,7 @@ def _one_of(request: Request, name: str, known: list[str]) -> str:
 
 def _people(request: SignedInRequest) -> QuerySet[User]:
     valid = Q(api_tokens__revoked_at=None, api_tokens__expires_at__gt=timezone.now())
-    return User.objects.filter(organisation_id=request.user.organisation_id).annotate(
+    return User.objects.filter(organisation_id=request.user.organisation_id, is_service=False).annotate(
         valid_tokens=Count("api_tokens", filter=valid), has_second_factor=Exists(SecondFactor.objects.filter(user=OuterRef("pk")))
     )
 

@@ -307,7 +307,7 @@ def delete_person(*, user: User, actor: User) -> None:
         raise OperatorsAlone
     with transaction.atomic():
         before, key = person_facts(user), user.pk
-        held = User(role=user.role, is_active=user.is_active, organisation_id=user.organisation_id)
+        held = User(role=user.role, is_active=user.is_active, organisation_id=user.organisation_id, is_service=user.is_service)
         _withdraw_invitations(user, actor)
         user.delete()
         _refuse_without_administrator(held)
@@ -329,7 +329,8 @@ def set_installation_operator(*, user: User, is_operator: bool) -> None:
 def person_facts(user: User) -> dict[str, Any]:
     """What the history says of an account; never its password."""
     names = ("username", "first_name", "last_name", "email", "role", "is_active", "is_installation_operator")
-    return {name: getattr(user, name) for name in names} | {"organisation": user.organisation.name}
+    facts = {name: getattr(user, name) for name in names} | {"organisation": user.organisation.name}
+    return facts | ({"is_service": True} if user.is_service else {})
 
 
 def _refuse_without_administrator(before: User | None) -> None:
@@ -338,7 +339,7 @@ def _refuse_without_administrator(before: User | None) -> None:
         return
     with connection.cursor() as cursor:
         cursor.execute("SELECT pg_advisory_xact_lock(%s)", [ADMINISTRATORS_LOCK])
-    left = User.objects.filter(is_active=True)
+    left = User.objects.filter(is_active=True, is_service=False)
     administrators = left.filter(role=Role.ADMINISTRATOR)
     own = before.organisation_id
     if not administrators.exists() or (left.filter(organisation=own).exists() and not administrators.filter(organisation=own).exists()):
@@ -346,7 +347,7 @@ def _refuse_without_administrator(before: User | None) -> None:
 
 
 def _administrates(user: User) -> bool:
-    return user.role == Role.ADMINISTRATOR and user.is_active
+    return user.role == Role.ADMINISTRATOR and user.is_active and not user.is_service
 
 
 def _withdraw_invitations(user: User, actor: User) -> None:

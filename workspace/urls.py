@@ -2,7 +2,7 @@
 
 from django.urls import path
 
-from workspace import account_views, people_views, session_views, views
+from workspace import account_views, people_views, service_account_views, session_views, views
 
 urlpatterns = [
     path("account", account_views.Account.as_view(), name="api-account"),
@@ -20,6 +20,16 @@ urlpatterns = [
     path("people/<int:user_id>/sign-out", people_views.PersonSessions.as_view(), name="api-person-sessions"),
     path("people/<int:user_id>/tokens", people_views.PersonTokens.as_view(), name="api-person-tokens"),
     path("people/<int:user_id>/second-factor", people_views.PersonSecondFactor.as_view(), name="api-person-second-factor"),
+    path("service-accounts", service_account_views.ServiceAccountList.as_view(), name="api-service-accounts"),
+    path("service-accounts/<int:account_id>", service_account_views.ServiceAccountDetail.as_view(), name="api-service-account"),
+    path(
+        "service-accounts/<int:account_id>/tokens", service_account_views.ServiceAccountTokens.as_view(), name="api-service-account-tokens"
+    ),
+    path(
+        "service-accounts/<int:account_id>/tokens/<int:token_id>",
+        service_account_views.ServiceAccountToken.as_view(),
+        name="api-service-account-token",
+    ),
     path("second-factor-rule", people_views.SecondFactorRule.as_view(), name="api-second-factor-rule"),
     path("invitations", people_views.InvitationList.as_view(), name="api-invitations"),
     path("invitations/<int:invitation_id>", people_views.InvitationDetail.as_view(), name="api-invitation"),

@@ -3,7 +3,7 @@
 from django.http import Http404, HttpResponse
 from django.utils.cache import get_conditional_response
 from drf_spectacular.types import OpenApiTypes
-from drf_spectacular.utils import OpenApiResponse, extend_schema
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
@@ -31,6 +31,7 @@ class Tile(APIView):
         summary="A vector tile of assets and zones",
         description="Layers lines, railways, bridges, bridge_points, towers, zones, zone_labels; empty where there is nothing. "
         "The ETag changes with the ground.",
+        parameters=[OpenApiParameter("of", str, description="has no effect on the answer: with another value a map asks again at once")],
         responses={(200, TILE_TYPE): OpenApiTypes.BINARY, 304: OpenApiResponse(description="The tile has not changed.")},
     )
     def get(self, request: Request, zoom: int, column: int, row: int) -> HttpResponse:

@@ -4,12 +4,13 @@ Telemetry decides what has happened and calls these. Each may be called again wi
 after a mission has ended, changes nothing.
 """
 
+from datetime import datetime
 from enum import StrEnum
 from functools import partial
 from uuid import UUID
 
 from django.db import transaction
-from django.db.models import QuerySet
+from django.db.models import Exists, OuterRef, Q, QuerySet
 from django.db.models.functions import Now
 
 from missions.models import InspectionTarget, Mission, MissionState, Route, TargetState, WaypointKind
@@ -20,6 +21,7 @@ from workspace.live import publish_live
 
 ON_ITS_WAY = (MissionState.DISPATCHED, MissionState.ACTIVE)
 UNDECIDED = (TargetState.PENDING, TargetState.IN_PROGRESS)
+SETTLED = (TargetState.COMPLETE, TargetState.SKIPPED, TargetState.FAILED)
 FLIGHT_FAILED = "flight-failed"  # why a target has failed of which nobody reported anything
 NOT_REACHED, NOT_HELD = "not-reached", "not-held"  # why one was skipped that the vehicle counted as passed
 
@@ -74,6 +76,17 @@ def mark_missed(*, mission_id: UUID, target: int, reason: str) -> bool:
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
         found = InspectionTarget.objects.filter(mission=held, sequence=target, state=TargetState.COMPLETE)
         return _put(held, found, TargetState.SKIPPED, reason)
+
+
+def store_visit(*, mission_id: UUID, target: int, reached_at: datetime | None, held_s: float) -> bool:
+    """Keep when a settled target, by its place in the mission, was reached (None: never) and for how many seconds its UAV can have stayed.
+
+    Returns whether that is new.
+    """
+    settled = InspectionTarget.objects.filter(mission=mission_id, sequence=target, state__in=SETTLED)
+    as_stored = Q(held_s=held_s) & (Q(reached_at__isnull=True) if reached_at is None else Q(reached_at=reached_at))
+    is_new = ~Exists(InspectionTarget.objects.filter(as_stored, pk=OuterRef("pk")))
+    return bool(settled.filter(is_new).update(reached_at=reached_at, held_s=held_s, visit_stored_at=Now()))
 
 
 def mark_flight_ended(*, mission_id: UUID, uav_id: int, flight: int, end: FlightEnd) -> MissionState:

@@ -18,6 +18,9 @@ COPIED = (
     "departs_at", "conditions", "charging_w", "total_energy_wh", "separation", "lost_link",
     "lost_link_check", "external_id", "attributes",
 )  # fmt: skip
+NOT_FLOWN: dict[str, Any] = {
+    "state": TargetState.PENDING, "state_at": None, "state_reason": "", "reached_at": None, "held_s": None, "visit_stored_at": None,
+}  # fmt: skip
 
 
 def duplicate_mission(*, mission: Mission, author: User, name: str = "") -> Mission:
@@ -34,7 +37,7 @@ def duplicate_mission(*, mission: Mission, author: User, name: str = "") -> Miss
             values["state"] = MissionState.PLANNED
         copy = Mission.objects.create(author=author, name=(name or _free_name(mission))[:LONGEST_NAME], **values)
         uavs = _copied(MissionUav, mission.mission_uavs.all(), mission=copy)
-        targets = _copied(InspectionTarget, mission.targets.all(), mission=copy, state=TargetState.PENDING, state_at=None, state_reason="")
+        targets = _copied(InspectionTarget, mission.targets.all(), mission=copy, **NOT_FLOWN)
         rows = list(mission.routes.prefetch_related("waypoints"))
         routes = [_copy_of(route, mission=copy, mission_uav=uavs[route.mission_uav_id]) for route in rows]
         Route.objects.bulk_create(routes)

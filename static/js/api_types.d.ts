@@ -3074,6 +3074,12 @@ export interface components {
             lost_link?: components["schemas"]["LostLinkRequest"] | null;
             name?: string;
         };
+        /** @description Only what is to change. */
+        PatchedServiceAccountChangeRequest: {
+            role?: components["schemas"]["Role"];
+            /** @description false: none of its tokens works */
+            is_active?: boolean;
+        };
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         PatchedSimulationChangeRequest: {
             /** @description the air from now on: calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent; batteries stay as they are */
@@ -4574,6 +4580,16 @@ export interface components {
             state_at: string;
             /** @description why it was skipped or failed; may be empty */
             state_reason: string;
+            /**
+             * Format: date-time
+             * @description by the log, some seconds after it was flown; null while not known, and where it was not reached
+             */
+            reached_at: string | null;
+            /**
+             * Format: double
+             * @description the longest that the UAV can have stayed; null while not known
+             */
+            held_s: number | null;
             /** @description what UAVs reported of it, by time */
             reported: components["schemas"]["ReportedResult"][];
         };
@@ -5140,6 +5156,39 @@ export interface components {
             closest: components["schemas"]["Nearest"] | null;
             /** @description conflicts that could not be solved */
             unresolved: components["schemas"]["Unresolved"][];
+        };
+        /** @description An account for a program. */
+        ServiceAccount: {
+            readonly id: number;
+            readonly name: string;
+            /** @description by which the history names it */
+            readonly username: string;
+            readonly role: components["schemas"]["Role"];
+            /**
+             * Active
+             * @description Designates whether this user should be treated as active. Unselect this instead of deleting accounts.
+             */
+            readonly is_active: boolean;
+            /** Format: date-time */
+            created_at: string;
+            /**
+             * Format: date-time
+             * @description any of its tokens; to the minute
+             */
+            readonly last_used_at: string | null;
+            readonly valid_tokens: number;
+            /** @description for If-Match */
+            readonly revision: number;
+        };
+        ServiceAccountInputRequest: {
+            /** @description letters, digits, dots, hyphens and underscores */
+            name: string;
+            role: components["schemas"]["Role"];
+        };
+        ServiceAccountPage: {
+            results: components["schemas"]["ServiceAccount"][];
+            /** @description address of the next page */
+            next: string | null;
         };
         SessionTimes: {
             /** Format: date-time */
@@ -5734,7 +5783,7 @@ export interface components {
             name: string;
             /** @default 90 */
             days: number;
-            /** @description what it may be used for, within one's role; all that the role has unless told */
+            /** @description what it may be used for, within the role; all that the role has unless told */
             scopes?: components["schemas"]["TokenScope"][];
         };
         TokenList: {
@@ -7234,6 +7283,7 @@ export type PatchedMissionPatchRequest = components['schemas']['PatchedMissionPa
 export type PatchedParametersRequest = components['schemas']['PatchedParametersRequest'];
 export type PatchedPersonChangeRequest = components['schemas']['PatchedPersonChangeRequest'];
 export type PatchedSelectionInputRequest = components['schemas']['PatchedSelectionInputRequest'];
+export type PatchedServiceAccountChangeRequest = components['schemas']['PatchedServiceAccountChangeRequest'];
 export type PatchedSimulationChangeRequest = components['schemas']['PatchedSimulationChangeRequest'];
 export type PatchedSubscriptionChangeRequest = components['schemas']['PatchedSubscriptionChangeRequest'];
 export type PatchedUavFeatureRequest = components['schemas']['PatchedUavFeatureRequest'];
@@ -7364,6 +7414,9 @@ export type SelectionSummary = components['schemas']['SelectionSummary'];
 export type SelectionTarget = components['schemas']['SelectionTarget'];
 export type Sent = components['schemas']['Sent'];
 export type Separation = components['schemas']['Separation'];
+export type ServiceAccount = components['schemas']['ServiceAccount'];
+export type ServiceAccountInputRequest = components['schemas']['ServiceAccountInputRequest'];
+export type ServiceAccountPage = components['schemas']['ServiceAccountPage'];
 export type SessionTimes = components['schemas']['SessionTimes'];
 export type SignIn = components['schemas']['SignIn'];
 export type SignInOutcome = components['schemas']['SignInOutcome'];

@@ -225,12 +225,13 @@ def _route(route: RouteOnRecord, mission: Mission) -> dict[str, Any]:
 def _with_times(values: dict[str, Any]) -> dict[str, Any]:
     return {
         **{name: value for name, value in values.items() if name not in {"began_s", "ended_s"}},
-        "began_at": _at(values["began_s"]),
-        "ended_at": _at(values["ended_s"]),
+        "began_at": at(values["began_s"]),
+        "ended_at": at(values["ended_s"]),
     }
 
 
-def _at(seconds: float | None) -> datetime | None:
+def at(seconds: float | None) -> datetime | None:
+    """Return the time of Unix seconds."""
     return None if seconds is None else datetime.fromtimestamp(seconds, UTC)
 
 
@@ -254,7 +255,7 @@ def _targets(mission: Mission, targets: Sequence[InspectionTarget], routes: Sequ
                 "uav": None if route is None else route.place,
                 "waypoint_sequence": None if visit is None else visit.waypoint_sequence,
                 "planned_at": planned_at,
-                "reached_at": None if visit is None else _at(visit.reached_s),
+                "reached_at": None if visit is None else at(visit.reached_s),
                 "closest_m": None if visit is None else visit.closest_m,
                 "planned_hold_s": None if visit is None else visit.planned_hold_s,
                 "held_s": None if visit is None else visit.held_s,

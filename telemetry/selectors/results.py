@@ -20,6 +20,8 @@ class ResultFilter:
     mission_id: UUID | None = None
     settled_from: datetime | None = None
     settled_before: datetime | None = None
+    reached_from: datetime | None = None
+    reached_before: datetime | None = None
     changed_since: datetime | None = None
 
 
@@ -36,9 +38,11 @@ def results_that_match(organisation_id: int, wanted: ResultFilter) -> QuerySet[I
         targets = targets.filter(asset__in=named.values("asset"))
     if wanted.changed_since is not None:
         reported = InspectionResult.objects.filter(target=OuterRef("pk"), received_at__gte=wanted.changed_since)
-        targets = targets.filter(Q(state_at__gte=wanted.changed_since) | Exists(reported))
+        since = Q(state_at__gte=wanted.changed_since) | Q(visit_stored_at__gte=wanted.changed_since)
+        targets = targets.filter(since | Exists(reported))
     asked = {
         "asset": wanted.asset_id, "mission": wanted.mission_id, "state_at__gte": wanted.settled_from, "state_at__lt": wanted.settled_before,
+        "reached_at__gte": wanted.reached_from, "reached_at__lt": wanted.reached_before,
     }  # fmt: skip
     targets = targets.filter(**{name: value for name, value in asked.items() if value is not None})
     planned = Waypoint.objects.filter(kind=WaypointKind.TARGET).select_related("route__mission_uav").order_by("sequence")

@@ -61,6 +61,10 @@ class ResultSerializer(serializers.Serializer):
     state = serializers.ChoiceField(choices=STATES)
     state_at = serializers.DateTimeField(help_text="since when")
     state_reason = serializers.CharField(help_text="why it was skipped or failed; may be empty")
+    reached_at = serializers.DateTimeField(
+        allow_null=True, help_text="by the log, some seconds after it was flown; null while not known, and where it was not reached"
+    )
+    held_s = serializers.FloatField(allow_null=True, help_text="the longest that the UAV can have stayed; null while not known")
     reported = ReportedResultSerializer(many=True, help_text="what UAVs reported of it, by time")
 
 
@@ -93,6 +97,8 @@ def result_json(target: Any, reference: AssetReference | None) -> dict[str, Any]
         "state": target.state,
         "state_at": target.state_at,
         "state_reason": target.state_reason,
+        "reached_at": target.reached_at,
+        "held_s": target.held_s,
         "reported": [
             {
                 "uav": row.uav_id,

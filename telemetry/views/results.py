@@ -22,6 +22,8 @@ FILTERS = [
     OpenApiParameter("mission", str, description="id of a mission"),
     OpenApiParameter("from", str, description="`state_at` at or after this time, with its zone"),
     OpenApiParameter("to", str, description="`state_at` before this time, with its zone"),
+    OpenApiParameter("reached_from", str, description="`reached_at` at or after this time, with its zone"),
+    OpenApiParameter("reached_before", str, description="`reached_at` before this time, with its zone"),
 ]
 
 
@@ -52,5 +54,7 @@ def _asked(request: Request) -> ResultFilter:
         mission_id=mission_of(request),
         settled_from=time_of(request, "from"),
         settled_before=time_of(request, "to"),
+        reached_from=time_of(request, "reached_from"),
+        reached_before=time_of(request, "reached_before"),
         changed_since=asked_instant(request, "changed_since"),
     )

@@ -13,9 +13,10 @@ from django.utils import timezone
 
 from missions.models import Approval, InspectionTarget, Mission, MissionState, OfferState, ReplanOffer, TargetState, Uav
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_started, mark_waypoint_reached
+from missions.services.mission_copies import duplicate_mission
 from telemetry.models import AlertLevel, InspectionResult, PositionEstimate, TelemetryRecord, TelemetryStream
 from telemetry.services.alerts import open_alert
-from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks
+from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks, store_missing_visits
 from tests.missions.flights import an_operator, dispatched, fleet
 from tests.missions.worlds import World, world
 from tests.telemetry.flown import fly, route_of
@@ -215,3 +216,81 @@ def test_without_a_single_report_nothing_is_overruled(mission: Mission, tern: Ua
     end(mission, tern)
     age_states(mission)
     assert TargetChecks().check([tern.pk]) == 0
+
+
+def results_by_place(client: Client, **asked: Any) -> dict[int, dict[str, Any]]:
+    rows = client.get("/api/v1/results", asked).json()["results"]
+    return {row["place"]: row for row in rows}
+
+
+def test_results_say_when_a_target_was_reached_and_how_long_it_was_held(
+    client: Client, mission: Mission, approval: Approval, tern: Uav
+) -> None:
+    fly(approval, tern, began())
+    end(mission, tern)
+    age_states(mission)
+    assert {(row["reached_at"], row["held_s"]) for row in results_by_place(client).values()} == {(None, None)}
+    before = timezone.now()
+    TargetChecks().check([tern.pk])
+    told = results_by_place(client)
+    on_record = record_of(client, mission)["targets"]
+    assert [(told[row["place"]]["reached_at"], told[row["place"]]["held_s"]) for row in on_record] == [
+        (row["reached_at"], row["held_s"]) for row in on_record
+    ]
+    times = sorted(row["reached_at"] for row in told.values())
+    assert None not in times
+    assert len(results_by_place(client, reached_from=times[1])) == len(times) - 1
+    assert len(results_by_place(client, reached_before=times[1])) == 1
+    assert set(results_by_place(client, changed_since=before.isoformat())) == set(told), "a visit that is stored later is a change"
+    stored_at = set(mission.targets.values_list("visit_stored_at", flat=True))
+    TargetChecks().check([tern.pk])
+    assert set(mission.targets.values_list("visit_stored_at", flat=True)) == stored_at, "the same again is no change"
+
+
+def test_a_target_that_was_passed_far_off_has_a_stay_of_nothing_and_no_time(
+    client: Client, mission: Mission, approval: Approval, tern: Uav
+) -> None:
+    visited = [waypoint for waypoint in route_of(approval, tern).waypoints if waypoint.target is not None]
+    fly(approval, tern, began(), leaves_out=visited[0].sequence)
+    end(mission, tern)
+    age_states(mission)
+    TargetChecks().check([tern.pk])
+    missed = results_by_place(client)[visited[0].target or 0]
+    assert (missed["state"], missed["reached_at"], missed["held_s"]) == ("skipped", None, 0.0)
+
+
+def test_visits_that_no_watch_has_seen_are_stored_by_the_clock_once_the_mission_has_ended(
+    mission: Mission, approval: Approval, tern: Uav
+) -> None:
+    fly(approval, tern, began())
+    assert store_missing_visits() == 0
+    end(mission, tern)
+    assert store_missing_visits() == 0, "the watch looks first"
+    Mission.objects.filter(pk=mission.pk).update(ended_at=timezone.now() - timedelta(seconds=2 * LOOKED_BACK_S))
+    assert store_missing_visits() == mission.targets.count()
+    assert not mission.targets.filter(reached_at=None).exists()
+    assert store_missing_visits() == 0
+
+
+def test_targets_that_a_uav_reported_itself_have_their_visit_too(client: Client, mission: Mission, approval: Approval, tern: Uav) -> None:
+    fly(approval, tern, began())
+    stream = TelemetryStream.objects.create(uav=tern, link="http", key="results")
+    for target in mission.targets.all():
+        InspectionResult.objects.create(
+            stream=stream, sequence=target.sequence, uav=tern, mission=mission, approval=approval, place=target.sequence, target=target,
+            measured_at=timezone.now(), outcome="complete",
+        )  # fmt: skip
+    end(mission, tern)
+    age_states(mission)
+    assert TargetChecks().check([tern.pk]) == 0
+    assert all(row["reached_at"] for row in results_by_place(client).values())
+
+
+def test_a_copy_has_no_visits(mission: Mission, approval: Approval, tern: Uav, person: User) -> None:
+    fly(approval, tern, began())
+    end(mission, tern)
+    age_states(mission)
+    TargetChecks().check([tern.pk])
+    assert mission.targets.exclude(reached_at=None).exists()
+    copy = duplicate_mission(mission=mission, author=person)
+    assert set(copy.targets.values_list("reached_at", "held_s", "visit_stored_at")) == {(None, None, None)}

@@ -36,6 +36,7 @@ from tests.missions.worlds import UAV_AT
 from tests.workspace.people import client_of, somebody
 from tests.workspace.test_roles import SAFE, stand_in
 from workspace.models import ApiToken, BrowserSession, Invitation, Organisation, Role, User
+from workspace.service_accounts import make_service_account
 from workspace.services import create_job
 
 pytestmark = pytest.mark.django_db
@@ -82,6 +83,7 @@ def rows_of(home: Organisation) -> dict[str, Model]:
             simulation=simulation, sequence=0, uav=uav, name="Tern", system_id=7, airframe="iris", position=at, conditions={}
         ),
         "user_id": keeper,
+        "account_id": make_service_account(actor=keeper, name="erp", role=Role.OPERATOR),
         "invitation_id": Invitation.objects.create(organisation=home, role=Role.VIEWER, token_sha256=f"{home.pk:064}", expires_at=soon),
         "session_id": BrowserSession.objects.create(
             session=session_of(keeper), user=keeper, began_at=timezone.now(), acted_at=timezone.now(), present_at=timezone.now()

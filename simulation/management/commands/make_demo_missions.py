@@ -13,7 +13,9 @@ class Command(BaseCommand):
 
     def handle(self, *args: Any, **options: Any) -> None:
         organisation = Organisation.objects.order_by("pk").first()
-        actor = User.objects.filter(organisation=organisation, role=Role.ADMINISTRATOR, is_active=True).order_by("pk").first()
+        actor = (
+            User.objects.filter(organisation=organisation, role=Role.ADMINISTRATOR, is_active=True, is_service=False).order_by("pk").first()
+        )
         if organisation is None or actor is None or not has_demo_region(organisation):
             self.stdout.write("No demo missions: there is no administrator, or the demo region is missing.")
             return

@@ -7,6 +7,7 @@ import { settle, tell } from "../page/problem.js";
 import { chooseTheme, chosenTheme, onTheme } from "../page/theme.js";
 import { language, localeOf, t } from "../text.js";
 import { heightText, lengthText, speedText } from "../units.js";
+import { mountJobs } from "./jobs.js";
 import { mountPassword } from "./password.js";
 import { mountSessions } from "./sessions.js";
 import { signInRow } from "./sign_in_row.js";
@@ -82,6 +83,7 @@ showZone();
 const tokens = mountTokens({ tell, settle });
 mountPassword({ tell, settle }, () => void tokens.load());
 const sessions = mountSessions({ tell, settle });
+const jobs = mountJobs({ tell, settle });
 
 /** @type {string | null} */
 let nextSignIns = null;
@@ -97,7 +99,7 @@ async function loadSignIns(address = "/account/sign-ins?limit=5") {
 }
 
 byId("more-sign-ins").addEventListener("click", () => nextSignIns && loadSignIns(nextSignIns));
-Promise.all([tokens.load(), sessions.load(), loadSignIns()]).then(() => {
+Promise.all([tokens.load(), jobs.load(), sessions.load(), loadSignIns()]).then(() => {
   document.documentElement.dataset.loaded = "true";
   if (location.hash) document.getElementById(location.hash.slice(1))?.focus({ preventScroll: false });
 });

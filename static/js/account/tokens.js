@@ -13,7 +13,13 @@ import { proved } from "./proof.js";
 /** @import { Reporter } from "../page/problem.js" */
 
 /** @type {Record<Token["scopes"][number], string>} */
-const SCOPES = { read: t("Read"), plan: t("Plan"), fly: t("Fly"), curate: t("Curate"), administer: t("Administer") };
+export const SCOPES = {
+  read: t("Read"),
+  plan: t("Plan"),
+  fly: t("Fly"),
+  curate: t("Curate"),
+  administer: t("Administer"),
+};
 
 /** @param {Reporter} reporter */
 export function mountTokens({ tell, settle }) {
@@ -28,7 +34,7 @@ export function mountTokens({ tell, settle }) {
 
   /** @param {Token[]} tokens */
   function draw(tokens) {
-    byId("tokens").replaceChildren(...tokens.map((token) => row(token, () => revoke(token))));
+    byId("tokens").replaceChildren(...tokens.map((token) => tokenRow(token, () => revoke(token))));
     byId("tokens-none").hidden = tokens.length > 0;
   }
 
@@ -95,7 +101,7 @@ export function mountTokens({ tell, settle }) {
 }
 
 /** @param {Token} token @param {() => void} revoke */
-function row(token, revoke) {
+export function tokenRow(token, revoke) {
   const used = token.last_used_at ? t("last used {when}", { when: whenText(token.last_used_at) }) : t("never used");
   const facts = h(
     "span",

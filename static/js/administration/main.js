@@ -1,4 +1,4 @@
-/** Administration: people, invitations and the log of sign-ins, each a list with filters; and the organisation's rules. */
+/** Administration: people, invitations, service accounts and the log of sign-ins, each a list with filters; and the organisation's rules. */
 
 import { byId, find } from "../dom.js";
 import { startChrome } from "../page/chrome.js";
@@ -7,16 +7,18 @@ import { t } from "../text.js";
 import { mountInvitations } from "./invitations.js";
 import { mountPeople } from "./people.js";
 import { mountRules } from "./rules.js";
+import { mountServiceAccounts } from "./service_accounts.js";
 import { mountSignIns } from "./sign_ins.js";
 
-/** @typedef {"people" | "invitations" | "sign-ins" | "rules"} Tab */
+/** @typedef {"people" | "invitations" | "service-accounts" | "sign-ins" | "rules"} Tab */
 
 /** @type {Tab[]} */
-const TABS = ["people", "invitations", "sign-ins", "rules"];
+const TABS = ["people", "invitations", "service-accounts", "sign-ins", "rules"];
 
 const lists = {
   people: mountPeople({ tell, settle }),
   invitations: mountInvitations({ tell, settle, show: () => showTab("invitations") }),
+  "service-accounts": mountServiceAccounts({ tell, settle }),
   "sign-ins": mountSignIns({ tell }),
   rules: mountRules({ tell, settle }),
 };

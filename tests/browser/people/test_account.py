@@ -6,6 +6,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import PASSWORD, Visitor
+from tests.browser.test_accessibility import faults
 
 pytestmark = pytest.mark.browser
 
@@ -134,6 +135,33 @@ def test_a_token_is_shown_once_works_and_is_revoked(visitor: Visitor) -> None:
     expect(page.get_by_text("“Nightly export” works no more.")).to_be_visible()
     expect(page.get_by_role("list", name="Tokens").get_by_text("Revoked", exact=True)).to_be_visible()
     assert stranger.request.get("/api/v1/account").status == 401
+
+
+OWN_JOBS = """
+from django.utils import timezone
+from workspace.models import Job, User
+jana = User.objects.get(username="jana")
+own = {"organisation": jana.organisation, "created_by": jana, "task": "missions.tasks.solve_plan"}
+Job.objects.create(**own)
+Job.objects.create(**own, state="failed", error={"code": "took_too_long", "message": "Too long."}, finished_at=timezone.now())
+Job.objects.create(**own | {"created_by": User.objects.get(username="ada"), "task": "inspection.tasks.read_proposal"})
+"""
+
+
+def test_ones_own_jobs_are_listed_and_one_that_waits_is_cancelled(visitor: Visitor) -> None:
+    page = account(newcomer(visitor, "jana"))
+    jobs = page.get_by_role("list", name="Jobs")
+    expect(page.get_by_text("Nothing has run for you yet.")).to_be_visible()
+    visitor.site.does(OWN_JOBS)
+    account(page)
+    expect(jobs.get_by_role("listitem")).to_have_count(2)
+    expect(jobs.get_by_role("listitem").nth(0)).to_contain_text("Waiting")
+    expect(jobs.get_by_role("listitem").nth(1)).to_contain_text("Too long.")
+    jobs.get_by_role("button", name="Cancel: Planning").click()
+    expect(page.get_by_text("The job is asked to stop.")).to_be_visible()
+    expect(jobs.get_by_text("Cancelled", exact=True)).to_be_visible()
+    expect(jobs.get_by_role("button")).to_have_count(0)
+    assert faults(page) == []
 
 
 def test_signing_out_everywhere_else_leaves_this_browser(visitor: Visitor) -> None:

@@ -167,6 +167,30 @@ def test_name_and_address_are_changed_in_a_dialog_and_faults_stand_there(visitor
     visitor.complaints[:] = [words for words in visitor.complaints if "400" not in words]
 
 
+def test_a_program_works_with_a_service_account_until_it_is_disabled(visitor: Visitor) -> None:
+    page = administration(visitor.signs_in("ada"), "service-accounts")
+    page.get_by_role("button", name="Add a service account").click()
+    dialog = page.get_by_role("dialog", name="Add a service account")
+    dialog.get_by_label("Name").fill("erp")
+    dialog.get_by_role("button", name="Add").click()
+    tokens = page.get_by_role("dialog", name="Tokens of erp")
+    tokens.get_by_label("Name").fill("night run")
+    tokens.get_by_role("button", name="Make a token").click()
+    token = tokens.get_by_role("textbox", name="Token", exact=True).text_content() or ""
+    program = visitor.new_context(extra_http_headers={"Authorization": f"Bearer {token}"})
+    assert program.request.get("/api/v1/missions").status == 200
+    expect(tokens.get_by_role("checkbox", name="Read")).to_be_checked()  # again, for the next one
+    assert faults(page) == []
+    tokens.get_by_role("button", name="Close").click()
+    row = row_of(page, "erp")
+    expect(row.locator(".tokens")).to_have_text("1")
+    page.get_by_role("button", name="More for erp", exact=True).click()
+    page.get_by_role("button", name="Disable").click()
+    expect(page.get_by_text("erp is disabled: none of its tokens works.")).to_be_visible()
+    expect(row).to_contain_text("Disabled")
+    assert program.request.get("/api/v1/missions").status == 401
+
+
 def test_the_log_shows_tries_and_filters_them(visitor: Visitor) -> None:
     door = visitor.opens()
     door.get_by_label("User name").fill("nobody-at-all")

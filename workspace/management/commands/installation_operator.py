@@ -17,7 +17,7 @@ class Command(BaseCommand):
         parser.add_argument("--remove", action="store_true", help="take it away")
 
     def handle(self, *args: Any, **options: Any) -> None:
-        user = User.objects.filter(username=options["user"], role=Role.ADMINISTRATOR).first()
+        user = User.objects.filter(username=options["user"], role=Role.ADMINISTRATOR, is_service=False).first()
         if user is None:
             raise CommandError(f"no administrator is called {options['user']}")
         set_installation_operator(user=user, is_operator=not options["remove"])
