@@ -286,6 +286,7 @@ CELERY_TASK_ROUTES = {
     "missions.tasks.expire_commands": {"queue": "data"},
     "missions.tasks.look_after_offers": {"queue": "data"},
     "missions.tasks.*": {"queue": "planning"},
+    "simulation.tasks.make_demo_missions": {"queue": "planning"},
     "simulation.tasks.*": {"queue": "simulation"},
 }
 CELERY_BEAT_SCHEDULE = {
