@@ -8,6 +8,7 @@ from django.http import HttpRequest, HttpResponse, JsonResponse
 from django.views.decorators.cache import never_cache
 from django.views.decorators.http import require_safe
 
+from config.warming import warming_faults
 from inspection.models import Asset, GraphSnapshot
 from operation.readiness import NO_DATABASE, database_faults, redis_faults
 
@@ -22,10 +23,11 @@ def healthz(request: HttpRequest) -> JsonResponse:
 @never_cache
 @require_safe
 def readyz(request: HttpRequest) -> JsonResponse:
-    """200 when database, migrations and Redis are there, else 503 with the reasons. `missing` is what keeps missions from being planned:
-    people bring it, so it keeps nobody out.
+    """200 when database, migrations and Redis are there and the process is warm, else 503 with the reasons.
+
+    `missing` is what keeps missions from being planned: people bring it, so it keeps nobody out.
     """
-    reasons = [*database_faults(), *redis_faults()]
+    reasons = [*database_faults(), *redis_faults(), *warming_faults()]
     answer: dict[str, Any] = {"ready": not reasons}
     if reasons:
         answer["reasons"] = reasons

@@ -289,6 +289,7 @@ CELERY_TASK_ROUTES = {
     "missions.tasks.look_after_offers": {"queue": "data"},
     "missions.tasks.start_in_planned_order": {"queue": "data"},
     "missions.tasks.*": {"queue": "planning"},
+    "simulation.tasks.make_demo_missions": {"queue": "planning"},
     "simulation.tasks.*": {"queue": "simulation"},
 }
 CELERY_BEAT_SCHEDULE = {

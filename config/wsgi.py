@@ -10,10 +10,17 @@ os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
 begin_tracing("web")  # before the middleware is put together, of which it is a part
 application = get_wsgi_application()
 
-from missions.services import warm_up  # noqa: E402 (Django first)
+from config.warming import warm_up_beside, warming_faults  # noqa: E402 (Django first)
+from missions.services import warm_up  # noqa: E402
 from operation.garbage import keep_what_is_there  # noqa: E402
 from operation.program import program_begins  # noqa: E402
+from operation.readiness import database_faults, redis_faults  # noqa: E402
 
-program_begins("web")
-warm_up()  # before the first request comes in
-keep_what_is_there()
+
+def _warm_up() -> None:
+    warm_up()
+    keep_what_is_there()
+
+
+program_begins("web", database_faults, redis_faults, warming_faults)
+warm_up_beside(_warm_up)

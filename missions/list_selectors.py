@@ -11,7 +11,23 @@ from uuid import UUID
 from django.contrib.gis.db.models import GeometryField
 from django.contrib.gis.geos import GEOSGeometry, LineString, Polygon
 from django.core.cache import cache
-from django.db.models import CharField, Count, Exists, F, FloatField, Func, IntegerField, Max, OuterRef, Q, QuerySet, Subquery, Value
+from django.db.models import (
+    BooleanField,
+    CharField,
+    Count,
+    Exists,
+    ExpressionWrapper,
+    F,
+    FloatField,
+    Func,
+    IntegerField,
+    Max,
+    OuterRef,
+    Q,
+    QuerySet,
+    Subquery,
+    Value,
+)
 from django.db.models.functions import Coalesce, Lower
 
 from inspection.models import Asset, AssetKind
@@ -59,7 +75,7 @@ class MissionFilter:
     changed_before: datetime | None = None
     external_id: str = ""
     target_external_id: str = ""
-    is_deleted: bool = False
+    is_deleted: bool | None = False  # None: either
 
 
 def _count_of(rows: QuerySet[Any]) -> Coalesce:
@@ -69,7 +85,9 @@ def _count_of(rows: QuerySet[Any]) -> Coalesce:
 
 def missions_found(organisation: Organisation, asked: MissionFilter) -> QuerySet[Mission]:
     """The missions that a filter leaves, without what the list shows of each."""
-    missions = Mission.objects.filter(organisation=organisation, deleted_at__isnull=not asked.is_deleted)
+    missions = Mission.objects.filter(organisation=organisation)
+    if asked.is_deleted is not None:
+        missions = missions.filter(deleted_at__isnull=not asked.is_deleted)
     if asked.text:
         of_targets = InspectionTarget.objects.filter(mission=OuterRef("pk"), label__icontains=asked.text)
         of_author = Q(author__username__icontains=asked.text)
@@ -143,8 +161,15 @@ def order_of(name: str) -> tuple[str, str]:
     return f"{sign}{ORDERS[name.removeprefix('-')]}", f"{sign}pk"
 
 
-def counts_by_state(missions: QuerySet[Mission]) -> dict[str, int]:
-    return dict(missions.order_by().values_list("state").annotate(Count("pk")).values_list("state", "pk__count"))
+def counts_by_state(missions: QuerySet[Mission]) -> tuple[dict[str, int], dict[str, int]]:
+    """How many missions are in each state: those that are there, and those that are deleted."""
+    there: dict[str, int] = {}
+    deleted: dict[str, int] = {}
+    is_gone = ExpressionWrapper(Q(deleted_at__isnull=False), output_field=BooleanField())
+    rows = missions.order_by().annotate(is_gone=is_gone).values("state", "is_gone").annotate(count=Count("pk"))
+    for state, is_deleted, count in rows.values_list("state", "is_gone", "count"):
+        (deleted if is_deleted else there)[state] = count
+    return there, deleted
 
 
 def choices_of_filters(organisation: Organisation) -> dict[str, list[dict[str, Any]]]:

@@ -5,6 +5,7 @@ It stands in the cache alone. Of two pages that report at the same moment one ma
 
 import contextlib
 import time
+from typing import NamedTuple
 from uuid import UUID
 
 from django.core.cache import cache
@@ -16,12 +17,23 @@ FORGOTTEN_AFTER_S = 25  # a page reports every 6 s while it is looked at
 MOST_PAGES = 20  # of one user, the last that reported
 
 
+class Present(NamedTuple):
+    """A user who has the mission open in another page."""
+
+    user: int
+    name: str
+    is_planning: bool
+
+
 def _key(mission_id: UUID) -> str:
     return f"mission-open:{mission_id}"
 
 
-def report_presence(*, mission_id: UUID, user: User, editor: str, is_here: bool) -> list[tuple[int, str]]:
-    """Note that this page is there, or leaves. Returns user and name of the others, each user once, oneself in another window last."""
+def report_presence(*, mission_id: UUID, user: User, editor: str, is_here: bool, is_planning: bool = False) -> list[Present]:
+    """Note that this page is there, and whether it plans the mission, or that it leaves.
+
+    Returns the others, each user once, oneself in another window last. A user plans where one of their pages does.
+    """
     now_s = time.time()
     try:
         known = cache.get(_key(mission_id), {})
@@ -30,12 +42,13 @@ def report_presence(*, mission_id: UUID, user: User, editor: str, is_here: bool)
     present = {page: row for page, row in known.items() if now_s - row["at_s"] < FORGOTTEN_AFTER_S}
     mine = f"{user.pk}/{editor}"
     present.pop(mine, None)
-    others = {row["user"]: row["name"] for row in present.values()}
+    planners = {row["user"] for row in present.values() if row.get("is_planning")}
+    others = {row["user"]: Present(row["user"], row["name"], row["user"] in planners) for row in present.values()}
     if is_here:
         own = sorted((row["at_s"], page) for page, row in present.items() if row["user"] == user.pk)
         for _, page in own[: -(MOST_PAGES - 1)]:
             del present[page]
-        present[mine] = {"user": user.pk, "name": user.get_full_name() or user.username, "at_s": now_s}
+        present[mine] = {"user": user.pk, "name": user.get_full_name() or user.username, "at_s": now_s, "is_planning": is_planning}
     with contextlib.suppress(*CACHE_AWAY):
         cache.set(_key(mission_id), present, FORGOTTEN_AFTER_S)
-    return sorted(others.items(), key=lambda row: (row[0] == user.pk, row[1].casefold()))
+    return sorted(others.values(), key=lambda other: (other.user == user.pk, other.name.casefold()))

@@ -1,4 +1,4 @@
-"""Doors to the queue `simulation`."""
+"""Doors to the queue `simulation`, and to `planning` for the demo missions."""
 
 from celery import shared_task
 from celery.exceptions import SoftTimeLimitExceeded
@@ -7,27 +7,33 @@ from inspection.selectors import NoGraph
 from missions.models import Mission
 from missions.services.refused import Refused
 from simulation.models import Rehearsal
-from simulation.services.demo_missions import NotThere, make_demo_missions
+from simulation.services.demo_missions import NotThere, make_demo_missions, missions_made
 from simulation.services.rehearsals import GroundChanged, PlanChanged, rehearse_for_job
 from workspace.errors import DATABASE_AWAY
 from workspace.job_watch import JobWatch
-from workspace.services import JobCancelled, confirm_cancelled, fail_job, finish_job, start_job
+from workspace.services import JobCancelled, confirm_cancelled, fail_job, finish_job, pause_job, start_job
 
 SOFT_LIMIT_S = 840
 HARD_LIMIT_S = 900
+DEMO_INTERVAL_S = 1.0  # between two steps, at least: the sweep of the queue sends the next message
 CHANGED = "The mission was changed while it was being rehearsed. Rehearse it again."
 ON_OTHER_GROUND = "Zones, terrain, towers or wires about the routes were changed while the mission was being rehearsed. Rehearse it again."
 
 
 @shared_task(name="simulation.tasks.make_demo_missions", soft_time_limit=SOFT_LIMIT_S, time_limit=HARD_LIMIT_S)
 def fly_demo_missions(job_id: str) -> None:
-    """Make the demo missions. Safe to run twice: missions that are there are left as they are."""
+    """Take one step of the demo missions, and leave the worker to others until the job's next message. Safe to run twice."""
     job = start_job(job_id=job_id)
     if job is None or job.created_by is None:
         return
+    since = job.created_at
     try:
         with JobWatch(job) as watch:
-            made = make_demo_missions(organisation=job.organisation, actor=job.created_by, progress=watch.progress)
+            step = make_demo_missions(organisation=job.organisation, actor=job.created_by, since=since, progress=watch.progress)
+        if step is not None:
+            pause_job(job=job, progress=step.share, message=step.message, pause_s=DEMO_INTERVAL_S)
+            return
+        made = missions_made(organisation=job.organisation, since=since)
         finish_job(job=job, result={"missions": [str(key) for key in made]}, message="Demo missions made")
     except JobCancelled:
         confirm_cancelled(job=job)

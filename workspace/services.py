@@ -35,6 +35,7 @@ from workspace.prepared import prepared_rows
 LEASE_S = 15  # a worker that says nothing for so long is taken for dead; it speaks once a second
 QUEUE_PATIENCE_S = 30  # a queued job that nobody took for so long is sent again
 MAX_ATTEMPTS = 5
+_ATTEMPTS_BEFORE = "attempts_before_pause"  # in a job's parameters
 IDEMPOTENCY_KEPT = timedelta(hours=48)
 USE_NOTED_EVERY = timedelta(minutes=1)
 ADMINISTRATORS_LOCK = 0x05A7_0003  # advisory lock: one at a time takes the role away, or an administrator's access
@@ -153,7 +154,7 @@ def start_job(*, job_id: UUID | str) -> Job | None:
         if job.cancel_requested_at is not None:
             confirm_cancelled(job=job)
             return None
-        if job.state == JobState.RUNNING and (job.attempts >= MAX_ATTEMPTS or _has_used_its_time(job)):
+        if job.state == JobState.RUNNING and (_attempts_lost(job) >= MAX_ATTEMPTS or _has_used_its_time(job)):
             _give_up(job)
             return None
         job.state = JobState.RUNNING
@@ -184,6 +185,26 @@ def give_back_job(*, job: Job) -> bool:
     """The worker is told to stop: whoever gets the job's message next goes on with it at once, without waiting for the lease to run out."""
     held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts)
     return bool(held.update(state=JobState.QUEUED, lease_expires_at=timezone.now() + timedelta(seconds=LEASE_S)))
+
+
+def pause_job(*, job: Job, progress: float, message: str, pause_s: float) -> None:
+    """Leave the worker to others, as the job waits for something: after `pause_s` the sweep sends it again.
+
+    Attempts until now count no longer as lost. A job that is to be cancelled ends. Nothing happens if another worker has taken it over.
+    """
+    parameters = job.parameters | {_ATTEMPTS_BEFORE: job.attempts}
+    held = Job.objects.filter(pk=job.pk, state=JobState.RUNNING, attempts=job.attempts, cancel_requested_at=None)
+    again_at = timezone.now() + timedelta(seconds=pause_s)
+    told = {"progress": progress, "message": message[:300], "parameters": parameters, "lease_expires_at": again_at}
+    if held.update(state=JobState.QUEUED, **told):
+        publish_job(job.pk)
+    else:
+        confirm_cancelled(job=job)
+
+
+def _attempts_lost(job: Job) -> int:
+    """Since it was paused last, or in all."""
+    return job.attempts - int(job.parameters.get(_ATTEMPTS_BEFORE, 0))
 
 
 def cancel_is_requested(*, job: Job) -> bool:
@@ -258,7 +279,7 @@ def requeue_lost_jobs() -> list[Job]:
         for job in Job.objects.select_for_update(skip_locked=True).filter(state=JobState.RUNNING, lease_expires_at__lt=now):
             if job.cancel_requested_at is not None:
                 confirm_cancelled(job=job)
-            elif job.attempts >= MAX_ATTEMPTS or _has_used_its_time(job):
+            elif _attempts_lost(job) >= MAX_ATTEMPTS or _has_used_its_time(job):
                 _give_up(job)
             else:
                 Job.objects.filter(pk=job.pk).update(state=JobState.QUEUED, lease_expires_at=now)

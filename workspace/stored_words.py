@@ -82,6 +82,8 @@ TEMPLATES = (
     gettext_noop("Demo missions made"),
     gettext_noop("The demo region was removed."),
     gettext_noop("The demo missions were not flown in time."),
+    gettext_noop("The simulation of the demo mission failed."),
+    gettext_noop("%(uav)s did not take a command."),
     gettext_noop("The demo missions could not be made; the error is in the log."),
     gettext_noop("The mission was changed while it was being rehearsed. Rehearse it again."),
     gettext_noop("Zones, terrain, towers or wires about the routes were changed while the mission was being rehearsed. Rehearse it again."),

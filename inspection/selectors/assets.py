@@ -11,24 +11,10 @@ from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
 from inspection.models import Asset, AssetKind, AssetReference, NoFlyZone
+from inspection.selectors.made_names import made_name, word_of
 
 COORDINATE_DIGITS = 7  # about a centimetre
 # In English: what is stored and what the tiles say. gettext_noop names them for the catalogues.
-KIND_WORDS = {
-    AssetKind.TOWER: gettext_noop("Tower"),
-    AssetKind.LINE: gettext_noop("Line"),
-    AssetKind.RAILWAY: gettext_noop("Railway"),
-    AssetKind.BRIDGE: gettext_noop("Bridge"),
-}
-WORDS = {
-    "line": gettext_noop("Line"),
-    "minor_line": gettext_noop("Line"),
-    "cable": gettext_noop("Cable"),
-    "pole": gettext_noop("Pole"),
-    "portal": gettext_noop("Portal"),
-    "tram": gettext_noop("Tramway"),
-    "subway": gettext_noop("Subway"),
-}
 CARRIES = {
     "a road and a railway": gettext_noop("carries a road and a railway"),
     "a railway": gettext_noop("carries a railway"),
@@ -126,7 +112,7 @@ def area_of(box: Box) -> Polygon | MultiPolygon:
 def _text_filter(text: str) -> Q:
     """Every voltage in the text ("138 kV") must be among the asset's, every other word in its name, ref, operator or OSM id.
 
-    A number alone ("138") may be either.
+    A number alone ("138") may be either. A name that Spanwise makes ("Tower 18 of 41") finds what is called so, too.
     """
     wanted = Q()
     for kilovolts in VOLTAGE.findall(text):
@@ -138,7 +124,8 @@ def _text_filter(text: str) -> Q:
         if KILOVOLTS.fullmatch(word):
             matches |= Q(voltages_v__contains=[round(float(word) * 1000)])
         wanted &= matches
-    return wanted
+    made = made_name(text)
+    return wanted if made is None else wanted | made.filter()
 
 
 def asset_label(asset: Asset) -> str:
@@ -153,7 +140,7 @@ def asset_label(asset: Asset) -> str:
         return " ".join(part for part in (asset.operator, voltage_text(asset.max_voltage_v)) if part)
     if asset.kind == AssetKind.RAILWAY and asset.operator:
         return _("%(operator)s railway") % {"operator": asset.operator}
-    word = _(WORDS.get(asset.subtype) or KIND_WORDS[AssetKind(asset.kind)])
+    word = _(word_of(asset.kind, asset.subtype))
     if asset.line_id is not None:
         return _("%(kind)s %(place)s of %(places)s") % {"kind": word, "place": asset.place_on_line, "places": asset.places_on_line}
     return f"{word} {asset.osm_type}{asset.osm_id}" if asset.osm_id is not None else f"{word} {asset.pk}"

@@ -17,6 +17,7 @@ from django.db.models.functions import Lower
 from inspection.graph.stretch import Stretch, StretchPart, stretch_between, supports_in_order
 from inspection.models import Asset, AssetKind
 from inspection.selectors.ground_data import supports_and_lines
+from inspection.selectors.made_names import assets_with_made_names, made_name
 
 Box = tuple[float, float, float, float]
 
@@ -52,7 +53,7 @@ def plain_ref(text: str) -> str:
 def assets_called(refs: Iterable[str], *, kinds: Sequence[AssetKind] = ()) -> dict[str, list[int]]:
     """For each reference, as plain_ref writes it, the primary keys of the assets that it may mean.
 
-    An asset's own reference, key or OSM id comes before one of several references, and that before a name.
+    An asset's own reference, key or OSM id comes before one of several references, and that before a name, given or made.
     """
     wanted = {plain_ref(ref) for ref in refs}
     osm = {ref: (match[1][0].lower(), int(match[2])) for ref in wanted if (match := OSM_KEY.fullmatch(ref))}
@@ -83,6 +84,12 @@ def assets_called(refs: Iterable[str], *, kinds: Sequence[AssetKind] = ()) -> di
         for ref, key in osm.items():
             for pk in by_key.get(key, []):
                 note(ref, pk, 0)
+    made = {ref: name for ref in wanted if (name := made_name(ref)) is not None}
+    if made:
+        keys = assets_with_made_names(assets, set(made.values()))
+        for ref, name_made in made.items():
+            for pk in keys[name_made]:
+                note(ref, pk, 2)
     return {ref: [pk for pk, rank in found.items() if rank == min(found.values())] for ref, found in ranked.items()}
 
 

@@ -420,3 +420,4 @@ class MissionsInputSerializer(KnownFieldsSerializer):
 class PresenceInputSerializer(KnownFieldsSerializer):
     editor = serializers.RegexField(r"^[A-Za-z0-9.-]{1,64}$", help_text="a name that the page made up for itself")
     here = serializers.BooleanField(required=False, default=True, help_text="false: the page is being left")
+    planning = serializers.BooleanField(required=False, default=False, help_text="the page has a plan of the mission made at present")

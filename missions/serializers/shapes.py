@@ -407,6 +407,7 @@ class MissionPageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
     total = serializers.IntegerField(help_text="how many missions the filters leave")
     by_state = serializers.DictField(child=serializers.IntegerField(), help_text="how many in each state, whatever state was asked for")
+    deleted_count = serializers.IntegerField(help_text="how many deleted missions the other filters leave; `deleted=true` lists them")
 
 
 class MissionAuthorSerializer(serializers.Serializer):
@@ -439,6 +440,7 @@ class MissionsDoneSerializer(serializers.Serializer):
 class PresentSerializer(serializers.Serializer):
     name = serializers.CharField()
     is_me = serializers.BooleanField(help_text="oneself, in another window")
+    is_planning = serializers.BooleanField(help_text="their page has a plan of the mission made at present")
 
 
 class PresenceSerializer(serializers.Serializer):

@@ -125,11 +125,12 @@ class MissionPresence(APIView):
             raise Http404
         serializer = inputs.PresenceInputSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)
+        told = serializer.validated_data
         others = report_presence(
-            mission_id=mission_id, user=user, editor=serializer.validated_data["editor"], is_here=serializer.validated_data["here"]
+            mission_id=mission_id, user=user, editor=told["editor"], is_here=told["here"], is_planning=told["planning"]
         )
         return Response({
-            "others": [{"name": name, "is_me": pk == user.pk} for pk, name in others],
+            "others": [{"name": other.name, "is_me": other.user == user.pk, "is_planning": other.is_planning} for other in others],
             "ground_revision": ground_revision(),
             "uav_changes": [uav_change_json(change) for change in uav_changes(mission_id)],
         })  # fmt: skip

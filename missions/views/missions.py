@@ -128,7 +128,9 @@ class MissionList(_PlansWhenAsked):
         organisation, asked = request.user.organisation, asked_filter(request)
         rows = mission_rows(changed_since(request, missions_found(organisation, asked)))
         page = page_of(request, rows, order=asked_order(request), default_limit=50, max_limit=200)
-        by_state = counts_by_state(changed_since(request, missions_found(organisation, replace(asked, states=()))))
+        in_any_state = changed_since(request, missions_found(organisation, replace(asked, states=(), is_deleted=None)))
+        there, deleted = counts_by_state(in_any_state)
+        by_state = deleted if asked.is_deleted else there
         drawings, ground = surroundings(page.rows), ground_revision()
         bases, others = bases_landed_at(page.rows, organisation.pk), missions_with_other_uavs(page.rows)
         return Response({
@@ -138,6 +140,7 @@ class MissionList(_PlansWhenAsked):
             "next": page.next,
             "total": sum(number for state, number in by_state.items() if not asked.states or state in asked.states),
             "by_state": by_state,
+            "deleted_count": sum(deleted.values()),
         })  # fmt: skip
 
     @extend_schema(

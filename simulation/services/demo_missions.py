@@ -1,17 +1,15 @@
 """Demo missions: one flown to its end, one in flight and one planned, by the planner and by simulated UAVs; and their removal."""
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import timedelta
-from functools import partial
+from datetime import datetime, timedelta
 from typing import Protocol
 from uuid import UUID
 
 from django.contrib.gis.db.models.functions import Distance
 from django.contrib.gis.measure import D
 from django.db import transaction
-from django.db.models import Q, QuerySet
+from django.db.models import Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
@@ -20,29 +18,21 @@ from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
 from missions.fleet_selectors import performance_of
 from missions.flight_plan.conditions import Conditions, WindLayer
-from missions.models import Base, CommandKind, CommandState, EndAction, Mission, MissionState, MissionUav, Uav, UavCommand, UavType
+from missions.models import Base, EndAction, Mission, MissionState, MissionUav, Uav, UavCommand, UavType
 from missions.routing.problem import Objective, Task, TaskKind
-from missions.selectors import mission_of_organisation
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
-from missions.services.approval import approve_mission
 from missions.services.demo_uavs import create_demo_uavs
-from missions.services.dispatch import dispatch_mission
 from missions.services.flying import ON_ITS_WAY
 from missions.services.refused import refuse
-from missions.services.steering import command_uav
-from simulation.models import Simulation, SimulationState
-from simulation.rehearsing.sky import Named, named_sky
-from simulation.services.simulated_flights import start_simulated_flights
+from simulation.models import Simulation
+from simulation.services.demo_flights import fly_demo_mission
 from simulation.services.simulations import end_simulation
 from simulation.vehicle_models import PRESENT
 from workspace.models import Job, Organisation, User
-from workspace.services import create_job, record_change
+from workspace.services import cancel_job, create_job, record_change
 
 MAKE_DEMO_MISSIONS = "simulation.tasks.make_demo_missions"
 FASTEST = 10.0  # times real time, of the flight that is to be over soon
-STEP_TIMEOUT_S = 120.0  # for a UAV to stand ready, to be loaded, to start
-FLIGHT_TIMEOUT_S = 480.0
-POLL_S = 0.5
 FROZEN_IN_FLIGHT = (MissionState.APPROVED, *ON_ITS_WAY)
 
 
@@ -80,6 +70,14 @@ DEMO_MISSIONS = (
 )  # fmt: skip
 
 
+@dataclass(frozen=True)
+class Step:
+    """What is being done, or waited for, and which share is done."""
+
+    message: str
+    share: float
+
+
 class NotThere(Exception):
     """The demo region has been removed."""
 
@@ -105,32 +103,38 @@ def want_demo_missions(*, organisation: Organisation, actor: User) -> Job:
         )
 
 
-def make_demo_missions(*, organisation: Organisation, actor: User, progress: OnProgress) -> list[UUID]:
-    """Put the demo UAVs that are missing into the fleet, plan all missions, then fly; return when the fast flight is over.
+def make_demo_missions(*, organisation: Organisation, actor: User, since: datetime, progress: OnProgress) -> Step | None:
+    """Do the next thing and return at once: put missing demo UAVs into the fleet, plan one mission, or fly the planned ones a step further.
 
-    What is there already is left as it is.
+    since: when the job was asked for. Missions that are older are left as they are, and so is what users have changed or deleted since.
+    Returns None once all is planned and the fast flight is over.
     Raises NotThere, Refused, TimeoutError, and what `progress` raises.
     """
     if not has_demo_region(organisation):
         raise NotThere
     create_demo_uavs(organisation=organisation)
-    made = []
+    of_demo = Mission.objects.filter(organisation=organisation, is_demo=True)
     for number, demo in enumerate(DEMO_MISSIONS):
-        if not _of(demo, organisation).exists():
-            progress(f"Planning “{demo.name}”", 0.5 * number / len(DEMO_MISSIONS))
-            made.append(_planned(demo, organisation, actor).pk)
+        if not of_demo.filter(Q(deleted_at=None) | Q(created_at__gte=since), name=demo.name).exists():
+            step = Step(f"Planning “{demo.name}”", 0.5 * number / len(DEMO_MISSIONS))
+            progress(step.message, step.share)
+            _plan(demo, organisation, actor)
+            return step
     for number, demo in enumerate(DEMO_MISSIONS):
-        mission = _of(demo, organisation).filter(state=MissionState.PLANNED).first()
+        mission = of_demo.filter(deleted_at=None, name=demo.name).first()
         if demo.speed is not None and mission is not None:
-            _fly(mission, actor, demo.speed, partial(progress, share=0.5 + 0.5 * number / len(DEMO_MISSIONS)))
-    return made
+            message = fly_demo_mission(mission=mission, actor=actor, speed=demo.speed, since=since)
+            if message:
+                return Step(message, 0.5 + 0.5 * number / len(DEMO_MISSIONS))
+    return None
 
 
-def _of(demo: DemoMission, organisation: Organisation) -> QuerySet[Mission]:
-    return Mission.objects.filter(organisation=organisation, is_demo=True, name=demo.name, deleted_at=None)
+def missions_made(*, organisation: Organisation, since: datetime) -> list[UUID]:
+    made = Mission.objects.filter(organisation=organisation, is_demo=True, deleted_at=None, created_at__gte=since)
+    return list(made.order_by("created_at").values_list("pk", flat=True))
 
 
-def _planned(demo: DemoMission, organisation: Organisation, actor: User) -> Mission:
+def _plan(demo: DemoMission, organisation: Organisation, actor: User) -> None:
     uavs = [Uav.objects.select_related("uav_type").get(organisation=organisation, name=name) for name in demo.uavs]
     request = PlanRequest(
         tuple(_request_of(uav, demo.sorties) for uav in uavs),
@@ -144,7 +148,7 @@ def _planned(demo: DemoMission, organisation: Organisation, actor: User) -> Miss
     with transaction.atomic():
         mission = create_mission(organisation=organisation, author=actor, name=demo.name, request=request)
         Mission.objects.filter(pk=mission.pk).update(is_demo=True)
-    return plan_mission(mission=mission, actor=actor)
+    plan_mission(mission=mission, actor=actor)
 
 
 def _request_of(uav: Uav, sorties: int) -> UavRequest:
@@ -171,48 +175,6 @@ def _towers(demo: DemoMission, uavs: Sequence[Uav]) -> list[Asset]:
     return list(found.values())
 
 
-def _fly(mission: Mission, actor: User, speed: float, tell: Callable[[str], None]) -> None:
-    """Approve it, have simulated UAVs take its UAVs' places, load and start them; to the end where it is flown fast."""
-    approve_mission(mission=mission, actor=actor)
-    loaded = mission_of_organisation(mission.organisation, mission.pk)
-    sky = named_sky(Named.CALM, Conditions())
-    simulation = start_simulated_flights(mission=loaded, actor=actor, sky=sky, speed=speed)
-    _wait(lambda: _is_flying(simulation), tell, f"Starting the simulated UAVs of “{mission.name}”", STEP_TIMEOUT_S)
-    loads = dispatch_mission(mission=mission, actor=actor)
-    _wait(lambda: _are_applied(loads), tell, f"Loading “{mission.name}”", STEP_TIMEOUT_S)
-    starts = [command_uav(uav=load.uav, kind=CommandKind.START, actor=actor) for load in loads]
-    _wait(lambda: _are_applied(starts), tell, f"Starting “{mission.name}”", STEP_TIMEOUT_S)
-    if speed > 1.0:
-        _wait(lambda: _is_over(mission), tell, f"Flying “{mission.name}”", FLIGHT_TIMEOUT_S)
-
-
-def _wait(is_so: Callable[[], bool], tell: Callable[[str], None], words: str, timeout_s: float) -> None:
-    """Raises TimeoutError with the words."""
-    ends_s = time.monotonic() + timeout_s
-    while not is_so():
-        tell(words)
-        if time.monotonic() > ends_s:
-            raise TimeoutError(words)
-        time.sleep(POLL_S)
-
-
-def _is_flying(simulation: Simulation) -> bool:
-    return not simulation.vehicles.exclude(state=SimulationState.FLYING).exists()
-
-
-def _are_applied(commands: Sequence[UavCommand]) -> bool:
-    """Raises Refused where one of them has failed or expired."""
-    states = UavCommand.objects.filter(pk__in=[command.pk for command in commands]).select_related("uav")
-    for command in states:
-        if command.state in (CommandState.FAILED, CommandState.EXPIRED):
-            raise refuse("command_failed", _("%(uav)s did not take a command.") % {"uav": command.uav.name})
-    return all(command.state == CommandState.APPLIED for command in states)
-
-
-def _is_over(mission: Mission) -> bool:
-    return Mission.objects.filter(pk=mission.pk, state=MissionState.COMPLETED).exists()
-
-
 def remove_demo_data(*, organisation: Organisation, actor: User) -> dict[str, int]:
     """End the simulated flights, and delete the demo missions with their records, the demo UAVs that no other mission has, and types and
     bases of the demo region that are left without a UAV. Assets and zones stay. Returns how many missions and UAVs went. Raises Refused
@@ -228,7 +190,7 @@ def remove_demo_data(*, organisation: Organisation, actor: User) -> dict[str, in
         for simulation in Simulation.objects.filter(mission__in=missions, state__in=PRESENT):
             end_simulation(simulation=simulation, actor=actor)
         if job is not None:
-            Job.objects.filter(pk=job.pk).update(cancel_requested_at=timezone.now())
+            cancel_job(job=job)
         names = list(missions.values_list("name", flat=True))
         UavCommand.objects.filter(Q(mission__in=missions) | Q(approval__mission__in=missions)).delete()
         missions.delete()

@@ -2572,6 +2572,8 @@ export interface components {
             by_state: {
                 [key: string]: number;
             };
+            /** @description how many deleted missions the other filters leave; `deleted=true` lists them */
+            deleted_count: number;
         };
         MissionPlace: {
             place: number;
@@ -3567,11 +3569,18 @@ export interface components {
              * @default true
              */
             here: boolean;
+            /**
+             * @description the page has a plan of the mission made at present
+             * @default false
+             */
+            planning: boolean;
         };
         Present: {
             name: string;
             /** @description oneself, in another window */
             is_me: boolean;
+            /** @description their page has a plan of the mission made at present */
+            is_planning: boolean;
         };
         Profile: {
             /** Format: double */

@@ -89,13 +89,14 @@ def second_facts(page: Page) -> dict[str, str]:
     return dict(zip(targets(page), page.locator("#target-list .what small").all_text_contents(), strict=True))
 
 
-def adds_uav(page: Page, name: str, position: list[float], *, range_km: float | None = None) -> None:
+def adds_uav(page: Page, name: str, position: list[float], *, range_km: float | None = None, base: str | None = None) -> None:
     page.get_by_role("button", name="Add a UAV").click()
     place = look_at(page, position, 12)
     page.mouse.click(place["x"], place["y"])
     dialog = page.get_by_role("dialog")
     dialog.get_by_label("Name").fill(name)
-    dialog.get_by_label("Base").fill("Test yard")
+    if base:
+        dialog.get_by_label("Base").select_option(base)
     if range_km:
         dialog.get_by_label("Range").fill(str(range_km))
     dialog.get_by_role("button", name="Add").click()

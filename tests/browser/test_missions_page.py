@@ -129,13 +129,12 @@ def test_several_missions_are_deleted_at_once_and_brought_back(visitor: Visitor)
     page.get_by_role("group", name="Chosen missions").get_by_role("button", name="Delete").click()
     expect(page.get_by_text("3 missions are deleted.")).to_be_visible()
     expect(page.get_by_text("No mission matches “Batch”")).to_be_visible()
-    page.get_by_text("More filters").click()
-    page.get_by_role("checkbox", name="Deleted missions").check()
+    page.get_by_role("radio", name="Deleted").check()
     deleted = page.get_by_role("row").filter(has_text="Batch 0")
     deleted.get_by_role("button", name="Bring back").click()
     expect(page.get_by_text("“Batch 0” is back.")).to_be_visible()
     expect(deleted).to_have_count(0)
-    page.get_by_role("checkbox", name="Deleted missions").uncheck()
+    page.get_by_role("radio", name="All").check()
     expect(row(page, "Batch 0")).to_be_visible()
     expect(row(page, "Batch 1")).to_have_count(0)
 
@@ -161,11 +160,11 @@ def test_a_phone_scrolls_through_the_states_and_the_page_stays_as_wide_as_the_wi
 
     def with_every_state(route: Route) -> None:
         answer = route.fetch()
-        route.fulfill(response=answer, json=answer.json() | {"by_state": dict.fromkeys(MissionState.values, 12)})
+        route.fulfill(response=answer, json=answer.json() | {"by_state": dict.fromkeys(MissionState.values, 12), "deleted_count": 12})
 
     page.route("**/api/v1/missions?*", with_every_state)
     opens_list(page)
-    expect(page.locator("#states label")).to_have_count(len(MissionState.values) + 1)
+    expect(page.locator("#states label")).to_have_count(len(MissionState.values) + 2)
     assert page.evaluate(TOO_WIDE) == []
 
 

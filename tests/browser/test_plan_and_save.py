@@ -2,13 +2,25 @@
 
 import re
 from collections.abc import Callable
+from uuid import uuid4
 
 import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import adds_uav, clicks_at, find_pickable, look_at, second_facts, stores_mission, targets, wait_for_map
+from tests.browser.operator_map import (
+    adds_uav,
+    asks,
+    clicks_at,
+    find_pickable,
+    look_at,
+    second_facts,
+    stores_mission,
+    targets,
+    wait_for_map,
+)
 from tests.browser.regions import region
+from tests.browser.test_planning import sends
 
 pytestmark = pytest.mark.browser
 
@@ -19,7 +31,9 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     page.wait_for_url(re.compile("/missions/new"))
     wait_for_map(page)
 
-    adds_uav(page, "Heron", region.west, range_km=80)
+    base = sends(page, "bases", {"name": f"Yard {uuid4().hex[:8]}", "position": region.west})
+    adds_uav(page, "Heron", region.west, range_km=80, base=base["name"])
+    assert [uav["properties"]["base"] for uav in asks(page, "/uavs?text=Heron")["features"]] == [base["id"]], "one of the fleet's, no text of its own"
     adds_uav(page, "Kite", region.east, range_km=80)
     things = find_pickable(page)
     picked_so_far = page.locator("#target-list .target")

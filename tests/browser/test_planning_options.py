@@ -28,9 +28,9 @@ def strip(page: Page, uav: str) -> Locator:
 
 
 def menu_of(page: Page, target: str) -> Locator:
-    page.get_by_role("button", name=re.compile(rf"^Task of {re.escape(target)}: ")).first.focus()
+    page.get_by_role("button", name=re.compile(rf"^Task, priority, UAV of {re.escape(target)}: ")).first.focus()
     page.keyboard.press("Enter")
-    return page.get_by_role("group", name=f"Task and wishes: {target}", exact=True)
+    return page.get_by_role("group", name=f"Task, priority, UAV: {target}", exact=True)
 
 
 def names_in_order(page: Page) -> list[str]:
@@ -115,7 +115,7 @@ def test_the_order_is_changed_and_locked_by_keyboard_alone(visitor: Visitor) -> 
     page.keyboard.press("Enter")
     expect(page.get_by_text(f"{first} is not locked any more.")).to_be_visible()
     menu = menu_of(page, first)
-    menu.get_by_label("Fly with UAV").focus()
+    menu.get_by_label("Lock to UAV").focus()
     page.keyboard.press("K")
     expect(page.get_by_text(f"{first} is locked to Kite.")).to_be_visible()
     page.keyboard.press("p")
@@ -143,8 +143,8 @@ def test_wishes_of_targets_and_uavs_are_saved_undone_and_seen_on_a_phone(visitor
     menu = menu_of(page, second)
     picture(page, "plan-wishes-phone")
     assert faults(page) == []
-    menu.get_by_label("Only UAV").select_option("Kite")
-    menu_of(page, second).get_by_label("Needs sensor").select_option("Corona camera")
+    menu.get_by_label("Required UAV").select_option("Kite")
+    menu_of(page, second).get_by_label("Required sensor").select_option("Corona camera")
     expect(rows.get_by_role("listitem").filter(has_text="only Kite · needs Corona camera")).to_have_count(1)
     page.get_by_role("button", name="Undo").first.click()
     expect(rows).not_to_contain_text("needs Corona camera")

@@ -69,6 +69,39 @@ def test_an_own_reference_comes_before_one_of_several_and_before_a_name(client: 
     assert lookup(client, "7", "8") == {"7": ("found", [own.pk]), "8": ("found", [shared.pk])}
 
 
+def test_a_list_may_name_things_as_the_page_names_them(client: Client) -> None:
+    """In any language of the pages. A tower that has a reference is called by it, and by nothing else."""
+    masts = [*row_of_towers(10.0, 10.1), tower((10.2, 56.0), ref="T3")]
+    for place, mast in enumerate(masts, start=1):
+        Asset.objects.filter(pk=mast.pk).update(line=line_over(masts), place_on_line=place, places_on_line=3)
+    crossing, drawn = bridge(osm_type="w", osm_id=29_492_007), tower((10.3, 56.0), osm_type="", osm_id=None)
+    shown = [row["label"] for row in found(client, "limit=50")["features"] if row["id"] == masts[0].pk for row in [row["properties"]]]
+    assert shown == ["Tower 1 of 3"]
+    asked = lookup(
+        client,
+        "Tower 1 of 3",
+        "tower  2 OF 3",
+        "Mast 2 von 3",
+        "Tower 3 of 3",
+        "Bridge w29492007",
+        "Brücke w29492007",
+        "Tower w29492007",
+        f"Tower {drawn.pk}",
+    )
+    assert list(asked.values()) == [
+        ("found", [masts[0].pk]), ("found", [masts[1].pk]), ("found", [masts[1].pk]), ("none", []),
+        ("found", [crossing.pk]), ("found", [crossing.pk]), ("none", []), ("found", [drawn.pk]),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "place"), [("Tower 1 of 3", 1), ("Mast 2 von 3", 2)])
+def test_a_search_finds_things_by_the_names_that_the_page_gives_them(client: Client, text: str, place: int) -> None:
+    masts = row_of_towers(10.0, 10.1)
+    for number, mast in enumerate(masts, start=1):
+        Asset.objects.filter(pk=mast.pk).update(line=line_over(masts), place_on_line=number, places_on_line=3)
+    assert ids(found(client, f"text={text}")["features"]) == [masts[place - 1].pk]
+
+
 def test_letters_that_change_their_number_in_capitals_do_not_hide_a_name(client: Client) -> None:
     mast = tower(name="Weißenthurm Süd")
     assert lookup(client, "weißenthurm SÜD") == {"weißenthurm SÜD": ("found", [mast.pk])}

@@ -68,7 +68,7 @@ const settle = async () => {
 };
 
 /** A page with the stored mission "m" open; serve({ method, path, body }): the answer to each request, all of which are kept in `asked`. */
-function opened(context, serve, state = {}) {
+function opened(context, serve, state = {}, drafts = { dropOwn() {}, keep: () => true, read: () => null }) {
   context.mock.timers.enable({ apis: ["setTimeout"] });
   const asked = [];
   context.mock.method(globalThis, "fetch", async (address, { method, body }) => {
@@ -93,6 +93,7 @@ function opened(context, serve, state = {}) {
     problem: null,
     fleet: [],
     lastPlan: null,
+    shownPlan: null,
     why: null,
     chosenRoute: null,
     canUndo: false,
@@ -100,12 +101,7 @@ function opened(context, serve, state = {}) {
     ...state,
   });
   const history = createHistory(store, "selection");
-  const actions = createActions(
-    store,
-    history,
-    { canPlan: true, userId: 1, userName: "opal" },
-    { dropOwn() {}, keep: () => true, read: () => null },
-  );
+  const actions = createActions(store, history, { canPlan: true, userId: 1, userName: "opal" }, drafts);
   const tick = (ms) => {
     context.mock.timers.tick(ms);
     return settle();
@@ -322,4 +318,43 @@ test("a plan that no planner has taken yet is waiting, not at 0 %", async (conte
   assert.equal(howFarWords(store.state.planning).replace("\u00a0", " "), "40 %");
   await tick(1000);
   assert.equal(store.state.planning, null);
+});
+
+test("a mission that is not stored keeps its comparison over a reload", async (context) => {
+  let kept = null;
+  document.createElement = () => ({ setAttribute() {}, addEventListener() {}, append() {} }); // of the toast
+  const drafts = {
+    dropOwn() {},
+    keep: (_mission, draft) => {
+      kept = JSON.parse(JSON.stringify(draft));
+      return true;
+    },
+    read: () => kept,
+  };
+  const blank = { mission: null, stored: null, savedBasis: null, name: "" };
+  const waypoints = [
+    { kind: "start", position: [9, 49], along_m: 0 },
+    { kind: "end", position: [9, 49], along_m: 4000 },
+  ];
+  const answer = ({ body }) => {
+    const length_m = 1000 * body.targets.length;
+    const route = { uav: "Heron", targets: [0], length_m, duration_s: 400, geometry: {}, waypoints };
+    return json(planMade(picked, { total_length_m: length_m, routes: [route] }));
+  };
+  const first = opened(context, answer, blank, drafts);
+  await first.actions.plan();
+  first.history.changeTo(withoutTargets(picked, [picked.targets[0].key]));
+  await first.actions.plan();
+  assert.equal(first.store.state.lastPlan.total_length_m, 3000);
+  first.actions.settleDraft();
+  context.mock.timers.reset();
+  context.mock.restoreAll();
+
+  const again = opened(context, answer, { ...blank, selection: EMPTY }, drafts);
+  again.actions.openDraft();
+  assert.equal(again.store.state.lastPlan.total_length_m, 3000);
+  again.history.changeTo(withoutTargets(again.store.state.selection, [picked.targets[1].key]));
+  await again.actions.plan();
+  assert.equal(again.store.state.plan.result.total_length_m, 1000);
+  assert.equal(again.store.state.lastPlan.total_length_m, 2000);
 });

@@ -6,6 +6,7 @@ from typing import Any
 import pytest
 from django.core.cache import cache
 from django.test import Client
+from django.utils import timezone
 
 from inspection.services import mark_ground_changed
 from missions.models import Mission, MissionState, MissionUav, Route, Waypoint
@@ -138,6 +139,17 @@ def test_the_list_says_how_many_there_are_in_all_and_in_each_state(here: World, 
     assert (answer["total"], answer["by_state"]) == (2, {"draft": 2, "planned": 1})
 
 
+def test_the_list_says_how_many_deleted_missions_it_leaves_out(here: World, client: Client) -> None:
+    for name in ("Alder", "Birch", "Cedar"):
+        created(client, here, name, plan=False)
+    assert client.get("/api/v1/missions").json()["deleted_count"] == 0
+    Mission.objects.exclude(name="Cedar").update(deleted_at=timezone.now())
+    answer = client.get("/api/v1/missions?state=planned").json()
+    assert (answer["total"], answer["deleted_count"]) == (0, 2)
+    assert client.get("/api/v1/missions?text=bir").json()["deleted_count"] == 1
+    assert client.get("/api/v1/missions?deleted=true").json()["deleted_count"] == 2
+
+
 def test_the_drawing_shows_lines_round_the_routes_and_places_of_a_draft(here: World, client: Client) -> None:
     created(client, here, "Draft", here.towers[0], {"position": [10.008, 56.012]}, plan=False)
     [row] = client.get("/api/v1/missions").json()["results"]
@@ -236,13 +248,30 @@ def test_pages_hear_of_each_other_until_they_leave(here: World, client: Client, 
     path = f"missions/{created(client, here, 'Shared', plan=False)['id']}/presence"
     vera = client_of(named(Role.VIEWER, "vera"))
     assert post(client, path, {"editor": "one"}).json()["others"] == []
-    assert post(vera, path, {"editor": "two"}).json()["others"] == [{"name": "opal", "is_me": False}]
-    assert post(client, path, {"editor": "three"}).json()["others"] == [{"name": "vera", "is_me": False}, {"name": "opal", "is_me": True}]
+    assert post(vera, path, {"editor": "two"}).json()["others"] == [{"name": "opal", "is_me": False, "is_planning": False}]
+    assert [(other["name"], other["is_me"]) for other in post(client, path, {"editor": "three"}).json()["others"]] == [
+        ("vera", False), ("opal", True),
+    ]  # fmt: skip
     post(vera, path, {"editor": "two", "here": False})
     post(client, path, {"editor": "three", "here": False})
     assert post(client, path, {"editor": "one"}).json()["others"] == []
     stranger = client_of(somebody(organisation=Organisation.objects.create(name="Elsewhere")))
     assert post(stranger, path, {"editor": "one"}).status_code == 404
+
+
+def test_pages_of_one_mission_see_that_another_one_plans_it(here: World, client: Client) -> None:
+    path = f"missions/{created(client, here, 'Shared', plan=False)['id']}/presence"
+    vera = client_of(named(Role.VIEWER, "vera"))
+
+    def seen(person: Client) -> list[tuple[str, bool]]:
+        return [(other["name"], other["is_planning"]) for other in post(person, path, {"editor": "looks"}).json()["others"]]
+
+    post(client, path, {"editor": "plans", "planning": True})
+    post(client, path, {"editor": "idle"})
+    assert seen(vera) == [("opal", True)]
+    assert seen(client) == [("vera", False), ("opal", True)]
+    post(client, path, {"editor": "plans"})
+    assert seen(vera) == [("opal", False)]
 
 
 def test_a_stale_mission_names_zone_leg_and_place(here: World, client: Client) -> None:

@@ -5,11 +5,19 @@ from pathlib import Path
 import pytest
 from django.core.management import call_command
 from django.test import Client
+from django.utils import timezone
 
 from missions.models import Base, Mission, MissionUav, Uav, UavType
 from missions.services.mission_copies import duplicate_mission
 from simulation.services import demo_missions
-from simulation.services.demo_missions import DEMO_MISSIONS, MAKE_DEMO_MISSIONS, make_demo_missions, remove_demo_data, want_demo_missions
+from simulation.services.demo_missions import (
+    DEMO_MISSIONS,
+    MAKE_DEMO_MISSIONS,
+    make_demo_missions,
+    missions_made,
+    remove_demo_data,
+    want_demo_missions,
+)
 from tests.simulation.random_rehearsals import bring_in_demo_region, rehearse_mission
 from tests.simulation.test_random_rehearsals import faults_of
 from tests.workspace.people import client_of, somebody
@@ -28,12 +36,17 @@ def administrator(tmp_path: Path) -> User:
 @pytest.fixture
 def planned_only(monkeypatch: pytest.MonkeyPatch) -> None:
     """Flights need a gateway and a simulator: they are left out here, and made in the browser tests' installation."""
-    monkeypatch.setattr(demo_missions, "_fly", lambda *arguments: None)
+    monkeypatch.setattr(demo_missions, "fly_demo_mission", lambda **arguments: "")
 
 
 def make(person: User) -> list[Mission]:
-    keys = make_demo_missions(organisation=person.organisation, actor=person, progress=lambda words, share: None)
-    return list(Mission.objects.filter(pk__in=keys).order_by("created_at"))
+    since = timezone.now()
+    told: list[str] = []
+    while make_demo_missions(organisation=person.organisation, actor=person, since=since, progress=lambda words, share: told.append(words)):
+        assert len(told) <= len(DEMO_MISSIONS), "each step plans one"
+    keys = missions_made(organisation=person.organisation, since=since)
+    made = {mission.name: mission for mission in Mission.objects.filter(pk__in=keys)}
+    return [made[demo.name] for demo in DEMO_MISSIONS if demo.name in made]
 
 
 @pytest.mark.usefixtures("planned_only")

@@ -25,7 +25,7 @@ const NEEDED_NOW = ["in_flight", "commands_waiting", "mission_on_its_way"]; // a
 
 /** @param {Credential | undefined} credential @param {Credential | undefined} earlier */
 function factsOf(credential, earlier) {
-  if (!credential) return t("None: it cannot connect this way.");
+  if (!credential) return t("Not set.");
   const made = t("Made {when} by {who}", {
     when: whenText(credential.created_at),
     who: credential.created_by ?? t("somebody who has left"),
@@ -60,7 +60,7 @@ const secretBox = ({ kind, secret }, onAway) =>
       "div",
       { class: "acts" },
       h("button", { type: "button", class: "button", onclick: () => copy(secret) }, icon("copy", "small"), t("Copy")),
-      h("button", { type: "button", class: "button quiet", onclick: onAway }, t("Put it away")),
+      h("button", { type: "button", class: "button quiet", onclick: onAway }, t("Done")),
     ),
   );
 
@@ -78,8 +78,16 @@ const revokeQuestion = (name, { keep, revoke }) =>
     ),
   );
 
-/** @param {string} why not now @param {{ keep: () => unknown, insist: (reason: string) => unknown }} acts */
-function insistQuestion(why, { keep, insist }) {
+/**
+ * @typedef {object} Insisting what was refused for now
+ * @property {CredentialKind} kind
+ * @property {string} why
+ * @property {string} act in words
+ * @property {(reason: string) => unknown} again
+ */
+
+/** @param {Insisting} insisting @param {() => unknown} keep */
+function insistQuestion({ why, act, again }, keep) {
   const reason = h("input", {
     class: "input",
     id: "insist-reason",
@@ -94,16 +102,16 @@ function insistQuestion(why, { keep, insist }) {
       /** @param {SubmitEvent} event */
       onsubmit: (event) => {
         event.preventDefault();
-        insist(reason.value);
+        again(reason.value);
       },
     },
     h("p", {}, why),
-    h("div", { class: "field" }, h("label", { for: "insist-reason" }, t("Reason to do it all the same")), reason),
+    h("div", { class: "field" }, h("label", { for: "insist-reason" }, t("Reason")), reason),
     h(
       "div",
       { class: "acts" },
-      h("button", { type: "button", class: "button", onclick: keep }, t("Leave it")),
-      h("button", { class: "button danger filled" }, t("Do it all the same")),
+      h("button", { type: "button", class: "button", onclick: keep }, t("Cancel")),
+      h("button", { class: "button danger filled" }, act),
     ),
   );
 }
@@ -140,9 +148,9 @@ const credentialRow = (kind, credential, earlier, { make, ask }, ...below) =>
               type: "button",
               class: "button",
               onclick: make,
-              "aria-label": `${credential ? t("Replace") : t("Make")}: ${CREDENTIALS[kind]}`,
+              "aria-label": `${credential ? t("Replace") : t("Create")}: ${CREDENTIALS[kind]}`,
             },
-            credential ? t("Replace") : t("Make"),
+            credential ? t("Replace") : t("Create"),
           ),
         ask &&
           h(
@@ -160,6 +168,13 @@ const credentialRow = (kind, credential, earlier, { make, ask }, ...below) =>
     below,
   );
 
+/** Reads them: a kind → those that count, the newest first. @param {string} path */
+async function credentialsInForce(path) {
+  const { data } = /** @type {Answer<CredentialPage>} */ (await get(path));
+  /** @param {CredentialKind} kind */
+  return (kind) => data.results.filter((credential) => credential.kind === kind && !credential.revoked_at);
+}
+
 /**
  * Draws itself into `place`; onChange() after each change.
  *
@@ -173,17 +188,17 @@ export async function mountCredentials(place, uav, { canPlan, isAdministrator, o
   let shown = null;
   /** @type {CredentialKind | null} */
   let asking = null; // which kind is about to be revoked
-  /** @type {{ kind: CredentialKind, why: string, again: (reason: string) => unknown } | null} */
-  let insisting = null; // what was refused for now
+  /** @type {Insisting | null} */
+  let insisting = null;
 
   /**
    * @template Result
    * @param {CredentialKind} kind
    * @param {() => Promise<Result>} send
    * @param {(answer: Result) => Promise<unknown>} then
-   * @param {(reason: string) => unknown} again
+   * @param {Pick<Insisting, "act" | "again">} anyway
    */
-  async function attempt(kind, send, then, again) {
+  async function attempt(kind, send, then, anyway) {
     insisting = null;
     try {
       const answer = await proved(send);
@@ -193,7 +208,7 @@ export async function mountCredentials(place, uav, { canPlan, isAdministrator, o
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (!isAdministrator || !NEEDED_NOW.includes(error.code)) return toast(error.message);
-      insisting = { kind, why: error.message, again };
+      insisting = { kind, why: error.message, ...anyway };
       asking = null;
       await draw();
       find(place, "#insist-reason", HTMLElement).focus();
@@ -209,7 +224,8 @@ export async function mountCredentials(place, uav, { canPlan, isAdministrator, o
       await draw();
       find(place, ".secret button", HTMLElement).focus();
     };
-    return attempt(kind, /** @type {() => Promise<Answer<NewCredential>>} */ (send), show, (why) => make(kind, why));
+    const anyway = { act: t("Replace anyway"), again: (/** @type {string} */ why) => make(kind, why) };
+    return attempt(kind, /** @type {() => Promise<Answer<NewCredential>>} */ (send), show, anyway);
   };
 
   /** @param {Credential} credential @param {string} [reason] @returns {Promise<unknown>} */
@@ -222,7 +238,8 @@ export async function mountCredentials(place, uav, { canPlan, isAdministrator, o
       toast(t("Revoked. {name} cannot connect with it any more.", { name: uav.name }));
       await draw();
     };
-    return attempt(credential.kind, send, show, (why) => revoke(credential, why));
+    const anyway = { act: t("Revoke anyway"), again: (/** @type {string} */ why) => revoke(credential, why) };
+    return attempt(credential.kind, send, show, anyway);
   };
 
   /** @param {CredentialKind | null} kind null: no longer */
@@ -254,15 +271,13 @@ export async function mountCredentials(place, uav, { canPlan, isAdministrator, o
       asking === kind &&
         credential &&
         revokeQuestion(uav.name, { keep: () => ask(null), revoke: () => revoke(credential) }),
-      insisting?.kind === kind && insistQuestion(insisting.why, { keep: leave, insist: insisting.again }),
+      insisting?.kind === kind && insistQuestion(insisting, leave),
       shown?.kind === kind && secretBox(shown, putAway),
     );
   }
 
   async function draw() {
-    const { data } = /** @type {Answer<CredentialPage>} */ (await get(path));
-    /** @param {CredentialKind} kind */
-    const inForce = (kind) => data.results.filter((credential) => credential.kind === kind && !credential.revoked_at);
+    const inForce = await credentialsInForce(path);
     place.replaceChildren(...KINDS.map((kind) => row(kind, inForce(kind))));
   }
 

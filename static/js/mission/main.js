@@ -72,6 +72,7 @@ const BEGINNING = {
   isAway: !navigator.onLine,
   others: [],
   lastPlan: null,
+  shownPlan: null,
   planningBeside: null,
   refusedBeside: {},
   why: null,

@@ -114,14 +114,14 @@ function wishChoices(targets, actions, { selection, fleet }) {
     ),
     uavs.length > 0 &&
       choiceOf(
-        t("Only UAV"),
+        t("Required UAV"),
         wishes.map(({ uav }) => uav ?? ""),
         [["", t("any")], ...namesToChoose(uavs.map(({ name }) => name))],
         (name) => actions.tieTargets(keys, name || null),
       ),
     sensors.length > 0 &&
       choiceOf(
-        t("Needs sensor"),
+        t("Required sensor"),
         wishes.map(({ sensor }) => sensors.find((name) => name.toLowerCase() === sensor.trim().toLowerCase()) ?? ""),
         [["", t("none|sensor")], ...namesToChoose(sensors)],
         (sensor) => actions.setWish(keys, { sensor }),
@@ -147,7 +147,7 @@ function lockChoices({ key }, actions, { selection, orders }) {
   return [
     uavs.length > 0 &&
       choiceOf(
-        t("Fly with UAV"),
+        t("Lock to UAV"),
         [lock?.uav ?? ""],
         [...asPlanned, ...namesToChoose(uavs.map(({ name }) => name))],
         (name) => actions.giveTarget(key, name),
@@ -200,7 +200,7 @@ export function targetMenu(targets, actions, known, more = []) {
   const title = targets.length === 1 ? targets[0].label : tn(targets.length, "{count} target", "{count} targets");
   return h(
     "div",
-    { class: "menu float target-menu", role: "group", "aria-label": t("Task and wishes: {name}", { name: title }) },
+    { class: "menu float target-menu", role: "group", "aria-label": t("Task, priority, UAV: {name}", { name: title }) },
     h("p", { class: "caption" }, title),
     TASKS.map(({ kind, icon: sign, words }) =>
       h(
@@ -219,8 +219,9 @@ export function targetMenu(targets, actions, known, more = []) {
       h("button", { class: "button" }, t("Set")),
     ),
     h("hr", {}),
+    h("p", { class: "caption" }, t("Priority and requirements")),
     wishChoices(targets, actions, known),
-    locking.length > 0 && h("hr", {}),
+    locking.length > 0 && [h("hr", {}), h("p", { class: "caption" }, t("Place in the plan"))],
     locking,
     more.length > 0 && h("hr", {}),
     more.map(menuItem),

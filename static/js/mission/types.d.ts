@@ -180,6 +180,8 @@ export interface Draft extends Version {
   kept_at: string;
   revision: number;
   base?: Version | null;
+  /** of a mission that is not stored: the plan that was shown, and the one before */
+  plans?: { shown: ShortPlan | null; last: ShortPlan | null };
 }
 
 // what is planned
@@ -385,6 +387,8 @@ export interface MissionPageState {
   /** other users who have the mission open */
   others: Present[];
   lastPlan: ShortPlan | null;
+  /** the plan that was made last on this page, or before it was loaded again */
+  shownPlan: ShortPlan | null;
   /** the basis that another plan is being made for, to compare */
   planningBeside: string | null;
   /** by basis: why that could not be planned */

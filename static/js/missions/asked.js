@@ -72,8 +72,8 @@ export function requestOf(asked, now = new Date()) {
 }
 
 /** How many of the fields behind "More filters" are set. @param {Asked} asked */
-export function countOfFields({ author, uav, changed, stale, deleted }) {
-  return [author, uav, changed, stale, deleted].filter(Boolean).length;
+export function countOfFields({ author, uav, changed, stale }) {
+  return [author, uav, changed, stale].filter(Boolean).length;
 }
 
 /** @param {Asked} asked */

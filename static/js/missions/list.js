@@ -16,7 +16,8 @@ import { askedOf, NOTHING, requestOf, searchOf } from "./asked.js";
  * @property {string} address of the page in the API
  * @property {string | null} next address of the page after it
  * @property {number} total
- * @property {MissionPage["by_state"]} byState
+ * @property {MissionPage["by_state"]} byState of those that are not deleted; empty until they were listed
+ * @property {number} deletedCount
  * @property {string[]} pages addresses of the pages before it
  * @property {ReadonlySet<string>} chosen ids
  * @property {MissionFilters} filters
@@ -35,6 +36,7 @@ export function createList() {
       next: null,
       total: 0,
       byState: {},
+      deletedCount: 0,
       pages: [],
       chosen: new Set(),
       filters: { authors: [], uavs: [] },
@@ -79,7 +81,8 @@ export function createList() {
         missions: data.results,
         next: data.next,
         total: data.total,
-        byState: data.by_state,
+        byState: store.state.asked.deleted ? store.state.byState : data.by_state,
+        deletedCount: data.deleted_count,
         pages,
         address,
         chosen: new Set(),

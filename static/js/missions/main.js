@@ -203,7 +203,7 @@ function drawProblem({ problem, missions }) {
 }
 
 /** @param {ListState} state */
-function drawRest({ missions, next, total, pages, asked, filters, isBusy }) {
+function drawRest({ missions, next, total, pages, asked, filters, deletedCount, isBusy }) {
   byId("missions").setAttribute("aria-busy", String(isBusy));
   byId("missions-loading").hidden = missions !== null || !isBusy;
   if (missions === null) return;
@@ -211,7 +211,7 @@ function drawRest({ missions, next, total, pages, asked, filters, isBusy }) {
   byId("missions-empty").hidden = missions.length > 0;
   const isNone = !missions.length && !isFiltered(asked);
   for (const part of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll(".filters, .more-filters")))
-    part.hidden = isNone && !filters.authors.length && !asked.deleted;
+    part.hidden = isNone && !filters.authors.length && !deletedCount;
   if (isNone) {
     drawFirst();
   } else if (!missions.length) {
@@ -266,19 +266,23 @@ function drawEmpty(...parts) {
   byId("missions-empty").replaceChildren(icon("clipboard-list", "large"), ...parts.filter((part) => part !== false));
 }
 
-/** All, then each state that occurs, with how many. @param {ListState} state */
-function drawStates({ byState, asked }) {
+const DELETED = "deleted"; // beside the states of missions
+
+/** All, then each state that occurs, then deleted ones, with how many. @param {ListState} state */
+function drawStates({ byState, deletedCount, asked }) {
   const total = Object.values(byState).reduce((sum, count) => sum + count, 0);
+  const chosen = asked.deleted ? DELETED : asked.state;
   const choices = [
     { value: "", words: t("All"), count: total },
     ...Object.entries(STATES).map(([value, words]) => ({ value, words, count: byState[value] ?? 0 })),
+    { value: DELETED, words: t("Deleted"), count: deletedCount },
   ];
   const fieldset = byId("states");
   const hadFocus = fieldset.contains(document.activeElement);
   fieldset.replaceChildren(
     find(fieldset, "legend"),
     ...choices
-      .filter(({ value, count }) => count > 0 || value === "" || value === asked.state)
+      .filter(({ value, count }) => count > 0 || value === "" || value === chosen)
       .map(({ value, words, count }) =>
         h(
           "label",
@@ -287,8 +291,8 @@ function drawStates({ byState, asked }) {
             type: "radio",
             name: "state",
             value,
-            checked: asked.state === value,
-            onchange: () => ask({ state: value }),
+            checked: value === chosen,
+            onchange: () => ask({ state: value === DELETED ? "" : value, deleted: value === DELETED }),
           }),
           h("span", { class: "segment" }, words, h("span", { class: "count" }, numberText(count))),
         ),
@@ -323,7 +327,6 @@ function drawFields({ asked, filters }) {
   byId("from-day", HTMLInputElement).value = asked.from;
   byId("to-day", HTMLInputElement).value = asked.to;
   byId("stale", HTMLInputElement).checked = asked.stale;
-  byId("deleted", HTMLInputElement).checked = asked.deleted;
   const count = countOfFields(asked);
   byId("filter-count").textContent = count ? numberText(count) : "";
   if (count) byId("more-filters", HTMLDetailsElement).open = true;
@@ -359,10 +362,8 @@ for (const [id, name] of Object.entries(FIELDS)) {
   const field = /** @type {HTMLInputElement | HTMLSelectElement} */ (byId(id));
   field.addEventListener("change", () => ask({ [name]: field.value }));
 }
-for (const name of ["stale", "deleted"]) {
-  const box = byId(name, HTMLInputElement);
-  box.addEventListener("change", () => ask({ [name]: box.checked }));
-}
+const stale = byId("stale", HTMLInputElement);
+stale.addEventListener("change", () => ask({ stale: stale.checked }));
 byId("clear-filters").addEventListener("click", () => {
   filter.value = "";
   clearFilters();
@@ -376,8 +377,8 @@ store.listen(["asked", "missions", "chosen"], drawHeads);
 store.listen(["missions"], drawRows);
 store.listen(["missions", "chosen", "asked"], drawChosen);
 store.listen(["missions", "problem"], drawProblem);
-store.listen(["missions", "next", "total", "asked", "isBusy", "filters"], drawRest);
-store.listen(["byState", "asked"], drawStates);
+store.listen(["missions", "next", "total", "asked", "isBusy", "filters", "deletedCount"], drawRest);
+store.listen(["byState", "deletedCount", "asked"], drawStates);
 store.listen(["asked", "filters"], drawFields);
 
 demo.listen(() => drawRest(store.state));

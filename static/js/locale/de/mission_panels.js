@@ -161,7 +161,8 @@ export default {
   "Target {number} of UAV {letter}": "Ziel {number} von UAV {letter}",
   "Targets that have changed": "Ziele, die sich geändert haben",
   "Task": "Aufgabe",
-  "Task of {name}: {task}": "Aufgabe von {name}: {task}",
+  "Task, priority, UAV": "Aufgabe, Priorität, UAV",
+  "Task, priority, UAV of {name}: {task}": "Aufgabe, Priorität, UAV von {name}: {task}",
   "That did not work. Try again.": "Das ging nicht. Noch einmal versuchen.",
   "The address with this view of the map is copied.": "Die Adresse mit diesem Kartenausschnitt ist kopiert.",
   "The first {count} of {all}": "Die ersten {count} von {all}",
@@ -205,6 +206,8 @@ export default {
   "You can go on: what you change is kept in this browser and saved when the server is back.":
     "Sie können weitermachen: Änderungen bleiben in diesem Browser und werden gespeichert, wenn der Server wieder da ist.",
   "you, in another window": "Sie, in einem anderen Fenster",
+  "{task}. Change task, priority, UAV": "{task}. Aufgabe, Priorität, UAV ändern",
+  "{who} (planning)": "{who} (plant gerade)",
   "Your changes are from before {whose} save at {time}.":
     "Ihre Änderungen sind älter als das Speichern von {whose} um {time}.",
   "{act}: {name}": "{act}: {name}",

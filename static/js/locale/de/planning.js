@@ -88,7 +88,7 @@ export default {
   "Earlier": "Früher",
   "Every UAV that could fly it has as many targets as it may.":
     "Jedes UAV, das es könnte, hat so viele Ziele, wie es darf.",
-  "Fly with UAV": "Fliegen mit UAV",
+  "Lock to UAV": "Auf UAV festlegen",
   "High": "Hoch",
   "High priority": "Hohe Priorität",
   "Land at the nearest base": "Auf der nächsten Basis landen",
@@ -105,7 +105,7 @@ export default {
   "locks changed": "Festlegungen geändert",
   "Low": "Niedrig",
   "Low priority": "Niedrige Priorität",
-  "Needs sensor": "Braucht den Sensor",
+  "Required sensor": "Vorgeschriebener Sensor",
   "needs {sensor}": "braucht {sensor}",
   "No plan can be done in less than {time}.": "Kein Plan kann in weniger als {time} fertig sein.",
   "No plan can fly less than {length}.": "Kein Plan kann unter {length} bleiben.",
@@ -117,7 +117,9 @@ export default {
   "Nothing is locked: {count} UAVs of this mission are called {name}.":
     "Nichts ist festgelegt: {count} UAVs dieser Mission heißen {name}.",
   "Nothing is locked any more.": "Nichts ist mehr festgelegt.",
-  "Only UAV": "Nur das UAV",
+  "Place in the plan": "Platz im Plan",
+  "Priority and requirements": "Priorität und Vorgaben",
+  "Required UAV": "Vorgeschriebenes UAV",
   "only {uav}": "nur {uav}",
   "Priority": "Priorität",
   "Proven shortest.": "Bewiesen am kürzesten.",
@@ -134,7 +136,7 @@ export default {
   "Proven soonest.": "Bewiesen am schnellsten.",
   "Raise its limit to {count}": "Seine Grenze auf {count} erhöhen",
   "Sensors: {names}": "Sensoren: {names}",
-  "Task and wishes: {name}": "Aufgabe und Wünsche: {name}",
+  "Task, priority, UAV: {name}": "Aufgabe, Priorität, UAV: {name}",
   "The chosen target earlier": "Gewähltes Ziel früher",
   "The chosen target later": "Gewähltes Ziel später",
   "The priority of {count} target is set.": [

@@ -21,13 +21,14 @@ import { createStoredMission } from "./stored_mission.js";
  * @returns {boolean}
  */
 export function settleDraft({ store, selection, drafts }) {
-  const { mission, name, conflict, stored } = store.state;
+  const { mission, name, conflict, stored, shownPlan, lastPlan } = store.state;
   const isWorthKeeping = mission ? isUnsaved(store.state) : isStarted(store.state);
   if (isWorthKeeping) {
     const since = conflict
       ? { revision: conflict.base, base: conflict.before }
       : { revision: mission?.revision ?? 0, base: stored };
-    return drafts.keep(mission?.id ?? null, { name, selection: selection(), ...since });
+    const plans = mission ? undefined : { shown: shownPlan, last: lastPlan }; // a stored one has the server's
+    return drafts.keep(mission?.id ?? null, { name, selection: selection(), ...since, plans });
   }
   drafts.dropOwn(mission?.id ?? null);
   return true;
@@ -82,7 +83,11 @@ export function createOpening(context, { conflictWith }) {
     const draft = drafts.read(null);
     if (!draft || !isStarted({ name: draft.name ?? "", selection: draft.selection })) return;
     history.startFrom(draft.selection);
-    store.update({ name: draft.name ?? "" });
+    store.update({
+      name: draft.name ?? "",
+      shownPlan: draft.plans?.shown ?? null,
+      lastPlan: draft.plans?.last ?? null,
+    });
     settleDraft(context);
     if (draft.selection.targets.length || draft.name)
       toast(t("Your unsaved mission is back."), { label: t("Start empty"), act: startEmpty });
@@ -92,7 +97,7 @@ export function createOpening(context, { conflictWith }) {
     const { name, plan } = store.state;
     const mine = selection();
     if (!change({ ...picks.EMPTY }) && !name) return;
-    store.update({ name: "", plan: null, problem: null, chosenTarget: null, litTarget: null });
+    store.update({ name: "", plan: null, shownPlan: null, problem: null, chosenTarget: null, litTarget: null });
     const undo = () => {
       change(mine);
       store.update({ name, plan });

@@ -16,7 +16,7 @@ import { planOf, withResult } from "./plan_results.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { JobLink } from "../../api_types.d.ts" */
-/** @import { BestSoFar, MissionContext, MissionSelection, PickedTarget, Planning, PlanResult, ShortPlan, ShownPlan } from "../types.d.ts" */
+/** @import { BestSoFar, MissionContext, MissionSelection, PickedTarget, Planning, PlanResult, ShownPlan } from "../types.d.ts" */
 
 /** @typedef {ReturnType<typeof createPlanBeside>} PlanBeside */
 /** @typedef {(signal: AbortSignal) => Promise<PlanResult | { job: string }>} Begin gives the plan, or the job that makes it */
@@ -296,12 +296,9 @@ function showKnownPlans({ store, page }, aside) {
 
 /** The plan before the one on the page is kept in short, to compare. @param {MissionContext} context */
 function rememberLastPlan({ store }) {
-  /** @type {ShortPlan | null} */
-  let shown = null;
-  store.listen(["plan"], ({ plan: now }) => {
+  store.listen(["plan"], ({ plan: now, shownPlan: before, lastPlan }) => {
     if (!now) return;
     const summary = summaryOfPlan(now);
-    if (shown && !isSamePlan(shown, summary)) store.update({ lastPlan: shown });
-    shown = summary;
+    store.update({ shownPlan: summary, lastPlan: before && !isSamePlan(before, summary) ? before : lastPlan });
   });
 }

@@ -31,11 +31,15 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
   let toldDeleted = null;
   /** @type {string | null} */
   let watched = null;
-  /** the map data for which the causes were read last @type {{ id: string | null, revision: number }} */
-  let groundRead = { id: null, revision: 0 };
+  const followGround = createGroundReading(store, readFleet);
 
   /** @param {string} id @param {boolean} here */
-  const presence = (id, here) => post(`/missions/${id}/presence`, { editor, here }, { keepalive: !here });
+  const presence = (id, here) =>
+    post(
+      `/missions/${id}/presence`,
+      { editor, here, planning: here && store.state.planning !== null },
+      { keepalive: !here },
+    );
 
   /** @param {unknown} error @param {Mission} mission */
   function failed(error, mission) {
@@ -49,9 +53,14 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
 
   async function ask() {
     const { mission, saving, planning } = store.state;
-    if (!mission || saving || planning || isAsking) return;
+    if (!mission || saving || isAsking) return;
+    if (planning && Date.now() - reportedAt <= PRESENCE_MS) return;
     isAsking = true;
     try {
+      if (planning) {
+        await report(); // what others save meanwhile comes in once the plan is there
+        return;
+      }
       const { data } = /** @type {Answer<Mission | null>} */ (
         await get(`/missions/${mission.id}`, { headers: { "If-None-Match": `"${mission.revision}"` } })
       );
@@ -73,24 +82,7 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
     reportedAt = Date.now();
     const { data } = /** @type {Answer<Presence>} */ (await presence(mission.id, true));
     store.update({ others: data.others, groundRevision: data.ground_revision });
-    await followGround(data);
-  }
-
-  /** Reads what the map data or a UAV have changed though the mission has not. @param {Presence} present */
-  async function followGround(present) {
-    const { mission } = store.state;
-    if (!mission) return;
-    const { id, plan } = mission;
-    const known = groundRead.id === id ? groundRead.revision : plan?.ground_revision;
-    const isOnOtherGround = plan && known !== present.ground_revision;
-    const hasOtherUavs = JSON.stringify(mission.uav_changes) !== JSON.stringify(present.uav_changes);
-    if (!isOnOtherGround && !hasOtherUavs) return;
-    const fleet = hasOtherUavs ? await readFleet() : store.state.fleet;
-    const { data: fresh } = /** @type {Answer<Mission>} */ (await get(`/missions/${mission.id}`));
-    if (fresh.revision !== mission.revision || store.state.mission !== mission) return;
-    groundRead = { id, revision: present.ground_revision };
-    const { is_stale, stale_reason, stale_causes, uav_changes } = fresh;
-    store.update({ fleet, mission: { ...mission, is_stale, stale_reason, stale_causes, uav_changes } });
+    if (!store.state.planning) await followGround(data);
   }
 
   function start() {
@@ -106,10 +98,44 @@ export function watchMission(store, { editor, readFleet, take, connectedAgain, t
     reportedAt = 0;
     start();
   });
+  let wasPlanning = false;
+  store.listen(["planning"], ({ planning }) => {
+    if ((planning !== null) === wasPlanning) return;
+    wasPlanning = planning !== null;
+    reportedAt = 0; // others are to see at once that it begins or ends
+    if (watched && !document.hidden) void ask();
+  });
   document.addEventListener("visibilitychange", () => watched && start());
   addEventListener("offline", () => store.update({ isAway: true }));
   addEventListener("online", () => (store.state.mission ? void ask() : connectedAgain()));
   addEventListener("pagehide", () => {
     if (store.state.mission) presence(store.state.mission.id, false).catch(() => {}); // the page is gone; the others forget it by themselves too
   });
+}
+
+/**
+ * Reads what the map data or a UAV have changed though the mission has not.
+ *
+ * @param {MissionStore} store
+ * @param {Watching["readFleet"]} readFleet
+ */
+function createGroundReading(store, readFleet) {
+  /** the map data for which the causes were read last @type {{ id: string | null, revision: number }} */
+  let groundRead = { id: null, revision: 0 };
+
+  return async (/** @type {Presence} */ present) => {
+    const { mission } = store.state;
+    if (!mission) return;
+    const { id, plan } = mission;
+    const known = groundRead.id === id ? groundRead.revision : plan?.ground_revision;
+    const isOnOtherGround = plan && known !== present.ground_revision;
+    const hasOtherUavs = JSON.stringify(mission.uav_changes) !== JSON.stringify(present.uav_changes);
+    if (!isOnOtherGround && !hasOtherUavs) return;
+    const fleet = hasOtherUavs ? await readFleet() : store.state.fleet;
+    const { data: fresh } = /** @type {Answer<Mission>} */ (await get(`/missions/${mission.id}`));
+    if (fresh.revision !== mission.revision || store.state.mission !== mission) return;
+    groundRead = { id, revision: present.ground_revision };
+    const { is_stale, stale_reason, stale_causes, uav_changes } = fresh;
+    store.update({ fleet, mission: { ...mission, is_stale, stale_reason, stale_causes, uav_changes } });
+  };
 }

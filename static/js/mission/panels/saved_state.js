@@ -38,7 +38,10 @@ export function savedWords(state) {
 
 /** @param {Present[]} others */
 function othersWords(others) {
-  const names = others.map(({ name, is_me }) => (is_me ? t("you, in another window") : name));
+  const names = others.map(({ name, is_me, is_planning }) => {
+    const who = is_me ? t("you, in another window") : name;
+    return is_planning ? t("{who} (planning)", { who }) : who;
+  });
   return tn(others.length, "Also open: {names}", "Also open: {names}", { names: names.join(", ") });
 }
 

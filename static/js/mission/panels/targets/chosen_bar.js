@@ -28,7 +28,7 @@ export function mountChosenBar(store, actions, { chooseAll, done }) {
       "aria-expanded": "false",
     },
     icon("list-checks", "small"),
-    t("Task"),
+    t("Task, priority, UAV"),
   );
   task.addEventListener("click", () =>
     toggleMenu(task, () => targetMenu(chosen(), actions, { ...store.state, orders: [] })),

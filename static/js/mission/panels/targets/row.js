@@ -143,9 +143,10 @@ function refreshMarks(place, target, selection) {
 function refreshTask(button, target) {
   const task = taskOf(target);
   const words = taskText(task);
-  if (button.title === words) return;
+  const title = t("{task}. Change task, priority, UAV", { task: words });
+  if (button.title === title) return;
   button.replaceChildren(icon(taskIcon(task), "small"));
-  button.title = words;
-  button.setAttribute("aria-label", t("Task of {name}: {task}", { name: target.label, task: words }));
+  button.title = title;
+  button.setAttribute("aria-label", t("Task, priority, UAV of {name}: {task}", { name: target.label, task: words }));
   button.classList.toggle("own", !isUsualTask(target));
 }

@@ -9,7 +9,7 @@ import { LONG_UNIT, SPEED_UNIT } from "../../../units.js";
 import { createFields, createLimits, field, showFault } from "./fields.js";
 
 /** @import { Answer } from "../../../api.js" */
-/** @import { UavType, UavTypePage } from "../../../api_types.d.ts" */
+/** @import { BasePage, UavType, UavTypePage } from "../../../api_types.d.ts" */
 /** @import { Child } from "../../../dom.js" */
 /** @import { DialogUav, Fields, Input, TypedUav } from "./fields.js" */
 
@@ -64,6 +64,12 @@ export function newDialog({ uav, submit, ...how }) {
     showRange();
   });
   fields.name.select();
+  void get("/bases?limit=1000")
+    .then((answer) => {
+      const { results } = /** @type {Answer<BasePage>} */ (answer).data;
+      fields.base_name.append(...results.map(({ name }) => h("option", { value: name }, name)));
+    })
+    .catch(() => {}); // it is added without one
   get("/uav-types?limit=100").then(
     (answer) => {
       types = /** @type {Answer<UavTypePage>} */ (answer).data.results;

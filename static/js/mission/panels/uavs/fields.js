@@ -112,7 +112,7 @@ export function createFields(uav) {
   const latitude = number(Number(uav.position[1].toFixed(6)), -90, 90);
   const byName = {
     name: h("input", { class: "input", required: true, maxlength: 100, value: uav.name }),
-    base_name: h("input", { class: "input", maxlength: 100, value: uav.base_name }),
+    base_name: h("select", { class: "input" }, h("option", { value: "" }, t("none"))),
     max_range_m: number(shownIn(uav.max_range_m, LONG_UNIT.metres), 0.1, 1000, false),
     cruise_speed_mps: number(shownIn(uav.cruise_speed_mps, SPEED_UNIT.mps), 0.5, 300, false),
     battery_wh: own("battery_wh", uav.battery_wh),
@@ -144,7 +144,7 @@ export function createFields(uav) {
     /** @returns {TypedUav} */
     read: () => ({
       name: byName.name.value.trim(),
-      base_name: byName.base_name.value.trim(),
+      base_name: byName.base_name.value,
       position: [longitude.valueAsNumber, latitude.valueAsNumber],
       max_range_m: kept(byName.max_range_m, uav.max_range_m, LONG_UNIT.metres),
       cruise_speed_mps: kept(byName.cruise_speed_mps, uav.cruise_speed_mps, SPEED_UNIT.mps),

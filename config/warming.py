@@ -1,0 +1,29 @@
+"""The web program loads compiled code and the network while it serves already: it is not ready until that has ended."""
+
+import logging
+import threading
+from collections.abc import Callable
+
+logger = logging.getLogger(__name__)
+
+WARMING_UP = "compiled code and the network are still being loaded"
+_thread: threading.Thread | None = None
+
+
+def warm_up_beside(work: Callable[[], None]) -> None:
+    """Do it in a thread of its own. Where it fails, the first request that needs something loads it."""
+    global _thread
+    _thread = threading.Thread(target=_do, args=[work], name="warm-up", daemon=True)
+    _thread.start()
+
+
+def warming_faults() -> list[str]:
+    """Why this process is not ready yet."""
+    return [WARMING_UP] if _thread is not None and _thread.is_alive() else []
+
+
+def _do(work: Callable[[], None]) -> None:
+    try:
+        work()
+    except Exception:
+        logger.exception("not warmed up")

@@ -1,0 +1,90 @@
+"""A demo mission flown by simulated UAVs, one step a call: nothing here waits, so no worker is held while they get ready and fly."""
+
+from datetime import datetime, timedelta
+
+from django.db import transaction
+from django.db.models import QuerySet
+from django.utils import timezone
+from django.utils.translation import gettext as _
+
+from missions.flight_plan.conditions import Conditions
+from missions.models import CommandKind, CommandState, Mission, MissionState, UavCommand
+from missions.selectors import mission_of_organisation
+from missions.services.approval import approve_mission
+from missions.services.dispatch import dispatch_mission
+from missions.services.flying import ON_ITS_WAY
+from missions.services.refused import refuse
+from missions.services.steering import command_uav
+from simulation.models import Simulation, SimulationState
+from simulation.rehearsing.sky import Named, named_sky
+from simulation.services.simulated_flights import start_simulated_flights
+from simulation.vehicle_models import PRESENT
+from workspace.models import User
+
+STEP_TIMEOUT = timedelta(minutes=5)  # for a UAV to stand ready, to be loaded, to start
+FLIGHT_TIMEOUT = timedelta(minutes=30)  # of one that is flown faster than real time
+
+
+def fly_demo_mission(*, mission: Mission, actor: User, speed: float, since: datetime) -> str:
+    """Take the next step: approve it and have simulated UAVs take its UAVs' places, load them, start them, see the end of a fast flight.
+
+    Returns what is waited for; "" where nothing is left to do, or where users have approved it or ended its simulation themselves.
+    since: simulations that are older are not this job's. Raises Refused; TimeoutError with what was waited for.
+    """
+    simulation = Simulation.objects.filter(mission=mission, created_at__gte=since).order_by("created_at").first()
+    if simulation is None:
+        return _begin(mission, actor, speed) if mission.state == MissionState.PLANNED else ""
+    if simulation.state == SimulationState.FAILED:
+        raise refuse("simulation_failed", _("The simulation of the demo mission failed."))
+    if simulation.state not in PRESENT or mission.state not in (MissionState.APPROVED, *ON_ITS_WAY):
+        return ""
+    if simulation.vehicles.exclude(state=SimulationState.FLYING).exists():
+        return _within(STEP_TIMEOUT, simulation.created_at, f"Starting the simulated UAVs of “{mission.name}”")
+    if mission.state == MissionState.APPROVED:
+        dispatch_mission(mission=mission, actor=actor)
+    return _carried_out(mission, actor, simulation.created_at) or _flown(mission, speed)
+
+
+def _begin(mission: Mission, actor: User, speed: float) -> str:
+    with transaction.atomic():
+        approve_mission(mission=mission, actor=actor)
+        loaded = mission_of_organisation(mission.organisation, mission.pk)
+        start_simulated_flights(mission=loaded, actor=actor, sky=named_sky(Named.CALM, Conditions()), speed=speed)
+    return f"Starting the simulated UAVs of “{mission.name}”"
+
+
+def _carried_out(mission: Mission, actor: User, since: datetime) -> str:
+    """What is waited for until each UAV is loaded and started; "" once they are."""
+    commands = UavCommand.objects.filter(mission=mission, created_at__gte=since).select_related("uav")
+    loads = commands.filter(kind=CommandKind.UPLOAD_MISSION)
+    if not _are_applied(loads):
+        return _within(STEP_TIMEOUT, loads.latest("created_at").created_at, f"Loading “{mission.name}”")
+    starts = commands.filter(kind=CommandKind.START)
+    for load in loads.exclude(uav__in=starts.values("uav")):
+        command_uav(uav=load.uav, kind=CommandKind.START, actor=actor)
+    if not _are_applied(starts.all()):
+        return _within(STEP_TIMEOUT, starts.latest("created_at").created_at, f"Starting “{mission.name}”")
+    return ""
+
+
+def _flown(mission: Mission, speed: float) -> str:
+    """What is waited for until a fast flight is over; one in real time is left to itself once it is started."""
+    if speed <= 1.0:
+        return ""
+    started_at = UavCommand.objects.filter(mission=mission, kind=CommandKind.START).latest("created_at").created_at
+    return _within(FLIGHT_TIMEOUT, started_at, f"Flying “{mission.name}”")
+
+
+def _are_applied(commands: QuerySet[UavCommand]) -> bool:
+    """Raises Refused where one of them has failed or expired."""
+    for command in commands:
+        if command.state in (CommandState.FAILED, CommandState.EXPIRED):
+            raise refuse("command_failed", _("%(uav)s did not take a command.") % {"uav": command.uav.name})
+    return all(command.state == CommandState.APPLIED for command in commands)
+
+
+def _within(limit: timedelta, begun_at: datetime, message: str) -> str:
+    """Raises TimeoutError with the message where it has taken longer."""
+    if timezone.now() - begun_at > limit:
+        raise TimeoutError(message)
+    return message
