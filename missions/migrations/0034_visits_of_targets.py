@@ -4,7 +4,7 @@ from django.db import migrations, models
 
 
 class Migration(migrations.Migration):
-    dependencies = [("missions", "0032_index_of_results")]
+    dependencies = [("missions", "0033_planned_starts")]
 
     operations = [
         migrations.AddField(
