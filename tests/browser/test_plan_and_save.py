@@ -33,7 +33,9 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
 
     base = sends(page, "bases", {"name": f"Yard {uuid4().hex[:8]}", "position": region.west})
     adds_uav(page, "Heron", region.west, range_km=80, base=base["name"])
-    assert [uav["properties"]["base"] for uav in asks(page, "/uavs?text=Heron")["features"]] == [base["id"]], "one of the fleet's, no text of its own"
+    assert [uav["properties"]["base"] for uav in asks(page, "/uavs?text=Heron")["features"]] == [base["id"]], (
+        "one of the fleet's, no text of its own"
+    )
     adds_uav(page, "Kite", region.east, range_km=80)
     things = find_pickable(page)
     picked_so_far = page.locator("#target-list .target")
