@@ -298,7 +298,7 @@ CELERY_BEAT_SCHEDULE = {
     "queue jobs again that were lost": {"task": "workspace.tasks.requeue_lost_jobs", "schedule": 3.0, "options": {"expires": 3}},
     "settle proposals whose worker was lost": {"task": "inspection.tasks.settle_proposals", "schedule": 15.0, "options": {"expires": 15}},
     "look after offers of another plan": {"task": "missions.tasks.look_after_offers", "schedule": 2.0, "options": {"expires": 2}},
-    "start UAVs in planned order": {"task": "missions.tasks.start_in_planned_order", "schedule": 1.0, "options": {"expires": 2}},
+    "start UAVs in planned order": {"task": "missions.tasks.start_in_planned_order", "schedule": 2.0, "options": {"expires": 2}},
     "tell of UAVs that wait for their other route": {
         "task": "telemetry.tasks.tell_of_hand_overs",
         "schedule": 2.0,
