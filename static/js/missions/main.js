@@ -273,7 +273,7 @@ function drawStates({ byState, deletedCount, asked }) {
   const total = Object.values(byState).reduce((sum, count) => sum + count, 0);
   const chosen = asked.deleted ? DELETED : asked.state;
   const choices = [
-    { value: "", words: t("All"), count: total },
+    { value: "", words: t("All"), count: asked.deleted && !total ? null : total }, // not known on a page of deleted ones alone
     ...Object.entries(STATES).map(([value, words]) => ({ value, words, count: byState[value] ?? 0 })),
     { value: DELETED, words: t("Deleted"), count: deletedCount },
   ];
@@ -282,7 +282,7 @@ function drawStates({ byState, deletedCount, asked }) {
   fieldset.replaceChildren(
     find(fieldset, "legend"),
     ...choices
-      .filter(({ value, count }) => count > 0 || value === "" || value === chosen)
+      .filter(({ value, count }) => count || value === "" || value === chosen)
       .map(({ value, words, count }) =>
         h(
           "label",
@@ -294,7 +294,7 @@ function drawStates({ byState, deletedCount, asked }) {
             checked: value === chosen,
             onchange: () => ask({ state: value === DELETED ? "" : value, deleted: value === DELETED }),
           }),
-          h("span", { class: "segment" }, words, h("span", { class: "count" }, numberText(count))),
+          h("span", { class: "segment" }, words, count !== null && h("span", { class: "count" }, numberText(count))),
         ),
       ),
   );
