@@ -54,6 +54,7 @@ def openapi_settings() -> dict[str, Any]:
             "UavFigure": "missions.fleet_selectors.FIGURES",
             "CredentialKind": "missions.models.CredentialKind",
             "CommandKind": "missions.models.CommandKind",
+            "BatchKind": ["hold", "land", "pause", "resume", "return"],
             "CommandState": "missions.models.CommandState",
             "CommandPriority": ["safety", "pause", "mission", "parameter"],
             "TargetPriority": "missions.models.TargetPriority",

@@ -507,10 +507,19 @@ export interface components {
         BatchInputRequest: {
             /** @default  */
             why: string;
-            kind: components["schemas"]["Kind5d1Enum"];
+            kind: components["schemas"]["BatchKind"];
             /** @description ids; without it: all with a route of the mission sent or in flight */
             uavs?: number[];
         };
+        /**
+         * @description * `hold` - hold
+         *     * `land` - land
+         *     * `pause` - pause
+         *     * `resume` - resume
+         *     * `return` - return
+         * @enum {string}
+         */
+        BatchKind: "hold" | "land" | "pause" | "resume" | "return";
         /**
          * @description * `go_on` - go_on
          *     * `hold` - hold
@@ -1876,15 +1885,6 @@ export interface components {
          */
         JobState: "queued" | "running" | "done" | "failed" | "cancelled";
         /**
-         * @description * `hold` - hold
-         *     * `land` - land
-         *     * `pause` - pause
-         *     * `resume` - resume
-         *     * `return` - return
-         * @enum {string}
-         */
-        Kind5d1Enum: "hold" | "land" | "pause" | "resume" | "return";
-        /**
          * @description * `` - As the browser
          *     * `en` - English
          *     * `de` - Deutsch
@@ -2733,7 +2733,7 @@ export interface components {
         MissionsBatchInputRequest: {
             /** @default  */
             why: string;
-            kind: components["schemas"]["Kind5d1Enum"];
+            kind: components["schemas"]["BatchKind"];
             missions: components["schemas"]["ScopeRequest"][];
         };
         MissionsDone: {
@@ -7085,6 +7085,7 @@ export type BaseRequest = components['schemas']['BaseRequest'];
 export type BatchAnswer = components['schemas']['BatchAnswer'];
 export type BatchAnswers = components['schemas']['BatchAnswers'];
 export type BatchInputRequest = components['schemas']['BatchInputRequest'];
+export type BatchKind = components['schemas']['BatchKind'];
 export type BehaviourEnum = components['schemas']['BehaviourEnum'];
 export type BindsEnum = components['schemas']['BindsEnum'];
 export type BlankEnum = components['schemas']['BlankEnum'];
@@ -7206,7 +7207,6 @@ export type JobError = components['schemas']['JobError'];
 export type JobLink = components['schemas']['JobLink'];
 export type JobPage = components['schemas']['JobPage'];
 export type JobState = components['schemas']['JobState'];
-export type Kind5d1Enum = components['schemas']['Kind5d1Enum'];
 export type Language = components['schemas']['Language'];
 export type LastPlan = components['schemas']['LastPlan'];
 export type LastRoute = components['schemas']['LastRoute'];

@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from celery import current_app
 from django.core.management import call_command
 from django.utils import timezone
 
+from config.celery import app
 from missions.models import CommandKind, CommandState, Mission, MissionState, UavCommand
 from simulation.models import SimulatedVehicle, Simulation, SimulationState
 from simulation.services.demo_missions import DEMO_MISSIONS, remove_demo_data, want_demo_missions
@@ -74,7 +74,7 @@ def test_its_worker_is_free_while_simulated_uavs_get_ready_and_fly(job: Job) -> 
 
 
 def test_rehearsals_have_a_queue_of_their_own() -> None:
-    queue_of = current_app.amqp.router.route
+    queue_of = app.amqp.router.route
     assert queue_of({}, "simulation.tasks.make_demo_missions")["queue"].name == "planning"
     assert queue_of({}, "simulation.tasks.rehearse_mission")["queue"].name == "simulation"
 
