@@ -3,15 +3,15 @@
 from collections import deque
 from dataclasses import dataclass, field
 from statistics import median
+from typing import Any
 
 from inspection.geodesy import LonLat
+from telemetry.alerting.consumption import DrainMemory
 from telemetry.alerting.route_line import Place, RouteLine
 from telemetry.estimation.report import Report
 
 INTERVALS_KEPT = 5
 UNKNOWN_INTERVAL_S = 10.0  # as slow as some links are
-BATTERY_STEP_PERCENT = 1.0  # of the flight's plan, between two entries
-BATTERY_STEPS_KEPT = 10
 
 
 @dataclass
@@ -44,7 +44,8 @@ class Memory:
     jump_m: float = 0.0
     was_in_flight: bool = False  # on this line
     mode_words: tuple[str, str] = ("", "")  # a mode, and what the vehicle said about the time at which it changed to it
-    drained: deque[tuple[float, float]] = field(default_factory=lambda: deque(maxlen=BATTERY_STEPS_KEPT + 1))
+    drain: DrainMemory = field(default_factory=DrainMemory)
+    battery: dict[str, Any] | None = None  # as live pages show it
     causes: dict[tuple[str, str], Cause] = field(default_factory=dict)
     _intervals_s: deque[float] = field(default_factory=lambda: deque(maxlen=INTERVALS_KEPT))
 
@@ -53,7 +54,7 @@ class Memory:
         if line is not self.line:
             self.line, self.place = line, None
             self.was_in_flight = False
-            self.drained.clear()
+            self.drain = DrainMemory()
             self.progress.clear()
         if report is None or (self.newest is not None and report.measured_s <= self.newest.measured_s):
             return False
@@ -62,11 +63,6 @@ class Memory:
         self.before, self.newest = self.newest, report
         self.place = None if line is None else _place(line, report, self.place)
         return True
-
-    def note_battery(self, planned_percent: float, left_percent: float) -> None:
-        """What the plan had used by now, and what is left: kept once a step."""
-        if not self.drained or planned_percent - self.drained[-1][0] >= BATTERY_STEP_PERCENT:
-            self.drained.append((planned_percent, left_percent))
 
     @property
     def usual_interval_s(self) -> float:
