@@ -32,9 +32,9 @@ def places_in_the_air(uav_ids: Collection[int]) -> dict[int, LonLat | None]:
 
 
 def reported_on_the_ground(uav_ids: Collection[int]) -> set[int]:
-    """Of these UAVs, by link; not those to which something was sent since that may have set them in motion."""
+    """Of these UAVs, by link, as far as it was heard lately; not those to which was sent since what may have set them in motion."""
     moved = UavCommand.objects.filter(uav=OuterRef("uav"), kind__in=SETS_IN_MOTION, sent_at__gt=OuterRef("heard_at"))
-    links = UavLink.objects.filter(~Exists(moved), uav__in=uav_ids, is_in_air=False, heard_at__isnull=False)
+    links = UavLink.objects.filter(~Exists(moved), uav__in=uav_ids, is_in_air=False, heard_at__gt=Now() - BELIEVED_FOR)
     return set(links.values_list("uav_id", flat=True))
 
 

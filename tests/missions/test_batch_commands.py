@@ -13,6 +13,7 @@ from missions.services.batch_commands import BATCH_KINDS, Scope, UavAnswer, comm
 from missions.services.dispatch import dispatch_mission
 from missions.services.steering import command_uav, mission_in_hand
 from telemetry.models import UavLink
+from telemetry.selectors.in_the_air import BELIEVED_FOR
 from tests.missions.api import post
 from tests.missions.flights import approved, carry, dispatched, fleet, planned
 from tests.missions.outbox import a_uav
@@ -176,6 +177,15 @@ def test_several_missions_are_commanded_in_one_request(two: Any, person: User) -
     ]  # fmt: skip
     assert kinds_of(first[1]) == []
     assert kinds_of(*second) == ["pause", "pause"]
+
+
+def test_a_uav_that_was_on_the_ground_when_last_heard_long_ago_is_given_its_command(two: Any, person: User) -> None:
+    south, (_tern, kite), _north, _second = two
+    flies(kite, in_air=False)
+    heard_at = timezone.now() - BELIEVED_FOR - timedelta(seconds=1)
+    UavLink.objects.filter(uav=kite).update(heard_at=heard_at)
+    UavCommand.objects.filter(uav=kite).update(sent_at=heard_at - timedelta(seconds=1))
+    assert codes(given(south, "return", person)) == {"Tern": [], "Kite": []}
 
 
 def test_over_the_api_one_request_is_answered_uav_by_uav(two: Any, client: Client) -> None:
