@@ -14,7 +14,7 @@ from missions.stored_outcomes import outcome_in_words
 
 LONGEST_WHY = 300
 MOST_FLIGHTS = 100
-MOST_UAVS = 1_000
+MAX_UAVS = 1_000
 # What the outbox itself ends commands with; a link says in its own words why a command failed.
 OUTCOMES = {
     "superseded": gettext_lazy("A later command took its place."),
@@ -170,7 +170,7 @@ class BatchInputSerializer(WhyInputSerializer):
         child=serializers.IntegerField(),
         required=False,
         allow_empty=False,
-        max_length=MOST_UAVS,
+        max_length=MAX_UAVS,
         help_text="ids; without it: all with a route of the mission sent or in flight",
     )
 
@@ -181,7 +181,7 @@ class ScopeSerializer(KnownFieldsSerializer):
         child=serializers.IntegerField(),
         required=False,
         allow_empty=False,
-        max_length=MOST_UAVS,
+        max_length=MAX_UAVS,
         help_text="ids; without it: all with a route of the mission sent or in flight",
     )
 

@@ -177,7 +177,7 @@ class ContextPool:
         idle = self._idle[touch]
         return idle.pop() if idle else self.new(viewport=DESK, has_touch=touch)
 
-    def give_back(self, context: BrowserContext, *, touch: bool) -> None:
+    def release(self, context: BrowserContext, *, touch: bool) -> None:
         """Close its pages, empty it and keep it; close it where that fails."""
         try:
             for page in context.pages:
@@ -215,7 +215,7 @@ class Visitor:
         for context in self.own:
             context.close()
         for context, touch in self.taken:
-            self.contexts.give_back(context, touch=touch)
+            self.contexts.release(context, touch=touch)
         self.own.clear()
         self.taken.clear()
 
