@@ -98,7 +98,16 @@ export function routeClicks(map, on) {
       on.hover(thing, event.point, [event.lngLat.lng, event.lngLat.lat]);
     });
   });
+  // After a tap the browser may tell where the resting mouse is: outside the map. What the tap shows stays.
+  let isTouched = false;
+  /** @param {PointerEvent} event */
+  const notePointer = (event) => {
+    isTouched = event.pointerType === "touch";
+  };
+  canvas.addEventListener("pointerdown", notePointer, true);
+  canvas.addEventListener("pointermove", notePointer, true);
   map.on("mouseout", () => {
+    if (isTouched) return;
     cancelAnimationFrame(frame);
     on.hover(null, null, null);
   });
