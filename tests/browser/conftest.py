@@ -35,6 +35,12 @@ PATIENCE_MS = 45_000  # ./check runs other tests beside these
 expect.set_options(timeout=PATIENCE_MS)
 # The processor draws maps and the 3D view: with a sixteenth of the pixels a map's page takes half as much of its time. The layout stays.
 COARSE_CANVASES = "Object.defineProperty(window, 'devicePixelRatio', { get: () => 0.25 });"
+# No test but those with `draws` looks at what WebGL draws: shaders are compiled and buffers filled, the triangles are left out.
+NO_TRIANGLES = """
+    const draws = ["drawArrays", "drawElements", "drawArraysInstanced", "drawElementsInstanced"];
+    for (const { prototype } of [WebGLRenderingContext, WebGL2RenderingContext])
+        for (const name of draws) if (prototype[name]) prototype[name] = () => undefined;
+"""
 DESK = {"width": 1440, "height": 900}
 STORAGES = "local_storage,indexeddb,service_workers,cache_storage,file_systems"  # of Storage.clearDataForOrigin in Chrome's protocol
 EMPTY_PAGE = "about:blank"
@@ -166,11 +172,13 @@ class ContextPool:
         self.browser, self.address = browser, address
         self._idle: dict[bool, list[BrowserContext]] = {True: [], False: []}
 
-    def new(self, **options: Any) -> BrowserContext:
-        """A context of its own, which is closed after the test."""
+    def new(self, *, draws: bool = False, **options: Any) -> BrowserContext:
+        """A context of its own, which is closed after the test; WebGL's triangles are drawn in one that `draws`."""
         context = self.browser.new_context(base_url=self.address, reduced_motion="reduce", **options)
         if not HAS_PICTURES:
             context.add_init_script(COARSE_CANVASES)
+            if not draws:
+                context.add_init_script(NO_TRIANGLES)
         return context
 
     def take(self, *, touch: bool) -> BrowserContext:
@@ -226,10 +234,14 @@ class Visitor:
         size: tuple[int, int] = (1440, 900),
         theme: str = "light",
         touch: bool = False,
+        draws: bool = False,
         cookies: list[Any] | None = None,
     ) -> Page:
-        context = self.contexts.take(touch=touch)
-        self.taken.append((context, touch))
+        if draws:
+            context = self.new_context(draws=True, has_touch=touch)
+        else:
+            context = self.contexts.take(touch=touch)
+            self.taken.append((context, touch))
         if cookies:
             context.add_cookies(cookies)
         page = context.new_page()

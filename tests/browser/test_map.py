@@ -6,7 +6,8 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Visitor
-from tests.browser.operator_map import asks, at_zoom, place_of, stores_mission, wait_for_map
+from tests.browser.operator_map import asks, at_zoom, look_at, place_of, stores_mission, wait_for_map
+from tests.browser.pictures import colours_of
 from tests.browser.regions import region
 
 pytestmark = pytest.mark.browser
@@ -44,6 +45,20 @@ def test_nothing_around_the_map_lies_on_anything_else(visitor: Visitor, width: i
     around = page.evaluate(OVERLAPS)
     assert around["found"] == []
     assert ("#legend" in around["names"]) == (width > 720)
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_the_network_and_the_zones_are_drawn(visitor: Visitor, theme: str) -> None:
+    page = visitor.signs_in("opal", theme=theme, draws=True)
+    page.goto("/missions/new")
+    wait_for_map(page)
+    place = look_at(page, region.in_heliport, 13)
+    around = {"x": place["x"] - 100, "y": place["y"] - 100, "width": 200, "height": 200}
+    assert colours_of(page, page.screenshot(clip=around)) > 20
+    with_zone = page.screenshot(clip={**around, "x": place["x"], "y": place["y"], "width": 4, "height": 4})
+    place = look_at(page, region.empty, 13)
+    empty = page.screenshot(clip={"x": place["x"], "y": place["y"], "width": 4, "height": 4})
+    assert with_zone != empty
 
 
 @pytest.mark.parametrize("size", [(1440, 900), (390, 844)])

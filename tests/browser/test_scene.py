@@ -10,6 +10,7 @@ from playwright.sync_api import Page, expect
 
 from tests.browser.conftest import Site, Visitor
 from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.pictures import CANVAS_COLOURS, colours_of
 from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 from tests.browser.test_report import posts
@@ -26,12 +27,6 @@ NO_WEBGL = """
         return kind.startsWith("webgl") ? null : own.call(this, kind, ...rest);
     };
 """
-COLOURS = """(canvas) => {
-    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-    const seen = new Set();
-    for (let at = 0; at < data.length; at += 4) seen.add(data[at] << 16 | data[at + 1] << 8 | data[at + 2]);
-    return seen.size;
-}"""
 _rehearsed: dict[str, tuple[str, str]] = {}
 
 
@@ -71,7 +66,7 @@ def seen(page: Page, address: str) -> Page:
 
 def test_a_rehearsal_is_seen_in_space_kept_as_a_picture_and_linked(visitor: Visitor, rehearsed: tuple[str, str], picture: Picture) -> None:
     mission, rehearsal = rehearsed
-    page = seen(visitor.signs_in("vera"), f"/missions/{mission}/3d")  # without a flight on record: the newest rehearsal
+    page = seen(visitor.signs_in("vera", draws=True), f"/missions/{mission}/3d")  # without a flight on record: the newest rehearsal
     canvas = page.get_by_role("img", name=re.compile("^3D view: 1 UAV"))
     instruments = page.get_by_role("region", name="Instruments")
     expect(instruments).to_contain_text("Eider", timeout=PATIENCE_MS)
@@ -85,7 +80,7 @@ def test_a_rehearsal_is_seen_in_space_kept_as_a_picture_and_linked(visitor: Visi
     with page.expect_download(timeout=PATIENCE_MS) as kept:
         page.keyboard.press("p")
     assert kept.value.suggested_filename.startswith(f"one-tower-{DEPARTS_AT:%Y-%m-%d}-15")
-    assert kept.value.path().read_bytes().startswith(b"\x89PNG")
+    assert colours_of(page, kept.value.path().read_bytes()) > 100
     expect(page).to_have_url(re.compile(rf"source=rehearsal:{rehearsal}:0&t={DEPARTS_AT:%Y-%m-%d}T15.*camera=orbit"), timeout=PATIENCE_MS)
     clock = page.locator(".scene-clock").text_content()
     assert faults(page) == []
@@ -114,5 +109,5 @@ def test_without_webgl_it_says_so_and_shows_the_flight_from_above(visitor: Visit
     expect(page.get_by_role("status").filter(has_text="This browser draws no 3D. WebGL is missing")).to_be_visible()
     canvas = page.get_by_role("img", name=re.compile("^View from above, without WebGL: 1 UAV"))
     expect(canvas).to_be_visible()
-    assert canvas.evaluate(COLOURS) > 5  # ground, lines, the planned way and a UAV, not a blank
+    assert canvas.evaluate(CANVAS_COLOURS) > 5  # ground, lines, the planned way and a UAV, not a blank
     expect(page.get_by_role("radio", name="Chase")).to_be_disabled()
