@@ -9,6 +9,12 @@ LONGEST_CHAIN = 12  # modules that import modules: one pass over all files for e
 # Whose imports are rewritten: our own modules and style sheets, and libraries that consist of several modules. Other libraries are
 # served as they came; looking for imports in them takes most of the time. A library's files are named with and without lib/.
 REWRITTEN_FOLDERS = ("js", "css", "lib/maplibre-gl", "maplibre-gl", "lib/three", "three")
+# Imports as our own modules are formatted: at the start of a line, in double quotes. Django's patterns fit any format and take nine
+# tenths of the time: they look for an end from each "import" on, those in comments included.
+OWN_IMPORTS = [
+    (re.compile(r'(?m)^(?P<matched>(?P<import>(?:import|export) (?:[^;"]*? from )?)"(?P<url>[./][^"]+)";)'), '%(import)s"%(url)s";'),
+    (re.compile(r'(?P<matched>import\("(?P<url>[./][^"]+\.js)"\))'), 'import("%(url)s")'),
+]
 
 
 class HashedStaticFiles(ManifestStaticFilesStorage):
@@ -22,7 +28,7 @@ class HashedStaticFiles(ManifestStaticFilesStorage):
         super().__init__(*args, **kwargs)
         self._patterns = {
             f"{folder}/{extension}": patterns for folder in REWRITTEN_FOLDERS for extension, patterns in self._patterns.items()
-        }
+        } | {"js/*.js": OWN_IMPORTS}
 
     def stored_name(self, name: str) -> str:
         if not self.hashed_files:

@@ -68,9 +68,10 @@ class Simulator:
 
     def round(self) -> None:
         """Raises what the database raises; the next round begins anew."""
-        self._hold()
+        if self.flights:
+            self._hold()
         self._take()
-        for change in take_changes(ids=list(self.flights)):
+        for change in take_changes(ids=list(self.flights)) if self.flights else ():
             self._pass_on(change)
         if time.monotonic() - self._told_s >= TELL_EVERY_S:
             self._told_s = time.monotonic()
