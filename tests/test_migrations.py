@@ -14,7 +14,7 @@ from tests.migration_rule import faults
 
 PROJECT_DIR = Path(__file__).resolve().parents[1]
 # Those of before the first version that was rolled out: the rule holds for all that come after.
-BEFORE_THE_RULE = {"inspection": 9, "missions": 26, "simulation": 4, "telemetry": 13, "workspace": 6}
+BEFORE_THE_RULE = {"inspection": 1, "missions": 1, "simulation": 1, "telemetry": 1, "workspace": 1}
 RELEASED = re.findall(r"^## \[?(\d+\.\d+\.\d+)", (PROJECT_DIR / "CHANGELOG.md").read_text(), flags=re.MULTILINE)
 
 

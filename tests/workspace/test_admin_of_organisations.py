@@ -1,10 +1,8 @@
 """What belongs to one organisation is not there in the admin of another: every address, action, choice and filter."""
 
-from importlib import import_module
 from typing import Any
 
 import pytest
-from django.apps import apps
 from django.contrib import admin
 from django.core.management import CommandError, call_command
 from django.db.models import Model
@@ -203,17 +201,3 @@ def test_the_first_person_of_an_organisation_is_invited_from_the_machine(capsys:
     assert Client().post(path, form).status_code in (200, 302)
     ann = User.objects.get(username="ann")
     assert (ann.organisation, ann.role, ann.operates_installation) == (grid, Role.ADMINISTRATOR, False)
-
-
-@pytest.mark.parametrize(("organisations", "is_operator"), [(1, True), (2, False)])
-def test_after_the_update_the_first_administrator_operates_an_installation_of_one_organisation(
-    organisations: int, is_operator: bool
-) -> None:
-    Organisation.objects.exclude(pk=1).delete()
-    if organisations == 2:
-        Organisation.objects.create(name="Grid North")
-    first, second = (somebody(Role.ADMINISTRATOR) for _ in range(2))
-    import_module("workspace.migrations.0008_installation_operators").name_the_first(apps, None)
-    first.refresh_from_db()
-    second.refresh_from_db()
-    assert (first.operates_installation, second.operates_installation) == (is_operator, False)

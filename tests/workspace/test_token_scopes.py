@@ -1,12 +1,10 @@
 """Tokens do what they were made for and no more, for a year at most, and end with a password."""
 
 from datetime import timedelta
-from importlib import import_module
 from io import StringIO
 from typing import Any
 
 import pytest
-from django.apps import apps
 from django.contrib.auth.tokens import default_token_generator
 from django.core.management import CommandError, call_command
 from django.test import Client
@@ -19,7 +17,7 @@ from tests.missions.api import TERN, plan_body
 from tests.missions.worlds import world
 from tests.workspace.people import client_of, somebody
 from workspace.authentication import reader_of_token
-from workspace.models import SCOPES_OF_ROLE, ApiToken, Role, TokenScope, User
+from workspace.models import ApiToken, Role, TokenScope, User
 from workspace.services import create_api_token
 
 pytestmark = pytest.mark.django_db
@@ -179,15 +177,6 @@ def test_a_token_that_the_version_before_has_made_does_all_of_the_role() -> None
     assert works(token)
     assert send(token, "post", "missions")[0] == 400
     assert client_of(ApiToken.objects.get().user).get(TOKENS).json()["results"][0]["scopes"] == ["read", "plan", "fly"]
-
-
-def test_tokens_from_before_keep_what_their_owners_role_has() -> None:
-    for role in Role:
-        with_token(somebody(role))
-    ApiToken.objects.update(scopes=None)
-    import_module("workspace.migrations.0009_token_scopes").give_all_of_the_role(apps, None)
-    for token in ApiToken.objects.select_related("user"):
-        assert token.scopes == list(SCOPES_OF_ROLE[token.user.role])
 
 
 @pytest.mark.parametrize(
