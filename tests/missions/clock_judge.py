@@ -37,6 +37,7 @@ class Clock:
     left_wh: list[float] = field(default_factory=list)
     full_wh: list[float] = field(default_factory=list)
     total_s: float = 0.0
+    turning_s: float = 0.0  # of total_s: what turns of the course take beside the legs
     hover_w: float = 0.0  # at the end
 
 
@@ -166,6 +167,7 @@ def _fly(
     stands[-1] = stands[-1] or lands
     ways = [(way[0], way[1], rise_m) for _length_m, way, _middle_m, rise_m, _point in legs]
     turning_s = [0.0, *turns_s(ways, [_leg_s(request, uav, leg) for leg in legs], stands, brakes_s(uav.cruise_speed_mps)), 0.0]
+    clock.turning_s += sum(turning_s)
     now_s, joules, charged_wh = clock.total_s, 0.0, 0.0
 
     def spend(seconds: float, air_mps: float, climb_mps: float, air_density: float) -> None:
