@@ -43,7 +43,7 @@ def counted_s(asked: Any) -> tuple[dict[str, Any], float]:
 
 @pytest.mark.parametrize("end", ENDS)
 def test_over_flat_ground_and_alike_towers_the_search_counts_every_second_but_those_of_turns(end: EndAction) -> None:
-    """Where routes end at their last target they lead along the line of towers, and turn too little to take a second."""
+    """The seconds of turns are those of the judge of times (turn_judge.py), within its steps of half a metre."""
     here = world()
     fleet = (uav(end_action=end), uav((10.02, 55.995), name="East", end_action=end))
     asked = request(*here.towers, uavs=fleet, objective=Objective.MAKESPAN, bases=(BASE,))
