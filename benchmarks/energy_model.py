@@ -130,7 +130,7 @@ def main() -> None:
     head = ["simulated Iris, square of 2 km", "measured", "", "model", "", "ratio of time", "ratio of energy"]
     own_head = ["flown by simulation/flight", "flown", "", "planned", "", "ratio of time", "ratio of energy"]
     text = (
-        "`python -m benchmarks.energy_model`: no figure of power was fitted to these flights. The model counts no turns, and of gusts the "
+        "`python -m benchmarks.energy_model`: no figure of power was fitted to these flights. Turns count as in plans, and of gusts the "
         f"mean wind alone. {machine('numba', 'numpy')}\n\n{table(head, rows)}\n\nThe same model as plans have it, with the speeds up and "
         f"down of its rules, beside flights of both airframes of this program ([flight-simulation.md](flight-simulation.md)); the bar is "
         f"{100 * MOST_WINDY:.0f} % of energy. The simulated battery knows no inflow: level flight takes it as much as a hover, and a climb "

@@ -44,7 +44,7 @@ class BasedUav:
     mass_kg: float = 3.77
     max_airspeed_mps: float = 19.0
     rotor_disk_m2: float = 0.5188
-    hover_power_w: float = 439.0  # 263.2 Wh last 36 minutes
+    hover_power_w: float = 430.0  # 263.2 Wh last 36 minutes and a half
 
     @property
     def type_name(self) -> str:

@@ -16,6 +16,10 @@ IRIS_BATTERY_WH = 56.6  # 3S 5.1 Ah
 # Rotor drag 1.75e-4 N per rad/s and m/s, four rotors at 805 rad/s in the hover: 0.56 N per m/s, with 15.15 N of thrust.
 IRIS_ROTOR_DRAG = 0.0372
 IRIS_DRAG_AREA_M2 = 0.012
+IRIS_DRAG_TO_WEIGHT = IRIS_ROTOR_DRAG * IRIS_MAX_AIRSPEED_MPS + (
+    0.5 * STANDARD_DENSITY * IRIS_DRAG_AREA_M2 * IRIS_MAX_AIRSPEED_MPS**2 / (IRIS_MASS_KG * GRAVITY_MPS2)
+)  # at its maximum airspeed: 0.47
+MAX_BODY_DRAG = 0.5  # of all drag at the maximum airspeed
 
 MASSES_KG = (0.05, 1_000.0)
 BATTERIES_WH = (1.0, 100_000.0)
@@ -89,23 +93,35 @@ class Performance:
 
     @property
     def body_drag_area_m2(self) -> float:
-        """drag_area_m2, or what gives the body the Iris's share of drag to weight at the stated maximum airspeed.
+        """drag_area_m2, or the Iris's for each kilogram, as the Inspector has it as well within a tenth; see disk_drag.
 
-        An airspeed limit is where the tilt leaves room for control: at theirs the Iris and the Inspector both have 0.47 to 0.49 of their
-        weight as drag (tilts of 25 and 26 degrees). Without a stated airspeed the Iris's.
+        At a stated maximum airspeed it is at most half of what drag is there: a fast UAV is slender.
         """
         if self.drag_area_m2 is not None:
             return self.drag_area_m2
         if self.max_airspeed_mps is None:
             return IRIS_DRAG_AREA_M2
-        return IRIS_DRAG_AREA_M2 * self.mass_kg / IRIS_MASS_KG * (IRIS_MAX_AIRSPEED_MPS / self.max_airspeed_mps) ** 2
+        area_m2 = IRIS_DRAG_AREA_M2 * self.mass_kg / IRIS_MASS_KG
+        return min(area_m2, MAX_BODY_DRAG * self._drag_at_limit_n / (0.5 * STANDARD_DENSITY * self.max_airspeed_mps**2))
 
     @property
     def disk_drag(self) -> float:
-        """rotor_drag, or what gives the rotors the Iris's share of drag to weight at the stated maximum airspeed [s/m]."""
+        """rotor_drag, or what the body leaves of the Iris's share of drag to weight at the stated maximum airspeed [s/m].
+
+        An airspeed limit is where the tilt leaves room for control: at theirs the Iris and the Inspector both have 0.47 to 0.49 of their
+        weight as drag (tilts of 25 and 26 degrees). Without a stated airspeed the Iris's.
+        """
         if self.rotor_drag is not None:
             return self.rotor_drag
-        return IRIS_ROTOR_DRAG * (1.0 if self.max_airspeed_mps is None else IRIS_MAX_AIRSPEED_MPS / self.max_airspeed_mps)
+        if self.max_airspeed_mps is None:
+            return IRIS_ROTOR_DRAG
+        body_n = 0.5 * STANDARD_DENSITY * self.body_drag_area_m2 * self.max_airspeed_mps**2
+        return max(self._drag_at_limit_n - body_n, 0.0) / (self.weight_n * self.max_airspeed_mps)
+
+    @property
+    def _drag_at_limit_n(self) -> float:
+        """What a UAV whose drag is not stated has at its maximum airspeed."""
+        return IRIS_DRAG_TO_WEIGHT * self.weight_n
 
     @property
     def usable_wh(self) -> float | None:

@@ -9,20 +9,24 @@ class Manoeuvres:
     """What no speed tells: how a UAV leaves the ground, stops, goes on and comes down; as simulated flights do (decision 0039).
 
     acceleration_mps2   along its way: PX4's MPC_ACC_HOR is 3, ArduCopter's WPNAV_ACCEL 2.5, neither from the first moment on
+    corner_mps2         across its way, in a turn: ArduCopter's is 5, twice WPNAV_ACCEL; PX4's MPC_ACC_HOR is 3, in wider turns, which
+                        begin 10 m before the waypoint (NAV_ACC_RAD); simulated airframes have 2.5 and 5
     settle_s            from coming to a stand until it counts as standing
     lift_s              from the motors' start until it climbs at its speed
     landing_mps         how fast it comes down below slow_below_m: PX4's MPC_LAND_SPEED; ArduCopter's is 0.5
     """
 
     acceleration_mps2: float = 2.0
+    corner_mps2: float = 4.0
     settle_s: float = 1.5
     lift_s: float = 1.5
     landing_mps: float = 0.7
     slow_below_m: float = 8.0
 
     def __post_init__(self) -> None:
-        if not (self.acceleration_mps2 > 0 and self.landing_mps > 0 and min(self.settle_s, self.lift_s, self.slow_below_m) >= 0):
-            raise ValueError("acceleration_mps2 and landing_mps must be above 0, the others not below")
+        above_0 = self.acceleration_mps2, self.corner_mps2, self.landing_mps
+        if not (min(above_0) > 0 and min(self.settle_s, self.lift_s, self.slow_below_m) >= 0):
+            raise ValueError("acceleration_mps2, corner_mps2 and landing_mps must be above 0, the others not below")
 
 
 AT_ONCE = Manoeuvres(acceleration_mps2=math.inf, settle_s=0.0, lift_s=0.0, landing_mps=math.inf, slow_below_m=0.0)  # a UAV without mass

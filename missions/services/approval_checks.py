@@ -29,7 +29,7 @@ def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = Fal
     """
     flown = [route for route in mission.routes.all() if route.geometry is not None]
     if not flown:
-        return [Reason("no_routes", _("No UAV flies a route in this mission."))]
+        return [Reason("no_routes", _("The plan reaches no target, so no UAV flies."))]
     return [
         *([] if is_under_way else [*_departure(mission, now), *_separation(mission)]),
         *_height_references(mission, flown),

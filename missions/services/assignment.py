@@ -230,8 +230,8 @@ def quality_of(
     """Bound, gap, method and the cost of the locks in the shape of the API.
 
     value is of the finished routes, in what the objective counts; the bound stays below it, whatever the drawing has rounded. What the
-    search does not count (climbs over hills and tall assets, where no battery or wind makes it count them) makes routes longer than it
-    thought, and the gap wider: a plan is proven only if its finished routes are.
+    search does not count (turns of the course; climbs over hills and tall assets, where no battery or wind makes it count them) makes
+    routes longer than it thought, and the gap wider: a plan is proven only if its finished routes are.
 
     Where zones are in force for a part of the flight, `solution` is that on those alone that are so all the time, and share_of_freest
     what it is worth beside this plan. As far as it is better, this plan is not proven, and bound and gap are of plans that keep clear of

@@ -122,6 +122,16 @@ def test_a_mission_is_approved_frozen_sent_steered_and_revoked(
     expect(history.get_by_role("listitem").first).to_contain_text("Storm is coming")
 
 
+def test_a_plan_that_reaches_no_target_cannot_be_approved(visitor: Visitor, mission: str) -> None:
+    page = visitor.signs_in("opal")
+    uavs = [{"name": uav["name"], "position": uav["position"], "max_range_m": 20.0} for uav in asks(page, mission)["uavs"]]
+    assert posts(page, mission, {"uavs": uavs, "plan": True}, method="PATCH").ok
+    opened(page, mission)
+    approve = page.get_by_role("button", name="Approve", exact=True)
+    expect(approve).to_be_disabled()
+    expect(approve).to_have_attribute("title", "The plan reaches no target: there is nothing to approve.")
+
+
 def test_what_is_refused_is_said_with_every_reason(visitor: Visitor, mission: str) -> None:
     page = visitor.signs_in("opal")
     uavs = [{"name": uav["name"], "position": uav["position"], "most_targets": 1} for uav in asks(page, mission)["uavs"]]

@@ -14,6 +14,7 @@ from inspection.models import Asset
 from missions.services import PlanRequest
 from tests.missions.air import CLIMB_MPS, LIFTS_S, SETTLES_S, TOUCHES_S, brakes_s, density, speeds_mps, watts, wind_mps
 from tests.missions.plane import apart_m, east_north
+from tests.missions.turn_judge import turns_s
 
 CLOCK_SHARE, CLOCK_S = 0.005, 2.0  # what times may differ by: another Earth, rounding to tenths
 ENERGY_SHARE, ENERGY_WH = 0.01, 0.05
@@ -36,6 +37,7 @@ class Clock:
     left_wh: list[float] = field(default_factory=list)
     full_wh: list[float] = field(default_factory=list)
     total_s: float = 0.0
+    turning_s: float = 0.0  # of total_s: what turns of the course take beside the legs
     hover_w: float = 0.0  # at the end
 
 
@@ -130,7 +132,7 @@ def _height_m(tower: Asset | None) -> float:
 
 
 def clock_of(request: PlanRequest, uav: Any, route: dict[str, Any]) -> Clock:
-    """Seconds after take-off at each waypoint and in all, and watt-hours: each leg straight; and each stop."""
+    """Seconds after take-off at each waypoint and in all, and watt-hours: each leg straight; each turn; and each stop."""
     points = route["waypoints"]
     stops = [place for place, point in enumerate(points) if point["kind"] == "base"]
     charging = {stop["waypoint"]: stop for stop in route["charging"]}
@@ -160,6 +162,12 @@ def _fly(
         steps.append((apart_m(before["position"], after["position"]), way, middle_m, rise_m, after))
     if lands:
         steps.append((0.0, (0.0, 0.0), last["altitude_agl_m"] / 2, -last["altitude_agl_m"], last))
+    legs = steps[1 : len(places)]
+    stands = [number == 0 or (points[place]["task"] or {}).get("hold_s", 0.0) > 0.0 for number, place in enumerate(places)]
+    stands[-1] = stands[-1] or lands
+    ways = [(way[0], way[1], rise_m) for _length_m, way, _middle_m, rise_m, _point in legs]
+    turning_s = [0.0, *turns_s(ways, [_leg_s(request, uav, leg) for leg in legs], stands, brakes_s(uav.cruise_speed_mps)), 0.0]
+    clock.turning_s += sum(turning_s)
     now_s, joules, charged_wh = clock.total_s, 0.0, 0.0
 
     def spend(seconds: float, air_mps: float, climb_mps: float, air_density: float) -> None:
@@ -184,6 +192,7 @@ def _fly(
         else:
             spend(rise_s, math.hypot(*wind), lift_mps, air)
         hold_s, here_mps = (point["task"] or {}).get("hold_s", 0.0), math.hypot(*wind_mps(request, point["altitude_agl_m"]))
+        spend(turning_s[number], here_mps, 0.0, air)
         if number == 0:
             spend(LIFTS_S + brakes_s(uav.cruise_speed_mps), math.hypot(*wind), 0.0, air)
         if number == len(places):
@@ -218,6 +227,15 @@ def _fly(
         0.0,
         density(last["altitude_amsl_m"] or 0.0, request.conditions.temperature_c),
     )
+
+
+def _leg_s(request: PlanRequest, uav: Any, step: tuple[float, tuple[float, float], float, float, dict[str, Any]]) -> float:
+    """Seconds of one leg at one speed: the longer of its way and its rise."""
+    length_m, way, middle_m, rise_m, point = step
+    if length_m <= 0.01:
+        return abs(rise_m) / CLIMB_MPS
+    flown = speeds_mps(uav, way, wind_mps(request, middle_m), point.get("speed_mps"))
+    return max(length_m / flown[0], abs(rise_m) / CLIMB_MPS) if flown else math.inf
 
 
 def stays_s(request: PlanRequest, uav: Any, route: dict[str, Any]) -> float:

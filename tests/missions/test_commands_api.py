@@ -90,6 +90,16 @@ def test_every_reason_against_an_approval_is_told(client: Client, here: World, p
     assert "Tern would fly as over flat ground" in fault["message"]
 
 
+def test_a_plan_that_reaches_no_target_is_not_approved(client: Client, here: World, person: User) -> None:
+    mission = planned(person, fleet("Tern", "Kite"), here.towers[1:3])
+    asked = get(client, f"missions/{mission.pk}").json()["uavs"]
+    uavs = [{"name": uav["name"], "position": uav["position"], "max_range_m": 20.0} for uav in asked]
+    shown = patch(client, f"missions/{mission.pk}", {"uavs": uavs, "plan": True}).json()
+    assert (shown["state"], len(shown["plan"]["unassigned"])) == ("planned", 2)
+    fault = error(post(client, f"missions/{mission.pk}/approve"), 409)
+    assert (fault["code"], fault["message"]) == ("no_routes", "The plan reaches no target, so no UAV flies.")
+
+
 def test_what_was_not_seen_is_not_approved(client: Client, here: World, person: User) -> None:
     mission = planned(person, fleet(), here.towers[:2])
     assert error(post(client, f"missions/{mission.pk}/approve", **{"If-Match": '"1"'}), 412)["code"] == "mission_changed"

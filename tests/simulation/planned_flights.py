@@ -108,6 +108,11 @@ def square(side_m: float, speed_mps: float) -> FrozenRoute:
     return made_route([(side_m * east, side_m * north, 30.0, 0.0) for east, north in corners], speed_mps)
 
 
+def zigzag(legs: int, leg_m: float, speed_mps: float) -> FrozenRoute:
+    """To the north and to the east by turns, with a right angle after each leg."""
+    return made_route([(leg_m * (number // 2), leg_m * ((number + 1) // 2), 40.0, 0.0) for number in range(legs + 1)], speed_mps)
+
+
 def climbs(times: int, speed_mps: float) -> FrozenRoute:
     """Each time 60 m up and down again, and 60 m on."""
     heights = [30.0, *([90.0, 90.0, 30.0, 30.0] * times)]

@@ -25,7 +25,7 @@ from simulation.verdict.judging import Verdict, judge
 from tests.simulation.rehearsed import loaded, skies
 from workspace.models import User
 
-INSPECTOR = Performance(battery_wh=263.2, mass_kg=3.77, max_airspeed_mps=19.0, rotor_disk_m2=0.5188, hover_power_w=439.0)
+INSPECTOR = Performance(battery_wh=263.2, mass_kg=3.77, max_airspeed_mps=19.0, rotor_disk_m2=0.5188, hover_power_w=430.0)
 IRIS = Performance(battery_wh=56.6, mass_kg=1.545, max_airspeed_mps=11.0)
 TASKS = (None, None, Task(TaskKind.PHOTO, 5.0), Task(TaskKind.LOOK, 20.0), Task(TaskKind.HOLD, 30.0))
 OFF_DEG = 0.003

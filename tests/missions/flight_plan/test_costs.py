@@ -1,5 +1,6 @@
 """What an assignment counts of time and battery, against the timing of the routes drawn from it."""
 
+import math
 from dataclasses import replace
 from itertools import chain, pairwise
 
@@ -22,7 +23,7 @@ from missions.flight_plan.heights import pass_agl_m
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.power import power_w
 from missions.flight_plan.route_points import PassedNodes, TargetPoints, route_points, with_short_legs
-from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.rules import FlightRules, Manoeuvres
 from missions.flight_plan.timing import Timing, timing
 from missions.flight_plan.waypoints import Waypoints
 from missions.flight_plan.ways_taken import FlightClass, NodeGround
@@ -31,6 +32,7 @@ from missions.routing.terminals import AccessRules, Terminal, Ways, ways_between
 from tests.inspection.graph.drawn_graphs import drawn_graph
 
 RULES = FlightRules()
+AT_ONCE_ROUND_CORNERS = FlightRules(manoeuvres=Manoeuvres(corner_mps2=math.inf))
 ACCESS = AccessRules(access_leg_m=10_000, direct_leg_m=300, on_asset_m=300, off_network_factor=2.0, zone_clearance_m=5)
 FRAME = LocalFrame.around(9.0, 47.0)
 IRIS = FlightClass(Performance(battery_wh=56.6, max_airspeed_mps=14), 10.0)
@@ -90,7 +92,10 @@ class World:
             ground=ground,
         )
 
-    def drawn(self, uav: int, order: list[int], flying: FlightClass, finish: Finish, conditions: Conditions) -> Timing:
+    def drawn(
+        self, uav: int, order: list[int], flying: FlightClass, finish: Finish, conditions: Conditions, *, rules: FlightRules | None = None
+    ) -> Timing:
+        """Without turns of the course, unless the rules count them."""
         legs = np.array(self.ways.of_route(uav, order, finish.end), dtype=np.int64)
         told = passed_on(self.ways.travel, legs, self.graph.position)
         agl_m = np.full(len(told.node), RULES.transit_agl_m)
@@ -111,7 +116,7 @@ class World:
             performance=flying.performance,
             conditions=conditions,
             lands=finish.lands,
-            rules=RULES,
+            rules=rules or AT_ONCE_ROUND_CORNERS,
         )
 
 
@@ -252,6 +257,9 @@ def test_the_assignment_counts_what_the_drawn_route_takes(
         seconds, wh = counted(costs, uav, list(order))
         assert seconds == pytest.approx(drawn.total_s, rel=1e-5, abs=0.05)
         assert wh == pytest.approx(drawn.total_wh, rel=1e-4, abs=0.01)
+        turning = world.drawn(uav, list(order), classes[uav], finish, conditions, rules=RULES)
+        assert turning.total_s >= drawn.total_s
+        assert (turning.total_wh or 0.0) >= (drawn.total_wh or 0.0)
 
 
 def wall(east_m: float, north_m: float) -> shapely.Polygon:

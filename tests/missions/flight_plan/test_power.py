@@ -1,6 +1,7 @@
 """Power in flight and the speed that the wind leaves."""
 
 import math
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -114,3 +115,25 @@ def test_what_is_flown_needs_no_more_airspeed_than_the_limit(
     east, north = speed_mps * math.sin(math.radians(course_deg)), speed_mps * math.cos(math.radians(course_deg))
     assert math.hypot(east - wind[0], north - wind[1]) <= limit_mps + 1e-9
     assert 0 < speed_mps <= wanted_mps
+
+
+def test_drag_that_is_not_stated_is_that_of_the_simulated_airframes() -> None:
+    """Of the Inspector, with 0.032 m2 and 0.0156 s/m in its model file; an Iris without an airspeed is one with its own."""
+    stated = Performance(mass_kg=3.77, rotor_disk_m2=0.5188, max_airspeed_mps=19.0, drag_area_m2=0.032, rotor_drag=0.01558)
+    worked_out = replace(stated, drag_area_m2=None, rotor_drag=None)
+    assert worked_out.body_drag_area_m2 == pytest.approx(0.032, rel=0.1)
+    assert worked_out.disk_drag == pytest.approx(0.01558, rel=0.02)
+    for airspeed_mps in (8.0, 10.0, 12.0, 14.0):
+        own_w, true_w = (power_w(one, airspeed_mps=airspeed_mps) for one in (worked_out, stated))
+        assert own_w == pytest.approx(true_w, rel=0.03)
+    iris = Performance(max_airspeed_mps=11.0)
+    assert (iris.body_drag_area_m2, iris.disk_drag) == pytest.approx((0.012, 0.0372))
+
+
+@pytest.mark.parametrize("max_airspeed_mps", [5.0, 22.0, 40.0, 100.0])
+def test_drag_at_the_maximum_airspeed_is_the_same_share_of_the_weight(max_airspeed_mps: float) -> None:
+    """And at most half of it is the body's."""
+    uav = Performance(mass_kg=6.0, max_airspeed_mps=max_airspeed_mps)
+    body = 0.5 * 1.225 * uav.body_drag_area_m2 * max_airspeed_mps**2 / uav.weight_n
+    assert body + uav.disk_drag * max_airspeed_mps == pytest.approx(0.468, abs=0.001)
+    assert body <= 0.2341

@@ -153,6 +153,8 @@ export default {
   "It has changed since it was planned. Plan again first.":
     "Sie hat sich seit der Planung geändert. Planen Sie zuerst neu.",
   "It is not saved yet.": "Sie ist noch nicht gesichert.",
+  "The plan reaches no target: there is nothing to approve.":
+    "Der Plan erreicht kein Ziel: Es gibt nichts freizugeben.",
   "Not yet": "Noch nicht",
   "Sending to {name}": "Senden an {name}",
   "Commands to {name}": "Befehle an {name}",

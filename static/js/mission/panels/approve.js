@@ -12,6 +12,8 @@ import { isPlanCurrent, isUnsaved } from "../plan_view.js";
 /** Why a plan cannot be approved as it stands on the page; empty where it can. @param {MissionPageState} state */
 export function whyNotApproved(state) {
   if (!isPlanCurrent(state)) return t("It has changed since it was planned. Plan again first.");
+  if (!state.plan?.result.routes.some((route) => route.geometry))
+    return t("The plan reaches no target: there is nothing to approve.");
   if (!state.mission || isUnsaved(state) || !state.planIsStored || state.saving) return t("It is not saved yet.");
   return "";
 }
