@@ -1,11 +1,15 @@
-"""Static files are collected beside the load of the data, and a failure of either ends the start."""
+"""Static files are collected beside the load of the data, and a failure of either ends the start; migrations that replace others."""
 
 import subprocess
 import sys
 
 import pytest
 from django.core.management import CommandError
+from django.db import connection
+from django.db.migrations.loader import MigrationLoader
+from django.db.migrations.recorder import MigrationRecorder
 
+from operation.readiness import NO_MIGRATIONS, Readiness
 from scripts import prepare
 
 
@@ -44,3 +48,17 @@ def test_a_failure_meanwhile_ends_it(started):
     with pytest.raises(CommandError, match="no such file"), prepare.static_files_meanwhile():
         raise CommandError("no such file")
     assert started[0].returncode is not None
+
+
+@pytest.mark.django_db
+def test_an_installation_that_has_applied_what_a_migration_replaces_can_work():
+    loader = MigrationLoader(None)
+    recorder = MigrationRecorder(connection)
+    for (app, name), migration in loader.disk_migrations.items():
+        if migration.replaces:
+            recorder.record_unapplied(app, name)
+            for replaced in migration.replaces:
+                recorder.record_applied(*replaced)
+    assert NO_MIGRATIONS in Readiness().faults()
+    prepare.migrate()
+    assert NO_MIGRATIONS not in Readiness().faults()
