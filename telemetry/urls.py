@@ -3,7 +3,7 @@
 from django.urls import include, path, register_converter
 
 from telemetry.views.alert_limits import MissionAlertLimits, UavTypeAlertLimits
-from telemetry.views.alerts import AlertAcknowledgement, AlertClosing, AlertDetail, AlertNotes, Alerts
+from telemetry.views.alerts import AlertAcknowledgement, AlertClosing, AlertCounts, AlertDetail, AlertNotes, Alerts
 from telemetry.views.estimates import MissionEstimates
 from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFile
 from telemetry.views.live import Live
@@ -34,6 +34,7 @@ urlpatterns = [
     path("unknown-vehicles/<int:vehicle_id>/adopt", UnknownVehicleAdoption.as_view(), name="api-unknown-vehicle-adoption"),
     path("unknown-vehicles/<int:vehicle_id>/ignore", UnknownVehicleIgnoring.as_view(), name="api-unknown-vehicle-ignoring"),
     path("alerts", Alerts.as_view(), name="api-alerts"),
+    path("alerts/counts", AlertCounts.as_view(), name="api-alert-counts"),
     path("alerts/<int:alert_id>", AlertDetail.as_view(), name="api-alert"),
     path("alerts/<int:alert_id>/acknowledge", AlertAcknowledgement.as_view(), name="api-alert-acknowledgement"),
     path("alerts/<int:alert_id>/close", AlertClosing.as_view(), name="api-alert-closing"),

@@ -136,6 +136,10 @@ export interface components {
             message: string;
             /** @description figures of the cause */
             details: unknown;
+            /** @description what it would be answered with, the best first */
+            acts: components["schemas"]["AlertAct"][];
+            /** @description the worst that it has said; null: of an alert that is said once */
+            worst: components["schemas"]["AlertWorst"] | null;
             /** Format: date-time */
             opened_at: string;
             /** Format: date-time */
@@ -150,6 +154,29 @@ export interface components {
             /** @description how many there are */
             notes: number;
         };
+        AlertAct: {
+            /**
+             * @description a command, or take-over: a pilot on site flies it
+             *
+             *     * `pause` - pause
+             *     * `hold` - hold
+             *     * `return` - return
+             *     * `land` - land
+             *     * `take-over` - take-over
+             */
+            kind: components["schemas"]["AlertActKindEnum"];
+            /** @description whom it is for */
+            uav: number;
+        };
+        /**
+         * @description * `pause` - pause
+         *     * `hold` - hold
+         *     * `return` - return
+         *     * `land` - land
+         *     * `take-over` - take-over
+         * @enum {string}
+         */
+        AlertActKindEnum: "pause" | "hold" | "return" | "land" | "take-over";
         AlertCounts: {
             critical: number;
             warning: number;
@@ -171,6 +198,10 @@ export interface components {
             message: string;
             /** @description figures of the cause */
             details: unknown;
+            /** @description what it would be answered with, the best first */
+            acts: components["schemas"]["AlertAct"][];
+            /** @description the worst that it has said; null: of an alert that is said once */
+            worst: components["schemas"]["AlertWorst"] | null;
             /** Format: date-time */
             opened_at: string;
             /** Format: date-time */
@@ -252,6 +283,13 @@ export interface components {
          * @enum {string}
          */
         AlertStepWhatEnum: "opened" | "rose" | "acknowledged" | "closed";
+        AlertWorst: {
+            /** @description in the reader's language */
+            message: string;
+            level: components["schemas"]["AlertLevel"];
+            /** Format: date-time */
+            at: string;
+        };
         /** @description The nearest thing to another assignment: one target of this route on the route of another UAV. */
         Alternative: {
             target: number;
@@ -520,6 +558,40 @@ export interface components {
          * @enum {string}
          */
         BatchKind: "hold" | "land" | "pause" | "resume" | "return";
+        /** @description What a UAV's battery still allows, by its drain in the same kind of flight; seconds are the UAV's own. */
+        BatteryOutlook: {
+            /**
+             * @description of now; an alert keeps its worst
+             *
+             *     * `` -
+             *     * `warning` - warning
+             *     * `critical` - critical
+             */
+            level: components["schemas"]["BatteryOutlookLevelEnum"] | components["schemas"]["BlankEnum"];
+            /** Format: double */
+            left_percent: number;
+            /** Format: double */
+            reserve_percent: number;
+            /**
+             * Format: double
+             * @description takes the straight way home; null: cannot be told, or no headway
+             */
+            home_percent: number | null;
+            /** Format: double */
+            home_s: number | null;
+            /**
+             * Format: double
+             * @description until its reserve is reached, flying on as on the way home
+             */
+            reserve_in_s: number;
+        };
+        /**
+         * @description * `` -
+         *     * `warning` - warning
+         *     * `critical` - critical
+         * @enum {string}
+         */
+        BatteryOutlookLevelEnum: "warning" | "critical";
         /**
          * @description * `go_on` - go_on
          *     * `hold` - hold
@@ -1077,6 +1149,7 @@ export interface components {
             contact_expected_at: string | null;
             /** Format: double */
             report_interval_s: number | null;
+            battery?: components["schemas"]["BatteryOutlook"] | null;
         };
         /** @description How good the estimates between reports were, by what was measured of the same moments. */
         Estimates: {
@@ -6426,6 +6499,12 @@ export interface components {
             sensors?: string[];
         };
         UavWriteRequest: components["schemas"]["UavFlatRequest"] | components["schemas"]["UavFeatureRequest"];
+        /** @description Alerts that nobody has acknowledged: open ones, and critical ones that ended within a day. */
+        UnansweredAlerts: {
+            critical: number;
+            warning: number;
+            advisory: number;
+        };
         Unassigned: {
             target: number;
             reason: components["schemas"]["UnassignedReasonEnum"];
@@ -7059,6 +7138,8 @@ export type Airframe = components['schemas']['Airframe'];
 export type AirframeEnum = components['schemas']['AirframeEnum'];
 export type AirframeList = components['schemas']['AirframeList'];
 export type Alert = components['schemas']['Alert'];
+export type AlertAct = components['schemas']['AlertAct'];
+export type AlertActKindEnum = components['schemas']['AlertActKindEnum'];
 export type AlertCounts = components['schemas']['AlertCounts'];
 export type AlertDetail = components['schemas']['AlertDetail'];
 export type AlertLevel = components['schemas']['AlertLevel'];
@@ -7068,6 +7149,7 @@ export type AlertNoteInputRequest = components['schemas']['AlertNoteInputRequest
 export type AlertPage = components['schemas']['AlertPage'];
 export type AlertStep = components['schemas']['AlertStep'];
 export type AlertStepWhatEnum = components['schemas']['AlertStepWhatEnum'];
+export type AlertWorst = components['schemas']['AlertWorst'];
 export type Alternative = components['schemas']['Alternative'];
 export type Approach = components['schemas']['Approach'];
 export type ApprovalDocument = components['schemas']['ApprovalDocument'];
@@ -7086,6 +7168,8 @@ export type BatchAnswer = components['schemas']['BatchAnswer'];
 export type BatchAnswers = components['schemas']['BatchAnswers'];
 export type BatchInputRequest = components['schemas']['BatchInputRequest'];
 export type BatchKind = components['schemas']['BatchKind'];
+export type BatteryOutlook = components['schemas']['BatteryOutlook'];
+export type BatteryOutlookLevelEnum = components['schemas']['BatteryOutlookLevelEnum'];
 export type BehaviourEnum = components['schemas']['BehaviourEnum'];
 export type BindsEnum = components['schemas']['BindsEnum'];
 export type BlankEnum = components['schemas']['BlankEnum'];
@@ -7496,6 +7580,7 @@ export type UavType = components['schemas']['UavType'];
 export type UavTypePage = components['schemas']['UavTypePage'];
 export type UavTypeRequest = components['schemas']['UavTypeRequest'];
 export type UavWriteRequest = components['schemas']['UavWriteRequest'];
+export type UnansweredAlerts = components['schemas']['UnansweredAlerts'];
 export type Unassigned = components['schemas']['Unassigned'];
 export type UnassignedReasonEnum = components['schemas']['UnassignedReasonEnum'];
 export type UndoRepairRequest = components['schemas']['UndoRepairRequest'];

@@ -4,11 +4,11 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.finding import ADVISORY, CRITICAL, WARNING, Finding
+from telemetry.alerting.detectors import down
+from telemetry.alerting.finding import RANK, Finding
 from telemetry.alerting.memory import Cause
 from telemetry.alerting.situation import Key, Situation
 
-RANK = {ADVISORY: 1, WARNING: 2, CRITICAL: 3}
 CLEARED, LANDED = "cleared", "landed"  # why an alert is over
 
 
@@ -33,14 +33,18 @@ Change = Opened | Closed
 def changes(situation: Situation, detectors: Sequence[Detector]) -> list[Change]:
     """What of the open alerts changes by this look. An open alert that goes on with the same level is Opened again with its newest words.
 
-    The level of an alert rises and does not fall: what was critical has to be seen to be over. The situation's memory is written to.
+    The level of an alert rises and does not fall: what was critical has to be seen to be over. No alert of a UAV that is down away from
+    its plan closes. The situation's memory is written to.
     """
     found: list[Change] = []
     open_codes = {code for code, _ in situation.open_levels}
+    is_down_away = not situation.is_in_flight and down.is_down_away(situation)
     for detector in detectors:
         if open_codes.intersection(detector.hidden_by):
             continue
         is_over = detector.needs_flight and not situation.is_in_flight
+        if is_over and is_down_away:
+            continue
         findings = () if is_over else detector.detect(situation)
         if findings is None:
             continue

@@ -28,7 +28,7 @@ class Limits:
     height_off_m       above or below the heights of the leg: a warning; height_off_critical_m: critical
     zone_ahead_s       how far ahead zones are looked for
     battery_margin_percent    of the full battery: how far below the reserve the flight may be expected to end before a warning
-    battery_critical_percent  expected at the end of the flight: below it is critical
+    battery_critical_percent  expected at home, and at the end of the route: below it is critical, as is the reserve
     no_progress_s      without coming on, beside the times that are planned for tasks
     separation_m, separation_height_m  between two UAVs; nearer in both is too near
     converging_s       how far ahead meetings are looked for

@@ -11,6 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from telemetry.alerting.memory import position_of
+from telemetry.alerting.right_of_way import Flying, yielding
 from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import Meeting
 
@@ -47,6 +48,8 @@ class Moving:
     bound_height_m: float
     clock_rate: float = 1.0
     heights_m: tuple[float, ...] | None = None
+    velocity_mps: tuple[float, float] = (0.0, 0.0)  # to east and north
+    here: tuple[float, float] | None = None  # lon/lat of now, where `ahead` begins elsewhere
 
     def heights_at(self, steps: int) -> FloatArray:
         """At each of so many steps (steps,); NaN: not known."""
@@ -80,6 +83,7 @@ def _as_planned(situation: Situation, moving: Moving) -> Moving | None:
     origin = line.frame.origin
     return replace(
         moving,
+        here=moving.ahead[0],
         ahead=tuple(
             (origin.lon + east / line.frame.metres_per_degree_east, origin.lat + north / line.frame.metres_per_degree_north)
             for east, north, _ in points
@@ -117,6 +121,7 @@ def moving_of(situation: Situation, within_s: float) -> Moving | None:
         bound_m=0.0 if estimate is None else max(estimate.bound.along_m, estimate.bound.across_m),
         bound_height_m=0.0 if estimate is None else estimate.bound_height_m,
         clock_rate=situation.link.clock_rate,
+        velocity_mps=(east_mps, north_mps),
     )
 
 
@@ -194,6 +199,13 @@ def _closest(between: FloatArray, above: FloatArray) -> tuple[FloatArray, FloatA
 def _meeting(first: Moving, second: Moving, lateral_m: float, height_m: float, in_s: float) -> Meeting:
     bound_m = math.hypot(min(first.bound_m, MOST_BOUND_M), min(second.bound_m, MOST_BOUND_M))
     bound_height_m = math.hypot(min(first.bound_height_m, MOST_BOUND_M), min(second.bound_height_m, MOST_BOUND_M))
+    origin = first.here or first.ahead[0]
+    one, other = _flying(first, origin), _flying(second, origin)
+    east_m, north_m = other.east_m - one.east_m, other.north_m - one.north_m
+    apart_m = math.hypot(east_m, north_m)
+    opening = east_m * (other.east_mps - one.east_mps) + north_m * (other.north_mps - one.north_mps)
+    is_first, why = yielding(one, other)
+    yields = first if is_first else second
     return Meeting(
         other_id=second.uav_id,
         other_name=second.name,
@@ -202,7 +214,22 @@ def _meeting(first: Moving, second: Moving, lateral_m: float, height_m: float, i
         height_m=height_m,
         least_lateral_m=max(0.0, lateral_m - bound_m),
         least_height_m=max(0.0, height_m - bound_height_m),
+        now_lateral_m=apart_m,
+        now_height_m=None if first.height_m is None or second.height_m is None else abs(first.height_m - second.height_m),
+        closing_mps=-opening / apart_m if apart_m > 0.0 else 0.0,
+        bound_m=math.hypot(first.bound_m, second.bound_m),
+        yields_id=yields.uav_id,
+        yields_name=yields.name,
+        why=why,
     )
+
+
+def _flying(uav: Moving, origin: tuple[float, float]) -> Flying:
+    """In metres from an origin (lon, lat)."""
+    lon, lat = uav.here or uav.ahead[0]
+    east_m = (lon - origin[0]) * DEGREE_M * math.cos(math.radians(origin[1]))
+    height_m = math.nan if uav.height_m is None else uav.height_m
+    return Flying(east_m, (lat - origin[1]) * DEGREE_M, height_m, *uav.velocity_mps, uav.climb_mps)
 
 
 def elsewhere(uav_id: int, name: str, organisation: int, estimated: dict[str, Any], within_s: float, clock_rate: float = 1.0) -> Moving:
@@ -222,4 +249,5 @@ def elsewhere(uav_id: int, name: str, organisation: int, estimated: dict[str, An
         bound_m=max(estimated["bound"]["along_m"], estimated["bound"]["across_m"]),
         bound_height_m=estimated["bound"]["height_m"],
         clock_rate=clock_rate,
+        velocity_mps=(speed_mps * math.sin(heading_rad), speed_mps * math.cos(heading_rad)),
     )

@@ -3,8 +3,10 @@
 from collections import deque
 from dataclasses import dataclass, field
 from statistics import median
+from typing import Any
 
 from inspection.geodesy import LonLat
+from telemetry.alerting.consumption import DrainMemory
 from telemetry.alerting.route_line import Place, RouteLine
 from telemetry.estimation.report import Report
 
@@ -12,8 +14,6 @@ INTERVALS_KEPT = 5
 UNKNOWN_INTERVAL_S = 10.0  # as slow as some links are
 FALL_MPS = 8.0  # multicopters are set to descend by 1 to 5 m/s
 SHORTEST_FALL_S = 0.2  # between two reports, for their heights to tell a speed
-BATTERY_STEP_PERCENT = 1.0  # of the flight's plan, between two entries
-BATTERY_STEPS_KEPT = 10
 
 
 @dataclass
@@ -48,7 +48,8 @@ class Memory:
     fell_s: float | None = None  # when it was last measured to come down faster than a UAV that is flown
     down_s: float | None = None  # since when it is on the ground after it was in flight on this line; measured, too
     mode_words: tuple[str, str] = ("", "")  # a mode, and what the vehicle said about the time at which it changed to it
-    drained: deque[tuple[float, float]] = field(default_factory=lambda: deque(maxlen=BATTERY_STEPS_KEPT + 1))
+    drain: DrainMemory = field(default_factory=DrainMemory)
+    battery: dict[str, Any] | None = None  # as live pages show it
     causes: dict[tuple[str, str], Cause] = field(default_factory=dict)
     _intervals_s: deque[float] = field(default_factory=lambda: deque(maxlen=INTERVALS_KEPT))
 
@@ -58,7 +59,7 @@ class Memory:
             self.line, self.place = line, None
             self.was_in_flight = False
             self.fell_s = self.down_s = None
-            self.drained.clear()
+            self.drain = DrainMemory()
             self.progress.clear()
         if report is None or (self.newest is not None and report.measured_s <= self.newest.measured_s):
             return False
@@ -76,11 +77,6 @@ class Memory:
             self.was_in_flight, self.down_s = True, None
         elif self.was_in_flight and self.down_s is None and self.newest is not None:
             self.down_s = self.newest.measured_s
-
-    def note_battery(self, planned_percent: float, left_percent: float) -> None:
-        """What the plan had used by now, and what is left: kept once a step."""
-        if not self.drained or planned_percent - self.drained[-1][0] >= BATTERY_STEP_PERCENT:
-            self.drained.append((planned_percent, left_percent))
 
     @property
     def usual_interval_s(self) -> float:

@@ -34,6 +34,7 @@ class Situation:
     zones: tuple[NearZone, ...] = ()
     meetings: tuple[Meeting, ...] = ()
     said: tuple[Said, ...] = ()
+    is_accounted_for: bool = False  # it is down away from its plan, and a person has closed that alert
 
     def is_open(self, code: str, subject: str = "") -> bool:
         return (code, subject) in self.open_levels

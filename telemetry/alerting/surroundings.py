@@ -5,6 +5,7 @@ from typing import Any
 from uuid import UUID
 
 from inspection.geodesy import LonLat
+from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import EnergyPlan
 from telemetry.alerting.route_line import RouteLine
 
@@ -23,6 +24,7 @@ class LinkFacts:
     is_in_air: bool | None = None
     clock_rate: float = 1.0
     battery_state: str = ""
+    autopilot: str = ""  # a name of ground_station/flavour.py
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +55,7 @@ class Held:
 class FlightModel:
     """What was approved of the flight, worked out once. `max_airspeed_mps` is the highest that the UAV flies through the air.
 
-    rally_points: where it may land by itself beside its home.
+    rally_points: where it may land by itself beside its home. consumption: what the way home takes; None: an endurance is assumed.
     """
 
     line: RouteLine
@@ -61,6 +63,7 @@ class FlightModel:
     max_airspeed_mps: float
     reserve_percent: float
     rally_points: tuple[LonLat, ...] = ()
+    consumption: Consumption | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +93,12 @@ class NearZone:
 
 @dataclass(frozen=True, slots=True)
 class Meeting:
-    """Two UAVs that come near each other. Distances are at the closest, with the places as estimated and at the worst of their bounds."""
+    """Two UAVs that come near each other.
+
+    Distances `lateral_m` and `height_m` are at the closest, with the places as estimated; `least_` at the worst of their bounds, by which
+    an alert is raised; `now_` of this moment, as measured or estimated, within `bound_m` across the ground (95 of 100 times). closing_mps
+    is above 0 while they come nearer. `yields_id` is the UAV that is best held, `why` a reason of telemetry/alerting/right_of_way.py.
+    """
 
     other_id: int
     other_name: str
@@ -99,3 +107,10 @@ class Meeting:
     height_m: float
     least_lateral_m: float
     least_height_m: float
+    now_lateral_m: float
+    now_height_m: float | None
+    closing_mps: float
+    bound_m: float
+    yields_id: int
+    yields_name: str
+    why: str

@@ -40,7 +40,13 @@ class Alert(models.Model):
 
     class Meta:
         ordering = ["-opened_at"]
-        indexes = [models.Index(fields=["organisation", "closed_at"], name="alert_open_or_just_closed_idx")]
+        indexes = [
+            models.Index(fields=["organisation", "closed_at"], name="alert_open_or_just_closed_idx"),
+            models.Index(
+                fields=["organisation", "closed_at"], name="alert_waits_to_be_seen_idx",
+                condition=Q(level="critical", acknowledged_at=None, closed_at__isnull=False),
+            ),
+        ]  # fmt: skip
         constraints = [
             models.UniqueConstraint(fields=["uav", "code", "subject"], condition=Q(closed_at=None), name="alert_one_open_of_a_cause"),
             models.CheckConstraint(condition=Q(level__in=AlertLevel.values), name="alert_level_known"),

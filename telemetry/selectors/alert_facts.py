@@ -42,7 +42,8 @@ def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
     for uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate, sha256, approval, flight, doubt, autopilot, battery in rows:
         rate = believed_rate(clock_rate if is_simulated else None)
         heard_s = None if heard_at is None else heard_at.timestamp()
-        found[uav_id] = (LinkFacts(heard_s, mode, is_armed, is_in_air, rate, battery), Loaded(sha256, approval, flight, doubt, autopilot))
+        facts = LinkFacts(heard_s, mode, is_armed, is_in_air, rate, battery, autopilot)
+        found[uav_id] = (facts, Loaded(sha256, approval, flight, doubt, autopilot))
     return found
 
 

@@ -17,19 +17,29 @@ TEMPLATES = (
     gettext_noop("%(uav)s flies %(metres)s m below the height of its route; %(limit)s m are allowed."),
     gettext_noop("%(uav)s is in the no-fly zone %(zone)s."),
     gettext_noop("%(uav)s will be in the no-fly zone %(zone)s in %(seconds)s s."),
-    gettext_noop("%(uav)s is expected to end its flight with %(percent)s %% of its battery; %(reserve)s %% were to be left."),
+    gettext_noop("%(uav)s: battery %(percent)s %%, just enough to return (%(home)s %%) with the reserve of %(reserve)s %%."),
+    gettext_noop("%(uav)s is expected to land with %(percent)s %% of its battery (reserve %(reserve)s %%)."),
     gettext_noop("The battery of %(uav)s is not enough for its route: it would be empty before the end."),
-    gettext_noop("%(uav)s has %(percent)s %% of its battery left; its reserve is %(reserve)s %%."),
+    gettext_noop("%(uav)s: battery %(percent)s %%, below the reserve of %(reserve)s %%."),
+    gettext_noop("%(uav)s: battery %(percent)s %%, below the reserve of %(reserve)s %% within a minute."),
+    gettext_noop("%(uav)s: battery %(percent)s %%, not enough to return (%(home)s %%)."),
+    gettext_noop(
+        "%(uav)s: battery %(percent)s %%, not enough to return home (%(home)s %%). The landing place %(metres)s m away is in reach."
+    ),
     gettext_noop("%(uav)s flies its route, but has not come on for %(seconds)s s."),
-    gettext_noop("%(uav)s and %(other)s come within %(metres)s m of each other in %(seconds)s s."),
-    gettext_noop("%(uav)s and %(other)s are %(metres)s m from each other."),
+    gettext_noop(
+        "%(uav)s and %(other)s: %(metres)s m apart, %(height)s m in height, closing at %(speed)s m/s (±%(bound)s m),"
+        " closest in %(seconds)s s."
+        " Hold %(hold)s: %(why)s."
+    ),
+    gettext_noop("%(uav)s and %(other)s: %(metres)s m apart, %(height)s m in height (±%(bound)s m). Hold %(hold)s: %(why)s."),
     gettext_noop("%(uav)s returns (%(mode)s) without a command of ours: by its own failsafe, or told by others."),
     gettext_noop("%(uav)s lands (%(mode)s) without a command of ours: by its own failsafe, or told by others."),
     gettext_noop("%(uav)s is flown by somebody else: its mode is %(mode)s."),
     gettext_noop("%(uav)s has stopped its mission (%(mode)s) without a command of ours."),
     gettext_noop("%(uav)s flies a mission again (%(mode)s), though it was told otherwise."),
-    gettext_noop("%(uav)s does not know where it is: its GPS has no fix."),
-    gettext_noop("%(uav)s reports, but not where it is."),
+    gettext_noop("%(uav)s: no GPS fix. %(own)s"),
+    gettext_noop("%(uav)s reports, but not where it is. %(own)s"),
     gettext_noop("The position of %(uav)s has jumped by %(metres)s m."),
     gettext_noop("%(uav)s sees %(satellites)s satellites only."),
     gettext_noop("The position of %(uav)s is weak: its HDOP is %(hdop)s."),
@@ -63,6 +73,19 @@ TEMPLATES = (
     ),
 )
 
+REASONS = (
+    gettext_noop("it climbs towards the other one"),
+    gettext_noop("the other one stands still"),
+    gettext_noop("it is behind"),
+    gettext_noop("it is higher"),
+    gettext_noop("it has the other one on its right"),
+    gettext_noop("either can be held"),
+)
+OWN_ACTS = (
+    gettext_noop("ArduPilot usually lands by itself within seconds (FS_EKF_ACTION) and drifts with the wind."),
+    gettext_noop("PX4 usually descends by itself 5 s after it lost its position (EKF2_NOAID_TOUT) and drifts with the wind."),
+    gettext_noop("What its autopilot does by itself is not known."),
+)
 STATES = (gettext_noop("low"), gettext_noop("critical"), gettext_noop("emergency"), gettext_noop("failed"), gettext_noop("unhealthy"))
 
 
@@ -71,7 +94,7 @@ def alert_words(message: str, values: Mapping[str, Any]) -> str:
     if not values:
         return message
     read = {
-        name: outcome_in_words(value) if name == "words" else _(value) if name in ("step", "state") else value
+        name: outcome_in_words(value) if name == "words" else _(value) if name in ("step", "state", "why", "own") else value
         for name, value in values.items()
     }
     try:

@@ -3,16 +3,19 @@
 from collections import defaultdict
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
 from typing import TYPE_CHECKING, Any, TypedDict
 from uuid import UUID
 
-from django.db.models import Count, QuerySet
+from django.db.models import Count, Q, QuerySet
+from django.utils import timezone
 
-from telemetry.models import Alert
+from telemetry.models import Alert, AlertLevel
 from workspace.models import Organisation
 
 MIXED, OTHER_LIST = "mission-mixed", "other-list-on-board"  # codes
+WAITS_TO_BE_SEEN = timedelta(days=1)  # later it is in the history alone
+WORST = "worst"  # in the details of an alert: the worst that it has said
 BY_PERSON = "by-person"  # why an alert is closed
 
 
@@ -28,14 +31,26 @@ class OpenRow:
     message: str
     values: Mapping[str, Any]
     written_at: datetime
+    worst: Mapping[str, Any] | None = None  # alert_rows.py
 
 
 def open_alerts_of(uav_ids: Collection[int], codes: Collection[str]) -> dict[int, list[OpenRow]]:
     found: dict[int, list[OpenRow]] = defaultdict(list)
     rows = Alert.objects.filter(uav__in=uav_ids, code__in=codes, closed_at=None)
-    for row in rows.values_list("pk", "uav_id", "code", "subject", "level", "message", "values", "written_at"):
+    for row in rows.values_list("pk", "uav_id", "code", "subject", "level", "message", "values", "written_at", "details__worst"):
         found[row[1]].append(OpenRow(*row))
     return found
+
+
+def waiting_to_be_seen(now: datetime) -> Q:
+    """Critical alerts that have ended and that nobody has acknowledged (ANSI/ISA-18.2: unacknowledged, returned to normal)."""
+    return Q(level=AlertLevel.CRITICAL, acknowledged_at=None, closed_at__gt=now - WAITS_TO_BE_SEEN)
+
+
+def unanswered_counts(organisation: Organisation) -> dict[str, int]:
+    """By level, alerts that nobody has acknowledged: open ones, and critical ones that have ended."""
+    rows = Alert.objects.filter(Q(closed_at=None, acknowledged_at=None) | waiting_to_be_seen(timezone.now()), organisation=organisation)
+    return dict.fromkeys(AlertLevel.values, 0) | dict(rows.order_by().values_list("level").annotate(Count("pk")))
 
 
 class NotesOfAlert(TypedDict):

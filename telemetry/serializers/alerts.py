@@ -5,9 +5,30 @@ from typing import Any
 from rest_framework import serializers
 
 from missions.serializers.known_fields import KnownFieldsSerializer
+from telemetry.alerting.acts import ACTS, KINDS, acts_of
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alert_words import alert_words
+from telemetry.selectors.alerts import WORST
 from workspace.models import User
+
+
+class AlertActSerializer(serializers.Serializer):
+    kind = serializers.ChoiceField(choices=KINDS, help_text="a command, or take-over: a pilot on site flies it")
+    uav = serializers.IntegerField(help_text="whom it is for")
+
+
+class AlertWorstSerializer(serializers.Serializer):
+    message = serializers.CharField(help_text="in the reader's language")
+    level = serializers.ChoiceField(choices=AlertLevel.choices)
+    at = serializers.DateTimeField()
+
+
+class UnansweredAlertsSerializer(serializers.Serializer):
+    """Alerts that nobody has acknowledged: open ones, and critical ones that ended within a day."""
+
+    critical = serializers.IntegerField()
+    warning = serializers.IntegerField()
+    advisory = serializers.IntegerField()
 
 
 class AlertSerializer(serializers.Serializer):
@@ -20,6 +41,8 @@ class AlertSerializer(serializers.Serializer):
     subject = serializers.CharField(allow_blank=True, help_text="which of a kind: a zone, another UAV")
     message = serializers.CharField(help_text="in the reader's language")
     details = serializers.JSONField(help_text="figures of the cause")
+    acts = AlertActSerializer(many=True, help_text="what it would be answered with, the best first")
+    worst = AlertWorstSerializer(allow_null=True, help_text="the worst that it has said; null: of an alert that is said once")
     opened_at = serializers.DateTimeField()
     closed_at = serializers.DateTimeField(allow_null=True)
     close_reason = serializers.CharField(allow_blank=True, help_text="cleared, landed, mission-ended or by-person")
@@ -85,7 +108,9 @@ def alert_json(alert: Alert, *, note_count: int) -> dict[str, Any]:
         "code": alert.code,
         "subject": alert.subject,
         "message": alert_words(alert.message, alert.values),
-        "details": alert.details,
+        "details": {name: value for name, value in alert.details.items() if name not in (ACTS, WORST)},
+        "acts": acts_of(alert.code, alert.uav_id, alert.details),
+        "worst": _worst_json(alert.details.get(WORST)),
         "opened_at": alert.opened_at,
         "closed_at": alert.closed_at,
         "close_reason": alert.close_reason,
@@ -94,6 +119,12 @@ def alert_json(alert: Alert, *, note_count: int) -> dict[str, Any]:
         "revision": alert.revision,
         "notes": note_count,
     }
+
+
+def _worst_json(worst: dict[str, Any] | None) -> dict[str, Any] | None:
+    if worst is None:
+        return None
+    return {"message": alert_words(worst["message"], worst["values"]), "level": worst["level"], "at": worst["at"]}
 
 
 def note_json(note: AlertNote) -> dict[str, Any]:

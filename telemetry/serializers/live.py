@@ -98,6 +98,17 @@ class EstimateArrivalSerializer(serializers.Serializer):
     latest = serializers.DateTimeField(allow_null=True)
 
 
+class BatteryOutlookSerializer(serializers.Serializer):
+    """What a UAV's battery still allows, by its drain in the same kind of flight; seconds are the UAV's own."""
+
+    level = serializers.ChoiceField(choices=["", "warning", "critical"], help_text="of now; an alert keeps its worst")
+    left_percent = serializers.FloatField()
+    reserve_percent = serializers.FloatField()
+    home_percent = serializers.FloatField(allow_null=True, help_text="takes the straight way home; null: cannot be told, or no headway")
+    home_s = serializers.FloatField(allow_null=True)
+    reserve_in_s = serializers.FloatField(help_text="until its reserve is reached, flying on as on the way home")
+
+
 class EstimateShapeSerializer(serializers.Serializer):
     """What telemetry/estimation/as_json.py writes."""
 
@@ -118,6 +129,7 @@ class EstimateShapeSerializer(serializers.Serializer):
     ends_at = serializers.DateTimeField(allow_null=True)
     contact_expected_at = serializers.DateTimeField(allow_null=True)
     report_interval_s = serializers.FloatField(allow_null=True)
+    battery = BatteryOutlookSerializer(allow_null=True, required=False)
 
 
 @extend_schema_field(EstimateShapeSerializer(allow_null=True))

@@ -3,16 +3,19 @@
 import json
 from collections.abc import Collection, Mapping, Sequence
 from datetime import datetime, timedelta
+from typing import Any
 
 from django.db import connection, transaction
-from django.db.models import F
+from django.db.models import Exists, F, OuterRef
 from django.db.models.functions import Now
 
 from missions.models import MissionState
-from telemetry.alerting.book import RANK, Closed, Opened
+from telemetry.alerting.book import Closed, Opened
+from telemetry.alerting.detectors import down
+from telemetry.alerting.finding import RANK, Finding
 from telemetry.alerting.watched import WatchedUav
 from telemetry.models import Alert
-from telemetry.selectors.alerts import OpenRow
+from telemetry.selectors.alerts import WORST, OpenRow
 from telemetry.services.alerts import CLOSED, OPENED, step
 
 WORDS_STAND_FOR = timedelta(seconds=5)  # newer figures of the same cause are written no more often
@@ -56,14 +59,15 @@ def settle(found: Sequence[tuple[WatchedUav, Opened | Closed]], *, open_rows: Ma
             new.append(
                 Alert(
                     organisation_id=uav.organisation_id, uav_id=uav.uav_id, mission_id=uav.mission_id, level=finding.level,
-                    code=finding.code, subject=finding.subject, message=finding.message, values=finding.values, details=finding.details,
-                    opened_at=now, written_at=now, course=[step(OPENED, now, level=finding.level)],
+                    code=finding.code, subject=finding.subject, message=finding.message, values=finding.values,
+                    details=_with_worst(finding, None, now), opened_at=now, written_at=now, course=[step(OPENED, now, level=finding.level)],
                 )
             )  # fmt: skip
             organisations.add(uav.organisation_id)
         elif _is_worth_writing(row, change, now):
             is_raised = RANK[finding.level] > RANK[row.level]
-            renewed.append((row.id, finding.level, finding.message, json.dumps(finding.values), json.dumps(finding.details), is_raised))
+            details = json.dumps(_with_worst(finding, row.worst, now))
+            renewed.append((row.id, finding.level, finding.message, json.dumps(finding.values), details, is_raised))
             organisations.add(uav.organisation_id)
     if not organisations:
         return organisations
@@ -79,7 +83,9 @@ def settle(found: Sequence[tuple[WatchedUav, Opened | Closed]], *, open_rows: Ma
 
 def close_alerts_of_ended_missions(*, codes: Collection[str], but: Collection[int], now: datetime) -> set[int]:
     """Unless a watch still watches their UAVs for them: this one those of `but`. Returns the organisations."""
-    over = Alert.objects.filter(closed_at=None, code__in=codes, mission__isnull=False).exclude(mission__state__in=WATCHED_STATES)
+    is_away = Exists(Alert.objects.filter(uav=OuterRef("uav"), code=down.CODE, closed_at=None))  # none of its alerts closes
+    over = Alert.objects.filter(~is_away, closed_at=None, code__in=codes, mission__isnull=False)
+    over = over.exclude(mission__state__in=WATCHED_STATES)
     over = over.exclude(uav__in=but).exclude(uav__watch__mission=F("mission"), uav__watch__lease_expires_at__gt=Now())
     found = dict(over.values_list("pk", "organisation_id"))
     if found:
@@ -92,9 +98,28 @@ def _close(ids: Sequence[int], reason: str, now: datetime) -> None:
         cursor.execute(_CLOSE, [now, reason, json.dumps([step(CLOSED, now, reason=reason)]), list(ids)])
 
 
+def is_worse(finding: Finding, worst: Mapping[str, Any] | None) -> bool:
+    """Tell whether it is worse than the worst that was kept of its alert."""
+    return worst is None or (RANK[finding.level], finding.severity) > (RANK[worst["level"]], worst["severity"])
+
+
+def _with_worst(finding: Finding, worst: Mapping[str, Any] | None, now: datetime) -> dict[str, Any]:
+    """Details of an alert with the worst that it has said, which stays; of causes whose figures cannot be compared there is none."""
+    if finding.severity == 0.0:
+        return finding.details
+    if is_worse(finding, worst):
+        worst = {
+            "level": finding.level, "severity": finding.severity, "message": finding.message, "values": finding.values,
+            "at": now.isoformat(),
+        }  # fmt: skip
+    return finding.details | {WORST: worst}
+
+
 def _is_worth_writing(row: OpenRow, change: Opened, now: datetime) -> bool:
     """Where an alert keeps a level that was worse, the words that told of it stay."""
     finding = change.finding
     if finding.level != row.level or finding.message != row.message:
         return not change.is_held
+    if finding.severity != 0.0 and is_worse(finding, row.worst) and finding.values != row.values:
+        return True
     return finding.values != row.values and now - row.written_at >= WORDS_STAND_FOR

@@ -4,10 +4,10 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from datetime import datetime
+from typing import Any
 
 from telemetry.alerting.book import Closed, Opened, changes
 from telemetry.alerting.detectors import down
-from telemetry.alerting.finding import Finding
 from telemetry.alerting.limits import Limits, sound_limits
 from telemetry.alerting.meetings import elsewhere, meetings, ways_of
 from telemetry.alerting.memory import Memory, position_of
@@ -25,7 +25,7 @@ from telemetry.selectors.alert_facts import (
     said_by,
     stated_limits,
 )
-from telemetry.selectors.alerts import MIXED, OTHER_LIST, open_alerts_of
+from telemetry.selectors.alerts import MIXED, OTHER_LIST, OpenRow, open_alerts_of
 from telemetry.services.alert_rows import close_alerts_of_ended_missions, settle
 from telemetry.services.approved_flights import approved_content, flight_model
 from telemetry.services.replan_hooks import suggest_for_findings
@@ -49,45 +49,49 @@ class Memories:
 _OF_THIS_PROCESS = Memories()
 
 
-def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | None = None) -> None:
-    """Opens, raises and closes alerts of UAVs that this process watches. Called once a second; safe to call again."""
+def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | None = None) -> dict[int, dict[str, Any] | None]:
+    """Opens, raises and closes alerts of UAVs that this process watches. Called once a second; safe to call again.
+
+    Returns what the battery of each allows, as live pages show it (battery_outlook.py).
+    """
     memories = _OF_THIS_PROCESS if memories is None else memories
     memories.keep_only(uav.uav_id for uav in watched)
+    batteries: dict[int, dict[str, Any] | None] = {}
     told = close_alerts_of_ended_missions(codes={*CODES, OTHER_LIST} - {down.CODE}, but=[uav.uav_id for uav in watched], now=now)
     if watched:
         open_rows = open_alerts_of([uav.uav_id for uav in watched], (*CODES, MIXED))
         levels = {uav_id: {(row.code, row.subject): row.level for row in rows} for uav_id, rows in open_rows.items()}
-        situations = _with_meetings(list(_situations(watched, now.timestamp(), memories, levels)))
+        situations = _with_accounts(_with_meetings(list(_situations(watched, now.timestamp(), memories, levels))))
         found: list[tuple[WatchedUav, Opened | Closed]] = [
             (situation.uav, change) for situation in situations for change in changes(situation, DETECTORS)
         ]
-        found = _without_what_people_closed(found)
         told |= settle(found, open_rows=open_rows, now=now)
+        batteries = {situation.uav.uav_id: situation.memory.battery if situation.is_in_flight else None for situation in situations}
         suggest_for_findings(
             (uav.mission_id, uav.uav_id, change.finding)
             for uav, change in found
-            if isinstance(change, Opened) and _is_new(change.finding, levels.get(uav.uav_id, {}))
+            if isinstance(change, Opened) and _is_new(change, open_rows.get(uav.uav_id, ()))
         )
     for organisation_id in told:
         publish_live(organisation_id)
+    return batteries
 
 
-def _without_what_people_closed(found: list[tuple[WatchedUav, Opened | Closed]]) -> list[tuple[WatchedUav, Opened | Closed]]:
+def _with_accounts(situations: list[Situation]) -> list[Situation]:
     """A UAV that still lies where somebody knows of it is not reported again."""
-    pairs = [(uav.uav_id, uav.mission_id) for uav, change in found if isinstance(change, Opened) and change.finding.code == down.CODE]
+    pairs = [(situation.uav.uav_id, situation.uav.mission_id) for situation in situations if down.is_down_away(situation)]
     known = closed_by_people(pairs, down.CODE) if pairs else set()
     return [
-        (uav, change)
-        for uav, change in found
-        if not isinstance(change, Opened)
-        or change.finding.code != down.CODE
-        or (uav.uav_id, uav.mission_id, change.finding.subject) not in known
+        replace(situation, is_accounted_for=(situation.uav.uav_id, situation.uav.mission_id, str(situation.uav.flight)) in known)
+        for situation in situations
     ]
 
 
-def _is_new(finding: Finding, levels: Mapping[tuple[str, str], str]) -> bool:
-    """Or worse than it was. levels: of the open alerts of its UAV."""
-    return levels.get((finding.code, finding.subject)) != finding.level
+def _is_new(change: Opened, rows: Iterable[OpenRow]) -> bool:
+    """Or worse than it was, or another of the same cause. rows: open alerts of its UAV."""
+    finding = change.finding
+    row = next((row for row in rows if (row.code, row.subject) == (finding.code, finding.subject)), None)
+    return row is None or row.level != finding.level or (row.message != finding.message and not change.is_held)
 
 
 def _situations(

@@ -1,5 +1,6 @@
 """Alerts: opened with their cause, closed with it, acknowledged and noted by people."""
 
+from datetime import datetime
 from typing import Any
 
 from django.db import transaction
@@ -7,8 +8,10 @@ from django.db.models import F
 from django.utils import timezone
 
 from missions.models import Mission, Uav
-from telemetry.alerting.book import CLEARED, RANK
+from telemetry.alerting.book import CLEARED
+from telemetry.alerting.finding import RANK
 from telemetry.models import Alert, AlertLevel, AlertNote
+from telemetry.selectors.alerts import waiting_to_be_seen
 from workspace.live import publish_live
 from workspace.models import User
 from workspace.services import record_change
@@ -78,21 +81,31 @@ def close_alert(*, uav: Uav, code: str) -> bool:
 
 
 def acknowledge_alert(*, alert: Alert, actor: User, note: str = "") -> Alert:
-    """It goes on, and is silent. Acknowledged again it stays with who was first, and the note is added."""
+    """It goes on, and is silent. Acknowledged again it stays with who was first, and the note is added.
+
+    Alerts of the same cause that have ended before are acknowledged with it.
+    """
     now = timezone.now()
     with transaction.atomic():
         held = Alert.objects.select_for_update().get(pk=alert.pk)
         if held.acknowledged_at is None:
-            held.acknowledged_at, held.acknowledged_by = now, actor
-            held.course = [*held.course, step(ACKNOWLEDGED, now, by=actor.get_full_name() or actor.username)]
-            held.revision += 1
-            held.save(update_fields=["acknowledged_at", "acknowledged_by", "course", "revision"])
+            _acknowledge(held, actor, now)
+            same = Alert.objects.filter(organisation=held.organisation_id, uav=held.uav_id, code=held.code, subject=held.subject)
+            for ended in same.filter(waiting_to_be_seen(now)).exclude(pk=held.pk).select_for_update().order_by("pk"):
+                _acknowledge(ended, actor, now)
             after = {"code": held.code, "level": held.level, "uav": held.uav_id, "note": note}
             _record(held, actor, "acknowledge", after)
         if note:
             note_alert(alert=held, actor=actor, text=note)
         _tell(held.organisation_id)
     return held
+
+
+def _acknowledge(alert: Alert, actor: User, now: datetime) -> None:
+    alert.acknowledged_at, alert.acknowledged_by = now, actor
+    alert.course = [*alert.course, step(ACKNOWLEDGED, now, by=actor.get_full_name() or actor.username)]
+    alert.revision += 1
+    alert.save(update_fields=["acknowledged_at", "acknowledged_by", "course", "revision"])
 
 
 def note_alert(*, alert: Alert, actor: User, text: str) -> AlertNote:

@@ -11,10 +11,13 @@ from missions.flight_plan.conditions import conditions_from_json
 from missions.flight_plan.performance import performance_from_json
 from missions.models import Approval
 from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load
+from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import energy_plan
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import FlightModel
 from telemetry.services.of_flight import OfFlight
+
+HEIGHT_OF_WAY_M = 60.0  # above ground, at which the wind of the way home is taken
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,9 +38,10 @@ def flight_model(approval_id: UUID, uav_id: int, flight: int) -> FlightModel | N
     route = approved.route
     figures = next(row["figures"] for row in document["routes"] if row["uav"] == uav_id)
     performance, of_flight = performance_from_json(figures["performance"]), route.flights[flight - 1]
+    conditions = conditions_from_json(document["conditions"])
     plan = energy_plan(
-        of_flight, cruise_speed_mps=route.cruise_speed_mps, performance=performance,
-        conditions=conditions_from_json(document["conditions"]), rules=settings.FLIGHT_RULES, charging=route.charging_stops,
+        of_flight, cruise_speed_mps=route.cruise_speed_mps, performance=performance, conditions=conditions,
+        rules=settings.FLIGHT_RULES, charging=route.charging_stops,
     )  # fmt: skip
     return FlightModel(
         line=RouteLine(of_flight, route.charging_stops),
@@ -47,6 +51,7 @@ def flight_model(approval_id: UUID, uav_id: int, flight: int) -> FlightModel | N
         rally_points=tuple(
             LonLat(item.longitude_e7 / 1e7, item.latitude_e7 / 1e7) for item in (approved.load.rally if approved.load else ())
         ),
+        consumption=Consumption(route.cruise_speed_mps, performance, conditions.wind_at(HEIGHT_OF_WAY_M)),
     )
 
 

@@ -43,6 +43,8 @@ def close_down_alert(*, alert: Alert, actor: User, reason: str) -> AlertNote | N
             return None
         held.closed_at, held.close_reason, held.revision = now, BY_PERSON, held.revision + 1
         held.course = [*held.course, step(CLOSED, now, reason=BY_PERSON, by=actor.get_full_name() or actor.username)]
-        held.save(update_fields=["closed_at", "close_reason", "revision", "course"])
+        if held.acknowledged_at is None:
+            held.acknowledged_at, held.acknowledged_by = now, actor
+        held.save(update_fields=["closed_at", "close_reason", "revision", "course", "acknowledged_at", "acknowledged_by"])
         alert_was_closed(held, actor, reason)
         return note_alert(alert=held, actor=actor, text=reason)

@@ -24,7 +24,7 @@ def suggest_for_findings(findings: Iterable[tuple[UUID, int, Finding]]) -> None:
 
 def code_of(finding: Finding) -> str | None:
     """Why the rest is planned anew after this; None: it is not."""
-    if finding.code == battery.CODE and finding.level == CRITICAL:
+    if finding.code == battery.CODE and (finding.level == CRITICAL or finding.details.get("route_short")):
         return BATTERY_SHORT
     if finding.code == link.CODE and finding.level == CRITICAL:
         return UAV_OUT

@@ -75,13 +75,17 @@ WHERE uav_id IN (SELECT id FROM missions_uav) ON CONFLICT (uav_id, estimated_for
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """An estimate of one UAV; `report_at` and `estimated_for` are its own times as the database has them."""
+    """An estimate of one UAV; `report_at` and `estimated_for` are its own times as the database has them.
+
+    battery: what it allows, as live pages show it; None: not known.
+    """
 
     uav_id: int
     mission_id: UUID
     estimated_for: datetime
     report_at: datetime | None
     estimate: Estimate
+    battery: dict[str, Any] | None = None
 
 
 def take_watches(*, missions: dict[int, UUID], holder: str, lease_s: float) -> set[int]:
@@ -112,7 +116,7 @@ def show_estimates(*, made: Sequence[Made], holder: str) -> dict[int, int]:
     """For live pages; only of UAVs that the watch still holds. Returns these with their organisations."""
     made = sorted(made, key=lambda one: one.uav_id)
     uavs, missions = [one.uav_id for one in made], [one.mission_id for one in made]
-    estimates = [json.dumps(estimate_to_json(one.estimate)) for one in made]
+    estimates = [json.dumps(estimate_to_json(one.estimate) | {"battery": one.battery}) for one in made]
     with connection.cursor() as cursor:
         cursor.execute(_SHOW, [uavs, missions, estimates, holder])
         return dict(cursor.fetchall())

@@ -9,7 +9,7 @@ from rest_framework.views import APIView
 
 from inspection.views.parameters import invalid
 from telemetry.models import Alert, AlertLevel
-from telemetry.selectors.alerts import AlertFilter, alerts_of_organisation, alerts_that_match
+from telemetry.selectors.alerts import AlertFilter, alerts_of_organisation, alerts_that_match, unanswered_counts
 from telemetry.serializers import alerts as shapes
 from telemetry.services.alerts import acknowledge_alert, note_alert
 from telemetry.services.down_alerts import ClosedByItself, close_down_alert
@@ -44,6 +44,16 @@ class Alerts(APIView):
     def get(self, request: SignedInRequest) -> Response:
         page = page_of(request, alerts_that_match(request.user.organisation, _asked(request)), order=NEWEST_FIRST)
         return Response({"results": [shapes.alert_json(row, note_count=row.note_count) for row in page.rows], "next": page.next})
+
+
+class AlertCounts(APIView):
+    @extend_schema(
+        operation_id="count_alerts",
+        summary="How many alerts nobody has acknowledged, by level",
+        responses=shapes.UnansweredAlertsSerializer,
+    )
+    def get(self, request: SignedInRequest) -> Response:
+        return Response(unanswered_counts(request.user.organisation))
 
 
 class AlertDetail(APIView):

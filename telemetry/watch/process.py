@@ -6,6 +6,7 @@ import threading
 import time
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from typing import Any
 from uuid import UUID
 
 import numpy as np
@@ -58,6 +59,7 @@ class Watched:
     newest: Report | None = None  # record
     has_learnt: bool = False
     judged_s: float = 0.0
+    battery: dict[str, Any] | None = None  # what it allowed at the last look
 
     def keep_time(self) -> None:
         """From its newest report on, by its own clock as it runs now."""
@@ -113,7 +115,9 @@ class Watch:
         made = {uav_id: one for uav_id, watched in self.held.items() if (one := self._estimated(watched, now_s)) is not None}
         count_states(made.values(), held=len(self.held))
         self._tell(list(made.values()))
-        look(watched=[_seen(watched, made.get(uav_id)) for uav_id, watched in self.held.items()], now=datetime.fromtimestamp(now_s, UTC))
+        seen = [_seen(watched, made.get(uav_id)) for uav_id, watched in self.held.items()]
+        for uav_id, battery in look(watched=seen, now=datetime.fromtimestamp(now_s, UTC)).items():
+            self.held[uav_id].battery = battery
         self._check_targets(now_s)
 
     # Who is watched
@@ -234,7 +238,7 @@ def _made(watched: Watched, now_s: float) -> Made | None:
         return None
     report_at = None if estimate.report_s is None else datetime.fromtimestamp(estimate.report_s, UTC)
     flight = watched.flight
-    return Made(flight.uav_id, flight.mission_id, datetime.fromtimestamp(at_s, UTC), report_at, estimate)
+    return Made(flight.uav_id, flight.mission_id, datetime.fromtimestamp(at_s, UTC), report_at, estimate, watched.battery)
 
 
 def _seen(watched: Watched, made: Made | None) -> WatchedUav:

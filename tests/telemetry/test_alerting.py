@@ -270,6 +270,35 @@ def test_a_uav_that_came_down_beside_its_route_is_told_until_a_person_closes_it(
     assert open_ones() == [("down-off-plan", "critical")], "it was started again since"
 
 
+def test_no_alert_of_a_uav_closes_because_it_is_down_in_the_wrong_place(uav, approval):
+    memories = watching(uav, approval)
+    for second in range(1, 9):
+        in_flight(second, uav, approval, memories, battery_percent=9.0, mode="LAND")
+    assert {code for code, _ in open_ones()} == {"battery-short", "mode-changed"}
+    place = seen(uav, approval).newest.measurement
+    fallen = {"longitude_deg": place.longitude_deg + 0.01, "altitude_relative_m": 8.0, "is_armed": False, "is_in_air": False}
+    UavLink.objects.update(is_in_air=False, is_armed=False)
+    for second in range(9, 40):
+        in_flight(second, uav, approval, memories, **fallen, battery_percent=9.0, mode="LAND")
+    assert {code for code, _ in open_ones()} == {"battery-short", "down-off-plan", "mode-changed"}
+    Mission.objects.update(state="failed")
+    look(watched=[], now=at(40), memories=Memories())
+    assert len(open_ones()) == 3, "the end of its mission ends none of them either"
+    Mission.objects.update(state="active")
+    close_down_alert(alert=Alert.objects.get(code="down-off-plan"), actor=an_operator(), reason="Brought back")
+    for second in range(41, 44):
+        in_flight(second, uav, approval, memories, **fallen, battery_percent=9.0, mode="LAND")
+    assert open_ones() == [], "a person has said what became of it"
+
+
+def test_the_worst_that_an_alert_has_said_is_kept(uav, approval):
+    memories = watching(uav, approval)
+    for second, percent in enumerate([15.0] * 8 + [9.0] * 3 + [14.0] * 10, start=1):
+        in_flight(second, uav, approval, memories, battery_percent=percent)
+    alert = Alert.objects.get(code="battery-short")
+    assert (alert.values["percent"], alert.details["worst"]["values"]["percent"]) == ("14", "9")
+
+
 def test_a_uav_that_was_told_to_hold_on_the_ground_has_not_crashed(uav, approval):
     place = seen(uav, approval).newest.measurement
     away = {"longitude_deg": place.longitude_deg + 0.01, "is_armed": False, "is_in_air": False}

@@ -1,6 +1,9 @@
 """Alerts over the API: found, acknowledged, noted, by whom may; and where they begin."""
 
+from datetime import timedelta
+
 import pytest
+from django.utils import timezone
 from django.utils.translation import override
 
 from missions.models import Uav, UavType
@@ -152,3 +155,37 @@ def test_only_the_alert_of_a_uav_that_is_down_is_closed_by_people_and_with_a_rea
     assert AuditEntry.objects.filter(subject_type="alert", action="close", subject_id=str(alert.pk)).count() == 1
     again = post(operator, f"{alert.pk}/close", reason="Again").json()
     assert (again["closed_at"], len(again["written"])) == (shown["closed_at"], 1)
+
+
+def test_alerts_that_nobody_has_acknowledged_are_counted_ended_critical_ones_too(uav, operator):
+    now = timezone.now()
+    an_alert(uav, "gps", AlertLevel.CRITICAL)
+    an_alert(uav, "zone", AlertLevel.CRITICAL, closed_at=now)
+    an_alert(uav, "weather", AlertLevel.WARNING, closed_at=now)
+    an_alert(uav, "off-route", AlertLevel.WARNING)
+    an_alert(uav, "height-off", AlertLevel.WARNING, acknowledged_at=now)
+    an_alert(uav, "converging", AlertLevel.CRITICAL, closed_at=now - timedelta(days=2))
+    assert operator.get("/api/v1/alerts/counts").json() == {"critical": 2, "warning": 1, "advisory": 0}
+
+
+def test_an_ended_critical_alert_stays_on_live_pages_until_it_is_acknowledged(uav, operator):
+    ended = timezone.now() - timedelta(hours=3)
+    critical = an_alert(uav, "converging", AlertLevel.CRITICAL, closed_at=ended)
+    again = an_alert(uav, "converging", AlertLevel.CRITICAL, closed_at=ended)
+    an_alert(uav, "weather", AlertLevel.WARNING, closed_at=ended)
+
+    def shown():
+        return {alert["id"] for alert in operator.get("/api/v1/live").json()["live"]["alerts"]}
+
+    assert shown() == {critical.pk, again.pk}
+    post(operator, f"{again.pk}/acknowledge")
+    assert shown() == set(), "with it those that ended before of the same cause"
+    assert Alert.objects.get(pk=critical.pk).acknowledged_by is not None
+
+
+def test_acts_are_those_of_the_cause_or_of_the_alert_itself(uav, operator):
+    hold = an_alert(uav, "zone")
+    own = an_alert(uav, "gps", details={"acts": [{"kind": "land", "uav": uav.pk}], "hdop": 9.9})
+    answers = {alert["id"]: alert for alert in operator.get("/api/v1/alerts").json()["results"]}
+    assert answers[hold.pk]["acts"] == [{"kind": "hold", "uav": uav.pk}]
+    assert (answers[own.pk]["acts"], answers[own.pk]["details"]) == ([{"kind": "land", "uav": uav.pk}], {"hdop": 9.9})

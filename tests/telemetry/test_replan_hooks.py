@@ -15,6 +15,7 @@ from tests.workspace.people import somebody
     [
         ("battery-short", CRITICAL, {}, "battery-short"),
         ("battery-short", WARNING, {}, None),
+        ("battery-short", WARNING, {"route_short": True}, "battery-short"),
         ("link-lost", CRITICAL, {}, "uav-out"),
         ("link-lost", WARNING, {}, None),
         ("down-off-plan", CRITICAL, {}, "uav-out"),

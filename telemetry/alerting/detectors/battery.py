@@ -1,32 +1,59 @@
-"""What is left of the battery is not enough for the rest of the flight, or the vehicle itself says so."""
+"""The battery: the reserve and the way home are reached, or the vehicle itself reports that it is low."""
 
+from dataclasses import dataclass
+from typing import Any
+
+from telemetry.alerting.acts import ACTS, LAND, RETURN, acts
+from telemetry.alerting.battery_outlook import BatteryOutlook, battery_outlook
 from telemetry.alerting.detector import Detector
-from telemetry.alerting.finding import CRITICAL, WARNING, Finding
-from telemetry.alerting.memory import Memory
-from telemetry.alerting.route_line import RouteLine
+from telemetry.alerting.finding import CRITICAL, RANK, WARNING, Finding
+from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.said import is_worse, words_of_battery
 from telemetry.alerting.situation import Situation
 
 CODE = "battery-short"
-EXPECTED = "%(uav)s is expected to end its flight with %(percent)s %% of its battery; %(reserve)s %% were to be left."
+TURN_BACK = "%(uav)s: battery %(percent)s %%, just enough to return (%(home)s %%) with the reserve of %(reserve)s %%."
+EXPECTED = "%(uav)s is expected to land with %(percent)s %% of its battery (reserve %(reserve)s %%)."
 EMPTY = "The battery of %(uav)s is not enough for its route: it would be empty before the end."
-LOW = "%(uav)s has %(percent)s %% of its battery left; its reserve is %(reserve)s %%."
+BELOW = "%(uav)s: battery %(percent)s %%, below the reserve of %(reserve)s %%."
+SOON = "%(uav)s: battery %(percent)s %%, below the reserve of %(reserve)s %% within a minute."
+NO_WAY_HOME = "%(uav)s: battery %(percent)s %%, not enough to return (%(home)s %%)."
+NO_WAY_BUT_LANDING = (
+    "%(uav)s: battery %(percent)s %%, not enough to return home (%(home)s %%). The landing place %(metres)s m away is in reach."
+)
 STATED = "%(uav)s itself reports its battery as %(state)s."
 SAID = "%(uav)s itself reports its battery as %(state)s: %(words)s"
 STATES = {"low": WARNING, "critical": CRITICAL, "emergency": CRITICAL, "failed": CRITICAL, "unhealthy": CRITICAL}
 OVERRULES_AFTER_S = 15.0  # a state that is well counts more than words that are so old
 CLEARS_ABOVE_PERCENT = 2.0  # of what raises it
-LEAST_FLOWN_PERCENT = 6.0  # of the battery by the plan, before what it takes is compared with the plan
-READ_WITHIN_PERCENT = 1.0  # of what is reported
-RATES = (1.0, 4.0)
+AHEAD_S = 60.0  # for which a UAV that is still above its reserve is looked ahead
+
+
+@dataclass(frozen=True, slots=True)
+class _Judged:
+    level: str
+    message: str
+    percent: float = 0.0
+    is_route_short: bool = False
 
 
 def detect(situation: Situation) -> list[Finding] | None:
     """By the vehicle's own word, which may go by voltage while its percentage stays high, and by what is left; the worse of both."""
-    stated, expected = _stated(situation), _expected(situation)
-    if stated is None or (expected and expected[0].level == CRITICAL):
+    outlook = _outlook(situation)
+    expected = None if outlook is None else _expected(situation, outlook)
+    stated = _stated(situation)
+    situation.memory.battery = None if outlook is None else outlook.as_json(expected[0].level if expected else "")
+    if stated is None or (expected and RANK[expected[0].level] >= RANK[stated.level]):
         return expected
-    return [stated]
+    return [Finding(CODE, stated.level, stated.message, stated.values, details=stated.details | {ACTS: _acts(situation, outlook)})]
+
+
+def _outlook(situation: Situation) -> BatteryOutlook | None:
+    fresh = situation.fresh
+    left_percent = None if fresh is None else fresh.measurement.battery_percent
+    if fresh is None or left_percent is None or situation.has_just_jumped:
+        return None
+    return battery_outlook(situation, fresh, left_percent)
 
 
 def _stated(situation: Situation) -> Finding | None:
@@ -44,43 +71,90 @@ def _stated(situation: Situation) -> Finding | None:
     return Finding(CODE, level, SAID, values | {"words": word.text}, details=details)
 
 
-def _expected(situation: Situation) -> list[Finding] | None:
-    fresh, limits = situation.fresh, situation.limits
-    left_percent = None if fresh is None else fresh.measurement.battery_percent
-    if fresh is None or left_percent is None or situation.has_just_jumped:
-        return None
-    place, model = situation.place, situation.model
-    reserve_percent = 20.0 if model is None else model.reserve_percent
-    rate, expected_percent = 1.0, left_percent
-    if situation.flies_mission and place is not None and model is not None and model.energy is not None:
-        used_percent = model.energy.used_at(place, _climbed_share(model.line, fresh.measurement.altitude_relative_m))
-        situation.memory.note_battery(used_percent, left_percent)
-        rate = drain_rate(situation.memory, used_percent, left_percent)
-        expected_percent = left_percent - rate * model.energy.rest_at(place, used_percent)
-    warns_below = max(reserve_percent - limits.battery_margin_percent, limits.battery_critical_percent)
-    if expected_percent >= warns_below + (CLEARS_ABOVE_PERCENT if situation.is_open(CODE) else 0.0):
+def _expected(situation: Situation, outlook: BatteryOutlook) -> list[Finding]:
+    judged = _judged(situation, outlook)
+    if judged is None:
         return []
-    level = CRITICAL if expected_percent < limits.battery_critical_percent else WARNING
-    words = LOW if expected_percent == left_percent else EXPECTED if expected_percent > 0.0 else EMPTY
-    values = {"uav": situation.uav.name}
-    if words is not EMPTY:
-        values |= {"percent": str(round(expected_percent)), "reserve": str(round(reserve_percent))}
-    details = {"left_percent": left_percent, "expected_percent": round(expected_percent, 1), "rate": round(rate, 2)}
-    return [Finding(CODE, level, words, values, details=details)]
+    values: dict[str, object] = {"uav": situation.uav.name}
+    if judged.message is not EMPTY:
+        values["percent"] = str(round(judged.percent if judged.message is EXPECTED else outlook.left_percent))
+    if judged.message not in (EMPTY, NO_WAY_HOME, NO_WAY_BUT_LANDING):
+        values["reserve"] = str(round(outlook.reserve_percent))
+    if judged.message in (TURN_BACK, NO_WAY_HOME, NO_WAY_BUT_LANDING):
+        values["home"] = _share(outlook.home_percent)
+    if judged.message is NO_WAY_BUT_LANDING:
+        values["metres"] = round(outlook.landing_m or 0.0)
+    details = {
+        **outlook.as_json(judged.level),
+        ACTS: _acts(situation, outlook),
+        "expected_percent": round(judged.percent, 1),
+        "rate": round(situation.memory.drain.ratio(situation.memory.drain.kind), 2),
+        "route_short": judged.is_route_short,
+    }
+    return [Finding(CODE, judged.level, judged.message, values, details=details, severity=-outlook.left_percent)]
 
 
-def _climbed_share(line: RouteLine, height_m: float | None) -> float:
-    return 1.0 if height_m is None else min(max(height_m / max(line.heights_m[0], 1.0), 0.0), 1.0)
+def _judged(situation: Situation, outlook: BatteryOutlook) -> _Judged | None:
+    """The worst that the figures say. An open alert is kept until all is CLEARS_ABOVE_PERCENT better than what raises it."""
+    worst = _worst(situation, outlook, 0.0)
+    if worst is not None or not situation.is_open(CODE):
+        return worst
+    nearly = _worst(situation, outlook, CLEARS_ABOVE_PERCENT)
+    if nearly is None or nearly.message in (TURN_BACK, EXPECTED):
+        return nearly
+    return _Judged(WARNING, EXPECTED, max(_ends(outlook), default=outlook.left_percent))
 
 
-def drain_rate(memory: Memory, used_percent: float, left_percent: float) -> float:
-    """How many times as fast as planned the battery goes down: since the flight began, or of late, whichever is more."""
-    rates = [RATES[0]]
-    for planned_percent, before_percent in memory.drained:
-        planned = used_percent - planned_percent
-        if planned >= LEAST_FLOWN_PERCENT:
-            rates.append((before_percent - left_percent - READ_WITHIN_PERCENT) / planned)
-    return min(max(rates), RATES[1])
+def _ends(outlook: BatteryOutlook) -> list[float]:
+    """What is left after landing at home, and after the rest of the route."""
+    return [outlook.left_percent - need for need in (outlook.home_percent, outlook.rest_percent) if need is not None]
+
+
+def _worst(situation: Situation, outlook: BatteryOutlook, more: float) -> _Judged | None:
+    """more: percent by which all limits are raised."""
+    limits, left, reserve, rest = situation.limits, outlook.left_percent, outlook.reserve_percent + more, outlook.rest_percent
+    floor, at_home = limits.battery_critical_percent + more, None if outlook.home_percent is None else left - outlook.home_percent
+    best = max(_ends(outlook), default=left)
+    if left < reserve:
+        return _Judged(CRITICAL, BELOW, left)
+    if _falls_soon(situation, outlook, reserve):
+        return _Judged(CRITICAL, SOON, left)
+    if best < floor:
+        is_reachable = outlook.landing_percent is not None and left - outlook.landing_percent >= floor
+        return _Judged(CRITICAL, NO_WAY_BUT_LANDING if is_reachable else NO_WAY_HOME, best, is_route_short=True)
+    margin, is_short = limits.battery_margin_percent, rest is not None and left - rest < floor
+    if rest is not None and left - rest < max(reserve - margin, floor):
+        if at_home is not None and at_home <= reserve:
+            return _Judged(WARNING, TURN_BACK, at_home, is_short)
+        return _Judged(WARNING, EMPTY if left - rest <= 0.0 else EXPECTED, left - rest, is_short)
+    comes_down = situation.mode in (ModeKind.RETURN, ModeKind.LAND)
+    if rest is None and at_home is not None and at_home < reserve - (margin if comes_down else 0.0):
+        return _Judged(WARNING, EXPECTED if comes_down else TURN_BACK, at_home)
+    return None
+
+
+def _falls_soon(situation: Situation, outlook: BatteryOutlook, below_percent: float) -> bool:
+    """Within AHEAD_S, or before it lands, where it is on its way down by its route, home or here; one that is held stays in the air."""
+    down = {ModeKind.RETURN: outlook.home_percent, ModeKind.LAND: outlook.down_percent}
+    need = outlook.rest_percent if outlook.rest_percent is not None or situation.mode is None else down.get(situation.mode)
+    drained = outlook.drain_per_s * AHEAD_S
+    return outlook.left_percent - (drained if need is None else min(drained, need)) < below_percent
+
+
+def _acts(situation: Situation, outlook: BatteryOutlook | None) -> list[dict[str, Any]]:
+    """What can still be reached: home, the nearest landing place (to which a return leads as well), or the ground below.
+
+    Nothing is proposed for a UAV that comes down already, by its own failsafe or as it was told.
+    """
+    ways = [] if outlook is None else [way for way in (outlook.home_percent, outlook.landing_percent) if way is not None]
+    is_reachable = outlook is None or not ways or outlook.left_percent - min(ways) >= situation.limits.battery_critical_percent
+    if situation.mode is ModeKind.LAND or (situation.mode is ModeKind.RETURN and is_reachable):
+        return []
+    return acts(RETURN if is_reachable else LAND, uav_id=situation.uav.uav_id)
+
+
+def _share(percent: float | None) -> str:
+    return "–" if percent is None or percent > 100.0 else str(round(percent))
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=5.0, clear_after_s=15.0)

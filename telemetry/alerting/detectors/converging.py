@@ -1,12 +1,20 @@
 """Two UAVs come too near each other. The pair has one alert: of the UAV with the smaller key, its subject is the other."""
 
+from typing import Any
+
+from telemetry.alerting.acts import ACTS, HOLD, acts
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
+from telemetry.alerting.meetings import FAR_HEIGHT_M, FAR_M
 from telemetry.alerting.situation import Situation
+from telemetry.alerting.surroundings import Meeting
 
 CODE = "converging"
-WORDS = "%(uav)s and %(other)s come within %(metres)s m of each other in %(seconds)s s."
-NOW = "%(uav)s and %(other)s are %(metres)s m from each other."
+WORDS = (
+    "%(uav)s and %(other)s: %(metres)s m apart, %(height)s m in height, closing at %(speed)s m/s (±%(bound)s m), closest in %(seconds)s s."
+    " Hold %(hold)s: %(why)s."
+)
+NOW = "%(uav)s and %(other)s: %(metres)s m apart, %(height)s m in height (±%(bound)s m). Hold %(hold)s: %(why)s."
 CLEAR_SHARE = 1.3
 CRITICAL_WITHIN_S = 12.0
 
@@ -21,19 +29,34 @@ def detect(situation: Situation) -> list[Finding]:
         if meeting.in_s > limits.converging_s or meeting.least_lateral_m >= lateral_m or meeting.least_height_m >= height_m:
             continue
         is_near = meeting.lateral_m < limits.separation_m and meeting.height_m < limits.separation_height_m
-        values = {"uav": situation.uav.name, "other": meeting.other_name, "metres": round(meeting.lateral_m)}
-        in_s = meeting.in_s / situation.link.clock_rate  # for those who look at the server's clock
-        if in_s >= 1.0:
-            values["seconds"] = round(in_s)
         level = CRITICAL if is_near and meeting.in_s <= CRITICAL_WITHIN_S else WARNING
         if subject in found and (level == WARNING or found[subject].level == CRITICAL):
             continue
-        details = {
-            "other": meeting.other_id, "in_s": round(in_s, 1), "lateral_m": round(meeting.lateral_m, 1),
-            "height_m": round(meeting.height_m, 1), "least_lateral_m": round(meeting.least_lateral_m, 1),
-        }  # fmt: skip
-        found[subject] = Finding(CODE, level, WORDS if in_s >= 1.0 else NOW, values, subject=subject, details=details)
+        found[subject] = _finding(situation, meeting, level)
     return list(found.values())
+
+
+def _finding(situation: Situation, meeting: Meeting, level: str) -> Finding:
+    """With the distance of this moment, whatever its bound is."""
+    in_s = meeting.in_s / situation.link.clock_rate  # for those who look at the server's clock
+    values: dict[str, Any] = {
+        "uav": situation.uav.name, "other": meeting.other_name, "metres": round(meeting.now_lateral_m),
+        "height": "–" if meeting.now_height_m is None else round(meeting.now_height_m), "bound": round(meeting.bound_m),
+        "hold": meeting.yields_name, "why": str(meeting.why),
+    }  # fmt: skip
+    is_ahead = in_s >= 1.0 and meeting.closing_mps > 0.0
+    if is_ahead:
+        values |= {"seconds": round(in_s), "speed": round(meeting.closing_mps)}
+    details = {
+        "other": meeting.other_id, "in_s": round(in_s, 1), "distance_m": round(meeting.now_lateral_m, 1),
+        "height_difference_m": None if meeting.now_height_m is None else round(meeting.now_height_m, 1),
+        "closing_mps": round(meeting.closing_mps, 1), "bound_m": round(meeting.bound_m, 1), "lateral_m": round(meeting.lateral_m, 1),
+        "height_m": round(meeting.height_m, 1), "least_lateral_m": round(meeting.least_lateral_m, 1),
+        ACTS: acts(HOLD, uav_id=meeting.yields_id),
+    }  # fmt: skip
+    nearness = -max(meeting.now_lateral_m / FAR_M, (meeting.now_height_m or 0.0) / FAR_HEIGHT_M)
+    words = WORDS if is_ahead else NOW
+    return Finding(CODE, level, words, values, subject=str(meeting.other_id), details=details, severity=nearness)
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=2.0, clear_after_s=5.0)

@@ -24,6 +24,19 @@ GIVEN_AFTER_S = 2.0  # that clocks and reports may differ by
 
 def detect(situation: Situation) -> Iterable[Finding] | None:
     """None where nothing is found: what is open stays open."""
+    if situation.is_accounted_for:
+        return None
+    away = _away(situation)
+    return None if away is None else [finding(situation.uav.name, situation.uav.flight, *away)]
+
+
+def is_down_away(situation: Situation) -> bool:
+    """Tell whether it is on the ground where its flight does not end, and no person has said what became of it."""
+    return not situation.is_accounted_for and (any(code == CODE for code, _ in situation.open_levels) or _away(situation) is not None)
+
+
+def _away(situation: Situation) -> tuple[LonLat, float] | None:
+    """Where it is, and how far from its plan [m]."""
     newest, model = situation.uav.newest, situation.model
     if newest is None or model is None or not situation.is_known_down or not _was_started(situation):
         return None
@@ -31,7 +44,7 @@ def detect(situation: Situation) -> Iterable[Finding] | None:
     if position is None:
         return None
     away_m = away_from_plan_m(model.line, position, model.rally_points)
-    return None if away_m < AWAY_M else [finding(situation.uav.name, situation.uav.flight, position, away_m)]
+    return None if away_m < AWAY_M else (position, away_m)
 
 
 def finding(name: str, flight: int, position: LonLat, away_m: float) -> Finding:

@@ -3,6 +3,7 @@
 import math
 
 from inspection.geodesy import LonLat
+from telemetry.alerting.acts import ACTS, HOLD, LAND, TAKE_OVER, acts
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.memory import position_of
@@ -10,11 +11,17 @@ from telemetry.alerting.situation import Situation
 from telemetry.estimation.report import Report
 
 CODE = "gps"
-NO_FIX = "%(uav)s does not know where it is: its GPS has no fix."
-NO_POSITION = "%(uav)s reports, but not where it is."
+NO_FIX = "%(uav)s: no GPS fix. %(own)s"
+NO_POSITION = "%(uav)s reports, but not where it is. %(own)s"
 JUMPED = "The position of %(uav)s has jumped by %(metres)s m."
 FEW = "%(uav)s sees %(satellites)s satellites only."
 WEAK = "The position of %(uav)s is weak: its HDOP is %(hdop)s."
+# What the autopilot does by itself: ArduCopter's EKF failsafe (FS_EKF_ACTION 1, after 1 s above FS_EKF_THRESH); PX4's failsafe of a lost
+# position (Commander, blind descend), once EKF2 has been without aiding for EKF2_NOAID_TOUT.
+OWN_ARDUPILOT = "ArduPilot usually lands by itself within seconds (FS_EKF_ACTION) and drifts with the wind."
+OWN_PX4 = "PX4 usually descends by itself 5 s after it lost its position (EKF2_NOAID_TOUT) and drifts with the wind."
+OWN_UNKNOWN = "What its autopilot does by itself is not known."
+OWN = {"ardupilot": OWN_ARDUPILOT, "px4": OWN_PX4}
 FIX_IN_SPACE = 3
 MORE_SATELLITES, CLEAR_SHARE = 1, 0.85  # than raise it; of the HDOP that raises it
 LEAST_JUMP_M = 50.0
@@ -42,7 +49,11 @@ def detect(situation: Situation) -> list[Finding] | None:
     if found is None:
         return []
     level, words, values = found
-    details = {"gps_fix": told.gps_fix, "satellites": told.satellites, "hdop": told.hdop, "jump_m": jump_m and round(jump_m)}
+    is_lost = level == CRITICAL
+    if is_lost:
+        values["own"] = OWN.get(situation.link.autopilot, OWN_UNKNOWN)
+    answers = acts(LAND, TAKE_OVER, uav_id=situation.uav.uav_id) if is_lost else acts(HOLD, uav_id=situation.uav.uav_id)
+    details = {ACTS: answers, "gps_fix": told.gps_fix, "satellites": told.satellites, "hdop": told.hdop, "jump_m": jump_m and round(jump_m)}
     return [Finding(CODE, level, words, {"uav": situation.uav.name, **values}, details=details)]
 
 

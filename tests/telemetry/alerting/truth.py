@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from uuid import UUID
 
 import numpy as np
@@ -15,6 +15,7 @@ from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.waypoints import WaypointKind
 from missions.mavlink.frozen import LAND, Flight, FrozenWaypoint, TakeOff
 from missions.routing.problem import Task, TaskKind
+from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import energy_plan
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import FlightModel
@@ -88,14 +89,16 @@ def true_flight(seed: int, *, least_leg_m: float = 80.0) -> TrueFlight:
     flight = Flight(0, TakeOff(waypoints[0].position, 100.0), waypoints, LAND)
     conditions = Conditions((WindLayer(50.0, float(random.uniform(0, 4)), float(random.uniform(0, 359))),))
     max_airspeed_mps = cruise_mps + 6.0
+    planned = {"cruise_speed_mps": cruise_mps, "conditions": conditions, "rules": FlightRules()}
     performance = Performance(battery_wh=400.0, mass_kg=2.5, max_airspeed_mps=max_airspeed_mps)
-    energy = energy_plan(flight, cruise_speed_mps=cruise_mps, performance=performance, conditions=conditions, rules=FlightRules())
+    energy = energy_plan(flight, performance=performance, **planned)
     assert energy is not None
-    scale = float(random.uniform(55, 76)) / energy.until_percent[-1]  # of the battery: some flights come back with hardly the reserve
-    energy = type(energy)(
-        tuple(value * scale for value in energy.used_percent), tuple(value * scale for value in energy.until_percent), 20.0
-    )
-    model = FlightModel(RouteLine(flight), energy, max_airspeed_mps, 20.0)
+    # some flights come back with hardly the reserve
+    performance = replace(performance, battery_wh=400.0 * energy.until_percent[-1] / float(random.uniform(55, 76)))
+    energy = energy_plan(flight, performance=performance, **planned)
+    assert energy is not None
+    consumption = Consumption(cruise_mps, performance, conditions.wind_at(60.0))
+    model = FlightModel(RouteLine(flight), energy, max_airspeed_mps, 20.0, consumption=consumption)
     states = tuple(_fly([tuple(vertex) for vertex in vertices.tolist()], heights.tolist(), waypoints, cruise_mps, model))
     return TrueFlight(flight, model, frame, cruise_mps, conditions, states)
 
@@ -117,6 +120,7 @@ def _way(random: np.random.Generator, least_leg_m: float) -> tuple[np.ndarray, n
 
 def _fly(vertices: list, heights: list[float], waypoints: tuple, cruise_mps: float, model: FlightModel) -> Iterator[State]:
     seconds, height, used = 0.0, 0.0, model.energy.used_percent
+    holds = [0.0 if waypoint.task is None else waypoint.task.hold_s * model.consumption.percent_per_s(0.0) for waypoint in waypoints]
     while height < heights[0]:
         yield State(seconds, *vertices[0], height, up_mps=CLIMB_MPS, used_percent=used[0] * height / heights[0])
         seconds, height = seconds + 1, height + CLIMB_MPS
@@ -130,19 +134,26 @@ def _fly(vertices: list, heights: list[float], waypoints: tuple, cruise_mps: flo
             yield State(
                 seconds, e1 + share * (e2 - e1), n1 + share * (n2 - n1), heights[place - 1] + share * rise,
                 step * (e2 - e1), step * (n2 - n1), step * rise, place,
-                used_percent=used[place - 1] + share * (used[place] - used[place - 1]),
+                used_percent=_between(used[place - 1] + holds[place - 1], used[place], share),
             )  # fmt: skip
             seconds, share = seconds + 1, share + step
-        for _ in range(math.ceil(waypoints[place].task.hold_s) if waypoints[place].task else 0):
-            yield State(seconds, e2, n2, heights[place], vertex=place, holds=True, used_percent=used[place])
+        stays_s = math.ceil(waypoints[place].task.hold_s) if waypoints[place].task else 0
+        for second in range(stays_s):
+            taken = used[place] + holds[place] * second / stays_s
+            yield State(seconds, e2, n2, heights[place], vertex=place, holds=True, used_percent=taken)
             seconds += 1
-    height, last = heights[-1], len(vertices) - 1
+    height, last, landed = heights[-1], len(vertices) - 1, model.energy.until_percent[-1]
     while height > 0.5:
-        yield State(seconds, *vertices[-1], height, up_mps=-SINK_MPS, vertex=last, holds=True, used_percent=used[-1])
+        taken = _between(used[-1], landed, 1.0 - height / heights[-1])
+        yield State(seconds, *vertices[-1], height, up_mps=-SINK_MPS, vertex=last, holds=True, used_percent=taken)
         seconds, height = seconds + 1, height - SINK_MPS
     for _ in range(10):
-        yield State(seconds, *vertices[-1], 0.0, vertex=last, holds=True, is_in_air=False, used_percent=used[-1])
+        yield State(seconds, *vertices[-1], 0.0, vertex=last, holds=True, is_in_air=False, used_percent=landed)
         seconds += 1
+
+
+def _between(start: float, end: float, share: float) -> float:
+    return start + share * (end - start)
 
 
 @dataclass

@@ -1,0 +1,144 @@
+"""What a UAV's battery still allows: the way home, the rest of its route, and how soon the reserve is reached."""
+
+import math
+from dataclasses import dataclass
+
+from inspection.geodesy import LonLat
+from telemetry.alerting.consumption import Consumption, DrainMemory, FlightKind, Wind, east_north_m, kind_of
+from telemetry.alerting.memory import position_of
+from telemetry.alerting.situation import Situation
+from telemetry.alerting.surroundings import FlightModel
+from telemetry.decoding.measurement import Measurement
+from telemetry.estimation.report import Report
+
+USUAL_RESERVE_PERCENT = 20.0
+USUAL_CRUISE_MPS = 8.0
+
+
+@dataclass(frozen=True, slots=True)
+class BatteryOutlook:
+    """Percentages are of the full battery. None: not known.
+
+    home_percent      takes the straight way home and the landing there; home_s its time
+    landing_percent   the same to the nearest landing place other than home, landing_m away
+    rest_percent      takes the rest of the route, where it flies that
+    down_percent      takes a landing where it is
+    reserve_in_s      until the reserve is reached, flying on as on the way home
+    drain_per_s       now, in the kind of flight that it is in
+    """
+
+    left_percent: float
+    reserve_percent: float
+    drain_per_s: float
+    reserve_in_s: float
+    home_percent: float | None = None
+    home_s: float | None = None
+    landing_percent: float | None = None
+    landing_m: float | None = None
+    rest_percent: float | None = None
+    down_percent: float | None = None
+
+    def as_json(self, level: str) -> dict[str, float | str | None]:
+        """As live pages show it; times in the UAV's own seconds."""
+        home_s = self.home_s if self.home_s is not None and math.isfinite(self.home_s) else None
+        return {
+            "level": level,
+            "left_percent": round(self.left_percent, 1),
+            "reserve_percent": round(self.reserve_percent, 1),
+            "home_percent": None if home_s is None or self.home_percent is None else round(self.home_percent, 1),
+            "home_s": None if home_s is None else round(home_s),
+            "reserve_in_s": round(self.reserve_in_s),
+        }
+
+
+def battery_outlook(situation: Situation, fresh: Report, left_percent: float) -> BatteryOutlook:
+    """Of a UAV in flight with a fresh report. The situation's memory is written to."""
+    told, model, memory = fresh.measurement, situation.model, situation.memory
+    consumption = None if model is None else model.consumption
+    if consumption is None:
+        consumption = Consumption(USUAL_CRUISE_MPS)
+    wind_mps = _wind(told, consumption)
+    kind, airspeed_mps = _flight_now(told, wind_mps)
+    per_s = consumption.percent_per_s(airspeed_mps)
+    memory.drain.note(fresh.measured_s, left_percent, kind, per_s, situation.link.clock_rate)
+    reserve_percent = USUAL_RESERVE_PERCENT if model is None else model.reserve_percent
+    ways = _Ways() if model is None else _ways(situation, model, told, consumption, wind_mps, position_of(fresh))
+    moving_per_s = ways.moving_per_s or consumption.percent_per_s(consumption.cruise_mps) * memory.drain.ratio(FlightKind.MOVING)
+    return BatteryOutlook(
+        left_percent=left_percent,
+        reserve_percent=reserve_percent,
+        drain_per_s=per_s * memory.drain.ratio(kind),
+        reserve_in_s=max(left_percent - reserve_percent, 0.0) / max(moving_per_s, 1e-6),
+        home_percent=ways.home_percent,
+        home_s=ways.home_s,
+        landing_percent=ways.landing_percent,
+        landing_m=ways.landing_m,
+        rest_percent=None if model is None else _rest_percent(situation, model, told, consumption),
+        down_percent=ways.down_percent,
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Ways:
+    """As BatteryOutlook has them; moving_per_s: drain on the way home [% a second]."""
+
+    home_percent: float | None = None
+    home_s: float | None = None
+    moving_per_s: float | None = None
+    landing_percent: float | None = None
+    landing_m: float | None = None
+    down_percent: float | None = None
+
+
+def _ways(
+    situation: Situation, model: FlightModel, told: Measurement, consumption: Consumption, wind_mps: Wind, position: LonLat | None
+) -> _Ways:
+    """Straight from where it is; none without a position."""
+    if position is None:
+        return _Ways()
+    height_m, drain, home = told.altitude_relative_m or 0.0, situation.memory.drain, model.line.vertices[0]
+    here = model.line.east_north(position)
+    home_s, home_percent, moving_per_s = _way_to(consumption, drain, (home[0] - here[0], home[1] - here[1]), height_m, wind_mps)
+    landings = [(math.hypot(*way), way) for way in (east_north_m(position, point) for point in model.rally_points)]
+    landing_m, nearest = min(landings, default=(None, None))
+    return _Ways(
+        home_percent=home_percent,
+        home_s=home_s,
+        moving_per_s=moving_per_s,
+        landing_percent=None if nearest is None else _way_to(consumption, drain, nearest, height_m, wind_mps)[1],
+        landing_m=landing_m,
+        down_percent=_way_to(consumption, drain, (0.0, 0.0), height_m, wind_mps)[1],
+    )
+
+
+def _way_to(
+    consumption: Consumption, drain: DrainMemory, way: tuple[float, float], height_m: float, wind_mps: Wind
+) -> tuple[float, float, float]:
+    """Seconds, percent, and percent a second while it moves."""
+    flies_s, sinks_s, air_mps = consumption.way(*way, height_m, wind_mps)
+    moving = consumption.percent_per_s(air_mps) * drain.ratio(FlightKind.MOVING)
+    still = consumption.percent_per_s(0.0) * drain.ratio(FlightKind.STILL)
+    return flies_s + sinks_s, flies_s * moving + sinks_s * still, moving
+
+
+def _rest_percent(situation: Situation, model: FlightModel, told: Measurement, consumption: Consumption) -> float | None:
+    place = situation.place
+    if not situation.flies_mission or place is None or model.energy is None:
+        return None
+    height_m, line, drain = told.altitude_relative_m, model.line, situation.memory.drain
+    climbed = 1.0 if height_m is None else min(max(height_m / max(line.heights_m[0], 1.0), 0.0), 1.0)
+    rest = model.energy.rest_at(place, model.energy.used_at(place, climbed))
+    if drain.kind is FlightKind.STILL and math.isfinite(holds_s := line.planned_hold_s(place.along_m)):
+        rest -= min(max(drain.still_lost, 0.0), holds_s * consumption.percent_per_s(0.0))  # of a stay that is planned here
+    return max(rest, 0.0) * max(drain.ratio(FlightKind.MOVING), 1.0)
+
+
+def _wind(told: Measurement, consumption: Consumption) -> Wind:
+    if told.wind_east_mps is None or told.wind_north_mps is None:
+        return consumption.wind_mps
+    return told.wind_east_mps, told.wind_north_mps
+
+
+def _flight_now(told: Measurement, wind_mps: Wind) -> tuple[FlightKind, float]:
+    east, north = told.velocity_east_mps or 0.0, told.velocity_north_mps or 0.0
+    return kind_of(math.hypot(east, north), -(told.velocity_down_mps or 0.0)), math.hypot(east - wind_mps[0], north - wind_mps[1])

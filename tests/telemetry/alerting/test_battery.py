@@ -1,0 +1,117 @@
+"""What is said of a battery, and what is proposed."""
+
+import pytest
+
+from inspection.geodesy import LonLat
+from telemetry.alerting.acts import acts_of
+from telemetry.alerting.detectors import battery
+from telemetry.alerting.finding import CRITICAL, WARNING, Finding
+from telemetry.alerting.surroundings import LinkFacts
+from telemetry.alerting.watched import WatchedUav
+from telemetry.decoding.measurement import Measurement
+from telemetry.estimation.report import Report
+from tests.telemetry.alerting.truth import MISSION, START_S, TrueFlight, true_flight
+from tests.telemetry.alerting.watch import Watch
+
+SEED = 3
+
+
+@pytest.fixture(scope="module")
+def flight() -> TrueFlight:
+    return true_flight(SEED, least_leg_m=700.0)
+
+
+def told(flight: TrueFlight, second: int, left_percent: float, mode: str = "MISSION", *, moves: bool = True) -> Measurement:
+    state = flight.states[second]
+    position = flight.position(state.east, state.north)
+    east, north = flight.conditions.wind_at(60.0)
+    return Measurement(
+        longitude_deg=position.lon, latitude_deg=position.lat, altitude_relative_m=state.height_m, mode=mode, is_armed=True, is_in_air=True,
+        velocity_east_mps=state.east_mps if moves else 0.0, velocity_north_mps=state.north_mps if moves else 0.0, velocity_down_mps=0.0,
+        battery_percent=left_percent, waypoint_sequence=state.vertex, wind_east_mps=east, wind_north_mps=north,
+    )  # fmt: skip
+
+
+def found(flight: TrueFlight, measured: Measurement, watch: Watch | None = None, second: float = 0.0, **around) -> Finding | None:
+    watch = watch or Watch()
+    now_s = START_S + second
+    uav = WatchedUav(7, 1, "Tern", MISSION, MISSION, newest=Report(now_s, now_s, measured))
+    return next(iter(battery.detect(watch.situation(now_s, uav, model=flight.model, **around)) or ()), None)
+
+
+def far_from_home(flight: TrueFlight) -> int:
+    return max(flight.cruising(20), key=lambda second: abs(flight.states[second].east) + abs(flight.states[second].north))
+
+
+def proposed(finding: Finding) -> list[tuple[str, int]]:
+    return [(act["kind"], act["uav"]) for act in acts_of(finding.code, 7, finding.details)]
+
+
+def test_a_hold_is_no_drain_of_distance(flight):
+    """Held for two minutes, with the drain of a hover, and resumed: what is left is enough for its route, and nothing is said."""
+    watch, second = Watch(), far_from_home(flight)
+    per_s, left = flight.model.consumption.percent_per_s(0.0), 100.0 - flight.states[second].used_percent
+    levels = []
+    for after_s in range(135):
+        is_held = 5 <= after_s < 125
+        now = second + min(after_s, 5) + max(after_s - 125, 0)
+        left = left - per_s if is_held else 100.0 - flight.states[now].used_percent - per_s * (120 if after_s >= 125 else 0)
+        measured = told(flight, now, float(round(left)), "LOITER" if is_held else "MISSION", moves=not is_held)
+        finding = found(flight, measured, watch, after_s)
+        levels.append(finding.level if finding else None)
+    assert CRITICAL not in levels
+
+
+@pytest.mark.parametrize(("left_percent", "level"), [(80.0, None), (19.0, CRITICAL), (8.0, CRITICAL)])
+def test_below_its_reserve_is_critical_whatever_it_does(left_percent, level, flight):
+    second = flight.cruising(20)[-1]  # near its end
+    for mode in ("MISSION", "LOITER", "RTL"):
+        finding = found(flight, told(flight, second, left_percent, mode))
+        assert (finding and finding.level) == level
+    assert level is None or finding.values == {"uav": "Tern", "percent": f"{left_percent:.0f}", "reserve": "20"}
+
+
+def test_reserve_and_the_way_home_reached_is_a_warning_that_proposes_to_return(flight):
+    measured = told(flight, far_from_home(flight), 60.0, "LOITER", moves=False)
+    watch = Watch()
+    assert found(flight, measured, watch) is None
+    home_percent = watch.memory.battery["home_percent"]
+    assert home_percent > 5.0
+    finding = found(flight, told(flight, far_from_home(flight), 20.0 + home_percent - 0.5, "LOITER", moves=False))
+    assert (finding.level, finding.message, proposed(finding)) == (WARNING, battery.TURN_BACK, [("return", 7)])
+
+
+def test_where_home_is_out_of_reach_the_nearest_landing_place_is_proposed_and_else_the_ground(flight):
+    second = far_from_home(flight)
+    state = flight.states[second]
+    watch = Watch()
+    found(flight, told(flight, second, 60.0, "LOITER", moves=False), watch)
+    left = watch.memory.battery["home_percent"] + 2.0
+    near = flight.position(state.east + 60.0, state.north)
+    low = told(flight, second, left, "LOITER", moves=False)
+    assert proposed(found(flight, low)) == [("land", 7)]
+    with_landing = TrueFlight(**{**vars(flight), "model": _with_rally(flight, near)})
+    assert proposed(found(with_landing, low)) == [("return", 7)]
+
+
+def _with_rally(flight: TrueFlight, point: LonLat):
+    fields = {name: getattr(flight.model, name) for name in flight.model.__slots__}
+    return type(flight.model)(**{**fields, "rally_points": (point,)})
+
+
+@pytest.mark.parametrize("mode", ["LAND", "RTL"])
+def test_a_uav_that_comes_down_by_its_own_failsafe_is_left_alone(mode, flight):
+    finding = found(flight, told(flight, flight.cruising(20)[-1], 15.0, mode), link=LinkFacts(battery_state="critical"))
+    assert (finding.level, proposed(finding)) == (CRITICAL, [])
+
+
+def test_a_uav_whose_battery_is_not_known_by_its_energy_is_judged_by_what_it_reports():
+    uav = WatchedUav(7, 1, "Tern", MISSION, MISSION, newest=Report(START_S, START_S, Measurement(battery_percent=15.0, is_in_air=True)))
+    (finding,) = battery.detect(Watch().situation(START_S, uav))
+    assert (finding.level, finding.message) == (CRITICAL, battery.BELOW)
+
+
+def test_pages_are_told_minutes_to_the_reserve_and_home(flight):
+    watch = Watch()
+    found(flight, told(flight, far_from_home(flight), 60.0), watch)
+    assert watch.memory.battery["level"] == "" and watch.memory.battery["reserve_in_s"] > 60 < watch.memory.battery["home_s"]

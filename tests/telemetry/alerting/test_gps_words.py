@@ -1,0 +1,32 @@
+"""What is said of a UAV that has lost its GPS, and what is proposed."""
+
+import pytest
+
+from telemetry.alerting.acts import acts_of
+from telemetry.alerting.detectors import gps
+from telemetry.alerting.finding import CRITICAL, WARNING
+from telemetry.alerting.surroundings import LinkFacts
+from telemetry.alerting.watched import WatchedUav
+from telemetry.decoding.measurement import Measurement
+from telemetry.estimation.report import Report
+from tests.telemetry.alerting.truth import MISSION, START_S
+from tests.telemetry.alerting.watch import Watch
+
+
+def found(autopilot: str = "", **told):
+    measured = Measurement(longitude_deg=10.0, latitude_deg=56.0, is_in_air=True, **told)
+    uav = WatchedUav(7, 1, "Tern", MISSION, MISSION, newest=Report(START_S, START_S, measured))
+    (finding,) = gps.detect(Watch().situation(START_S, uav, link=LinkFacts(autopilot=autopilot)))
+    return finding
+
+
+@pytest.mark.parametrize(("autopilot", "own"), [("ardupilot", gps.OWN_ARDUPILOT), ("px4", gps.OWN_PX4), ("other", gps.OWN_UNKNOWN)])
+def test_without_a_fix_no_hold_is_proposed_and_what_the_autopilot_does_is_told(autopilot, own):
+    finding = found(autopilot, gps_fix=1)
+    assert (finding.level, finding.values["own"]) == (CRITICAL, own)
+    assert acts_of(gps.CODE, 7, finding.details) == [{"kind": "land", "uav": 7}, {"kind": "take-over", "uav": 7}]
+
+
+def test_with_a_weak_fix_a_hold_is_proposed():
+    finding = found(gps_fix=3, satellites=4)
+    assert (finding.level, acts_of(gps.CODE, 7, finding.details)) == (WARNING, [{"kind": "hold", "uav": 7}])
