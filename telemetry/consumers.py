@@ -12,10 +12,11 @@ from telemetry.live.hub import hub_here
 from telemetry.live.messages import message
 from telemetry.live.reader import Reader, SaysNonsense
 from workspace.models import User
-from workspace.sockets import NOTHING_TO_SAY, STILL_THERE_EVERY_S, SignedInSocket
+from workspace.sockets import NOTHING_TO_SAY, SignedInSocket
 from workspace.spoken import language_of_socket
 
 LONGEST_WORD = 4_096  # characters that a page may say at once
+HEARTBEAT_INTERVAL_S = 2.0  # a page that hears nothing for 5 s says that it has no data (static/js/live/feed.js)
 STALLED_S = 60.0  # a page that confirms nothing for so long is not there any more
 GONE, STALLED = 4404, 1013
 
@@ -25,10 +26,10 @@ class LiveConsumer(SignedInSocket):
 
     `{"type": "snapshot", "sequence": 1, "server_time": …, "live": {"uavs": […], "missions": […], "alerts": […], "commands": […],
     "offers": […]}}`, then `{"type": "changes", "sequence": …, "uavs": [… whole ones …], …, "gone": {"uavs": [… ids …], …}}`, numbered one
-    by one, and `{"type": "still-there"}` in silence. The page says `{"type": "have", "sequence": n}` of each that has a number of its own,
-    and is told the latest of each object once it has the one before the last; or `{"type": "again"}` where it has lost count. Closed with
-    4400 after anything else, with 4401 soon after whoever listens may not any more, with 4404 where the mission is deleted, and at
-    once with 4429 where the user or the network has as many websockets open as are allowed.
+    by one, and `{"type": "still-there"}` after two seconds of silence. The page says `{"type": "have", "sequence": n}` of each that has a
+    number of its own, and is told the latest of each object once it has the one before the last; or `{"type": "again"}` where it has lost
+    count. Closed with 4400 after anything else, with 4401 soon after whoever listens may not any more, with 4404 where the mission is
+    deleted, and at once with 4429 where the user or the network has as many websockets open as are allowed.
     """
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
@@ -66,14 +67,14 @@ class LiveConsumer(SignedInSocket):
     async def _speak(self, reader: Reader, feed: Feed) -> None:
         full_s = 0.0
         while True:
-            if await reader.due(STILL_THERE_EVERY_S):
+            if await reader.due(HEARTBEAT_INTERVAL_S):
                 if reader.is_ended:
                     return self.hang_up(GONE)
                 full_s = 0.0
                 await self.send(feed.next_message(reader))
             elif not reader.is_full:
                 await self.send(message("still-there", reader.sequence))
-            elif (full_s := full_s + STILL_THERE_EVERY_S) >= STALLED_S:
+            elif (full_s := full_s + HEARTBEAT_INTERVAL_S) >= STALLED_S:
                 return self.hang_up(STALLED)
 
 
