@@ -154,7 +154,7 @@ def test_a_uav_that_is_silent_is_estimated_and_a_page_that_is_cut_off_says_so(
 
     page.context.set_offline(True)
     page.evaluate("dispatchEvent(new Event('offline'))")
-    expect(page.locator("#stale")).to_contain_text("What you see is from then. Connecting again.", timeout=60_000)
+    expect(page.locator("#stale")).to_contain_text("everything here is as of then. Connecting again.", timeout=60_000)
     in_both_themes(page, picture, "live-stale")
     page.context.set_offline(False)
     expect(page.locator("#stale")).to_be_hidden()

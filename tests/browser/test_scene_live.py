@@ -104,7 +104,7 @@ def test_a_view_that_is_cut_off_says_so_and_goes_on_when_the_line_is_mended(visi
     page.locator("html[data-loaded]").wait_for(state="attached", timeout=PATIENCE_MS)
     certainty = page.locator(".scene-certainty")
     along_m = flies_until(page, lambda: is_said(certainty, "measured"), flyers, BEGINS_M)
-    cut_off = page.get_by_role("status").filter(has_text="What you see is from then. Connecting again.")
+    cut_off = page.get_by_role("status").filter(has_text="everything here is as of then. Connecting again.")
     expect(cut_off).to_have_count(0)
     line.cut()
     expect(cut_off).to_be_visible()

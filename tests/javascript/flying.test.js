@@ -221,3 +221,8 @@ test("the stage is said in a sentence", () => {
   waiting.approval = { ...waiting.approval, revoke_requested_at: "2027-05-04T09:00:00Z", revoke_reason: "Wrong day" };
   assert.match(flying.stageWords(waiting), /being taken back: Wrong day\./);
 });
+
+test("what is on board is not said before it was read", () => {
+  assert.equal(flying.boardWords(undefined).words, "Reading what is on the UAV…");
+  assert.equal(flying.boardWords(null).words, "Not sent yet");
+});

@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
+import { certaintyOf, isLate } from "../../static/js/domain/certainty.js";
 import { openFeed, pauseBefore_ms } from "../../static/js/live/feed.js";
 import { serverClock } from "../../static/js/live/server_clock.js";
 import { staleWords } from "../../static/js/live/stale.js";
@@ -172,7 +173,7 @@ test("without a socket the page asks every two seconds and says so; the socket c
   assert.deepEqual(asked, [{ address: "/live" }, { address: "/live", "If-None-Match": '"1"' }]);
   assert.equal(Socket.all.length, 3);
   Socket.last.says(snapshot(1, { uavs: [{ id: 7 }] }));
-  await pass(10_000);
+  await pass(4_000);
   assert.equal(asked.length, 2);
   assert.deepEqual([...feed.shown.uavs.keys()], [7]);
   assert.deepEqual(states.slice(3), ["asked", "live"]);
@@ -196,7 +197,7 @@ test("a socket that opens and says nothing is not waited for", async (context) =
   const { feed, states, pass } = page(context, { answers: [answer({})] });
   await pass(3_000);
   assert.deepEqual(states, ["connecting", "asked"]);
-  await pass(42_000);
+  await pass(12_000);
   await pass(500);
   assert.equal(Socket.all.length, 2);
   feed.close();
@@ -216,12 +217,12 @@ test("a page whose program is being stopped goes to the next one at once, and st
   assert.deepEqual([states.at(-1), asked.length], ["connecting", 1]);
 });
 
-test("a live socket that falls silent is replaced after 45 s", async (context) => {
+test("a live socket that falls silent is replaced after 5 s: the server sends a heartbeat each 2 s", async (context) => {
   const { feed, states, pass } = page(context);
   Socket.last.says(snapshot(1));
-  await pass(44_000);
+  await pass(4_000);
   Socket.last.says({ type: "still-there", sequence: 1 });
-  await pass(44_000);
+  await pass(4_000);
   assert.deepEqual(states, ["connecting", "live"]);
   await pass(1_000);
   await pass(500);
@@ -247,6 +248,56 @@ for (const [status, state] of [
   });
 }
 
+/** A clock of the test's own, by the server's time. */
+function testClock() {
+  let now_ms = Date.parse(TIME);
+  return { heard() {}, now_ms: () => now_ms, pass: (ms) => (now_ms += ms) };
+}
+
+test("a page that hears nothing says so after 5 s, with the time of the last message, and what it shows stands still", (context) => {
+  const clock = testClock();
+  const { feed } = page(context, { clock });
+  const said = () =>
+    staleWords({
+      link: feed.state,
+      since_ms: feed.since_ms,
+      now_ms: feed.now_ms(),
+      silent_ms: feed.silent_ms(),
+      heard_ms: feed.heard_ms,
+    });
+  const heard_ms = clock.now_ms();
+  Socket.last.says(snapshot(1));
+  clock.pass(4_900);
+  assert.equal(said(), null);
+  assert.equal(feed.shown_ms(), heard_ms + 2_500, "no age grows by the device's own loss");
+  clock.pass(600);
+  assert.deepEqual([said().words, said().isBad], ["No data on this device for 5 s.", true]);
+  assert.match(said().rest, /^Last message \d\d:00:00: everything here is as of then\./);
+  clock.pass(40_000);
+  assert.equal(feed.shown_ms(), heard_ms);
+  Socket.last.says({ type: "still-there", sequence: 1 });
+  assert.deepEqual([said(), feed.silent_ms()], [null, 0]);
+  feed.close();
+});
+
+test("no UAV is lost by the device's own loss", (context) => {
+  const clock = testClock();
+  const { feed } = page(context, { clock });
+  Socket.last.says(snapshot(1));
+  const uav = {
+    measured: { measured_at: TIME, position: [10, 50], is_in_air: true },
+    estimated: null,
+    link: { is_in_air: true },
+    rhythm: { interval_s: 1, late_after_s: 5, silent_after_s: 10 },
+  };
+  for (let second = 0; second < 60; second += 1) {
+    clock.pass(1_000);
+    assert.equal(certaintyOf(uav, feed.shown_ms()), "measured");
+    assert.equal(isLate(uav, feed.shown_ms()), false);
+  }
+  feed.close();
+});
+
 test("what is answered after the socket is back changes nothing", async (context) => {
   let answerNow;
   const { feed, pass } = page(context, { get: () => new Promise((resolve) => (answerNow = resolve)) });
@@ -254,7 +305,7 @@ test("what is answered after the socket is back changes nothing", async (context
   await pass(500);
   Socket.last.says(snapshot(1, { uavs: [{ id: 7 }] }));
   answerNow(answer({ uavs: [{ id: 1 }] }));
-  await pass(5_000);
+  await pass(4_000);
   assert.deepEqual([...feed.shown.uavs.keys()], [7]);
   assert.equal(feed.state, "live");
   feed.close();

@@ -9,10 +9,11 @@ import { progressOf } from "../../static/js/monitor/live_strip.js";
 import { ellipseRing, metresPerPixel } from "../../static/js/monitor/map/ellipse.js";
 import { between } from "../../static/js/monitor/map/glide.js";
 import { addReport, flownParts } from "../../static/js/monitor/mission_details.js";
-import { causeWords, overWords, sentenceOf, targetLines } from "../../static/js/monitor/offer_words.js";
-import { alertsInOrder, inOrder, newAlerts } from "../../static/js/monitor/order.js";
+import { causeWords, overWords, sentenceOf, targetLines, whyNotDecided } from "../../static/js/monitor/offer_words.js";
+import { alarmOf, alertsInOrder, inOrder, isUnanswered, newAlerts, pinnedAlerts } from "../../static/js/monitor/order.js";
 import { ofPage, placed } from "../../static/js/monitor/placed.js";
-import { ageWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
+import { markedTitle } from "../../static/js/page/bell.js";
+import { ageWords, batteryWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
 import { unheardLines } from "../../static/js/monitor/unheard.js";
 
 const NOW_MS = Date.parse("2026-09-21T14:15:00Z");
@@ -386,4 +387,68 @@ test("who is in the air can be told something, also after its mission", () => {
     flyingUavs({ uavs, missions, now_ms: NOW_MS }).map(({ id }) => id),
     [1, 2, 4, 5],
   );
+});
+
+const anAlert = (change) => ({
+  id: 1,
+  uav: 1,
+  code: "converging",
+  subject: "2",
+  level: "critical",
+  opened_at: ago(60),
+  closed_at: null,
+  acknowledged_at: null,
+  ...change,
+});
+
+test("a critical alert that has ended stays until it is acknowledged; a warning does not", () => {
+  const ended = anAlert({ closed_at: ago(10) });
+  const warning = anAlert({ id: 2, level: "warning", closed_at: ago(10) });
+  const seen = anAlert({ id: 3, closed_at: ago(10), acknowledged_at: ago(5) });
+  assert.deepEqual(pinnedAlerts([ended, warning, seen]), [ended]);
+  assert.deepEqual([ended, warning, seen].map(isUnanswered), [true, false, false]);
+  const open = anAlert({ id: 4, code: "zone", level: "warning" });
+  assert.deepEqual(
+    alertsInOrder([open, ended, anAlert({ id: 5 })]).map(({ id }) => id),
+    [5, 1, 4],
+  );
+});
+
+test("of one cause the newest alert is shown", () => {
+  const [first, again] = [anAlert({ closed_at: ago(40) }), anAlert({ id: 2, opened_at: ago(30) })];
+  assert.deepEqual(pinnedAlerts([first, again]), [again]);
+  const other = anAlert({ id: 3, subject: "9" });
+  assert.equal(pinnedAlerts([first, again, other]).length, 2);
+});
+
+test("a UAV in alarm has the worst level of its open alerts", () => {
+  const alerts = [anAlert({ level: "warning" }), anAlert({ id: 2, closed_at: ago(1) }), anAlert({ id: 3, uav: 9 })];
+  assert.deepEqual([alarmOf(1, alerts), alarmOf(9, alerts), alarmOf(5, alerts)], ["warning", "critical", null]);
+});
+
+test("the tab's title counts alerts, and keeps its name", () => {
+  assert.equal(markedTitle("Live · Spanwise", "(2!) "), "(2!) Live · Spanwise");
+  assert.equal(markedTitle("(2!) Live · Spanwise", "(1) "), "(1) Live · Spanwise");
+  assert.equal(markedTitle("(1) Live · Spanwise", ""), "Live · Spanwise");
+});
+
+test("a UAV without a GPS fix is drawn as estimated, though it reports", () => {
+  assert.equal(certaintyOf(uav({ gps_fix: 1 }), NOW_MS), ESTIMATED);
+  assert.equal(certaintyOf(uav({ gps_fix: 3 }), NOW_MS), MEASURED);
+});
+
+test("the battery's figure has its level, and minutes to the reserve stand against minutes home", () => {
+  const battery = { level: "warning", left_percent: 31, reserve_percent: 20, home_percent: 9, home_s: 240, reserve_in_s: 720 };
+  const low = uav({ estimated: estimate({ is_measured: true, battery }) });
+  assert.equal(figuresOf(low, MEASURED)[0].level, "warning");
+  assert.equal(plain(batteryWords(low)), "Battery: 12 min to the reserve, 4 min home");
+  assert.equal(batteryWords(uav()), "");
+});
+
+test("an offer that has expired cannot be decided, nor one on a device that has no data", () => {
+  const offer = { difference: { valid_until: ago(-30) } };
+  assert.equal(whyNotDecided(offer, { now_ms: NOW_MS, silent_ms: 0 }), "");
+  assert.match(whyNotDecided(offer, { now_ms: NOW_MS + 30_000, silent_ms: 0 }), /^Expired/);
+  assert.match(whyNotDecided(offer, { now_ms: NOW_MS, silent_ms: 6_000 }), /^No data on this device/);
+  assert.match(whyNotDecided(offer, { now_ms: NOW_MS, silent_ms: 31_000 }), /^Expired/);
 });

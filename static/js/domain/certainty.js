@@ -38,6 +38,11 @@ export const isSilent = (uav, now_ms) => (reportAge_s(uav, now_ms) ?? Infinity) 
 /** @param {EstimateShape | null} estimated @param {number} now_ms @returns {estimated is EstimateShape} */
 const isRenewed = (estimated, now_ms) => estimated !== null && now_ms - Date.parse(estimated.at) < RENEWED_S * 1000;
 
+const FIX_IN_SPACE = 3; // of MAVLink's GPS_FIX_TYPE
+
+/** Whether it knows where it is, as far as it reports. @param {Pick<LiveUav, "measured">} uav */
+export const hasFix = ({ measured }) => typeof measured?.gps_fix !== "number" || measured.gps_fix >= FIX_IN_SPACE;
+
 /**
  * MEASURED, ESTIMATED or LOST; null for a UAV that was never seen.
  *
@@ -51,6 +56,7 @@ export function certaintyOf(uav, now_ms) {
   if (measured?.position && inAir(uav) === false) return MEASURED; // it stands where it said, switched off perhaps
   const age_s = reportAge_s(uav, now_ms);
   const isFresh = !isSilent(uav, now_ms);
+  if (!hasFix(uav) && isFresh) return ESTIMATED; // what it reports of its place is dead reckoning
   if (isRenewed(estimated, now_ms)) {
     if (estimated.is_lost) return LOST;
     if (age_s !== null && age_s < FRESH_S && measured?.position) return MEASURED;

@@ -118,11 +118,12 @@ function readBack({ loaded_read_at, loaded_doubt, server_time }) {
 /**
  * What is on board, in words: { words, image, level, share }. share: 0 to 1 of an upload that is under way.
  *
- * @param {Command | null} command
+ * @param {Command | null | undefined} command undefined: not read yet
  * @param {UavConnection | null} [connection]
  * @returns {Said & { share?: number }}
  */
 export function boardWords(command, connection = null) {
+  if (command === undefined) return { words: t("Reading what is on the UAV…"), image: "loader-circle" };
   if (!command) return { words: t("Not sent yet"), image: "circle-dashed" };
   const { kind, state, progress, outcome, parameters } = command;
   const why = outcome || STATES[state].words;

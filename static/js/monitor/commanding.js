@@ -1,6 +1,6 @@
 /** What an operator tells UAVs from the live page. Each asks first; nothing acts at once. */
 
-import { ApiError } from "../api.js";
+import { ApiError, freshKey } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
 import { questionOf } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
@@ -14,7 +14,7 @@ import { createBatch, returnsOf } from "./batch_commanding.js";
 import { unheardLines } from "./unheard.js";
 
 /** @import { CommandKind, LiveMission, LiveUav, Mission, ReturnCheck } from "../api_types.d.ts" */
-/** @import { Commanding, MonitorPage, MonitorStore } from "./types.d.ts" */
+/** @import { Commanding, MonitorPage, MonitorStore, UnsentCommand } from "./types.d.ts" */
 
 /**
  * Figures of now in a question: the battery, what is left, the targets that stay open.
@@ -37,22 +37,57 @@ export function figuresLine({ measured, estimated, place }, mission) {
   return said.length ? `${said.join(", ")}.`.replace(/^./, (first) => first.toLocaleUpperCase()) : "";
 }
 
+const ANSWER_WITHIN_MS = 8_000; // a frozen connection never answers
+
 /** The UAV in its mission's plan. @param {LiveUav} uav @param {Map<string, Mission>} details */
 const plannedOf = ({ mission, place }, details) => details.get(mission ?? "")?.uavs[place ?? -1];
+
+/** @param {MonitorStore} store @param {number} id of a UAV @param {UnsentCommand | null} unsent null: it was sent, or is given up */
+function keptUnsent(store, id, unsent) {
+  const unsentNow = new Map(store.state.unsent);
+  if (unsent) unsentNow.set(id, unsent);
+  else unsentNow.delete(id);
+  store.update({ unsent: unsentNow });
+}
+
+/** What reached the server all the same is no longer unsent, as the feed tells once it is back. @param {MonitorStore} store */
+function dropArrived(store) {
+  store.listen(["commands"], ({ commands, unsent }) => {
+    for (const [id, { kind, at_ms }] of unsent)
+      if (commands.some((one) => one.uav.id === id && one.kind === kind && Date.parse(one.created_at) >= at_ms))
+        keptUnsent(store, id, null);
+  });
+}
 
 /** @param {MonitorStore} store @param {MonitorPage} page @returns {Commanding} */
 export function createCommanding(store, page) {
   /** @param {LiveUav} uav */
   const certainty = (uav) => certaintyOf(uav, store.state.now_ms);
 
-  /** @param {LiveUav} uav @param {CommandKind} kind @param {Record<string, any>} [filled] what was filled in */
-  async function told(uav, kind, filled = {}) {
+  /** @param {number} id @param {UnsentCommand | null} unsent */
+  const keepUnsent = (id, unsent) => keptUnsent(store, id, unsent);
+
+  /**
+   * What could not leave this device stays on the UAV's card until it is sent or given up.
+   *
+   * @param {LiveUav} uav
+   * @param {CommandKind} kind
+   * @param {Record<string, any>} [filled] what was filled in
+   * @param {string} [key] of the command: tried again it is the same
+   */
+  async function told(uav, kind, filled = {}, key = freshKey()) {
     try {
-      const isTold = await tellUav(uav.id, uav.name, kind, filled);
+      const isTold = await tellUav(uav.id, uav.name, kind, filled, { key, within_ms: ANSWER_WITHIN_MS });
+      keepUnsent(uav.id, null);
       if (isTold) say(t("{act}: {name} is being told.", { act: KINDS[kind], name: uav.name }));
       return isTold;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
+      if (error.isAway) {
+        keepUnsent(uav.id, { kind, filled, key, message: error.message, isBusy: false, at_ms: store.state.now_ms });
+        return false;
+      }
+      keepUnsent(uav.id, null);
       toast(`${t("{name} was not told: {act}.", { name: uav.name, act: KINDS[kind] })} ${error.message}`);
       return false;
     }
@@ -81,5 +116,19 @@ export function createCommanding(store, page) {
     if (asked) await told(uav, kind, asked);
   }
 
-  return { ask, askAll: createBatch(store, page) };
+  dropArrived(store);
+
+  /** @type {Commanding["tryAgain"]} */
+  async function tryAgain(id) {
+    const unsent = store.state.unsent.get(id);
+    const uav = store.state.uavs.find((entry) => entry.id === id);
+    if (!unsent || !uav || unsent.isBusy) return;
+    keepUnsent(id, { ...unsent, isBusy: true });
+    await told(uav, unsent.kind, unsent.filled, unsent.key);
+  }
+
+  /** @type {Commanding["giveUp"]} */
+  const giveUp = (id) => keepUnsent(id, null);
+
+  return { ask, askAll: createBatch(store, page), tryAgain, giveUp };
 }

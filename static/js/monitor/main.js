@@ -52,6 +52,9 @@ const store = createStore(
     showsLog: false,
     link: null,
     since_ms: 0,
+    heard_ms: null,
+    silent_ms: 0,
+    unsent: new Map(),
     isWhole: false,
     now_ms: Date.now(),
   }),
@@ -63,7 +66,7 @@ const layout = mountWorkbench({ dockOnPhone: null });
 const map = mountMonitorMap(store, page, { pick });
 const scene = mountSceneOpener(() => {
   const mission = missionSeen(store.state);
-  return mission !== null && { mission, now_ms: () => feed.now_ms(), follow: followFeed };
+  return mission !== null && { mission, now_ms: () => feed.shown_ms(), follow: followFeed };
 });
 const commanding = page.canFly ? createCommanding(store, page) : null;
 const narrow = mountNarrow();
@@ -74,6 +77,7 @@ mountCards(store, {
   pick,
   jumpTo: (id) => map.jumpTo(id),
   follow: () => store.update({ isFollowing: !store.state.isFollowing }),
+  commanding,
 });
 mountOffers(store, page);
 const alertKeys = mountAlerts(store, page, { pick, commanding, showBoard: narrow.showBoard });
@@ -98,8 +102,9 @@ function followFeed(stage) {
   const { source } = stage;
   if (source.kind !== "live") return () => {};
   let { revision } = source;
-  return store.listen(["uavs", "now_ms", "link"], ({ uavs, now_ms, link, since_ms }) => {
-    stage.sayStale(staleWords({ link, since_ms, now_ms }));
+  return store.listen(["uavs", "now_ms", "silent_ms", "link"], (state) => {
+    const { uavs, now_ms } = state;
+    stage.sayStale(staleWords(state));
     if (!source.take?.({ uavs, now_ms })) return;
     stage.refresh(source.revision !== revision);
     revision = source.revision;
@@ -181,7 +186,7 @@ function show() {
     told.uavs = ofPage(placed([...feed.shown.uavs.values()], [...feed.shown.missions.values()]), page.mission);
   }
   waiting = null;
-  store.update({ ...told, now_ms: feed.now_ms() });
+  store.update({ ...told, ...timesOf() });
   store.update({ isWhole: true }); // from here on what comes is news
 }
 
@@ -190,7 +195,9 @@ const feed = openFeed({
   onChange: take,
   onState: ({ state, since_ms }) => store.update({ link: state, since_ms }),
 });
-setInterval(() => store.update({ now_ms: feed.now_ms() }), TICK_MS);
+/** What is shown is of `now_ms`: it stands still while the device has no data. */
+const timesOf = () => ({ now_ms: feed.shown_ms(), heard_ms: feed.heard_ms, silent_ms: feed.silent_ms() });
+setInterval(() => store.update(timesOf()), TICK_MS);
 addEventListener("pagehide", () => feed.close());
 
 async function load() {

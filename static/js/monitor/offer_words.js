@@ -1,6 +1,7 @@
 /** An offer of another plan in words: why, and what would change for each UAV and target. Values in, words out. */
 
 import { routeLetter } from "../domain/palette.js";
+import { BLIND_MS } from "../live/feed.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
 
@@ -126,3 +127,16 @@ export const targetLines = (offer) =>
     ({ label, from, to, message }) =>
       `${label}: ${from === null ? "—" : routeLetter(from)} → ${to === null ? message || t("not reached") : routeLetter(to)}`,
   );
+
+/**
+ * Why an offer cannot be decided any more, though the server has not said so yet; empty.
+ *
+ * @param {LiveOffer} offer
+ * @param {{ now_ms: number, silent_ms: number }} times
+ */
+export function whyNotDecided(offer, { now_ms, silent_ms }) {
+  const { valid_until } = differenceOf(offer);
+  if (valid_until && Date.parse(valid_until) <= now_ms + (silent_ms >= BLIND_MS ? silent_ms : 0))
+    return t("Expired {time}.", { time: clockText(valid_until) });
+  return silent_ms >= BLIND_MS ? t("No data on this device: it may have expired.") : "";
+}

@@ -8,8 +8,36 @@ const CALM = 3;
 
 /** @param {Pick<Alert, "closed_at">} alert */
 export const isOpenAlert = ({ closed_at }) => closed_at === null;
-/** @param {Pick<Alert, "closed_at" | "acknowledged_at">} alert */
-export const isUnanswered = (alert) => isOpenAlert(alert) && alert.acknowledged_at === null;
+/** A critical one that has ended stays until somebody acknowledges it. @param {Pick<Alert, "closed_at" | "acknowledged_at" | "level">} alert */
+export const isEndedUnseen = (alert) =>
+  !isOpenAlert(alert) && alert.acknowledged_at === null && alert.level === "critical";
+/** @param {Pick<Alert, "closed_at" | "acknowledged_at" | "level">} alert */
+export const isUnanswered = (alert) => alert.acknowledged_at === null && (isOpenAlert(alert) || isEndedUnseen(alert));
+
+/**
+ * What somebody has to see: open ones, and critical ones that ended; of one cause the newest.
+ *
+ * @template {Pick<Alert, "uav" | "code" | "subject" | "opened_at" | "closed_at" | "acknowledged_at" | "level">} Shown
+ * @param {Shown[]} alerts
+ */
+export function pinnedAlerts(alerts) {
+  /** @param {Shown} alert */
+  const causeOf = ({ uav, code, subject }) => JSON.stringify([uav, code, subject]);
+  /** @type {Map<string, Shown>} */
+  const newest = new Map();
+  const pinned = alerts.filter((alert) => isOpenAlert(alert) || isEndedUnseen(alert));
+  for (const alert of pinned) {
+    const other = newest.get(causeOf(alert));
+    if (!other || Date.parse(alert.opened_at) > Date.parse(other.opened_at)) newest.set(causeOf(alert), alert);
+  }
+  return [...newest.values()];
+}
+
+/** The worst level of a UAV's open alerts; null. @param {number} uav @param {Pick<Alert, "uav" | "level" | "closed_at">[]} alerts */
+export function alarmOf(uav, alerts) {
+  const levels = alerts.filter((alert) => alert.uav === uav && isOpenAlert(alert)).map(({ level }) => level);
+  return levels.sort((a, b) => RANKS[a] - RANKS[b])[0] ?? null;
+}
 
 /** The worst open alert of each UAV: Map of uav → rank, 0 for critical. @param {Alert[]} alerts */
 function worstOf(alerts) {
@@ -41,14 +69,21 @@ export function inOrder(uavs, alerts, chosen) {
 }
 
 /**
- * Unanswered ones of the highest level first, the newest first; then those somebody knows of, then what is over.
+ * Unanswered ones of the highest level first, the newest first; critical ones that have ended; then those somebody knows of, then what
+ * is over.
  *
  * @param {Alert[]} alerts
  */
 export function alertsInOrder(alerts) {
   /** @param {Alert} alert */
   const keys = (alert) => [
-    isOpenAlert(alert) ? (alert.acknowledged_at === null ? RANKS[alert.level] : CALM) : CALM + 1,
+    isOpenAlert(alert)
+      ? alert.acknowledged_at === null
+        ? RANKS[alert.level]
+        : CALM
+      : isEndedUnseen(alert)
+        ? RANKS.critical + 0.5
+        : CALM + 1,
     -Date.parse(alert.opened_at),
   ];
   return sorted(alerts, keys);

@@ -1,6 +1,16 @@
 /** Shapes that the modules of the live page share. Positions are longitude, latitude [deg]. */
 
-import type { Alert, Command, Live, LiveMission, LiveOffer, LiveUav, Mission } from "../api_types.d.ts";
+import type {
+  Alert,
+  AlertLevel,
+  Command,
+  CommandKind,
+  Live,
+  LiveMission,
+  LiveOffer,
+  LiveUav,
+  Mission,
+} from "../api_types.d.ts";
 import type { Certainty } from "../domain/certainty.js";
 import type { AskedKind } from "../domain/command_questions.js";
 import type { FeedState } from "../live/feed.js";
@@ -17,6 +27,17 @@ export interface MonitorPage extends MapPage {
   missionName?: string;
   bounds: Box | null;
   extent: Box | null;
+}
+
+/** A command that could not leave this device: tried again it is the same one. */
+export interface UnsentCommand {
+  kind: CommandKind;
+  filled: Record<string, unknown>;
+  key: string;
+  message: string;
+  isBusy: boolean;
+  /** the page's time when it was given */
+  at_ms: number;
 }
 
 /** A route of another plan that is offered, by the UAV's place in the mission that flies now. */
@@ -40,6 +61,12 @@ export interface MonitorState extends Live {
   link: FeedState | null;
   /** since when `link` is so, by the server's clock */
   since_ms: number;
+  /** when the last message came, by the server's clock; null before the first */
+  heard_ms: number | null;
+  /** since then */
+  silent_ms: number;
+  /** commands that could not leave this device, by UAV */
+  unsent: Map<number, UnsentCommand>;
   /** false until the first snapshot is shown: what comes later is news */
   isWhole: boolean;
   /** the server's time */
@@ -118,6 +145,8 @@ export interface MarkedUav {
   fact: string;
   isMarked: boolean;
   isChosen: boolean;
+  /** worst level of its open alerts; only where there are alerts */
+  alarm?: AlertLevel | null;
 }
 
 /** A UAV as the live map draws it with its last report and its estimate. */
@@ -146,6 +175,9 @@ export interface Commanding {
   /** opener: the button out of which the question grows */
   ask(id: number, kind: AskedKind, opener?: HTMLElement | null): Promise<void>;
   askAll(kind: "pause" | "return", opener?: HTMLElement | null): Promise<void>;
+  /** a command that could not leave this device */
+  tryAgain(id: number): Promise<void>;
+  giveUp(id: number): void;
 }
 
 export type { Alert, Command, LiveMission, LiveOffer, LiveUav };

@@ -1,6 +1,6 @@
 /** What a live page says of one UAV: its state, the age of its report, four figures, the estimate. Values in, words out. */
 
-import { ESTIMATED, isLate, isSilent, LOST, MEASURED, reportAge_s, withinOf_m } from "../domain/certainty.js";
+import { ESTIMATED, hasFix, isLate, isSilent, LOST, MEASURED, reportAge_s, withinOf_m } from "../domain/certainty.js";
 import { inAir } from "../domain/in_air.js";
 import { t } from "../text.js";
 import {
@@ -65,6 +65,23 @@ function heightOf({ altitude_relative_m = null, altitude_agl_m = null, altitude_
   return [altitude_amsl_m, t("over the sea")];
 }
 
+/** Level of the battery's figure, for its colour, and what it means. @param {LiveUav["estimated"]} estimated */
+function batteryLevel(estimated) {
+  const level = estimated?.battery?.level ?? "";
+  const words = { critical: t("Battery critical"), warning: t("Battery low"), "": "" };
+  return { level, title: words[level] };
+}
+
+/** "12 min to the reserve, 4 min home"; empty where that is not known, and on the ground. @param {LiveUav} uav */
+export function batteryWords(uav) {
+  const battery = uav.estimated?.battery;
+  if (!battery || inAir(uav) === false) return "";
+  const reserve = durationText(battery.reserve_in_s);
+  return battery.home_s === null
+    ? t("Battery: {reserve} to the reserve", { reserve })
+    : t("Battery: {reserve} to the reserve, {home} home", { reserve, home: durationText(battery.home_s) });
+}
+
 /**
  * Four figures: [{ figure, unit, words }]; "~" before what is not measured, "—" for what nobody knows.
  *
@@ -81,11 +98,11 @@ export function figuresOf({ measured, estimated }, certainty) {
   /** @param {string} text @param {string} words */
   const split = (text, words) => {
     const [figure, unit = ""] = text.split(/\u00a0(?=[^\u00a0]*$)/);
-    return { figure, unit, words };
+    return { figure, unit, words, level: "", title: "" };
   };
   const lands = estimated?.ends_at;
   return [
-    split(said(measured?.battery_percent, percentText), t("battery")),
+    { ...split(said(measured?.battery_percent, percentText), t("battery")), ...batteryLevel(estimated) },
     split(said(height_m, heightText), above),
     split(said(told.speed_mps, speedText), t("speed")),
     split(lands ? `${mark}${clockText(lands)}` : "—", t("lands|time")),
@@ -117,6 +134,7 @@ export function estimateWords(uav, certainty, now_ms) {
 /** One fact beside its name on the map. @param {LiveUav} uav @param {Certainty | null} certainty */
 export function mapFact(uav, certainty) {
   if (certainty === LOST) return t("lost");
+  if (certainty === ESTIMATED && !hasFix(uav)) return t("no GPS fix");
   if (certainty === ESTIMATED && uav.estimated)
     return t("estimated, ±{distance}", { distance: lengthText(withinOf_m(uav.estimated)) });
   const state = stateOf(uav);

@@ -2,6 +2,7 @@
 
 import { byId, find, h, icon } from "../dom.js";
 import { t } from "../text.js";
+import { startBell } from "./bell.js";
 import { listenToKeys, showKeys } from "./keyboard.js";
 import { watchSessionEnd } from "./session_end.js";
 import { askBeforeSigningOut } from "./signing_out.js";
@@ -49,6 +50,7 @@ export function startChrome({ bindings = [] } = {}) {
   onTheme(label);
   label();
 
+  startBell();
   const account = byId("open-account");
   account.addEventListener("click", () => toggleMenu(account, () => accountMenu(all)));
   watchSessionEnd(readPage().sessionEndsIn_s);

@@ -6,6 +6,8 @@ import { confirmAct } from "./confirm.js";
 
 /** @import { CommandKind } from "../api_types.d.ts" */
 
+const ANSWER_WITHIN_MS = 30_000; // of a connection that is frozen nothing comes
+
 /**
  * Whether it is being told; not where somebody rather waits. Rejects with ApiError.
  *
@@ -13,21 +15,28 @@ import { confirmAct } from "./confirm.js";
  * @param {string} name
  * @param {CommandKind} kind
  * @param {Record<string, any>} filled what was filled in
+ * @param {{ key?: string, within_ms?: number }} [how] key: of the command, so that it is not given twice; within_ms: an answer has to come
  */
-export async function tellUav(uav, name, kind, { why = "", ...parameters } = {}) {
-  /** @param {Record<string, any>} more */
-  const tell = (more) =>
+export async function tellUav(
+  uav,
+  name,
+  kind,
+  { why = "", ...parameters } = {},
+  { key = freshKey(), within_ms = ANSWER_WITHIN_MS } = {},
+) {
+  /** @param {Record<string, any>} more @param {string} own key */
+  const tell = (more, own) =>
     post(
       `/uavs/${uav}/commands`,
       { kind, why, parameters: { ...parameters, ...more } },
-      { headers: { "Idempotency-Key": freshKey() } },
+      { headers: { "Idempotency-Key": own }, signal: AbortSignal.timeout(within_ms) },
     );
   try {
-    await tell({});
+    await tell({}, key);
   } catch (error) {
     if (!(error instanceof ApiError) || error.code !== "start_slot") throw error;
     if (!(await confirmAct(outOfSlotQuestion(name, error.message)))) return false;
-    await tell({ out_of_slot: true });
+    await tell({ out_of_slot: true }, freshKey());
   }
   return true;
 }

@@ -105,7 +105,7 @@ async function open(mission, wanted, link = null) {
       mission: { id: page.mission, name: mission.name },
       source,
       link,
-      now_ms: () => feed?.now_ms() ?? Date.now(),
+      now_ms: () => feed?.shown_ms() ?? Date.now(),
       onChange: keepAddress,
     });
     if (!made) return;
@@ -123,11 +123,13 @@ function follow(source) {
   feed = own;
   following = setInterval(() => {
     take();
-    stage?.sayStale(staleWords({ link: own.state, since_ms: own.since_ms, now_ms: own.now_ms() }));
+    const { state: link, since_ms, heard_ms } = own;
+    stage?.sayStale(staleWords({ link, since_ms, heard_ms, now_ms: own.now_ms(), silent_ms: own.silent_ms() }));
   }, TICK_MS);
 
   function take() {
-    if (!source.take?.({ uavs: [...own.shown.uavs.values()], now_ms: own.now_ms() })) return;
+    stage?.showAlerts([...own.shown.alerts.values()], `/missions/${page.mission}/fly`);
+    if (!source.take?.({ uavs: [...own.shown.uavs.values()], now_ms: own.shown_ms() })) return;
     stage?.refresh(source.revision !== revision);
     revision = source.revision;
   }

@@ -2,10 +2,12 @@
 
 import { get, signInAddress } from "../api.js";
 import { h, icon } from "../dom.js";
+import { alertsInOrder, isUnanswered, pinnedAlerts } from "../monitor/order.js";
 import { onTheme } from "../page/theme.js";
 import { createPlayer } from "../record/player.js";
 import { simulatedMark } from "../simulated.js";
 import { t } from "../text.js";
+import { exactClockText } from "../units.js";
 import { createActs } from "./acts.js";
 import { createCameraBar } from "./camera_bar.js";
 import { listenToHands } from "./cameras/hands.js";
@@ -23,7 +25,7 @@ import { boxRound, placesOf } from "./sources/box.js";
 import { createTimeBar } from "./time_bar.js";
 
 /** @import { Answer } from "../api.js" */
-/** @import { Scene } from "../api_types.d.ts" */
+/** @import { Alert, Scene } from "../api_types.d.ts" */
 /** @import { staleWords } from "../live/stale.js" */
 /** @import { LoadedMission } from "../record/load.js" */
 /** @import { Player, TimeSpan } from "../record/player.js" */
@@ -78,13 +80,35 @@ function pictureIn(holder, options) {
   }
 }
 
+const MOST_ALERTS = 3;
+
+/** @param {Alert} alert @param {string} address */
+const alertLine = ({ level, message, closed_at }, address) =>
+  h(
+    "li",
+    { class: closed_at ? "known" : level },
+    icon(level === "critical" ? "octagon-alert" : level === "warning" ? "triangle-alert" : "info", "small"),
+    h("a", { href: address }, message),
+    closed_at && h("small", {}, t("Ended {time}.", { time: exactClockText(closed_at) })),
+  );
+
 /** What the picture has to say over itself: of the graphics, and of a source that is silent. */
 function createNotices() {
   const notice = h("p", { class: "scene-notice float", role: "status", hidden: true });
   const stale = h("p", { class: "scene-notice float warning", role: "status", hidden: true });
+  const alerts = h("ol", { class: "scene-alerts float", "aria-label": t("Alerts"), hidden: true });
   return {
-    element: h("div", { class: "scene-notices" }, notice, stale),
-    overlays: [notice, stale],
+    element: h("div", { class: "scene-notices" }, notice, stale, alerts),
+    overlays: [notice, stale, alerts],
+    /** Pinned over the picture, the worst first. @param {Alert[]} told of a live source @param {string} address where they are answered */
+    showAlerts(told, address) {
+      const shown = alertsInOrder(pinnedAlerts(told).filter(isUnanswered)).slice(0, MOST_ALERTS);
+      const key = JSON.stringify(shown.map(({ id, revision, message }) => [id, revision, message]));
+      if (alerts.dataset.key === key) return;
+      alerts.dataset.key = key;
+      alerts.hidden = shown.length === 0;
+      alerts.replaceChildren(...shown.map((alert) => alertLine(alert, address)));
+    },
     /** @param {string} title @param {string} words */
     tell(title, words) {
       notice.hidden = false;
@@ -275,6 +299,7 @@ function mountStage(root, scene, options) {
     ...pictureActs({ ...context, source, bar }),
     source,
     sayStale: notices.sayStale,
+    showAlerts: notices.showAlerts,
     /** For a page with a time of its own: it has moved, or another UAV is looked at. @param {number | null} place */
     point(place) {
       if (place !== null && place !== stage.chosen) acts.choose(place);

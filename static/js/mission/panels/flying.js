@@ -34,6 +34,7 @@ import { exactClockText, exactText } from "../../units.js";
 /** @typedef {Flyer & { speed_mps: number }} FlyerHere */
 /** @typedef {{ store: MissionStore, flying: Flying, canFly: boolean, saveCopy: () => unknown }} FlyingContext */
 
+const READING = t("Reading what is on the UAV…");
 /** @type {AskedKind[]} */
 const BESIDE = ["hold", "return", "land"];
 /** @type {[AskedKind, string][]} */
@@ -115,23 +116,24 @@ function draw({ mission, commands, isDispatching }, context) {
   const list = byId("flyers");
   const buttons = () => [...list.querySelectorAll("button")];
   const focused = buttons().indexOf(/** @type {HTMLButtonElement} */ (document.activeElement));
-  list.replaceChildren(...flyersOf(mission).map((flyer) => flyerRow(flyer, mission, known, context)));
+  list.replaceChildren(...flyersOf(mission).map((flyer) => flyerRow(flyer, mission, commands, context)));
   if (focused >= 0) buttons()[focused]?.focus({ preventScroll: true });
   byId("commands").hidden = known.length === 0;
   byId("command-count").textContent = `${known.length}`;
   byId("command-list").replaceChildren(...known.map(commandRow));
-  if (canFly) drawFoot(mission, known, isDispatching);
+  if (canFly) drawFoot(mission, commands, isDispatching);
 }
 
-/** @param {Mission} mission @param {Command[]} commands @param {boolean} isBusy */
+/** @param {Mission} mission @param {Command[] | null} commands null: not read yet @param {boolean} isBusy */
 function drawFoot(mission, commands, isBusy) {
-  const wanted = stageActs(mission, commands);
+  const acts = stageActs(mission, commands ?? []);
+  const wanted = commands === null && acts.send ? { ...acts, send: READING } : acts; // what is on board is not known yet
   const whyNot = typeof wanted.send === "string" ? wanted.send : "";
   const [send, revoke, abort] = ["send", "revoke", "abort"].map((id) => byId(id, HTMLButtonElement));
   send.hidden = !wanted.send;
   send.disabled = isBusy || wanted.send !== true;
   send.title = whyNot;
-  send.textContent = mission.state === "approved" ? t("Send to UAVs") : t("Send again");
+  send.textContent = mission.state === "approved" || commands === null ? t("Send to UAVs") : t("Send again");
   revoke.hidden = !wanted.revoke;
   abort.hidden = !wanted.abort;
   for (const button of [revoke, abort]) button.disabled = isBusy;
@@ -143,11 +145,12 @@ function drawFoot(mission, commands, isBusy) {
 const saidLine = ({ words, image, level }, { role = null, title = null } = {}) =>
   h("p", { class: `flyer-board ${level ?? ""}`, role, title }, icon(image, "small"), h("span", {}, words));
 
-/** @param {Flyer} flyer @param {Mission} mission @param {Command[]} commands @param {FlyingContext} context */
-function flyerRow(flyer, mission, commands, context) {
+/** @param {Flyer} flyer @param {Mission} mission @param {Command[] | null} read null: not read yet @param {FlyingContext} context */
+function flyerRow(flyer, mission, read, context) {
   const { connections, returns } = context.store.state;
   const { name, place, uav } = flyer;
-  const board = boardOf(commands, uav);
+  const commands = read ?? [];
+  const board = read === null ? undefined : boardOf(commands, uav);
   const onBoard = boardWords(board, (uav !== null && connections.get(uav)) || null);
   const flight = flightOf(commands, uav);
   const home = isFlown(mission) && returnSaid(returnOf(returns, place));
@@ -174,7 +177,7 @@ function flyerRow(flyer, mission, commands, context) {
       h(
         "div",
         { class: "flyer-acts", role: "group", "aria-label": t("Commands to {name}", { name }) },
-        actsOf(withSpeed(mission, flyer), mission, commands, context),
+        actsOf(withSpeed(mission, flyer), mission, read, context),
       ),
   );
 }
@@ -194,9 +197,10 @@ const uploadBar = (name, share) =>
     h("i", { style: `width:${Math.max(4, share * 100)}%` }),
   );
 
-/** @param {FlyerHere} flyer @param {Mission} mission @param {Command[]} commands @param {FlyingContext} context */
-function actsOf(flyer, mission, commands, { store, flying }) {
+/** @param {FlyerHere} flyer @param {Mission} mission @param {Command[] | null} read null: not read yet @param {FlyingContext} context */
+function actsOf(flyer, mission, read, { store, flying }) {
   const { uav } = flyer;
+  const commands = read ?? [];
   const next = flightToSend(flyer, commands, (uav !== null && store.state.connections.get(uav)) || null);
   const isBeingRevoked = Boolean(mission.approval?.revoke_requested_at);
   /** @param {string} words @param {() => void} act @param {{ image?: string, reason?: string }} [how] */
@@ -208,7 +212,7 @@ function actsOf(flyer, mission, commands, { store, flying }) {
       words,
     );
   return [
-    next !== null && !isBeingRevoked
+    next !== null && read !== null && !isBeingRevoked
       ? button(
           next > 1 ? t("Send flight {flight}", { flight: next }) : t("Send again"),
           () => void flying.send(flyer, next),
@@ -216,7 +220,7 @@ function actsOf(flyer, mission, commands, { store, flying }) {
         )
       : button(KINDS.start, () => void flying.command(flyer, "start"), {
           image: "plane-takeoff",
-          reason: whyNoStart(mission, flyer, commands),
+          reason: read === null ? READING : whyNoStart(mission, flyer, commands),
         }),
     ...BESIDE.map((kind) => button(KINDS[kind], () => void flying.command(flyer, kind))),
     moreButton(flyer, mission, commands, flying),

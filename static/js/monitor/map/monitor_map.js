@@ -12,6 +12,7 @@ import { showTipsOnly } from "../../map/tips_only.js";
 import { t, tn } from "../../text.js";
 import { exactClockText } from "../../units.js";
 import { numbersOf, pillOf } from "../board.js";
+import { alarmOf } from "../order.js";
 import { mapFact } from "../uav_words.js";
 import { createCloseUp } from "./close_up.js";
 import * as flightLayers from "./flight_layers.js";
@@ -197,7 +198,7 @@ class MonitorMap {
       pills.update(pillsOf(state));
     });
     store.listen(["flown", "uavs"], (state) => flightLayers.showFlown(map, flownLines(state)));
-    store.listen(["uavs", "now_ms", "chosen", "details", "isFollowing"], (state) => this.#drawUavs(state));
+    store.listen(["uavs", "alerts", "now_ms", "chosen", "details", "isFollowing"], (state) => this.#drawUavs(state));
     store.listen(["offered"], ({ offered }) => flightLayers.showOffered(map, offered));
     store.listen(["ground"], ({ ground }) => this.#controls.setGround(ground));
     map.on("zoomend", () => this.#drawUavs(store.state));
@@ -214,7 +215,13 @@ class MonitorMap {
     const { map } = this.#view;
     const shown = drawnUavs(state);
     const isMixed = !state.uavs.every(({ is_simulated }) => is_simulated); // else the head of the page says it once
-    this.#parts.markers.update(shown.map((uav) => ({ ...uav, isMarked: uav.isSimulated && isMixed })));
+    this.#parts.markers.update(
+      shown.map((uav) => ({
+        ...uav,
+        isMarked: uav.isSimulated && isMixed,
+        alarm: alarmOf(uav.id, state.alerts),
+      })),
+    );
     flightLayers.showUncertain(
       map,
       shown.filter(({ certainty }) => certainty !== MEASURED),

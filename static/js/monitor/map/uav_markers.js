@@ -1,6 +1,6 @@
 /** UAVs on the map: a filled dart where one is measured, a hollow one where it is estimated, grey in a dotted ring where it is lost. */
 
-import { h, svg } from "../../dom.js";
+import { h, icon, svg } from "../../dom.js";
 import { routeNumber } from "../../domain/palette.js";
 import { maplibre } from "../../map/maplibre.js";
 import { markSimulated } from "../../simulated.js";
@@ -27,6 +27,7 @@ function drawMarker(onPick) {
   const letter = h("span", { class: "letter" });
   const name = h("strong", {});
   const certainty = h("span", { class: "unseen" });
+  const alarm = h("span", { class: "flyer-alarm", hidden: true });
   const fact = h("span", {});
   /** @param {Event} event */
   const onclick = (event) => {
@@ -37,10 +38,13 @@ function drawMarker(onPick) {
     "button",
     { type: "button", tabindex: "-1", class: "map-flyer", onclick },
     h("span", { class: "flyer-mark" }, dart),
-    h("span", { class: "flyer-label" }, letter, name, certainty, fact),
+    h("span", { class: "flyer-label" }, alarm, letter, name, certainty, fact),
   );
-  return { element, dart, letter, name, certainty, fact };
+  return { element, dart, letter, name, certainty, fact, alarm };
 }
+
+/** @param {string} words */
+const unseen = (words) => h("span", { class: "unseen" }, `${words}: `);
 
 /** A dart along its heading; without one a round mark that points nowhere. @param {number | null | undefined} heading_deg */
 function shapeOf(heading_deg) {
@@ -49,10 +53,18 @@ function shapeOf(heading_deg) {
 }
 
 /** @param {Parts} parts @param {MarkedUav} uav */
-function dress({ element, dart, letter, name, certainty, fact }, uav) {
+function dress({ element, dart, letter, name, certainty, fact, alarm }, uav) {
   const look = new Set([uav.certainty, uav.place === null ? "" : `route-${routeNumber(uav.place)}`]);
   for (const kind of LOOKS) element.classList.toggle(kind, look.has(kind)); // the map has classes of its own on it
   element.classList.toggle("chosen", uav.isChosen);
+  const level = uav.alarm ?? null;
+  for (const kind of /** @type {const} */ (["critical", "warning"])) element.classList.toggle(kind, level === kind);
+  if (alarm.dataset.level !== `${level}`) {
+    alarm.dataset.level = `${level}`;
+    alarm.hidden = level === null || level === "advisory";
+    if (level === "critical") alarm.replaceChildren(icon("octagon-alert", "small"), unseen(t("Critical alert")));
+    else if (level === "warning") alarm.replaceChildren(icon("triangle-alert", "small"), unseen(t("Warning")));
+  }
   const words = CERTAINTIES[uav.certainty];
   certainty.textContent = uav.fact.includes(words) ? ", " : `, ${words}, `;
   dart.replaceChildren(shapeOf(uav.heading_deg));

@@ -2,13 +2,14 @@
 
 import { ApiError, get, post } from "../../api.js";
 import { byId, h, icon, keyedList, setChildren } from "../../dom.js";
+import { feedBell, showAlertCount } from "../../page/bell.js";
 import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";
 import { mountAlarm } from "../alarm.js";
-import { alertsInOrder, isOpenAlert, isUnanswered } from "../order.js";
+import { alertsInOrder, isEndedUnseen, isOpenAlert, isUnanswered, pinnedAlerts } from "../order.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { AlertLevel, AlertPage } from "../../api_types.d.ts" */
@@ -28,21 +29,13 @@ const LEVELS = {
   warning: { words: t("Warning"), image: "triangle-alert" },
   advisory: { words: t("Advisory"), image: "info" },
 };
-/** What a cause is answered with. @type {Record<string, "return" | "hold" | "pause">} */
-const ACTS = {
-  "battery-short": "return",
-  "no-progress": "hold",
-  "off-route": "pause",
-  zone: "hold",
-  converging: "hold",
-  weather: "return",
-  gps: "hold",
-  "height-off": "hold",
-};
+/** @type {Record<Alert["acts"][number]["kind"], (name: string) => string>} */
 const ACT_WORDS = {
-  return: (/** @type {string} */ name) => t("Return {name}", { name }),
-  hold: (/** @type {string} */ name) => t("Hold {name}", { name }),
-  pause: (/** @type {string} */ name) => t("Pause {name}", { name }),
+  return: (name) => t("Return {name}", { name }),
+  hold: (name) => t("Hold {name}", { name }),
+  pause: (name) => t("Pause {name}", { name }),
+  land: (name) => t("Land {name} here", { name }),
+  "take-over": () => t("Pilot takes over"),
 };
 const HISTORY_AT_ONCE = 50;
 
@@ -60,6 +53,23 @@ async function tried(act, words) {
 /** @param {Alert} alert */
 const acknowledge = (alert) =>
   tried(async () => void (await post(`/alerts/${alert.id}/acknowledge`, {})), t("Acknowledged."));
+
+/** A pilot on site flies it from now on: said to all by a note. @param {Alert} alert @param {string} name @param {HTMLElement} opener */
+async function takeOver(alert, name, opener) {
+  const asked = await confirmAct({
+    title: t("Does a pilot on site fly {name} by hand?", { name }),
+    lines: [
+      alert.message,
+      t("Nothing is sent to the UAV. The pilot takes it by the remote control, in a mode that needs no position."),
+    ],
+    act: t("Pilot takes over"),
+    keep: t("Cancel"),
+    opener,
+  });
+  if (!asked) return;
+  const said = { note: t("A pilot on site takes over {name}.", { name }) };
+  await tried(async () => void (await post(`/alerts/${alert.id}/acknowledge`, said)), t("Acknowledged."));
+}
 
 /** @param {Alert} alert */
 async function note(alert) {
@@ -101,7 +111,8 @@ const closeButton = (alert) =>
 /** What has become of an alert. @param {Alert} alert */
 function historyWords(alert) {
   const said = [
-    alert.closed_at && t("Over since {time}.", { time: exactClockText(alert.closed_at) }),
+    alert.closed_at && t("Ended {time}.", { time: exactClockText(alert.closed_at) }),
+    worstWords(alert),
     alert.acknowledged_at &&
       t("Acknowledged by {who}, {time}.", {
         who: alert.acknowledged_by ?? t("somebody who has left"),
@@ -112,11 +123,18 @@ function historyWords(alert) {
   return said.filter(Boolean).join(" ");
 }
 
+/** What was worse than what it says now. @param {Alert} alert */
+const worstWords = ({ worst, message }) =>
+  worst &&
+  worst.message !== message &&
+  t("Worst, {time}: {message}", { time: exactClockText(worst.at), message: worst.message });
+
 /** @param {Alert} alert @param {LiveUav | undefined} uav */
 const rowKey = (alert, uav) =>
   JSON.stringify([
     alert.revision,
     alert.message,
+    alert.worst?.message,
     alert.notes,
     alert.acknowledged_at,
     alert.closed_at,
@@ -156,7 +174,7 @@ const acknowledgeButton = (alert, isQuiet) =>
 export function mountAlerts(store, page, acts) {
   const panel = new AlertPanel(store, page, acts);
   mountAlarm(store);
-  byId("open-alerts").addEventListener("click", acts.showBoard);
+  feedBell(acts.showBoard);
   if (!page.canFly) return [];
   const words = t("Acknowledge the alert that has focus, or the first");
   return [{ keys: ["a"], words, act: () => panel.acknowledgeFirst() }];
@@ -184,7 +202,7 @@ class AlertPanel {
   #drawList = keyedList(
     this.#list,
     (/** @type {Alert} */ { id }) => id,
-    () => h("li", { class: "alert" }),
+    (alert) => h("li", { class: "alert", onclick: (/** @type {MouseEvent} */ event) => this.#open(alert, event) }),
     (row, alert) => this.#refresh(row, alert),
   );
 
@@ -212,6 +230,12 @@ class AlertPanel {
     if (button instanceof HTMLElement) button.click();
   }
 
+  /** Opening an alert selects its UAV. @param {Alert} alert @param {MouseEvent} event */
+  #open({ uav }, { target }) {
+    const isControl = target instanceof Element && target.closest("button, a") !== null;
+    if (uav !== null && !isControl && this.#store.state.uavs.some(({ id }) => id === uav)) this.#acts.pick(uav);
+  }
+
   get #showsHistory() {
     return this.#history.getAttribute("aria-pressed") === "true";
   }
@@ -224,7 +248,7 @@ class AlertPanel {
     row.dataset.key = key;
     const isKnown = !isUnanswered(alert);
     const level = LEVELS[alert.level];
-    row.className = `alert ${isKnown ? "known" : alert.level} ${isOpenAlert(alert) ? "" : "over"}`;
+    row.className = `alert ${isKnown || isEndedUnseen(alert) ? "known" : alert.level} ${isOpenAlert(alert) ? "" : "over"}`;
     const hadFocus = row.contains(document.activeElement);
     const time = h(
       "time",
@@ -242,8 +266,8 @@ class AlertPanel {
 
   /** @param {Alert} alert @param {LiveUav | undefined} uav */
   #said(alert, uav) {
-    const act = uav ? this.#actButton(alert, uav) : null;
-    const known = this.#page.canFly && isUnanswered(alert) && acknowledgeButton(alert, act !== null);
+    const answers = this.#actButtons(alert);
+    const known = this.#page.canFly && isUnanswered(alert) && acknowledgeButton(alert, answers.length > 0);
     const closing = this.#page.canFly && alert.code === "down-off-plan" && isOpenAlert(alert) && closeButton(alert);
     const past = historyWords(alert);
     const pick = () => uav && this.#acts.pick(uav.id);
@@ -259,20 +283,25 @@ class AlertPanel {
         alert.is_simulated && [" ", simulatedMark()],
       ),
       past && h("p", { class: "caption" }, past),
-      (act || known || closing) && h("div", { class: "alert-acts" }, act, known, closing),
+      (answers.length > 0 || known || closing) && h("div", { class: "alert-acts" }, answers, known, closing),
     );
   }
 
-  /** What the operator would answer this cause with. @param {Alert} alert @param {LiveUav} uav */
-  #actButton(alert, uav) {
-    const kind = this.#page.canFly && isUnanswered(alert) ? ACTS[alert.code] : null;
-    if (!kind) return null;
-    /** @param {Event} event */
-    const ask = ({ currentTarget }) => {
-      this.#acts.pick(uav.id);
-      void this.#acts.commanding?.ask(uav.id, kind, /** @type {HTMLElement} */ (currentTarget));
-    };
-    return h("button", { type: "button", class: "button small", onclick: ask }, ACT_WORDS[kind](uav.name));
+  /** What the operator would answer this cause with. @param {Alert} alert */
+  #actButtons(alert) {
+    if (!this.#page.canFly || !isUnanswered(alert) || !isOpenAlert(alert)) return [];
+    return alert.acts.flatMap(({ kind, uav: id }) => {
+      const uav = this.#store.state.uavs.find((entry) => entry.id === id);
+      if (!uav) return [];
+      /** @param {Event} event */
+      const ask = ({ currentTarget }) => {
+        const opener = /** @type {HTMLElement} */ (currentTarget);
+        this.#acts.pick(id);
+        if (kind === "take-over") void takeOver(alert, uav.name, opener);
+        else void this.#acts.commanding?.ask(id, kind, opener);
+      };
+      return h("button", { type: "button", class: "button small", onclick: ask }, ACT_WORDS[kind](uav.name));
+    });
   }
 
   async #readHistory() {
@@ -311,16 +340,14 @@ class AlertPanel {
   /** @param {Readonly<MonitorState>} state */
   #draw(state) {
     this.#drawUavChoice(state.uavs);
-    const live = state.alerts.filter((alert) => isOpenAlert(alert) || this.#showsHistory);
+    const live = this.#showsHistory ? state.alerts : pinnedAlerts(state.alerts);
     const ids = new Set(live.map(({ id }) => id));
     const past = this.#past.filter(({ id }) => !ids.has(id));
     const shown = alertsInOrder([...live, ...past].filter((alert) => this.#isShown(alert)));
-    const open = state.alerts.filter(isUnanswered).length;
-    const openWords = open ? tn(open, "{count} open alert", "{count} open alerts") : t("Alerts");
+    const unanswered = pinnedAlerts(state.alerts).filter(isUnanswered);
+    const open = unanswered.length;
     byId("alert-count").textContent = open ? t("{count} open", { count: open }) : "";
-    byId("alert-badge").hidden = open === 0;
-    byId("alert-badge").textContent = `${open}`;
-    byId("open-alerts").setAttribute("aria-label", openWords);
+    showAlertCount({ all: open, critical: unanswered.filter(({ level }) => level === "critical").length });
     byId("no-alerts").hidden = shown.length > 0;
     this.#drawList(shown);
   }

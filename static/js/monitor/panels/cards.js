@@ -2,7 +2,7 @@
 
 import { byId, h, icon, keyedList, refill } from "../../dom.js";
 import { certaintyOf, MEASURED } from "../../domain/certainty.js";
-import { commandWords, isOpen, timesOf } from "../../domain/flying.js";
+import { commandWords, isOpen, KINDS, timesOf } from "../../domain/flying.js";
 import { routeLetter, routeNumber } from "../../domain/palette.js";
 import { profileOf } from "../../domain/route_profile.js";
 import { simulatedMark } from "../../simulated.js";
@@ -12,11 +12,11 @@ import { numbersOf, pillOf } from "../board.js";
 import { rateOf, rateWords } from "../clock_rate.js";
 import { liveStrip, progressOf } from "../live_strip.js";
 import { alertsInOrder, inOrder, isOpenAlert } from "../order.js";
-import { ageWords, estimateWords, figuresOf, nextOf, stateOf } from "../uav_words.js";
+import { ageWords, batteryWords, estimateWords, figuresOf, nextOf, stateOf } from "../uav_words.js";
 
 /** @import { AlertLevel, Mission } from "../../api_types.d.ts" */
 /** @import { Certainty } from "../../domain/certainty.js" */
-/** @import { Alert, Command, LiveMission, LiveUav, MonitorState, MonitorStore } from "../types.d.ts" */
+/** @import { Alert, Command, Commanding, LiveMission, LiveUav, MonitorState, MonitorStore, UnsentCommand } from "../types.d.ts" */
 
 /**
  * @typedef {object} CardActs
@@ -24,6 +24,7 @@ import { ageWords, estimateWords, figuresOf, nextOf, stateOf } from "../uav_word
  * @property {(uav: number) => void} pick
  * @property {(uav: number) => void} jumpTo
  * @property {() => void} follow
+ * @property {Commanding | null} commanding null for who cannot fly
  */
 /** What is known of a card's UAV beside itself. @typedef {{ mission: LiveMission | null, detail: Mission | undefined, certainty: Certainty | null }} Known */
 
@@ -78,10 +79,13 @@ export function mountCards(store, acts) {
     (element, uav) => cards.get(element)?.show(uav, store.state, list.clientWidth - STRIP_MARGIN_PX),
   );
   const draw = () => drawList(inOrder(store.state.uavs, store.state.alerts, store.state.chosen));
-  store.listen(["uavs", "missions", "details", "alerts", "commands", "chosen", "now_ms", "isFollowing"], ({ uavs }) => {
-    byId("no-uavs").hidden = uavs.length > 0;
-    draw();
-  });
+  store.listen(
+    ["uavs", "missions", "details", "alerts", "commands", "chosen", "now_ms", "isFollowing", "unsent"],
+    ({ uavs }) => {
+      byId("no-uavs").hidden = uavs.length > 0;
+      draw();
+    },
+  );
   store.listen(["chosen"], () => {
     byId("part-uavs").scrollTop = 0; // it stands first
   });
@@ -99,7 +103,9 @@ class Card {
   #figures = h("dl", { class: "figures" });
   #strip = h("div", { class: "strip-place" });
   #next = h("p", { class: "next" });
+  #battery = h("p", { class: "card-battery" });
   #command = h("p", { class: "card-command" });
+  #unsent = h("div", { class: "card-unsent", role: "alert", hidden: true });
   #alerts = h("ul", { class: "card-alerts" });
   #follow;
   #buttons;
@@ -125,9 +131,11 @@ class Card {
       { class: "card", onclick },
       h("div", { class: "card-top" }, this.#head, this.#age),
       this.#about,
+      this.#unsent,
       this.#command,
       this.#estimate,
       this.#figures,
+      this.#battery,
       this.#strip,
       this.#next,
       this.#alerts,
@@ -149,6 +157,8 @@ class Card {
     this.#drawAbout(uav, known.mission);
     this.#drawEstimate(uav, known.certainty, now_ms);
     this.#drawFigures(uav, known.certainty);
+    this.#drawBattery(uav);
+    this.#drawUnsent(uav, state.unsent.get(uav.id) ?? null);
     this.#drawStrip(uav, known, Math.round(this.#strip.clientWidth || width_px));
     this.#drawNext(uav, known);
     this.#drawCommand(commandOf(uav, commands, now_ms));
@@ -205,10 +215,47 @@ class Card {
   #drawFigures(uav, certainty) {
     const figures = figuresOf(uav, certainty);
     refill(this.#figures, JSON.stringify(figures), () =>
-      figures.map(({ figure, unit, words }) =>
-        h("div", {}, h("dt", {}, words), h("dd", {}, figure, unit && h("small", {}, ` ${unit}`))),
+      figures.map(({ figure, unit, words, level, title }) =>
+        h(
+          "div",
+          { class: level || null, title: title || null },
+          h("dt", {}, words),
+          h("dd", {}, figure, unit && h("small", {}, ` ${unit}`)),
+        ),
       ),
     );
+  }
+
+  /** Minutes to the reserve against minutes home. @param {LiveUav} uav */
+  #drawBattery(uav) {
+    const words = batteryWords(uav);
+    this.#battery.hidden = !words;
+    this.#battery.className = `card-battery ${uav.estimated?.battery?.level ?? ""}`;
+    refill(this.#battery, words, () => [words]);
+  }
+
+  /** A command that could not leave this device, until it is sent or given up. @param {LiveUav} uav @param {UnsentCommand | null} unsent */
+  #drawUnsent({ id, name }, unsent) {
+    this.#unsent.hidden = unsent === null;
+    const key = unsent ? `${unsent.key} ${unsent.isBusy} ${unsent.message}` : "";
+    refill(this.#unsent, key, () => {
+      if (!unsent) return [];
+      const { commanding } = this.#acts;
+      const words = t("{act} to {name}: not known to be sent. {why}", { act: KINDS[unsent.kind], name, why: unsent.message });
+      /** @param {string} label @param {() => unknown} act */
+      const button = (label, act) =>
+        h(
+          "button",
+          { type: "button", class: "button small", disabled: unsent.isBusy, onclick: () => void act() },
+          label,
+        );
+      return [
+        icon("cloud-off", "small"),
+        h("span", {}, h("strong", {}, words)),
+        button(unsent.isBusy ? t("Sending…") : t("Try again"), () => commanding?.tryAgain(id)),
+        button(t("Give up"), () => commanding?.giveUp(id)),
+      ];
+    });
   }
 
   /** Drawn again only where it would be another. @param {LiveUav} uav @param {Known} known @param {number} width_px */

@@ -4,6 +4,7 @@ import { signInAddress } from "../../api.js";
 import { byId, h, icon, setChildren } from "../../dom.js";
 import { ASKED, CROWDED, LIVE } from "../../live/feed.js";
 import { staleWords } from "../../live/stale.js";
+import { say } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, speedText, zoneText } from "../../units.js";
 
@@ -82,8 +83,10 @@ function drawStale(state) {
   const isWhole = state.link === LIVE || state.link === ASKED || state.link === CROWDED;
   document.documentElement.dataset.link = said?.isBad ? "cut" : isWhole ? "whole" : "opening";
   if (stale.dataset.words === (said?.words ?? "")) return;
+  const wasHidden = stale.hidden;
   stale.dataset.words = said?.words ?? "";
   stale.hidden = !said;
+  if (said && wasHidden) say(`${said.words} ${said.rest ?? ""}`); // once: the seconds that follow are for the eye
   if (!said) return;
   const door = said.needsDoor && [" ", h("a", { href: signInAddress() }, t("Sign in"))];
   setChildren(stale, icon("cloud-off"), h("span", {}, h("strong", {}, said.words), said.rest && ` ${said.rest}`, door));
@@ -96,11 +99,11 @@ export function mountHead(store, page) {
     const mission = missions.find(({ id }) => id === page.mission) ?? null;
     drawTitle(mission?.name ?? page.missionName ?? t("Live"));
     drawState(chip, mission);
-    const iso = new Date(now_ms).toISOString();
+    const iso = new Date(now_ms).toISOString(); // stands still while the device has no data
     const facts = byId("live-facts");
     const said = [exactClockText(iso), windWords(uavs), countWords(uavs, missions, mission)];
     facts.textContent = said.filter(Boolean).join(" · ");
     facts.title = zoneText(iso);
   });
-  store.listen(["link", "since_ms", "now_ms"], drawStale);
+  store.listen(["link", "since_ms", "now_ms", "silent_ms"], drawStale);
 }

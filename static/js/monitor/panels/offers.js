@@ -7,19 +7,34 @@ import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { clockText } from "../../units.js";
-import { causeWords, differenceOf, isUndecided, overWords, sentenceOf, targetLines, uavLines } from "../offer_words.js";
+import {
+  causeWords,
+  differenceOf,
+  isUndecided,
+  overWords,
+  sentenceOf,
+  targetLines,
+  uavLines,
+  whyNotDecided,
+} from "../offer_words.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { Mission } from "../../api_types.d.ts" */
 /** @import { LiveOffer, MonitorPage, MonitorState, MonitorStore, OfferedRoute } from "../types.d.ts" */
 
+/** Offers whose decision is on its way: nobody decides them twice. @type {Set<string>} */
+const deciding = new Set();
+
 /** @param {LiveOffer} offer @param {"accept" | "decline"} act @param {string} words once it is done */
 async function decide(offer, act, words) {
+  if (deciding.has(offer.id)) return;
+  deciding.add(offer.id);
   try {
     await post(`/replan-offers/${offer.id}/${act}`, {}, { headers: { "If-Match": `"${offer.revision}"` } });
     say(words);
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
+    deciding.delete(offer.id);
     toast(error.message);
   }
 }
@@ -75,21 +90,23 @@ function targetList(offer) {
   return lines.length > 0 && h("details", {}, h("summary", {}, t("Targets")), h("ul", {}, lines));
 }
 
-/** @param {LiveOffer} offer */
-function buttons(offer) {
+/** @param {LiveOffer} offer @param {string} whyNot */
+function buttons(offer, whyNot) {
   /** @param {Event} event */
   const onAccept = ({ currentTarget }) => void accept(offer, /** @type {HTMLElement} */ (currentTarget));
   const onDecline = () => void decide(offer, "decline", t("Declined: the plan stays as it is."));
+  const isDeciding = deciding.has(offer.id);
+  const how = { type: "button", disabled: isDeciding || whyNot !== "", title: whyNot || null };
   return h(
     "div",
     { class: "alert-acts" },
-    h("button", { type: "button", class: "button primary", onclick: onAccept }, t("Accept")),
-    h("button", { type: "button", class: "button", onclick: onDecline }, t("Decline")),
+    h("button", { ...how, class: "button primary", onclick: onAccept }, t("Accept")),
+    h("button", { ...how, class: "button", onclick: onDecline }, t("Decline")),
   );
 }
 
-/** @param {LiveOffer} offer @param {boolean} canFly */
-function card(offer, canFly) {
+/** @param {LiveOffer} offer @param {boolean} canFly @param {string} whyNot */
+function card(offer, canFly, whyNot) {
   if (offer.state === "computing") return computingCard(offer);
   const { valid_until } = differenceOf(offer);
   const until =
@@ -102,8 +119,8 @@ function card(offer, canFly) {
     h("p", {}, h("strong", {}, `${causeWords(offer)}.`), ` ${sentenceOf(offer)}.`),
     uavList(offer),
     targetList(offer),
-    until,
-    canFly && buttons(offer),
+    whyNot ? h("p", { class: "caption" }, whyNot) : until,
+    canFly && buttons(offer, whyNot),
   );
 }
 
@@ -162,19 +179,24 @@ export function mountOffers(store, page) {
   }
 
   /** @param {Readonly<MonitorState>} state */
-  function draw({ offers }) {
+  function draw(state) {
+    const { offers } = state;
     const undecided = offers.filter(isUndecided);
     const [newest] = offers
       .filter((offer) => !isUndecided(offer))
       .sort((a, b) => Date.parse(b.created_at) - Date.parse(a.created_at));
     const last = undecided.length === 0 && newest && !putAway.has(newest.id) ? newest : null;
-    const key = JSON.stringify([undecided, last]);
+    const whyNot = new Map(undecided.map((offer) => [offer.id, whyNotDecided(offer, state)]));
+    const key = JSON.stringify([undecided, last, [...whyNot], [...deciding]]);
     if (key === drawn) return;
     drawn = key;
     byId("offers").hidden = undecided.length === 0 && last === null;
-    setChildren(byId("offer-list"), last ? over(last) : undecided.map((offer) => card(offer, page.canFly)));
+    setChildren(
+      byId("offer-list"),
+      last ? over(last) : undecided.map((offer) => card(offer, page.canFly, whyNot.get(offer.id) ?? "")),
+    );
     void drawRoutes(undecided.find(({ state }) => state === "open"));
   }
 
-  store.listen(["offers"], draw);
+  store.listen(["offers", "now_ms", "silent_ms"], draw);
 }

@@ -2,8 +2,9 @@
 
 import { byId, h, icon } from "../../dom.js";
 import { t } from "../../text.js";
+import { exactClockText } from "../../units.js";
 import { causeWords, isUndecided } from "../offer_words.js";
-import { alertsInOrder, isUnanswered } from "../order.js";
+import { alertsInOrder, isOpenAlert, isUnanswered, pinnedAlerts } from "../order.js";
 
 /** @import { MonitorStore } from "../types.d.ts" */
 
@@ -18,14 +19,16 @@ export function mountUrgent(store, { open }) {
   );
   byId("map").parentElement?.append(box);
   store.listen(["alerts", "offers"], ({ alerts, offers }) => {
-    const [worst] = alertsInOrder(alerts.filter(isUnanswered)).filter(({ level }) => level !== "advisory");
+    const unanswered = pinnedAlerts(alerts).filter((alert) => isUnanswered(alert) && alert.level !== "advisory");
+    const [worst] = alertsInOrder(unanswered);
     const offer = offers.find((one) => isUndecided(one) && one.state !== "computing");
     box.hidden = !worst && !offer;
     if (worst) {
-      box.className = `urgent float ${worst.level}`;
+      box.className = `urgent float ${isOpenAlert(worst) ? worst.level : "known"}`;
       words.replaceChildren(
         icon(worst.level === "critical" ? "octagon-alert" : "triangle-alert"),
         h("strong", {}, worst.message),
+        worst.closed_at ? h("span", {}, t("Ended {time}.", { time: exactClockText(worst.closed_at) })) : "",
       );
     } else if (offer) {
       box.className = "urgent float offered";
