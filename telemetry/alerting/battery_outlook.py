@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from inspection.geodesy import LonLat
 from telemetry.alerting.consumption import Consumption, DrainMemory, FlightKind, Wind, east_north_m, kind_of
 from telemetry.alerting.memory import position_of
+from telemetry.alerting.route_line import NEAR_VERTEX_M
 from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import FlightModel
 from telemetry.decoding.measurement import Measurement
@@ -64,6 +65,9 @@ def battery_outlook(situation: Situation, fresh: Report, left_percent: float) ->
     reserve_percent = USUAL_RESERVE_PERCENT if model is None else model.reserve_percent
     ways = _Ways() if model is None else _ways(situation, model, told, consumption, wind_mps, position_of(fresh))
     moving_per_s = ways.moving_per_s or consumption.percent_per_s(consumption.cruise_mps) * memory.drain.ratio(FlightKind.MOVING)
+    rest_percent = None if model is None else _rest_percent(situation, model, told, consumption)
+    if rest_percent is not None and ways.down_percent is not None and _lands_at_end(situation):
+        rest_percent = min(rest_percent, ways.down_percent)
     return BatteryOutlook(
         left_percent=left_percent,
         reserve_percent=reserve_percent,
@@ -73,9 +77,16 @@ def battery_outlook(situation: Situation, fresh: Report, left_percent: float) ->
         home_s=ways.home_s,
         landing_percent=ways.landing_percent,
         landing_m=ways.landing_m,
-        rest_percent=None if model is None else _rest_percent(situation, model, told, consumption),
+        rest_percent=rest_percent,
         down_percent=ways.down_percent,
     )
+
+
+def _lands_at_end(situation: Situation) -> bool:
+    place, model = situation.place, situation.model
+    if place is None or model is None or situation.memory.drain.kind is not FlightKind.STILL:
+        return False
+    return model.line.length_m - place.along_m <= NEAR_VERTEX_M
 
 
 @dataclass(frozen=True, slots=True)

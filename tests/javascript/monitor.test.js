@@ -10,11 +10,18 @@ import { ellipseRing, metresPerPixel } from "../../static/js/monitor/map/ellipse
 import { between } from "../../static/js/monitor/map/glide.js";
 import { addReport, flownParts } from "../../static/js/monitor/mission_details.js";
 import { causeWords, overWords, sentenceOf, targetLines, whyNotDecided } from "../../static/js/monitor/offer_words.js";
-import { alarmOf, alertsInOrder, inOrder, isUnanswered, newAlerts, pinnedAlerts } from "../../static/js/monitor/order.js";
+import {
+  alarmOf,
+  alertsInOrder,
+  inOrder,
+  isUnanswered,
+  newAlerts,
+  pinnedAlerts,
+} from "../../static/js/monitor/order.js";
 import { ofPage, placed } from "../../static/js/monitor/placed.js";
-import { markedTitle } from "../../static/js/page/bell.js";
 import { ageWords, batteryWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
 import { unheardLines } from "../../static/js/monitor/unheard.js";
+import { markedTitle } from "../../static/js/page/bell.js";
 
 const NOW_MS = Date.parse("2026-09-21T14:15:00Z");
 const ago = (seconds) => new Date(NOW_MS - seconds * 1000).toISOString();
@@ -438,7 +445,14 @@ test("a UAV without a GPS fix is drawn as estimated, though it reports", () => {
 });
 
 test("the battery's figure has its level, and minutes to the reserve stand against minutes home", () => {
-  const battery = { level: "warning", left_percent: 31, reserve_percent: 20, home_percent: 9, home_s: 240, reserve_in_s: 720 };
+  const battery = {
+    level: "warning",
+    left_percent: 31,
+    reserve_percent: 20,
+    home_percent: 9,
+    home_s: 240,
+    reserve_in_s: 720,
+  };
   const low = uav({ estimated: estimate({ is_measured: true, battery }) });
   assert.equal(figuresOf(low, MEASURED)[0].level, "warning");
   assert.equal(plain(batteryWords(low)), "Battery: 12 min to the reserve, 4 min home");

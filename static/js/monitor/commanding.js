@@ -64,9 +64,6 @@ export function createCommanding(store, page) {
   /** @param {LiveUav} uav */
   const certainty = (uav) => certaintyOf(uav, store.state.now_ms);
 
-  /** @param {number} id @param {UnsentCommand | null} unsent */
-  const keepUnsent = (id, unsent) => keptUnsent(store, id, unsent);
-
   /**
    * What could not leave this device stays on the UAV's card until it is sent or given up.
    *
@@ -78,16 +75,23 @@ export function createCommanding(store, page) {
   async function told(uav, kind, filled = {}, key = freshKey()) {
     try {
       const isTold = await tellUav(uav.id, uav.name, kind, filled, { key, within_ms: ANSWER_WITHIN_MS });
-      keepUnsent(uav.id, null);
+      keptUnsent(store, uav.id, null);
       if (isTold) say(t("{act}: {name} is being told.", { act: KINDS[kind], name: uav.name }));
       return isTold;
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       if (error.isAway) {
-        keepUnsent(uav.id, { kind, filled, key, message: error.message, isBusy: false, at_ms: store.state.now_ms });
+        keptUnsent(store, uav.id, {
+          kind,
+          filled,
+          key,
+          message: error.message,
+          isBusy: false,
+          at_ms: store.state.now_ms,
+        });
         return false;
       }
-      keepUnsent(uav.id, null);
+      keptUnsent(store, uav.id, null);
       toast(`${t("{name} was not told: {act}.", { name: uav.name, act: KINDS[kind] })} ${error.message}`);
       return false;
     }
@@ -123,12 +127,9 @@ export function createCommanding(store, page) {
     const unsent = store.state.unsent.get(id);
     const uav = store.state.uavs.find((entry) => entry.id === id);
     if (!unsent || !uav || unsent.isBusy) return;
-    keepUnsent(id, { ...unsent, isBusy: true });
+    keptUnsent(store, id, { ...unsent, isBusy: true });
     await told(uav, unsent.kind, unsent.filled, unsent.key);
   }
 
-  /** @type {Commanding["giveUp"]} */
-  const giveUp = (id) => keepUnsent(id, null);
-
-  return { ask, askAll: createBatch(store, page), tryAgain, giveUp };
+  return { ask, askAll: createBatch(store, page), tryAgain, giveUp: (id) => keptUnsent(store, id, null) };
 }

@@ -202,12 +202,14 @@ export default {
   "Put away": "Weglegen",
   "Watch it go on": "Weiter zusehen",
   "No data on this device for {seconds} s.": "Seit {seconds} s keine Daten auf diesem Gerät.",
-  "Last message {time}: everything here is as of then. Connecting again.": "Letzte Nachricht {time}: Alles hier ist auf diesem Stand. Verbindung wird wiederhergestellt.",
+  "Last message {time}: everything here is as of then. Connecting again.":
+    "Letzte Nachricht {time}: Alles hier ist auf diesem Stand. Verbindung wird wiederhergestellt.",
   "No live data yet.": "Noch keine Live-Daten.",
   "Connecting again.": "Verbindung wird wiederhergestellt.",
   "Pilot takes over": "Pilot übernimmt",
   "Does a pilot on site fly {name} by hand?": "Fliegt ein Pilot vor Ort {name} von Hand?",
-  "Nothing is sent to the UAV. The pilot takes it by the remote control, in a mode that needs no position.": "An das UAV wird nichts gesendet. Der Pilot übernimmt es mit der Fernsteuerung, in einem Modus, der keine Position braucht.",
+  "Nothing is sent to the UAV. The pilot takes it by the remote control, in a mode that needs no position.":
+    "An das UAV wird nichts gesendet. Der Pilot übernimmt es mit der Fernsteuerung, in einem Modus, der keine Position braucht.",
   "A pilot on site takes over {name}.": "Ein Pilot vor Ort übernimmt {name}.",
   "Ended {time}.": "Beendet {time}.",
   "Worst, {time}: {message}": "Am schlimmsten, {time}: {message}",

@@ -241,7 +241,11 @@ class Card {
     refill(this.#unsent, key, () => {
       if (!unsent) return [];
       const { commanding } = this.#acts;
-      const words = t("{act} to {name}: not known to be sent. {why}", { act: KINDS[unsent.kind], name, why: unsent.message });
+      const words = t("{act} to {name}: not known to be sent. {why}", {
+        act: KINDS[unsent.kind],
+        name,
+        why: unsent.message,
+      });
       /** @param {string} label @param {() => unknown} act */
       const button = (label, act) =>
         h(
