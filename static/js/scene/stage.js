@@ -244,7 +244,6 @@ function mountStage(root, scene, options) {
   const rig = createRig({ isCalm: () => calm.matches });
   const labels = createLabels(holder);
   const instruments = createInstruments();
-  holder.append(notices.element);
   /** @type {TimeBar | null} */
   let bar = null;
   const player =
@@ -289,7 +288,7 @@ function mountStage(root, scene, options) {
     choose: acts.choose,
     seeTarget: acts.seeTarget,
   });
-  holder.append(h("div", { class: "scene-over" }, cameraBar.element, chips), instruments.element);
+  holder.append(notices.element, h("div", { class: "scene-over" }, cameraBar.element, chips), instruments.element);
   if (stage.isFlat) notices.tell(t("This browser draws no 3D."), NO_WEBGL);
   acts.begin(link);
   bar?.show();

@@ -6,7 +6,7 @@ from django.db import migrations, models
 
 class Migration(migrations.Migration):
     atomic = False
-    dependencies = [("telemetry", "0015_vehicle_type_of_a_link")]
+    dependencies = [("telemetry", "0001_squashed_0015_vehicle_type_of_a_link")]
 
     operations = [
         AddIndexConcurrently(
