@@ -26,7 +26,7 @@ SAID = "%(uav)s itself reports its battery as %(state)s: %(words)s"
 STATES = {"low": WARNING, "critical": CRITICAL, "emergency": CRITICAL, "failed": CRITICAL, "unhealthy": CRITICAL}
 OVERRULES_AFTER_S = 15.0  # a state that is well counts more than words that are so old
 CLEARS_ABOVE_PERCENT = 2.0  # of what raises it
-AHEAD_S = 60.0  # for which a UAV that is still above its reserve is looked ahead
+AHEAD_S = 45.0  # for which a UAV that is still above its reserve is looked ahead
 
 
 @dataclass(frozen=True, slots=True)
