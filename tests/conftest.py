@@ -1,6 +1,7 @@
 """Fixtures for every test: generated regions, real data beside the checkout, and a database that is copied from a migrated one."""
 
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from hashlib import sha256
 from pathlib import Path
 
@@ -84,6 +85,29 @@ def delete_rows() -> None:
         for (table,) in cursor.fetchall():
             cursor.execute(f"DELETE FROM {names[table]}")  # noqa: S608 - foreign keys are checked at the end of the transaction
         Organisation.objects.create(pk=1, name="Default")
+
+
+@pytest.fixture(scope="session")
+def rows_for_a_module(
+    django_db_setup: None, django_db_blocker: DjangoDbBlocker
+) -> Callable[[Callable[[], None]], AbstractContextManager[None]]:
+    """Make rows once that all tests of a module see, in a transaction around theirs: for a fixture of scope `module`.
+
+    For modules whose tests do not commit.
+    """
+
+    @contextmanager
+    def made_by(make: Callable[[], None]) -> Iterator[None]:
+        block = transaction.atomic()
+        with django_db_blocker.unblock():
+            block.__enter__()
+            make()
+        yield
+        with django_db_blocker.unblock():
+            transaction.set_rollback(True)
+            block.__exit__(None, None, None)
+
+    return made_by
 
 
 @pytest.fixture(scope="session")

@@ -53,6 +53,7 @@ def test_what_is_not_run_is_said_with_its_place() -> None:
     assert (figure.figure, figure.verdict) == ("another command", Verdict.ELSEWHERE)
 
 
+@pytest.mark.long
 def test_a_row_of_tests_tells_figures_and_what_failed(tmp_path: Path) -> None:
     (tmp_path / "test_one.py").write_text(
         "def test_good(record_property):\n    record_property('figure', '3 of 3')\n\ndef test_bad():\n    assert False\n"

@@ -16,6 +16,7 @@ from inspection.services.gaps import SEARCH_LOCK, dismiss_gap, gaps_are_current
 from inspection.services.repair_edits import CannotRepair
 from inspection.services.repairs import offers_of, preview_of, repair_gap, undo_repair
 from inspection.tasks import find_gaps as find_gaps_task
+from tests.cases import long
 from tests.inspection.ground import bridge, line, tower
 from tests.workspace.people import somebody
 from workspace.models import AuditEntry, Role
@@ -59,6 +60,7 @@ def test_quillmoor_has_the_gaps_that_were_drawn(region_file):
     assert rows == [1, 3, 4]  # one at the edge of the box, whose line is cut off; the portals of a busbar; a row whose line is not mapped
 
 
+@pytest.mark.long
 def test_nepal_has_its_long_spans(shared_data):
     """README of the data: "a few spans are far longer than real spans (max 11.25 km), because towers there are not mapped yet".
 
@@ -103,7 +105,7 @@ def test_liechtenstein_has_few_gaps(shared_data):
     assert counts() == {"dead_end": 3, "bridge_without_way": 5, "missing_support": 1}
 
 
-@pytest.mark.parametrize("name", ["quillmoor.osm.pbf", "nepal-power-2025.osm.pbf"])
+@pytest.mark.parametrize("name", ["quillmoor.osm.pbf", *long("nepal-power-2025.osm.pbf")])
 def test_a_repair_is_kept_over_the_next_import(name, region_file, curator):
     path = region_file(name)
     import_osm(path=path)

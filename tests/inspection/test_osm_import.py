@@ -11,6 +11,7 @@ from inspection.models import Asset, DataImport, Ground
 from inspection.osm.file_gate import OsmFileError
 from inspection.osm.reader import read_osm
 from inspection.services import import_osm
+from tests.cases import long
 from tests.inspection.osm_files import TOWER, small_line, write_osm
 
 pytestmark = pytest.mark.django_db
@@ -31,8 +32,8 @@ def present():
 @pytest.mark.parametrize(
     "name",
     [
-        "elme-valley.osm.pbf", "quillmoor.osm.pbf",
-        "liechtenstein-2021.osm.pbf", "columbus-ohio.osm.pbf", "nepal-power-2025.osm.pbf", "copenhagen-rail-2015.osm.gz",
+        "elme-valley.osm.pbf", "quillmoor.osm.pbf", "columbus-ohio.osm.pbf",
+        *long("liechtenstein-2021.osm.pbf", "nepal-power-2025.osm.pbf", "copenhagen-rail-2015.osm.gz"),
     ],
 )  # fmt: skip
 def test_the_same_file_again_changes_nothing(name, region_file):
@@ -48,7 +49,7 @@ def test_the_same_file_again_changes_nothing(name, region_file):
     assert (second.pk, DataImport.objects.count()) == (first.pk, 1)
 
 
-@pytest.mark.parametrize("name", ["quillmoor.osm.pbf", "columbus-ohio.osm.pbf"])
+@pytest.mark.parametrize("name", ["quillmoor.osm.pbf", *long("columbus-ohio.osm.pbf")])
 def test_rows_hold_what_the_records_say(name, region_file):
     path = region_file(name)
     import_osm(path=path)
@@ -124,7 +125,7 @@ def test_a_drawn_asset_never_vanishes(tmp_path):
     "names",
     [
         pytest.param(["elme-valley.osm.pbf", "quillmoor.osm.pbf"], id="generated"),
-        pytest.param(["roenne-bornholm-2015.osm.gz", "copenhagen-rail-2015.osm.gz", "funen-power-nodes-2019.osm.pbf"], id="real"),
+        *long(["roenne-bornholm-2015.osm.gz", "copenhagen-rail-2015.osm.gz", "funen-power-nodes-2019.osm.pbf"]),
     ],
 )
 def test_files_of_several_regions_do_not_mark_each_other(names, region_file):

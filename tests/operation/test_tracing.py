@@ -68,6 +68,7 @@ def test_on_without_its_libraries_the_program_runs_and_says_so(monkeypatch: pyte
     assert "requirements-tracing.txt" in caplog.text
 
 
+@pytest.mark.long
 def test_on_spans_go_where_the_environment_says_and_hold_no_secret(collector: tuple[str, list[tuple[str, bytes]]], tmp_path: Path) -> None:
     address, came = collector
     environment = os.environ | {

@@ -125,6 +125,7 @@ def test_a_worker_has_a_redis_and_a_state_folder_of_its_own() -> None:
     assert (alone["REDIS_URL"], alone["SPANWISE_VAR"]) == ("unix:///s/redis.sock", "/v")
 
 
+@pytest.mark.long
 def test_a_firmware_has_a_network_of_its_own_and_no_other_run_starts_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv(SITL, raising=False)
     monkeypatch.setenv("SPANWISE_VAR", str(tmp_path))

@@ -88,6 +88,7 @@ def test_parts_come_after_those_they_call():
     assert all(names.index(earlier) < names.index(part.name) for part in PARTS for earlier in part.after)
 
 
+@pytest.mark.long
 def test_code_compiled_in_one_checkout_is_read_in_another_one(tmp_path):
     """The same package in two places; the locator is told that each is the project."""
     for name in ("first", "second"):

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from datetime import timedelta
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,7 +15,6 @@ from simulation.services.demo_missions import DEMO_MISSIONS, remove_demo_data, w
 from simulation.services.simulations import end_simulation
 from simulation.tasks import fly_demo_missions
 from tests.missions.flights import carry
-from tests.simulation.random_rehearsals import bring_in_demo_region
 from tests.workspace.people import somebody
 from workspace.models import Job, JobState, Role, User
 from workspace.services import MAX_ATTEMPTS, requeue_lost_jobs
@@ -26,8 +24,7 @@ REAL_TIME, _planned_only, FAST = (demo.name for demo in DEMO_MISSIONS)
 
 
 @pytest.fixture
-def administrator(tmp_path: Path) -> User:
-    bring_in_demo_region(tmp_path)
+def administrator(demo_region: None, db: None) -> User:
     call_command("load_demo")
     return somebody(role=Role.ADMINISTRATOR)
 

@@ -1,7 +1,5 @@
 """The demo missions: planned with complete types, passing their own rehearsal, marked, asked for once, and removed with their UAVs."""
 
-from pathlib import Path
-
 import pytest
 from django.core.management import call_command
 from django.test import Client
@@ -18,7 +16,7 @@ from simulation.services.demo_missions import (
     remove_demo_data,
     want_demo_missions,
 )
-from tests.simulation.random_rehearsals import bring_in_demo_region, rehearse_mission
+from tests.simulation.random_rehearsals import rehearse_mission
 from tests.simulation.test_random_rehearsals import faults_of
 from tests.workspace.people import client_of, somebody
 from workspace.models import Job, Role, User
@@ -27,8 +25,7 @@ pytestmark = pytest.mark.django_db
 
 
 @pytest.fixture
-def administrator(tmp_path: Path) -> User:
-    bring_in_demo_region(tmp_path)
+def administrator(demo_region: None, db: None) -> User:
     call_command("load_demo")
     return somebody(role=Role.ADMINISTRATOR)
 
@@ -50,18 +47,24 @@ def make(person: User) -> list[Mission]:
 
 
 @pytest.mark.usefixtures("planned_only")
-def test_each_is_planned_with_energy_and_passes_its_own_rehearsal(administrator: User) -> None:
+def test_each_is_planned_with_energy(administrator: User) -> None:
     missions = make(administrator)
     assert [mission.name for mission in missions] == [demo.name for demo in DEMO_MISSIONS]
     for mission in missions:
         assert mission.is_demo and mission.total_energy_wh
         assert not mission.plan_warnings
         assert not mission.targets.exclude(unassigned_reason="").exists()
+    assert any(route.mission_uav.uav.name == "Osprey 2" for route in missions[1].routes.all())
+
+
+@pytest.mark.long
+@pytest.mark.usefixtures("planned_only")
+def test_each_passes_its_own_rehearsal(administrator: User) -> None:
+    for mission in make(administrator):
         calm = not mission.conditions.get("wind")
         found = rehearse_mission(mission, seed=3, sky="calm" if calm else "as-planned")
         assert found is not None
         assert faults_of(found) == []
-    assert any(route.mission_uav.uav.name == "Osprey 2" for route in missions[1].routes.all())
 
 
 @pytest.mark.usefixtures("planned_only")

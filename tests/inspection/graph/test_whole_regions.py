@@ -20,12 +20,13 @@ from inspection.graph.rules import LinkingRules
 from inspection.graph.ways import travel_between
 from inspection.graph.zone_index import zones_of_graph
 from inspection.selectors.ground_data import ground_data
+from tests.cases import long
 from tests.exact_geometry import segment_meets_polygon
 
 RULES = LinkingRules()
 REGIONS = [
-    "elme-valley.osm.pbf", "quillmoor.osm.pbf",
-    "columbus-ohio.osm.pbf", "nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf", "copenhagen-rail-2015.osm.gz",
+    "elme-valley.osm.pbf", "quillmoor.osm.pbf", "columbus-ohio.osm.pbf",
+    *long("nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf", "copenhagen-rail-2015.osm.gz"),
 ]  # fmt: skip
 
 

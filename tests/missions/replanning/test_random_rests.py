@@ -17,6 +17,7 @@ from missions.services import PlanRequest, TargetRequest, UavRequest, create_mis
 from missions.services.flying import FlightEnd, mark_flight_ended
 from missions.services.refused import Refused
 from missions.services.replanning import accept_offer
+from tests.cases import long
 from tests.inspection import ground as ground_rows
 from tests.missions.flights import fleet
 from tests.missions.plane import apart_m
@@ -32,7 +33,7 @@ UAVS, TARGETS, NEAR_DEG = 3, 9, 0.03
 @pytest.mark.parametrize(
     ("seeds", "most_offers"), [pytest.param(range(8, 20), 2, id="few"), pytest.param(range(60), 60, id="many", marks=pytest.mark.long)]
 )
-@pytest.mark.parametrize("file_name", ["elme-valley.osm.pbf", "columbus-ohio.osm.pbf"])
+@pytest.mark.parametrize("file_name", ["elme-valley.osm.pbf", *long("columbus-ohio.osm.pbf")])
 def test_continued_routes_cross_no_zone_and_lose_no_target(
     region_file: Any, file_name: str, tmp_path: Any, seeds: range, most_offers: int
 ) -> None:
