@@ -11,7 +11,7 @@ from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.performance import Performance
-from missions.flight_plan.rules import FlightRules
+from missions.flight_plan.rules import AT_ONCE, FlightRules
 from missions.flight_plan.waypoints import WaypointKind
 from missions.mavlink.frozen import LAND, Flight, FrozenWaypoint, TakeOff
 from missions.routing.problem import Task, TaskKind
@@ -89,7 +89,8 @@ def true_flight(seed: int, *, least_leg_m: float = 80.0) -> TrueFlight:
     flight = Flight(0, TakeOff(waypoints[0].position, 100.0), waypoints, LAND)
     conditions = Conditions((WindLayer(50.0, float(random.uniform(0, 4)), float(random.uniform(0, 359))),))
     max_airspeed_mps = cruise_mps + 6.0
-    planned = {"cruise_speed_mps": cruise_mps, "conditions": conditions, "rules": FlightRules()}
+    rules = FlightRules(manoeuvres=AT_ONCE)  # as _fly turns and stops
+    planned = {"cruise_speed_mps": cruise_mps, "conditions": conditions, "rules": rules}
     performance = Performance(battery_wh=400.0, mass_kg=2.5, max_airspeed_mps=max_airspeed_mps)
     energy = energy_plan(flight, performance=performance, **planned)
     assert energy is not None

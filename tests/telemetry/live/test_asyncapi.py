@@ -36,8 +36,9 @@ def follow(here: Door, path: str, user: User) -> WebSocket:
 
 
 def hear(live: WebSocket, document: Any, name: str) -> Any:
-    """Return the next message, which has to be the one that the document names so."""
-    message = json.loads(live.recv())
+    """Return the next message but heartbeats, which has to be the one that the document names so."""
+    while (message := json.loads(live.recv()))["type"] == "still-there" != name:
+        validate(message, document["components"]["schemas"]["still-there"], openapi_document())
     validate(message, document["components"]["schemas"][name], openapi_document())
     return message
 
