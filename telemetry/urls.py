@@ -9,6 +9,7 @@ from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFil
 from telemetry.views.live import Live
 from telemetry.views.log import LatestTelemetry, TelemetryLog
 from telemetry.views.mission_record import MissionRecord, MissionRecordFile
+from telemetry.views.preflight import MissionPreflight
 from telemetry.views.results import Results
 from telemetry.views.unknown_vehicles import UnknownVehicleAdoption, UnknownVehicleIgnoring, UnknownVehicles
 from telemetry.views.vehicle_logs import FlightLogFile, FlightLogs, UavConnection, VehicleTexts
@@ -44,6 +45,7 @@ urlpatterns = [
     path("results", Results.as_view(), name="api-results"),
     path("live", Live.as_view(), name="api-live"),
     path("telemetry", TelemetryLog.as_view(), name="api-telemetry"),
+    path("missions/<uuid:mission_id>/preflight", MissionPreflight.as_view(), name="api-mission-preflight"),
     path("missions/<uuid:mission_id>/record", MissionRecord.as_view(), name="api-mission-record"),
     path("missions/<uuid:mission_id>/record.zip", MissionRecordFile.as_view(), name="api-mission-record-file"),
     path("missions/<uuid:mission_id>/estimates", MissionEstimates.as_view(), name="api-mission-estimates"),

@@ -19,6 +19,12 @@ class PlannedStartSerializer(serializers.Serializer):
     why = serializers.CharField(allow_blank=True, help_text="what it waits for after its time, or why it was refused")
 
 
+class StartsInputSerializer(serializers.Serializer):
+    pilot_checked = serializers.BooleanField(
+        default=False, help_text="who starts them says that what only a pilot can see was looked at; it stays in the history"
+    )
+
+
 class PlannedStartsSerializer(serializers.Serializer):
     id = serializers.UUIDField()
     mission = serializers.UUIDField()

@@ -61,9 +61,10 @@ class PlannedStart:
     why: str = ""
 
 
-def begin_planned_starts(*, mission: Mission, actor: User) -> PlannedStarts:
+def begin_planned_starts(*, mission: Mission, actor: User, pilot_checked: bool = False) -> PlannedStarts:
     """Plan the first starts of all UAVs that have their route and did not start yet; the first one in LEAD_S seconds.
 
+    pilot_checked: the actor has said that what only a pilot can see was looked at; it stays in the history.
     Raises Refused, also where one of them does not have its route as approved.
     """
     with transaction.atomic():
@@ -90,7 +91,8 @@ def begin_planned_starts(*, mission: Mission, actor: User) -> PlannedStarts:
         ]
         starts = PlannedStarts.objects.create(mission=held, created_by=actor, uavs=[asdict(entry) for entry in entries])
         starts.refresh_from_db()
-        note(held, actor, "begin-starts", before=None, after={"uavs": [entry.uav for entry in entries]})
+        after = {"uavs": [entry.uav for entry in entries], "pilot_checked": pilot_checked}
+        note(held, actor, "begin-starts", before=None, after=after)
     return starts
 
 

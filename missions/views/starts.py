@@ -14,6 +14,7 @@ from missions.serializers.starts import (
     MissionStartsSerializer,
     PlannedStartsListSerializer,
     PlannedStartsSerializer,
+    StartsInputSerializer,
     planned_starts_json,
     waiting_json,
 )
@@ -67,14 +68,16 @@ class MissionPlannedStarts(APIView):
         description="On the server: whoever closes the page stops nothing. Each start is checked when it is due as a single one is, also"
         " against the actual state of those in the air, and waits where it has to. It ends when a UAV of the mission is told to pause,"
         " hold, return or land, or the mission is aborted.",
-        request=None,
+        request=StartsInputSerializer,
         responses={201: PlannedStartsSerializer, **REFUSED},
     )
     @idempotent
     def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
+        asked = StartsInputSerializer(data=request.data)
+        asked.is_valid(raise_exception=True)
         with api_problems(), refusals():
-            starts = begin_planned_starts(mission=mission, actor=request.user)
+            starts = begin_planned_starts(mission=mission, actor=request.user, **asked.validated_data)
         return Response(planned_starts_json(starts), status=201)
 
     @extend_schema(

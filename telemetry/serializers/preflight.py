@@ -1,0 +1,33 @@
+"""Checks before start, in the shapes of the API."""
+
+from rest_framework import serializers
+
+from telemetry.services.preflight import CheckState, NextAct
+
+
+class CheckSerializer(serializers.Serializer):
+    code = serializers.CharField(
+        help_text="link, position, battery, mission, fence, return, wind, others, departure, ground, or a reason that refuses starts"
+    )
+    state = serializers.ChoiceField(choices=[(state.value, state.value) for state in CheckState], help_text="failed: it is not started")
+    message = serializers.CharField()
+
+
+class UavPreflightSerializer(serializers.Serializer):
+    uav = serializers.IntegerField()
+    name = serializers.CharField()
+    place = serializers.IntegerField(help_text="in the mission")
+    is_loaded = serializers.BooleanField(help_text="the mission was uploaded, and read back as approved")
+    blocks = serializers.BooleanField(help_text="one of its checks has failed")
+    checks = CheckSerializer(many=True)
+
+
+class PreflightSerializer(serializers.Serializer):
+    next_act = serializers.ChoiceField(
+        choices=[(act.value, act.value) for act in NextAct],
+        allow_null=True,
+        help_text="connect: no UAV that lacks the mission is heard; upload: POST …/dispatch; wait: uploads are under way; "
+        "start: POST …/planned-starts; null: nothing is left to start",
+    )
+    checks = CheckSerializer(many=True, help_text="of the whole mission")
+    uavs = UavPreflightSerializer(many=True, help_text="whose first flight has not begun, in the order of their departures")

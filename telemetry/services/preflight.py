@@ -1,0 +1,236 @@
+"""Checks before the UAVs of a mission are started: what is ready, what speaks against a start, and which act comes next."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+from enum import StrEnum
+from typing import Any
+
+import numpy as np
+from django.conf import settings
+from django.utils.dateparse import parse_datetime
+from django.utils.translation import gettext as _
+
+from inspection.geodesy import distance_m
+from missions.fleet_selectors import performance_of
+from missions.models import OPEN_COMMANDS, Approval, CommandAxis, CommandKind, CommandState, Mission, Route, Uav, UavCommand
+from missions.selectors import approval_in_force
+from missions.services.approval_checks import look_at
+from missions.services.dispatch import TO_SEND
+from missions.services.own_return import ReturnCheck, ReturnState, return_checks
+from missions.services.planned_starts import BEGUN
+from missions.services.refused import Reason
+from missions.services.start_slots import reasons_to_wait
+from telemetry.models import UavLink, UavWatch
+
+HEARD_WITHIN = timedelta(seconds=15)  # companions report every 10 s
+BATTERY_WITHIN = timedelta(seconds=60)
+FIX_IN_SPACE = 3  # GPS_FIX_TYPE of MAVLink: 3D
+MORE_WIND_MPS = 3.0  # than planned, of which is warned
+AT_ITS_PLACE_M, AWAY_FROM_ITS_PLACE_M = 15.0, 50.0  # of the planned take-off: nothing is said, and it may not start
+Told = Mapping[str, Mapping[str, Any]]  # groups of values of the newest reports; see services/latest.py
+
+
+class CheckState(StrEnum):
+    OK = "ok"
+    WARNING = "warning"
+    UNKNOWN = "unknown"  # nothing tells
+    WAITING = "waiting"  # passes by itself, or by the next act
+    FAILED = "failed"  # it is not started
+
+
+class NextAct(StrEnum):
+    CONNECT = "connect"
+    UPLOAD = "upload"
+    WAIT = "wait"  # missions are on their way to UAVs
+    START = "start"
+
+
+@dataclass(frozen=True)
+class Check:
+    """`code` is short and stable; `message` a sentence, or a few words where all is well."""
+
+    code: str
+    state: CheckState
+    message: str
+
+
+@dataclass(frozen=True)
+class UavPreflight:
+    uav: int
+    name: str
+    place: int
+    is_loaded: bool
+    checks: tuple[Check, ...]
+
+    @property
+    def blocks(self) -> bool:
+        return any(check.state == CheckState.FAILED for check in self.checks)
+
+
+@dataclass(frozen=True)
+class Preflight:
+    """`next_act` is None where nothing is left to start. `checks` are those of the whole mission."""
+
+    next_act: NextAct | None
+    checks: tuple[Check, ...]
+    uavs: tuple[UavPreflight, ...]
+
+
+def preflight_of(mission: Mission, *, now: datetime) -> Preflight:
+    """Of the UAVs whose first flight has not begun, of a mission as loaded by selectors.mission_of_organisation. Raises NoGraph."""
+    approval = approval_in_force(mission)
+    if approval is None or approval.revoke_requested_at is not None or mission.state not in TO_SEND:
+        return Preflight(None, (), ())
+    routes = _to_start(mission, approval)
+    if not routes:
+        return Preflight(None, (), ())
+    look = look_at(mission, now=now)
+    reasons = () if look is None else look.reasons
+    returns = {check.place: check for check in return_checks(mission)}
+    rows = tuple(
+        _uav_preflight(uav, route, approval, returns.get(route.mission_uav.sequence), reasons, now)
+        for route in routes
+        if (uav := route.mission_uav.uav) is not None
+    )
+    own = tuple(_against(reasons, None))
+    clear = Check("ground", CheckState.OK, _("No zone in force and nothing on the ground is in the way"))
+    return Preflight(_next_act(rows), own if reasons else (clear,), rows)
+
+
+def _to_start(mission: Mission, approval: Approval) -> list[Route]:
+    """In the order of their departures."""
+    begun = set(approval.commands.filter(kind=CommandKind.START, state__in=BEGUN).values_list("uav", flat=True))
+    routes = mission.routes.select_related("mission", "mission_uav__uav__uav_type").filter(
+        mission_uav__uav__isnull=False, geometry__isnull=False, begun_by=None, continued_by=None, has_failed=False, flights_flown=0
+    )
+    return list(routes.exclude(mission_uav__uav__in=begun).order_by("departs_s", "mission_uav__sequence"))
+
+
+def _next_act(rows: tuple[UavPreflight, ...]) -> NextAct:
+    """Connected UAVs without the mission come first; those that nobody hears hold up no others' upload."""
+    states = [{check.code: check.state for check in row.checks} for row in rows]
+    to_load = [found for row, found in zip(rows, states, strict=True) if not row.is_loaded]
+    if not to_load:
+        return NextAct.START
+    if any(found["mission"] == CheckState.WAITING and found["link"] == CheckState.OK for found in to_load):
+        return NextAct.WAIT
+    return NextAct.UPLOAD if any(found["link"] == CheckState.OK for found in to_load) else NextAct.CONNECT
+
+
+def _against(reasons: Sequence[Reason], place: int | None) -> Iterator[Check]:
+    """What speaks against this UAV's route, or against the whole mission."""
+    return (Check(reason.code, CheckState.FAILED, reason.message) for reason in reasons if reason.uav == place)
+
+
+def _uav_preflight(
+    uav: Uav, route: Route, approval: Approval, returns: ReturnCheck | None, reasons: Sequence[Reason], now: datetime
+) -> UavPreflight:
+    place = route.mission_uav
+    link = UavLink.objects.filter(uav=uav).first() or UavLink(uav=uav)
+    watch = UavWatch.objects.filter(uav=uav).first()
+    told: Told = (watch.measured if watch is not None else None) or {}
+    on_board = _mission_on_board(uav, approval, link)
+    is_loaded = on_board.state in (CheckState.OK, CheckState.WARNING)
+    checks = (
+        _link(link, told, now), _position(route, told), _battery(uav, route, told, now), on_board, *_returns(returns),
+        *_wind(route.mission, told), *(_others(uav, route, now) if is_loaded else ()), *_against(reasons, place.sequence),
+    )  # fmt: skip
+    return UavPreflight(uav.pk, place.name, place.sequence, is_loaded, checks)
+
+
+def _link(link: UavLink, told: Told, now: datetime) -> Check:
+    received = parse_datetime(told["report"]["received_at"]) if "report" in told else None
+    heard = max((moment for moment in (link.heard_at, received) if moment is not None), default=None)
+    if heard is None:
+        return Check("link", CheckState.FAILED, _("It was never heard. Switch it on, and check its connection."))
+    age_s = max((now - heard).total_seconds(), 0.0)
+    if age_s > HEARD_WITHIN.total_seconds():
+        words = _("It was last heard %(age)s ago. Switch it on, and check its connection.")
+        return Check("link", CheckState.FAILED, words % {"age": _duration(age_s)})
+    return Check("link", CheckState.OK, _("Connected"))
+
+
+def _position(route: Route, told: Told) -> Check:
+    fix, place = told.get("gps", {}).get("gps_fix"), told.get("position", {}).get("position")
+    if fix is not None and fix < FIX_IN_SPACE:
+        return Check("position", CheckState.FAILED, _("It has no position yet. Wait for its satellite receiver."))
+    if place is None:
+        return Check("position", CheckState.UNKNOWN, _("It has told no position."))
+    away_m = float(distance_m(np.array([place]), np.array([route.mission_uav.start.coords]))[0])
+    if away_m > AWAY_FROM_ITS_PLACE_M:
+        words = _("It stands %(metres)s m from its planned take-off place. Carry it there, or plan its start anew.")
+        return Check("position", CheckState.FAILED, words % {"metres": f"{away_m:.0f}"})
+    state = CheckState.OK if away_m <= AT_ITS_PLACE_M else CheckState.WARNING
+    return Check("position", state, _("%(metres)s m from its planned take-off place") % {"metres": f"{away_m:.0f}"})
+
+
+def _battery(uav: Uav, route: Route, told: Told, now: datetime) -> Check:
+    battery = told.get("battery", {})
+    percent = battery.get("battery_percent")
+    measured = parse_datetime(battery["measured_at"]) if battery else None
+    if percent is None or measured is None or now - measured > BATTERY_WITHIN:
+        return Check("battery", CheckState.UNKNOWN, _("It does not report its battery."))
+    if route.battery_percent is None:
+        return Check("battery", CheckState.UNKNOWN, _("%(percent)s %%; what its flight takes is not known") % {"percent": f"{percent:.0f}"})
+    lands_with, reserve = percent - (100.0 - route.battery_percent), performance_of(uav).reserve_percent
+    values = {"percent": f"{percent:.0f}", "lands": f"{max(lands_with, 0.0):.0f}", "reserve": f"{reserve:.0f}"}
+    if lands_with < reserve - 0.5:
+        words = _("%(percent)s %%: it would land with %(lands)s %%, below the reserve of %(reserve)s %%. Charge or change it.")
+        return Check("battery", CheckState.FAILED, words % values)
+    return Check("battery", CheckState.OK, _("%(percent)s %%, lands with %(lands)s %% (reserve %(reserve)s %%)") % values)
+
+
+def _mission_on_board(uav: Uav, approval: Approval, link: UavLink) -> Check:
+    last = UavCommand.objects.filter(uav=uav, axis=CommandAxis.MISSION).order_by("-sequence").first()
+    if last is None or last.approval_id != approval.pk or last.kind != CommandKind.UPLOAD_MISSION:
+        return Check("mission", CheckState.UNKNOWN, _("Not uploaded"))
+    if last.state in OPEN_COMMANDS:
+        return Check("mission", CheckState.WAITING, _("Being uploaded"))
+    if last.state != CommandState.APPLIED:
+        return Check("mission", CheckState.FAILED, _("Not uploaded: %(why)s") % {"why": last.outcome or last.get_state_display()})
+    if link.loaded_doubt:
+        return Check("mission", CheckState.WARNING, _("Uploaded; it may hold something else by now, and is read back before it starts"))
+    return Check("mission", CheckState.OK, _("Uploaded and read back: as approved"))
+
+
+def _returns(check: ReturnCheck | None) -> Iterator[Check]:
+    if check is None:
+        return
+    if check.fence_warning:
+        yield Check("fence", CheckState.WARNING, check.fence_warning)
+    states = {ReturnState.CLEAR: CheckState.OK, ReturnState.IN_THE_WAY: CheckState.WARNING}
+    words = " ".join(check.warnings)
+    if check.state == ReturnState.CLEAR and check.height_m is not None:
+        words = _("Return at %(metres)s m is clear") % {"metres": f"{check.height_m:.0f}"}
+    if words:
+        yield Check("return", states.get(check.state, CheckState.UNKNOWN), words)
+
+
+def _wind(mission: Mission, told: Told) -> Iterator[Check]:
+    """Most vehicles tell it in the air alone."""
+    measured_mps = told.get("wind", {}).get("wind_speed_mps")
+    if measured_mps is None:
+        return
+    layers = (mission.conditions or {}).get("wind") or []
+    planned_mps = max((float(layer["speed_mps"]) for layer in layers), default=0.0)
+    values = {"measured": f"{measured_mps:.0f}", "planned": f"{planned_mps:.0f}"}
+    state = CheckState.WARNING if measured_mps > planned_mps + MORE_WIND_MPS else CheckState.OK
+    yield Check("wind", state, _("Wind %(measured)s m/s measured, %(planned)s m/s planned") % values)
+
+
+def _others(uav: Uav, route: Route, now: datetime) -> Iterator[Check]:
+    for reason in reasons_to_wait(uav=uav, route=route, flight=1, now=now):
+        yield Check("others", CheckState.WAITING, reason.message)
+    if route.mission.departs_at is not None:
+        departs_at = route.mission.departs_at + timedelta(seconds=route.departs_s)
+        if now < departs_at - timedelta(seconds=settings.ZONE_RULES.time_margin_s):
+            yield Check("departure", CheckState.WAITING, _("Departs at %(time)s UTC") % {"time": f"{departs_at:%H:%M}"})
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 120.0:
+        return _("%(seconds)s s") % {"seconds": f"{seconds:.0f}"}
+    if seconds < 7_200.0:
+        return _("%(minutes)s min") % {"minutes": f"{seconds / 60.0:.0f}"}
+    return _("%(hours)s h") % {"hours": f"{seconds / 3_600.0:.0f}"}

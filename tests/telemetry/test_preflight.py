@@ -1,0 +1,163 @@
+"""Checks before start: what is ready, what blocks, and which act comes next."""
+
+from datetime import timedelta
+from typing import Any
+
+import pytest
+from django.utils import timezone
+
+from missions.models import CommandKind, Mission, MissionState, Uav
+from missions.selectors import mission_of_organisation
+from missions.services.dispatch import dispatch_mission
+from missions.services.outbox import note_failed
+from missions.services.steering import command_uav
+from telemetry.models import UavLink
+from telemetry.services.ingest import store_records
+from telemetry.services.preflight import CheckState, NextAct, Preflight, preflight_of
+from tests.missions.api import post
+from tests.missions.flights import an_operator, approved, carry, fleet
+from tests.missions.outbox import claim, fence
+from tests.missions.worlds import world, zone_around
+from tests.telemetry.records import START, record
+from tests.workspace.people import client_of, somebody
+from workspace.models import AuditEntry, Role, User
+
+pytestmark = pytest.mark.django_db
+
+
+@pytest.fixture
+def person() -> User:
+    return an_operator()
+
+
+@pytest.fixture
+def two(person: User) -> tuple[Mission, Uav, Uav]:
+    """An approved mission of two UAVs, sent to none yet."""
+    uavs = fleet("Tern", "Kite")
+    mission, _approval = approved(person, uavs, world().towers[4:6])
+    return mission, *uavs
+
+
+def heard(*uavs: Uav, **measured: Any) -> None:
+    for uav in uavs:
+        UavLink.objects.update_or_create(uav=uav, defaults={"heard_at": timezone.now(), "is_in_air": False})
+        start = uav.mission_uavs.get().start
+        values = {"longitude_deg": start.x, "latitude_deg": start.y, "gps_fix": 3, "battery_percent": 98.0} | measured
+        store_records([record(uav, 1, measured_s=(timezone.now() - START).total_seconds(), **values)])
+
+
+def checks(mission: Mission) -> Preflight:
+    return preflight_of(mission_of_organisation(mission.organisation, mission.pk), now=timezone.now())
+
+
+def states(found: Preflight, uav: Uav) -> dict[str, CheckState]:
+    row = next(row for row in found.uavs if row.uav == uav.pk)
+    return {check.code: check.state for check in row.checks}
+
+
+def test_acts_follow_each_other_until_nothing_is_left_to_start(two: tuple[Mission, Uav, Uav], person: User) -> None:
+    mission, *uavs = two
+    assert checks(mission).next_act == NextAct.CONNECT
+    heard(*uavs)
+    assert checks(mission).next_act == NextAct.UPLOAD
+    dispatch_mission(mission=mission, actor=person)
+    assert checks(mission).next_act == NextAct.WAIT
+    carry(*uavs)
+    found = checks(mission)
+    assert found.next_act == NextAct.START
+    assert not any(row.blocks for row in found.uavs)
+    assert [check.code for check in found.checks] == ["ground"]
+    for uav in uavs:
+        command_uav(uav=uav, kind=CommandKind.START, actor=person, parameters={"out_of_slot": True})
+    carry(*uavs)
+    assert checks(mission) == Preflight(None, (), ())
+
+
+def test_one_that_nobody_hears_holds_up_no_others_upload(two: tuple[Mission, Uav, Uav], person: User) -> None:
+    mission, tern, kite = two
+    heard(tern)
+    assert checks(mission).next_act == NextAct.UPLOAD
+    dispatch_mission(mission=mission, actor=person)
+    carry(tern)
+    found = checks(mission)
+    assert found.next_act == NextAct.CONNECT
+    assert states(found, kite)["link"] == CheckState.FAILED
+    assert states(found, tern)["mission"] == CheckState.OK
+
+
+def test_a_uav_that_was_heard_long_ago_is_not_connected(two: tuple[Mission, Uav, Uav]) -> None:
+    mission, tern, kite = two
+    heard(tern, kite)
+    assert states(preflight_of(mission, now=timezone.now() + timedelta(minutes=5)), tern)["link"] == CheckState.FAILED
+
+
+def test_a_uav_in_another_place_without_a_fix_or_with_too_little_battery_is_not_started(two: tuple[Mission, Uav, Uav]) -> None:
+    mission, tern, kite = two
+    heard(tern, longitude_deg=10.1)
+    heard(kite, gps_fix=1)
+    assert states(checks(mission), tern)["position"] == CheckState.FAILED
+    assert states(checks(mission), kite)["position"] == CheckState.FAILED
+
+
+def test_a_battery_that_would_land_below_its_reserve_blocks(two: tuple[Mission, Uav, Uav]) -> None:
+    mission, tern, kite = two
+    mission.routes.update(battery_percent=60.0)
+    heard(tern, battery_percent=59.0)
+    heard(kite, battery_percent=61.0)
+    assert states(checks(mission), tern)["battery"] == CheckState.FAILED
+    assert states(checks(mission), kite)["battery"] == CheckState.OK
+
+
+def test_what_is_not_told_is_unknown_and_no_state(two: tuple[Mission, Uav, Uav]) -> None:
+    mission, tern, _kite = two
+    UavLink.objects.create(uav=tern, heard_at=timezone.now())
+    found = states(checks(mission), tern)
+    assert (found["battery"], found["position"], found["mission"]) == (CheckState.UNKNOWN,) * 3
+
+
+def test_an_upload_that_failed_and_one_in_doubt_are_told(two: tuple[Mission, Uav, Uav], person: User) -> None:
+    mission, tern, kite = two
+    heard(tern, kite)
+    dispatch_mission(mission=mission, actor=person)
+    [command] = claim(tern)
+    assert note_failed(command.pk, "mission-refused", "Item 3 is refused.", **fence(command))
+    carry(kite)
+    UavLink.objects.filter(uav=kite).update(loaded_doubt="rebooted")
+    found = checks(mission)
+    assert found.next_act == NextAct.UPLOAD
+    assert states(found, tern)["mission"] == CheckState.FAILED
+    assert "Item 3 is refused." in str(found.uavs)
+    assert states(found, kite)["mission"] == CheckState.WARNING
+
+
+def test_a_zone_that_came_since_blocks(two: tuple[Mission, Uav, Uav]) -> None:
+    mission, tern, kite = two
+    heard(tern, kite)
+    zone_around((10.018, 56.0), 0.001)
+    found = checks(mission)
+    against = [*found.checks, *(check for row in found.uavs for check in row.checks)]
+    assert any(check.code == "zone" and check.state == CheckState.FAILED for check in against)
+
+
+def test_of_a_mission_that_is_not_approved_nothing_is_checked(two: tuple[Mission, Uav, Uav]) -> None:
+    mission, _tern, _kite = two
+    Mission.objects.filter(pk=mission.pk).update(state=MissionState.COMPLETED)
+    assert checks(mission) == Preflight(None, (), ())
+
+
+def test_the_api_tells_viewers_and_nobody_of_another_organisation(two: tuple[Mission, Uav, Uav]) -> None:
+    mission, _tern, _kite = two
+    answer = client_of(somebody(role=Role.VIEWER)).get(f"/api/v1/missions/{mission.pk}/preflight")
+    assert answer.status_code == 200
+    assert answer.json()["next_act"] == "connect"
+    assert answer.json()["uavs"][0]["checks"][0]["code"] == "link"
+
+
+def test_the_pilots_own_check_is_kept_with_the_starts(two: tuple[Mission, Uav, Uav], person: User) -> None:
+    mission, *uavs = two
+    heard(*uavs)
+    dispatch_mission(mission=mission, actor=person)
+    carry(*uavs)
+    answer = post(client_of(person), f"missions/{mission.pk}/planned-starts", {"pilot_checked": True})
+    assert answer.status_code == 201, answer.content
+    assert AuditEntry.objects.get(action="begin-starts").after["pilot_checked"] is True
