@@ -2939,6 +2939,14 @@ export interface components {
             /** @description shown this once */
             readonly token: string;
         };
+        /**
+         * @description * `connect` - connect
+         *     * `upload` - upload
+         *     * `wait` - wait
+         *     * `start` - start
+         * @enum {string}
+         */
+        NextActEnum: "connect" | "upload" | "wait" | "start";
         Noted: {
             /** Format: uuid */
             command: string;
@@ -3627,6 +3635,45 @@ export interface components {
              */
             ground_amsl_m?: number | null;
         };
+        Preflight: {
+            /**
+             * @description connect: no UAV that lacks the mission is heard; upload: POST …/dispatch; wait: uploads are under way; start: POST …/planned-starts; null: nothing is left to start
+             *
+             *     * `connect` - connect
+             *     * `upload` - upload
+             *     * `wait` - wait
+             *     * `start` - start
+             */
+            next_act: (components["schemas"]["NextActEnum"] | components["schemas"]["NullEnum"]) | null;
+            /** @description of the whole mission */
+            checks: components["schemas"]["PreflightCheck"][];
+            /** @description whose first flight has not begun, in the order of their departures */
+            uavs: components["schemas"]["UavPreflight"][];
+        };
+        PreflightCheck: {
+            /** @description link, position, battery, mission, fence, return, wind, others, departure, ground, or a reason that refuses starts */
+            code: string;
+            /**
+             * @description failed: it is not started
+             *
+             *     * `ok` - ok
+             *     * `warning` - warning
+             *     * `unknown` - unknown
+             *     * `waiting` - waiting
+             *     * `failed` - failed
+             */
+            state: components["schemas"]["PreflightCheckStateEnum"];
+            message: string;
+        };
+        /**
+         * @description * `ok` - ok
+         *     * `warning` - warning
+         *     * `unknown` - unknown
+         *     * `waiting` - waiting
+         *     * `failed` - failed
+         * @enum {string}
+         */
+        PreflightCheckStateEnum: "ok" | "warning" | "unknown" | "waiting" | "failed";
         Presence: {
             others: components["schemas"]["Present"][];
             /** @description of assets, zones and terrain: a plan of an older one is stale */
@@ -5542,6 +5589,13 @@ export interface components {
          * @enum {string}
          */
         StaleCauseWhatEnum: "zone" | "uav" | "base" | "asset" | "terrain" | "elsewhere";
+        StartsInputRequest: {
+            /**
+             * @description who starts them says that what only a pilot can see was looked at; it stays in the history
+             * @default false
+             */
+            pilot_checked: boolean;
+        };
         /** @description Every record of the batch is stored, known or refused: none of them needs to be sent again as it is. */
         StoredReports: {
             /** @description new ones */
@@ -6231,6 +6285,17 @@ export interface components {
             active: number;
             maintenance: number;
             retired: number;
+        };
+        UavPreflight: {
+            uav: number;
+            name: string;
+            /** @description in the mission */
+            place: number;
+            /** @description the mission was uploaded, and read back as approved */
+            is_loaded: boolean;
+            /** @description one of its checks has failed */
+            blocks: boolean;
+            checks: components["schemas"]["PreflightCheck"][];
         };
         /**
          * @description Range, speed, battery, mass, reserve and airspeed are the UAV's own; where it has none (`null`), what comes back is its type's, and
@@ -7358,6 +7423,7 @@ export type Nearest = components['schemas']['Nearest'];
 export type NewCredential = components['schemas']['NewCredential'];
 export type NewInvitation = components['schemas']['NewInvitation'];
 export type NewToken = components['schemas']['NewToken'];
+export type NextActEnum = components['schemas']['NextActEnum'];
 export type Noted = components['schemas']['Noted'];
 export type NotedList = components['schemas']['NotedList'];
 export type NullEnum = components['schemas']['NullEnum'];
@@ -7402,6 +7468,9 @@ export type Point = components['schemas']['Point'];
 export type PointRequest = components['schemas']['PointRequest'];
 export type PointTypeEnum = components['schemas']['PointTypeEnum'];
 export type PoolUavRequest = components['schemas']['PoolUavRequest'];
+export type Preflight = components['schemas']['Preflight'];
+export type PreflightCheck = components['schemas']['PreflightCheck'];
+export type PreflightCheckStateEnum = components['schemas']['PreflightCheckStateEnum'];
 export type Presence = components['schemas']['Presence'];
 export type PresenceInputRequest = components['schemas']['PresenceInputRequest'];
 export type Present = components['schemas']['Present'];
@@ -7527,6 +7596,7 @@ export type Span = components['schemas']['Span'];
 export type SpeedEnum = components['schemas']['SpeedEnum'];
 export type StaleCause = components['schemas']['StaleCause'];
 export type StaleCauseWhatEnum = components['schemas']['StaleCauseWhatEnum'];
+export type StartsInputRequest = components['schemas']['StartsInputRequest'];
 export type StoredReports = components['schemas']['StoredReports'];
 export type StoredResults = components['schemas']['StoredResults'];
 export type Straight = components['schemas']['Straight'];
@@ -7573,6 +7643,7 @@ export type UavInputRequest = components['schemas']['UavInputRequest'];
 export type UavMission = components['schemas']['UavMission'];
 export type UavMissionPage = components['schemas']['UavMissionPage'];
 export type UavNumbers = components['schemas']['UavNumbers'];
+export type UavPreflight = components['schemas']['UavPreflight'];
 export type UavProperties = components['schemas']['UavProperties'];
 export type UavPropertiesRequest = components['schemas']['UavPropertiesRequest'];
 export type UavState = components['schemas']['UavState'];

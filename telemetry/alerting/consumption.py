@@ -76,6 +76,7 @@ class Drained:
 
     expected: float = 0.0
     lost: float = 0.0
+    runs: int = 0  # of reports in a row, each of which begins and ends with a reading
     steps: deque[tuple[float, float]] = field(default_factory=lambda: deque([(0.0, 0.0)], maxlen=STEPS_KEPT + 1))
 
     def add(self, expected: float, lost: float) -> None:
@@ -92,8 +93,13 @@ class Drained:
             if self.lost - lost >= LEAST_LOST_PERCENT + READ_WITHIN_PERCENT and self.expected > expected
         ]
         if self.lost >= LEAST_LOST_PERCENT:
-            found.append(self.lost / self.expected)
+            found.append(_beyond(self.lost, self.expected, READ_WITHIN_PERCENT * math.sqrt(max(self.runs, 1))) / self.expected)
         return min(max(*RATIOS[:1], *found), RATIOS[1]) if found else None
+
+
+def _beyond(lost: float, expected: float, within: float) -> float:
+    """What was lost, as far as errors of reading do not explain how it differs from what was expected."""
+    return min(max(expected, lost - within), lost + within)
 
 
 @dataclass
@@ -117,7 +123,10 @@ class DrainMemory:
             self.still_lost = 0.0
             return
         self.still_lost = self.still_lost + lost if kind is FlightKind.STILL is was else 0.0
-        self.of_kind[kind].add(expected_per_s * seconds, lost)
+        if kind is was:
+            self.of_kind[kind].add(expected_per_s * seconds, lost)
+        else:  # nobody knows when in between it changed
+            self.of_kind[kind].runs += 1
 
     def ratio(self, kind: FlightKind) -> float:
         """Return observed to expected drain of one kind of flight; 1 where too little was observed."""

@@ -5,7 +5,7 @@ from rest_framework import serializers
 from telemetry.services.preflight import CheckState, NextAct
 
 
-class CheckSerializer(serializers.Serializer):
+class PreflightCheckSerializer(serializers.Serializer):
     code = serializers.CharField(
         help_text="link, position, battery, mission, fence, return, wind, others, departure, ground, or a reason that refuses starts"
     )
@@ -19,7 +19,7 @@ class UavPreflightSerializer(serializers.Serializer):
     place = serializers.IntegerField(help_text="in the mission")
     is_loaded = serializers.BooleanField(help_text="the mission was uploaded, and read back as approved")
     blocks = serializers.BooleanField(help_text="one of its checks has failed")
-    checks = CheckSerializer(many=True)
+    checks = PreflightCheckSerializer(many=True)
 
 
 class PreflightSerializer(serializers.Serializer):
@@ -29,5 +29,5 @@ class PreflightSerializer(serializers.Serializer):
         help_text="connect: no UAV that lacks the mission is heard; upload: POST …/dispatch; wait: uploads are under way; "
         "start: POST …/planned-starts; null: nothing is left to start",
     )
-    checks = CheckSerializer(many=True, help_text="of the whole mission")
+    checks = PreflightCheckSerializer(many=True, help_text="of the whole mission")
     uavs = UavPreflightSerializer(many=True, help_text="whose first flight has not begun, in the order of their departures")

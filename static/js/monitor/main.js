@@ -21,6 +21,7 @@ import { mountCards } from "./panels/cards.js";
 import { mountCommandBar } from "./panels/command_bar.js";
 import { mountHead } from "./panels/head.js";
 import { mountOffers } from "./panels/offers.js";
+import { mountPreflight } from "./panels/preflight.js";
 import { mountSimulation } from "./panels/simulation.js";
 import { mountUrgent } from "./panels/urgent.js";
 import { ofPage, placed } from "./placed.js";
@@ -88,7 +89,8 @@ mountBoard(store, {
   },
 });
 mountSimulation(page);
-mountPlannedStarts({ mission: page.mission, canFly: page.canFly });
+mountPlannedStarts({ mission: page.mission, canFly: page.canFly, offersBegin: false });
+mountPreflight(store, page);
 mountUrgent(store, { open: narrow.showBoard });
 const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
 

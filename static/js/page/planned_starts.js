@@ -13,6 +13,7 @@ import { toast } from "./toast.js";
  * @typedef {object} StartsContext
  * @property {string | null} mission the only one of the page; null: all
  * @property {boolean} canFly
+ * @property {boolean} [offersBegin] false where another part of the page begins them
  */
 
 const POLL_MS = 2000;
@@ -65,8 +66,15 @@ async function tried(act, failed) {
   }
 }
 
-/** @param {string} mission @param {WaitingStart[]} waiting @param {HTMLElement} opener */
-async function begin(mission, waiting, opener) {
+/**
+ * Asks, and has the server start them.
+ *
+ * @param {string} mission
+ * @param {WaitingStart[]} waiting
+ * @param {HTMLElement} opener
+ * @param {{ pilot_checked?: boolean }} [said]
+ */
+export async function beginStarts(mission, waiting, opener, said = {}) {
   const asked = await confirmAct({
     title: tn(waiting.length, "Start {count} UAV in planned order?", "Start {count} UAVs in planned order?"),
     lines: [
@@ -81,7 +89,7 @@ async function begin(mission, waiting, opener) {
     opener,
   });
   const headers = { "Idempotency-Key": freshKey() };
-  if (asked) await tried(() => post(`/missions/${mission}/planned-starts`, {}, { headers }), t("Not started."));
+  if (asked) await tried(() => post(`/missions/${mission}/planned-starts`, said, { headers }), t("Not started."));
 }
 
 /** @param {PlannedStarts} starts */
@@ -116,7 +124,7 @@ const startsPart = ({ ended_at, ended_by, end, mission_name, uavs }, { now_ms, i
 ];
 
 /** @param {StartsContext} context */
-export function mountPlannedStarts({ mission, canFly }) {
+export function mountPlannedStarts({ mission, canFly, offersBegin = true }) {
   const place = byId("planned-starts");
   /** @type {PlannedStarts[]} */
   let shown = [];
@@ -150,7 +158,7 @@ export function mountPlannedStarts({ mission, canFly }) {
 
   function draw() {
     const now_ms = Date.now() + ahead_ms;
-    const canBegin = canFly && waiting.length > 1 && shown.every(({ ended_at }) => ended_at);
+    const canBegin = offersBegin && canFly && waiting.length > 1 && shown.every(({ ended_at }) => ended_at);
     place.hidden = shown.length === 0 && !canBegin;
     const words = shown.flatMap((starts) => starts.uavs.map((start) => startWords(start, !starts.ended_at, now_ms)));
     const key = JSON.stringify([words, shown.map(({ id, end }) => [id, end]), canBegin]);
@@ -171,7 +179,7 @@ export function mountPlannedStarts({ mission, canFly }) {
 
   const beginButton = () =>
     actButton("begin", "plane-takeoff", t("Start in planned order"), (opener) =>
-      begin(mission ?? "", waiting, opener).then(read),
+      beginStarts(mission ?? "", waiting, opener).then(read),
     );
 
   void read();

@@ -11,7 +11,7 @@ from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.performance import Performance
-from missions.flight_plan.rules import AT_ONCE, FlightRules
+from missions.flight_plan.rules import FlightRules, Manoeuvres
 from missions.flight_plan.waypoints import WaypointKind
 from missions.mavlink.frozen import LAND, Flight, FrozenWaypoint, TakeOff
 from missions.routing.problem import Task, TaskKind
@@ -23,6 +23,7 @@ from telemetry.alerting.surroundings import FlightModel
 MISSION = UUID(int=8)
 START_S = 1_795_000_000.0
 CLIMB_MPS, SINK_MPS = 2.5, 1.5
+MANOEUVRES = Manoeuvres(acceleration_mps2=math.inf, corner_mps2=math.inf, settle_s=0.0, lift_s=0.0)  # as _fly turns and stops: at once
 
 
 @dataclass(frozen=True)
@@ -89,9 +90,9 @@ def true_flight(seed: int, *, least_leg_m: float = 80.0) -> TrueFlight:
     flight = Flight(0, TakeOff(waypoints[0].position, 100.0), waypoints, LAND)
     conditions = Conditions((WindLayer(50.0, float(random.uniform(0, 4)), float(random.uniform(0, 359))),))
     max_airspeed_mps = cruise_mps + 6.0
-    rules = FlightRules(manoeuvres=AT_ONCE)  # as _fly turns and stops
+    rules = FlightRules(manoeuvres=MANOEUVRES)
     planned = {"cruise_speed_mps": cruise_mps, "conditions": conditions, "rules": rules}
-    performance = Performance(battery_wh=400.0, mass_kg=2.5, max_airspeed_mps=max_airspeed_mps)
+    performance = Performance(battery_wh=400.0, mass_kg=2.5, max_airspeed_mps=max_airspeed_mps, descent_speed_mps=SINK_MPS)
     energy = energy_plan(flight, performance=performance, **planned)
     assert energy is not None
     # some flights come back with hardly the reserve
@@ -145,12 +146,16 @@ def _fly(vertices: list, heights: list[float], waypoints: tuple, cruise_mps: flo
             seconds += 1
     height, last, landed = heights[-1], len(vertices) - 1, model.energy.until_percent[-1]
     while height > 0.5:
-        taken = _between(used[-1], landed, 1.0 - height / heights[-1])
+        taken = _between(used[-1], landed, 1.0 - _landing_s(height) / _landing_s(heights[-1]))
         yield State(seconds, *vertices[-1], height, up_mps=-SINK_MPS, vertex=last, holds=True, used_percent=taken)
-        seconds, height = seconds + 1, height - SINK_MPS
+        seconds, height = seconds + 1, height - (SINK_MPS if height > MANOEUVRES.slow_below_m else MANOEUVRES.landing_mps)
     for _ in range(10):
         yield State(seconds, *vertices[-1], 0.0, vertex=last, holds=True, is_in_air=False, used_percent=landed)
         seconds += 1
+
+
+def _landing_s(height_m: float) -> float:
+    return max(height_m - MANOEUVRES.slow_below_m, 0.0) / SINK_MPS + min(height_m, MANOEUVRES.slow_below_m) / MANOEUVRES.landing_mps
 
 
 def _between(start: float, end: float, share: float) -> float:

@@ -43,6 +43,30 @@ export default {
     "Jeder Start wird gegen die UAVs in der Luft geprüft und wartet, wo er muss. Diese Seite zu schließen hält nichts an.",
   "Stop, or any Pause, Hold, Return, Land or Abort of this mission ends it: no further UAV is started.":
     "„Starts anhalten“ oder jeder Befehl Pause, Halten, Rückkehr, Landen oder Abbruch in dieser Mission beendet es: Kein weiteres UAV wird gestartet.",
+  "Before start": "Vor dem Start",
+  "All right": "In Ordnung",
+  "Look at this": "Sehen Sie sich das an",
+  "Waits": "Wartet",
+  "Blocks the start": "Verhindert den Start",
+  "Ready": "Bereit",
+  "Not heard: {names}. Switch them on; this page sees them by itself.":
+    "Nicht gehört: {names}. Schalten Sie sie ein; diese Seite sieht sie von selbst.",
+  "Uploading …": "Wird hochgeladen …",
+  "What each UAV has on board is read back and compared.":
+    "Was jedes UAV an Bord hat, wird zurückgelesen und verglichen.",
+  "Blocked: {names}": "Verhindert: {names}",
+  "Tick what was looked at on site.": "Haken Sie ab, was vor Ort angesehen wurde.",
+  "This plan was not rehearsed": "Dieser Plan wurde nicht geprobt",
+  "Its rehearsal failed": "Seine Probe ist gescheitert",
+  "Rehearsed, with warnings": "Geprobt, mit Warnungen",
+  "Rehearsed: passed": "Geprobt: bestanden",
+  "Its rehearsal has no result yet": "Seine Probe hat noch kein Ergebnis",
+  "Looked at on site: propellers and battery, take-off place, airspace and weather, radio at hand":
+    "Vor Ort angesehen: Propeller und Akku, Startplatz, Luftraum und Wetter, Funkgerät zur Hand",
+  "{count} check not known": ["{count} Prüfung nicht bekannt", "{count} Prüfungen nicht bekannt"],
+  "Connect {count} UAV": ["{count} UAV verbinden", "{count} UAVs verbinden"],
+  "Upload to {count} UAV": ["Auf {count} UAV hochladen", "Auf {count} UAVs hochladen"],
+  "Start {count} UAV": ["{count} UAV starten", "{count} UAVs starten"],
   "Start in planned order": "In geplanter Reihenfolge starten",
   "Stop starting": "Starts anhalten",
   "Start {count} UAV in planned order?": [

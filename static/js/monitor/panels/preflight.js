@@ -1,0 +1,269 @@
+/** Before start: the checks of each UAV, what only a pilot can see, and one button that names the next act. */
+
+import { ApiError, freshKey, get, post } from "../../api.js";
+import { byId, h, icon } from "../../dom.js";
+import { beginStarts } from "../../page/planned_starts.js";
+import { toast } from "../../page/toast.js";
+import { t, tn } from "../../text.js";
+
+/** @import { Answer } from "../../api.js" */
+/** @import { Mission, MissionStarts, Preflight, PreflightCheck, Rehearsal, UavPreflight } from "../../api_types.d.ts" */
+/** @import { MonitorPage, MonitorStore } from "../types.d.ts" */
+
+/**
+ * The button: what it says, whether it can be pressed, and why not.
+ *
+ * @typedef {{ act: Preflight["next_act"], words: string, image: string, why: string }} NextStep
+ */
+
+const POLL_MS = 2500;
+const BEFORE_FLIGHT = new Set(["approved", "dispatched", "active"]);
+
+/** @type {Record<PreflightCheck["state"], { image: string, words: string }>} */
+const STATES = {
+  ok: { image: "circle-check", words: t("All right") },
+  warning: { image: "triangle-alert", words: t("Look at this") },
+  unknown: { image: "circle-dashed", words: t("Not known") },
+  waiting: { image: "timer", words: t("Waits") },
+  failed: { image: "octagon-alert", words: t("Blocks the start") },
+};
+/** @type {PreflightCheck["state"][]} */
+const WORST_FIRST = ["failed", "waiting", "warning", "unknown", "ok"];
+
+/** @param {Pick<PreflightCheck, "state">[]} checks */
+const worstOf = (checks) => WORST_FIRST.find((state) => checks.some((check) => check.state === state)) ?? "ok";
+
+/** What is said of a UAV in one line: its worst check, or that it is ready. @param {Pick<UavPreflight, "checks">} row */
+export function summaryOf({ checks }) {
+  const worst = worstOf(checks);
+  const said = checks.filter(({ state }) => state === worst);
+  if (worst === "ok") return t("Ready");
+  if (worst === "failed" || worst === "waiting") return said[0].message;
+  return worst === "warning"
+    ? tn(said.length, "{count} warning", "{count} warnings")
+    : tn(said.length, "{count} check not known", "{count} checks not known");
+}
+
+/**
+ * @param {Preflight} preflight
+ * @param {boolean} isPilotDone
+ * @returns {NextStep | null}
+ */
+export function nextStep({ next_act, checks, uavs }, isPilotDone) {
+  const waiting = uavs.filter(({ is_loaded }) => !is_loaded);
+  switch (next_act) {
+    case "connect":
+      return {
+        act: next_act,
+        words: tn(waiting.length, "Connect {count} UAV", "Connect {count} UAVs"),
+        image: "radio",
+        why: t("Not heard: {names}. Switch them on; this page sees them by itself.", { names: namesOf(waiting) }),
+      };
+    case "upload":
+      return {
+        act: next_act,
+        words: tn(waiting.length, "Upload to {count} UAV", "Upload to {count} UAVs"),
+        image: "send",
+        why: "",
+      };
+    case "wait":
+      return {
+        act: next_act,
+        words: t("Uploading …"),
+        image: "send",
+        why: t("What each UAV has on board is read back and compared."),
+      };
+    case "start": {
+      const blocked = uavs.filter(({ blocks }) => blocks);
+      const against = checks.find(({ state }) => state === "failed");
+      const why = against
+        ? against.message
+        : blocked.length
+          ? t("Blocked: {names}", { names: namesOf(blocked) })
+          : isPilotDone
+            ? ""
+            : t("Tick what was looked at on site.");
+      return {
+        act: next_act,
+        words: tn(uavs.length, "Start {count} UAV", "Start {count} UAVs"),
+        image: "plane-takeoff",
+        why,
+      };
+    }
+    default:
+      return null;
+  }
+}
+
+/** @param {UavPreflight[]} rows */
+const namesOf = (rows) => rows.map(({ name }) => name).join(", ");
+
+/**
+ * Of this very plan: one that failed or is of another plan is warned of.
+ *
+ * @param {Pick<Rehearsal, "state" | "level" | "is_outdated"> | null} rehearsal the newest
+ * @returns {PreflightCheck}
+ */
+export function rehearsalCheck(rehearsal) {
+  const code = "rehearsal";
+  if (!rehearsal || rehearsal.is_outdated) return { code, state: "warning", message: t("This plan was not rehearsed") };
+  if (rehearsal.level === "fail") return { code, state: "warning", message: t("Its rehearsal failed") };
+  if (rehearsal.level === "warnings") return { code, state: "warning", message: t("Rehearsed, with warnings") };
+  return rehearsal.level === "pass"
+    ? { code, state: "ok", message: t("Rehearsed: passed") }
+    : { code, state: "unknown", message: t("Its rehearsal has no result yet") };
+}
+
+/** @param {PreflightCheck} check */
+const checkRow = ({ code, state, message }) =>
+  h(
+    "li",
+    { class: `check ${state}`, "data-check": code },
+    icon(STATES[state].image, "small"),
+    h("span", {}, h("span", { class: "unseen" }, `${STATES[state].words}: `), message),
+  );
+
+/**
+ * The panel's elements. draw: what was read; drawStep: the button alone.
+ *
+ * @param {HTMLElement} place
+ * @param {{ act: (button: HTMLElement) => unknown, tick: (isDone: boolean) => void }} on
+ */
+function createPanel(place, on) {
+  let drawn = "";
+  const list = h("div", { class: "preflight-checks" });
+  /** @param {Event} event */
+  const ticked = ({ currentTarget }) => on.tick(/** @type {HTMLInputElement} */ (currentTarget).checked);
+  const tick = h(
+    "label",
+    { class: "check-line", hidden: true },
+    h("input", { type: "checkbox", id: "pilot-checked", onchange: ticked }),
+    h("span", {}, t("Looked at on site: propellers and battery, take-off place, airspace and weather, radio at hand")),
+  );
+  const button = h("button", { type: "button", class: "button primary wide", onclick: () => void on.act(button) });
+  const why = h("p", { class: "caption", id: "preflight-why", role: "status" });
+  button.setAttribute("aria-describedby", "preflight-why");
+  place.append(h("h2", {}, t("Before start")), list, tick, button, why);
+
+  return {
+    /** @param {Preflight} preflight @param {PreflightCheck | null} rehearsal */
+    draw(preflight, rehearsal) {
+      const whole = [...preflight.checks, ...(rehearsal ? [rehearsal] : [])];
+      const key = JSON.stringify([whole, preflight.uavs]);
+      tick.hidden = preflight.next_act !== "start";
+      if (key === drawn) return;
+      drawn = key;
+      const parts = /** @type {HTMLElement[]} */ ([...list.querySelectorAll("details[open]")]);
+      const open = new Set(parts.map(({ dataset }) => dataset.uav));
+      const rows = preflight.uavs.map((row) => uavPart(row, open.has(`${row.uav}`)));
+      list.replaceChildren(h("ul", { class: "checks" }, whole.map(checkRow)), ...rows);
+    },
+    /** @param {NextStep} step @param {boolean} isActing */
+    drawStep({ act, words, image, why: reason }, isActing) {
+      button.disabled = isActing || act === "connect" || act === "wait" || reason !== "";
+      button.dataset.act = act ?? "";
+      if (button.dataset.words !== words) {
+        button.dataset.words = words;
+        button.replaceChildren(icon(image, "small"), words);
+      }
+      why.hidden = reason === "";
+      if (why.textContent !== reason) why.textContent = reason;
+    },
+  };
+}
+
+/** @param {UavPreflight} row @param {boolean} isOpen */
+function uavPart(row, isOpen) {
+  const worst = worstOf(row.checks);
+  return h(
+    "details",
+    { "data-uav": `${row.uav}`, open: isOpen },
+    h(
+      "summary",
+      { class: `check ${worst}` },
+      icon(STATES[worst].image, "small"),
+      h("strong", {}, row.name),
+      h("span", { class: "check-summary" }, summaryOf(row)),
+    ),
+    h("ul", { class: "checks" }, row.checks.map(checkRow)),
+  );
+}
+
+/** @param {MonitorStore} store @param {MonitorPage} page */
+export function mountPreflight(store, page) {
+  const { mission } = page;
+  if (mission === null || !page.canFly) return;
+  const place = byId("preflight");
+  /** @type {Preflight | null} */
+  let preflight = null;
+  /** @type {PreflightCheck | null} */
+  let rehearsal = null;
+  let [isPilotDone, isActing] = [false, false];
+  const panel = createPanel(place, {
+    act,
+    tick(isDone) {
+      isPilotDone = isDone;
+      draw();
+    },
+  });
+  const isBeforeFlight = () => BEFORE_FLIGHT.has(store.state.missions.find(({ id }) => id === mission)?.state ?? "");
+
+  function draw() {
+    const step = preflight && isBeforeFlight() ? nextStep(preflight, isPilotDone) : null;
+    place.hidden = !step;
+    if (!preflight || !step) return;
+    panel.draw(preflight, rehearsal);
+    panel.drawStep(step, isActing);
+  }
+
+  /** The page says itself that the server is away. @param {() => Promise<void>} reading */
+  const asFarAsItCan = (reading) =>
+    reading().then(draw, (error) => {
+      if (!(error instanceof ApiError)) throw error;
+    });
+  const read = () =>
+    asFarAsItCan(async () => {
+      if (document.hidden || isActing || !isBeforeFlight()) return;
+      preflight = /** @type {Answer<Preflight>} */ (await get(`/missions/${mission}/preflight`)).data;
+    });
+  const readRehearsal = () =>
+    asFarAsItCan(async () => {
+      const { data } = /** @type {Answer<{ results: Rehearsal[] }>} */ (await get(`/missions/${mission}/rehearsals`));
+      rehearsal = rehearsalCheck(data.results[0] ?? null);
+    });
+
+  /** @param {HTMLElement} button */
+  async function act(button) {
+    const step = preflight && nextStep(preflight, isPilotDone);
+    if (!step || isActing || mission === null) return;
+    isActing = true;
+    draw();
+    try {
+      if (step.act === "upload") await upload(mission);
+      else if (step.act === "start") await start(mission, button);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      toast(`${step.act === "upload" ? t("Not sent.") : t("Not started.")} ${error.message}`);
+    } finally {
+      isActing = false;
+      void read();
+    }
+  }
+
+  store.listen(["missions"], () => void (preflight ? draw() : read()));
+  void readRehearsal();
+  setInterval(read, POLL_MS);
+}
+
+/** To all that have nothing yet; of the revision that was just read. @param {string} mission */
+async function upload(mission) {
+  const { data } = /** @type {Answer<Mission>} */ (await get(`/missions/${mission}`));
+  const headers = { "If-Match": `"${data.revision}"`, "Idempotency-Key": freshKey() };
+  await post(`/missions/${mission}/dispatch`, {}, { headers });
+}
+
+/** @param {string} mission @param {HTMLElement} opener */
+async function start(mission, opener) {
+  const { data } = /** @type {Answer<MissionStarts>} */ (await get(`/missions/${mission}/planned-starts`));
+  await beginStarts(mission, data.waiting, opener, { pilot_checked: true });
+}

@@ -1,0 +1,47 @@
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+globalThis.document ??= { cookie: "", querySelector: () => null, documentElement: { lang: "en", dataset: {} } };
+globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
+const { nextStep, rehearsalCheck, summaryOf } = await import("../../static/js/monitor/panels/preflight.js");
+
+const check = (code, state, message = code) => ({ code, state, message });
+const row = (name, more = {}) => ({ uav: 1, name, place: 0, is_loaded: false, blocks: false, checks: [], ...more });
+const preflight = (next_act, uavs, checks = []) => ({ next_act, checks, uavs });
+
+test("the button names the next act and how many UAVs it is about", () => {
+  const [tern, kite] = [row("Tern"), row("Kite", { is_loaded: true })];
+  assert.equal(nextStep(preflight("upload", [tern, kite]), false).words, "Upload to 1 UAV");
+  assert.equal(nextStep(preflight("connect", [tern, kite]), false).why.startsWith("Not heard: Tern."), true);
+  assert.equal(nextStep(preflight("start", [kite, kite]), true).words, "Start 2 UAVs");
+  assert.equal(nextStep(preflight(null, []), true), null);
+});
+
+test("a start waits for the pilot's tick", () => {
+  const ready = preflight("start", [row("Kite", { is_loaded: true })]);
+  assert.notEqual(nextStep(ready, false).why, "");
+  assert.equal(nextStep(ready, true).why, "");
+});
+
+test("what has failed blocks the start with its reason, whatever was ticked", () => {
+  const blocked = row("Kite", { is_loaded: true, blocks: true, checks: [check("battery", "failed")] });
+  assert.equal(nextStep(preflight("start", [blocked]), true).why, "Blocked: Kite");
+  const zone = check("zone", "failed", "A zone came.");
+  assert.equal(nextStep(preflight("start", [blocked], [zone]), true).why, "A zone came.");
+});
+
+test("the worst check of a UAV is what is said of it", () => {
+  const [ok, failed] = [check("link", "ok"), check("battery", "failed", "It would land with 5 %.")];
+  assert.equal(summaryOf({ checks: [ok] }), "Ready");
+  assert.equal(summaryOf({ checks: [ok, check("return", "warning"), check("fence", "warning")] }), "2 warnings");
+  assert.equal(summaryOf({ checks: [check("return", "warning"), failed, ok] }), "It would land with 5 %.");
+  assert.equal(summaryOf({ checks: [ok, check("battery", "unknown")] }), "1 check not known");
+});
+
+test("a rehearsal of another plan is none", () => {
+  assert.equal(rehearsalCheck(null).state, "warning");
+  assert.equal(rehearsalCheck({ state: "done", level: "pass", is_outdated: true }).state, "warning");
+  assert.equal(rehearsalCheck({ state: "done", level: "fail", is_outdated: false }).message, "Its rehearsal failed");
+  assert.equal(rehearsalCheck({ state: "done", level: "pass", is_outdated: false }).state, "ok");
+  assert.equal(rehearsalCheck({ state: "running", level: "", is_outdated: false }).state, "unknown");
+});
