@@ -40,7 +40,7 @@ CAUSES = {
     "position": gettext_noop("no position"),
     "link": gettext_noop("link lost"),
 }
-OUTCOMES = {"complete": gettext_noop("complete"), "skipped": gettext_noop("skipped"), "failed": gettext_noop("failed")}
+OUTCOMES = {"complete": gettext_noop("complete"), "skipped": gettext_noop("skipped"), "failed": gettext_noop("unsuccessful")}
 
 
 def reason_words(reason: Reason) -> str:

@@ -346,7 +346,13 @@ test("durations of a simulation that is faster than real time are told as simula
   assert.equal(figuresOf(fast)[1].more, "−3\u00a0min", "both by the simulation's clock");
 });
 
-const target = (place, result, reason = null) => ({ place, label: `E402-${place}`, flown_place: 10 - place, result, reason });
+const target = (place, result, reason = null) => ({
+  place,
+  label: `E402-${place}`,
+  flown_place: 10 - place,
+  result,
+  reason,
+});
 const crash = { code: "crashed-cause", message: "Sim 2 crashed, motor", at: "2026-09-10T09:34:00Z" };
 const time = new Date(crash.at).toLocaleTimeString("en", { hour: "2-digit", minute: "2-digit", hourCycle: "h23" });
 

@@ -14,7 +14,7 @@ import {
   sentenceOf,
   wasFlown,
 } from "../record/sentence.js";
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { clockText, dateText, durationText, exactText, lengthText } from "../units.js";
 
 /** @import { MissionRecord, RecordMission, RecordTarget } from "../api_types.d.ts" */
@@ -112,7 +112,7 @@ function reasonLine({ targets, words }, onLook) {
     ),
   ]);
   const rest = targets.length - named.length;
-  return h("li", {}, before, named, rest > 0 && ` ${t("and {count} more", { count: rest })}`, after);
+  return h("li", {}, before, named, rest > 0 && ` ${tn(rest, "and {count} more", "and {count} more")}`, after);
 }
 
 /** How well tracks and estimates were: figures for those who judge the data. @param {MissionRecord} record */
