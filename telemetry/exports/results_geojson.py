@@ -13,9 +13,10 @@ _PLACES = {"longitude_deg", "latitude_deg"}
 
 
 def results_geojson(results: MissionResults) -> bytes:
-    """`kind` of a feature is target, incident, planned or flown. A height is a property, since GeoJSON's third number has another reference.
+    """`kind` of a feature is target, incident, planned or flown.
 
-    A line has `times` and `altitudes_relative_m` with an entry for each of its points.
+    A height is a property, since GeoJSON's third number has another reference. A line has `times` and `altitudes_relative_m` with an entry
+    for each of its points.
     """
     features = [*_targets(results), *_incidents(results), *(feature for route in results.routes for feature in _lines(route))]
     return json.dumps({"type": "FeatureCollection", "name": results.name, "features": features}, ensure_ascii=False, default=str).encode()

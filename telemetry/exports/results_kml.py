@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 
+from inspection.geodesy import LonLat
 from telemetry.exports.kml_file import GX_NAMESPACE, NAMESPACE
 from telemetry.exports.logged_record import time_text
-from telemetry.exports.results import MissionResults, PlannedPoint, ResultRow, RouteLines, TrackPoint
+from telemetry.exports.results import Happening, MissionResults, PlannedPoint, ResultRow, RouteLines, TrackPoint
 from telemetry.exports.xml_text import xml_text
 
 STYLES = {"inspected": "ff665d0b", "not-confirmed": "ff0077c7", "not-inspected": "ff1e26b3", "open": "ff827a85"}  # aabbggrr
@@ -13,16 +14,17 @@ STYLES = {"inspected": "ff665d0b", "not-confirmed": "ff0077c7", "not-inspected":
 def results_kml(results: MissionResults, folders: Sequence[str]) -> bytes:
     """folders: names of those of targets, incidents, planned and flown lines, in the reader's language."""
     targets, incidents, planned, flown = folders
+    styles = [f'<Style id="{name}"><IconStyle><color>{colour}</color></IconStyle></Style>\n' for name, colour in STYLES.items()]
     parts = [
         '<?xml version="1.0" encoding="UTF-8"?>\n',
         f'<kml xmlns="{NAMESPACE}" xmlns:gx="{GX_NAMESPACE}"><Document><name>{xml_text(results.name)}</name>\n',
-        *(f'<Style id="{name}"><IconStyle><color>{colour}</color></IconStyle></Style>\n' for name, colour in STYLES.items()),
+        *styles,
         _folder(targets, [_target(row) for row in results.rows if row.position is not None]),
-        _folder(incidents, [_mark(one.words, f"{one.position.lon:.7f},{one.position.lat:.7f}", one.uav, time_text(one.at)) for one in results.happenings if one.position]),
+        _folder(incidents, [_happening(one, one.position) for one in results.happenings if one.position is not None]),
         _folder(planned, [_planned(route.uav, route.planned) for route in results.routes if len(route.planned) > 1]),
         _folder(flown, [mark for route in results.routes for mark in _flown(route)]),
         "</Document></kml>\n",
-    ]  # fmt: skip
+    ]
     return "".join(parts).encode()
 
 
@@ -37,6 +39,10 @@ def _mark(name: str, coordinates: str, description: str, when: str = "", style: 
         + (f"<styleUrl>#{style}</styleUrl>" if style else "")
         + f"<Point><coordinates>{coordinates}</coordinates></Point></Placemark>\n"
     )
+
+
+def _happening(one: Happening, position: LonLat) -> str:
+    return _mark(one.words, f"{position.lon:.7f},{position.lat:.7f}", one.uav, time_text(one.at))
 
 
 def _target(row: ResultRow) -> str:

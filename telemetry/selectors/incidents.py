@@ -1,6 +1,5 @@
 """What happened to the UAVs of a mission: crashes, failsafes, low batteries, lost links, and what people told them."""
 
-import math
 import re
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime, timedelta
@@ -79,7 +78,8 @@ def _with_crash(found: list[Incident], place: int, name: str, fixes: Sequence[Fi
     said_s = next((at_s for at_s, text in texts if _CRASH.search(text)), None)
     if said_s is None:
         return found
-    down = next((one for one in found if one.place == place and one.kind is IncidentKind.DOWN and abs(one.at_s - said_s) <= ONE_FALL_S), None)
+    downs = [one for one in found if one.place == place and one.kind is IncidentKind.DOWN]
+    down = next((one for one in downs if abs(one.at_s - said_s) <= ONE_FALL_S), None)
     position = down.position if down is not None else _position(fixes, said_s)
     reason = _with_cause(IncidentKind.CRASHED, name, cause_in(texts, said_s), said_s)
     return [*(one for one in found if one is not down), Incident(IncidentKind.CRASHED, reason, said_s, place, position)]
@@ -114,4 +114,4 @@ def _name(user: User | None) -> str:
 
 def _position(fixes: Sequence[Fix], at_s: float) -> LonLat | None:
     nearest = min(fixes, key=lambda fix: abs(fix.at_s - at_s), default=None)
-    return None if nearest is None or math.fabs(nearest.at_s - at_s) > NEAR_S else nearest.position
+    return None if nearest is None or abs(nearest.at_s - at_s) > NEAR_S else nearest.position

@@ -308,11 +308,8 @@ def _targets_on_record(mission: Mission, routes: Sequence[RouteOnRecord], incide
     on_route = {point.target: (route, point) for route in routes for point in route.route.waypoints if point.target is not None}
     visits = {visit.target: visit for route in routes for visit in route.visits}
     last_visits = {route.place: max((v.reached_s for v in route.visits if v.is_done and v.reached_s), default=None) for route in routes}
-    reported: dict[int, tuple[str, str]] = {}
-    for place, outcome, note in (
-        InspectionResult.objects.filter(target__mission=mission).order_by("measured_at", "pk").values_list("target__sequence", "outcome", "note")
-    ):
-        reported[place] = (outcome, note)
+    rows = InspectionResult.objects.filter(target__mission=mission).order_by("measured_at", "pk")
+    reported = {place: (outcome, note) for place, outcome, note in rows.values_list("target__sequence", "outcome", "note")}
     continued = set(mission.routes.filter(continued_by__isnull=False).values_list("mission_uav__sequence", flat=True))
     found = []
     for target in mission.targets.order_by("sequence").select_related("asset__line"):

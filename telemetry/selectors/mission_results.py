@@ -71,14 +71,15 @@ def _lines(route: RouteOnRecord) -> RouteLines:
     def amsl_m(relative_m: float | None) -> float | None:
         return None if ground_m is None or relative_m is None else ground_m + relative_m
 
+    def point(fix: Fix) -> TrackPoint:
+        at_moment = datetime.fromtimestamp(fix.at_s, UTC)
+        return TrackPoint(at_moment, fix.position, fix.altitude_relative_m, amsl_m(fix.altitude_relative_m))
+
     return RouteLines(
         route.name,
         tuple(PlannedPoint(one.position, one.altitude_relative_m, amsl_m(one.altitude_relative_m)) for one in route.route.waypoints),
-        tuple(
-            tuple(TrackPoint(datetime.fromtimestamp(fix.at_s, UTC), fix.position, fix.altitude_relative_m, amsl_m(fix.altitude_relative_m)) for fix in run)
-            for run in _runs(route.in_air)
-        ),
-    )  # fmt: skip
+        tuple(tuple(map(point, run)) for run in _runs(route.in_air)),
+    )
 
 
 def _runs(fixes: Sequence[Fix]) -> Iterator[list[Fix]]:

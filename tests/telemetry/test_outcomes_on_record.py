@@ -145,7 +145,8 @@ def test_what_a_person_told_a_uav_is_why(client: Client, mission: Mission, appro
     type(command).objects.filter(pk=command.pk).update(state="applied", sent_at=over)
     Mission.objects.filter(pk=mission.pk).update(state=MissionState.ABORTED)
     told = record_of(client, mission)
-    assert [target["reason"]["message"] for target in told["targets"] if target["reason"]] == [f"{person.username} told Tern to return: rain"]
+    words = f"{person.username} told Tern to return: rain"
+    assert [target["reason"]["message"] for target in told["targets"] if target["reason"]] == [words]
 
 
 def test_while_a_mission_is_under_way_its_targets_are_open(client: Client, mission: Mission, approval: Approval, tern: Uav) -> None:

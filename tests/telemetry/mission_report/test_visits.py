@@ -113,10 +113,10 @@ def out_and_back():
 @pytest.mark.parametrize("tells", [True, False])
 def test_a_pass_on_the_way_out_is_neither_a_visit_nor_the_nearest(tells: bool) -> None:
     """It crashes 200 m after it turned back, whether or not it tells its waypoints."""
-    fixes = [Fix(1_000.0 + second, place(10.0 * second, 0.0), 30.0, None, 1 if tells else None, is_in_air=True) for second in range(91)]
-    fixes += [
-        Fix(1_090.0 + second, place(900.0 - 10.0 * second, 0.0), 30.0, None, 2 if tells else None, is_in_air=True) for second in range(1, 21)
-    ]
+    out = [(1_000.0 + second, place(10.0 * second, 0.0)) for second in range(91)]
+    fixes = [Fix(at_s, here, 30.0, None, 1 if tells else None, is_in_air=True) for at_s, here in out]
+    back = [(1_090.0 + second, place(900.0 - 10.0 * second, 0.0)) for second in range(1, 21)]
+    fixes += [Fix(at_s, here, 30.0, None, 2 if tells else None, is_in_air=True) for at_s, here in back]
     first, second = visits_of(out_and_back(), fixes, fastest_mps=FASTEST_MPS)
     assert first.is_done and first.is_confirmed
     assert not second.is_done and not second.is_confirmed
