@@ -3,7 +3,7 @@
 from django.urls import path
 
 from missions import views
-from missions.views.approvals import MissionAbort, MissionApproval, MissionApprove, MissionDispatch, MissionRevoke
+from missions.views.approvals import MissionAbort, MissionApproval, MissionApprove, MissionClose, MissionDispatch, MissionRevoke
 from missions.views.by_hand import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
 from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
@@ -42,6 +42,7 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/revoke", MissionRevoke.as_view(), name="api-mission-revoke"),
     path("missions/<uuid:mission_id>/dispatch", MissionDispatch.as_view(), name="api-mission-dispatch"),
     path("missions/<uuid:mission_id>/abort", MissionAbort.as_view(), name="api-mission-abort"),
+    path("missions/<uuid:mission_id>/close", MissionClose.as_view(), name="api-mission-close"),
     path("missions/<uuid:mission_id>/planned-starts", MissionPlannedStarts.as_view(), name="api-mission-planned-starts"),
     path("planned-starts", PlannedStartsList.as_view(), name="api-planned-starts"),
     path("missions/<uuid:mission_id>/returns", MissionReturns.as_view(), name="api-mission-returns"),

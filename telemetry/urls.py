@@ -8,7 +8,7 @@ from telemetry.views.estimates import MissionEstimates
 from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFile
 from telemetry.views.live import Live
 from telemetry.views.log import LatestTelemetry, TelemetryLog
-from telemetry.views.mission_record import MissionRecord, MissionRecordFile
+from telemetry.views.mission_record import RESULT_KINDS, MissionRecord, MissionRecordFile, MissionResultsFile
 from telemetry.views.preflight import MissionPreflight
 from telemetry.views.results import Results
 from telemetry.views.unknown_vehicles import UnknownVehicleAdoption, UnknownVehicleIgnoring, UnknownVehicles
@@ -27,7 +27,12 @@ class FileKindConverter:
         return value
 
 
+class ResultKindConverter(FileKindConverter):
+    regex = "|".join(RESULT_KINDS)
+
+
 register_converter(FileKindConverter, "file_kind")
+register_converter(ResultKindConverter, "result_kind")
 
 urlpatterns = [
     path("uav-link/", include("telemetry.uav_link_urls")),
@@ -48,6 +53,7 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/preflight", MissionPreflight.as_view(), name="api-mission-preflight"),
     path("missions/<uuid:mission_id>/record", MissionRecord.as_view(), name="api-mission-record"),
     path("missions/<uuid:mission_id>/record.zip", MissionRecordFile.as_view(), name="api-mission-record-file"),
+    path("missions/<uuid:mission_id>/results.<result_kind:kind>", MissionResultsFile.as_view(), name="api-mission-results-file"),
     path("missions/<uuid:mission_id>/estimates", MissionEstimates.as_view(), name="api-mission-estimates"),
     path("missions/<uuid:mission_id>/telemetry.<file_kind:kind>", MissionTelemetryFile.as_view(), name="api-mission-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry.<file_kind:kind>", UavTelemetryFile.as_view(), name="api-uav-telemetry-file"),

@@ -10,6 +10,7 @@ from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCo
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import LONGEST_LEG_M, SHORTEST_LEG_M
 from missions.services.batch_commands import BATCH_KINDS, UavAnswer
+from missions.services.closing import MAX_REASON_LENGTH
 from missions.stored_outcomes import outcome_in_words
 
 LONGEST_WHY = 300
@@ -212,8 +213,17 @@ class BatchAnswersSerializer(serializers.Serializer):
     results = BatchAnswerSerializer(many=True)
 
 
+class OpenTargetReasonSerializer(KnownFieldsSerializer):
+    target = serializers.IntegerField(min_value=0, help_text="its place in the mission")
+    reason = serializers.CharField(max_length=MAX_REASON_LENGTH)
+
+
+class CloseInputSerializer(KnownFieldsSerializer):
+    reasons = OpenTargetReasonSerializer(many=True, required=False, default=list, help_text="why each target that is still open is left")
+
+
 class SentSerializer(serializers.Serializer):
-    """What became of a mission that was sent or aborted."""
+    """What became of a mission that was sent, aborted or closed."""
 
     mission = serializers.UUIDField()
     state = serializers.CharField()

@@ -10,6 +10,7 @@ from uuid import UUID
 
 from django.db import transaction
 from django.db.models import Exists, OuterRef, Q, QuerySet
+from django.db.models.functions import Now
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
@@ -149,6 +150,7 @@ def change_state(held: Mission, state: MissionState, actor: User | None, action:
         held.started_at = timezone.now()
     if state in OVER and held.state not in OVER:
         held.ended_at = timezone.now()
+        held.targets.filter(state=TargetState.IN_PROGRESS).update(state=TargetState.PENDING, state_at=Now())  # nothing is after the end
     held.state, held.revision = state, held.revision + 1
     held.save(update_fields=["state", "revision", "ground_revision", "started_at", "ended_at", "updated_at"])
     transaction.on_commit(partial(publish_live, held.organisation_id))

@@ -1,4 +1,4 @@
-"""Approving missions, taking that back, sending them to UAVs, aborting them."""
+"""Approving missions, taking that back, sending them to UAVs, aborting and closing them."""
 
 from typing import Any
 from uuid import UUID
@@ -15,6 +15,7 @@ from missions.models import UavCommand
 from missions.serializers import commands as shapes
 from missions.serializers.shapes import MissionSerializer
 from missions.services.approval import approve_mission, revoke_approval
+from missions.services.closing import close_mission
 from missions.services.dispatch import abort_mission, dispatch_mission
 from missions.views.missions import IF_MATCH, IF_MATCH_OPTIONAL, answer_mission, expected_revision, mission_or_404, stated_revision
 from missions.views.problems import api_problems, refusals
@@ -149,3 +150,27 @@ class MissionAbort(APIView):
         with api_problems(has_precondition=expected is not None), refusals():
             told = abort_mission(mission=mission, actor=request.user, why=values["why"], expected_revision=expected)
         return _sent(request.user, mission_id, told)
+
+
+class MissionClose(APIView):
+    write_scopes = FLYING
+
+    @extend_schema(
+        operation_id="close_mission",
+        summary="Close a mission, with a reason for each open target",
+        description=(
+            "Also of one that was aborted or has failed. Open targets are skipped for their reasons; then the record is whole, and a "
+            "follow-up can be planned. Refused while a UAV of the mission is in the air. Works without If-Match."
+        ),
+        parameters=[IF_MATCH_OPTIONAL],
+        request=shapes.CloseInputSerializer,
+        responses={200: shapes.SentSerializer, **REFUSED},
+    )
+    @idempotent
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
+        expected = stated_revision(request)
+        mission = mission_or_404(request.user, mission_id)
+        reasons = {row["target"]: row["reason"] for row in _body(shapes.CloseInputSerializer, request)["reasons"]}
+        with api_problems(has_precondition=expected is not None), refusals():
+            close_mission(mission=mission, actor=request.user, reasons=reasons, expected_revision=expected)
+        return _sent(request.user, mission_id, [])

@@ -18,7 +18,7 @@ from simulation.flight.manoeuvres import GoTo, Hold, Land, Manoeuvre, Return, Ta
 from simulation.flight.mission import Mission, first_to_fly
 from simulation.flight.orders import CannotFly, Order, orders
 from simulation.flight.settings import Settings
-from simulation.flight.states import DONE, Haven, MissionState, Mode, Outcome, Refused, UavState
+from simulation.flight.states import DONE, Haven, MissionState, Mode, Outcome, Refused, Severity, UavState
 from simulation.flight.telling import told
 from simulation.flight.weather import Weather
 
@@ -119,6 +119,8 @@ class SimulatedUav:
         before = self._cockpit.faults
         if faults.motor_failed != before.motor_failed:
             self._body.plant.fail_motor(faults.motor_failed)
+            if faults.motor_failed is not None:
+                self._cockpit.say(f"Motor {faults.motor_failed + 1} has failed", Severity.CRITICAL)
         if faults.battery_wh_left is not None and faults.battery_wh_left != before.battery_wh_left:
             self._body.weaken(faults.battery_wh_left)
         self._cockpit.faults = faults

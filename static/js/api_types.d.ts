@@ -693,6 +693,11 @@ export interface components {
             radius_m: number;
         };
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        CloseInputRequest: {
+            /** @description why each target that is still open is left */
+            reasons?: components["schemas"]["OpenTargetReasonRequest"][];
+        };
+        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         ClosingInputRequest: {
             /** @description what became of the UAV; kept as a note */
             reason: string;
@@ -1365,7 +1370,30 @@ export interface components {
              */
             flown_m: number;
             gaps: components["schemas"]["FlownGap"][];
-            /** Format: double */
+            /**
+             * Format: double
+             * @description from take-off to landing, by the UAV's clock
+             */
+            duration_s: number | null;
+            /**
+             * Format: double
+             * @description seconds of its clock in one of ours
+             */
+            clock_rate: number;
+            /**
+             * Format: double
+             * @description at take-off
+             */
+            battery_start_percent: number | null;
+            /**
+             * Format: double
+             * @description at landing
+             */
+            battery_end_percent: number | null;
+            /**
+             * Format: double
+             * @description in the air
+             */
             battery_lowest_percent: number | null;
             /**
              * Format: double
@@ -1406,7 +1434,7 @@ export interface components {
             length_m: number;
             /**
              * Format: double
-             * @description from the first take-off to the last landing
+             * @description from the first take-off to the last landing, by the UAVs' clocks
              */
             duration_s: number | null;
             /**
@@ -1863,6 +1891,31 @@ export interface components {
          * @enum {string}
          */
         ImportKind: "osm" | "zones" | "assets" | "terrain";
+        Incident: {
+            kind: components["schemas"]["IncidentKindEnum"];
+            /** Format: date-time */
+            at: string;
+            /** @description place of the UAV in the mission; null: all of them */
+            uav: number | null;
+            uav_name: string;
+            /** @description longitude, latitude [deg] of the UAV then */
+            position: number[] | null;
+            message: string;
+        };
+        /**
+         * @description * `crashed` - crashed
+         *     * `down` - down
+         *     * `failsafe-return` - failsafe-return
+         *     * `failsafe-land` - failsafe-land
+         *     * `told-return` - told-return
+         *     * `told-land` - told-land
+         *     * `aborted` - aborted
+         *     * `battery` - battery
+         *     * `link-lost` - link-lost
+         *     * `alert` - alert
+         * @enum {string}
+         */
+        IncidentKindEnum: "crashed" | "down" | "failsafe-return" | "failsafe-land" | "told-return" | "told-land" | "aborted" | "battery" | "link-lost" | "alert";
         /** @description An invitation, without the link itself. */
         Invitation: {
             readonly id: number;
@@ -2656,6 +2709,8 @@ export interface components {
         MissionRecord: {
             mission: components["schemas"]["RecordMission"];
             summary: components["schemas"]["RecordSummary"];
+            /** @description what happened to UAVs, and what they were told, by time */
+            incidents: components["schemas"]["Incident"][];
             routes: components["schemas"]["RecordRoute"][];
             targets: components["schemas"]["RecordTarget"][];
             results: components["schemas"]["RecordResult"][];
@@ -2992,6 +3047,12 @@ export interface components {
          * @enum {string}
          */
         OfferState: "computing" | "open" | "accepted" | "declined" | "outdated" | "impossible";
+        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        OpenTargetReasonRequest: {
+            /** @description its place in the mission */
+            target: number;
+            reason: string;
+        };
         Origin: {
             position: number[];
             /** Format: double */
@@ -4092,6 +4153,13 @@ export interface components {
             /** @description measured before a record that was stored earlier */
             is_late: boolean;
         };
+        RecordReason: {
+            code: string;
+            /** @description part of a sentence, in the reader's language */
+            message: string;
+            /** Format: date-time */
+            at: string | null;
+        };
         RecordResult: {
             id: number;
             /** @description of the target in the mission as it was approved */
@@ -4105,6 +4173,13 @@ export interface components {
             measured_at: string;
             /** Format: date-time */
             received_at: string;
+        };
+        RecordResultCounts: {
+            all: number;
+            inspected: number;
+            "not-confirmed": number;
+            "not-inspected": number;
+            open: number;
         };
         RecordRoute: {
             /** @description of the UAV in the mission */
@@ -4124,9 +4199,15 @@ export interface components {
         };
         RecordSummary: {
             targets: components["schemas"]["RecordTargetCounts"];
+            results: components["schemas"]["RecordResultCounts"];
             alerts: components["schemas"]["AlertCounts"];
             planned: components["schemas"]["Totals"];
             flown: components["schemas"]["FlownTotals"];
+            /**
+             * Format: double
+             * @description seconds of the UAVs' clocks in one of ours: over 1 in a simulation that is faster
+             */
+            clock_rate: number;
             /**
              * Format: double
              * @description off the route, sideways
@@ -4137,7 +4218,10 @@ export interface components {
              * @description outside of the heights that the plan has there
              */
             height_rms_m: number | null;
-            /** Format: double */
+            /**
+             * Format: double
+             * @description in the air
+             */
             lowest_battery_percent: number | null;
             estimates: components["schemas"]["Estimates"];
         };
@@ -4155,6 +4239,19 @@ export interface components {
             /** Format: date-time */
             state_at: string | null;
             state_reason: string;
+            /**
+             * @description not-confirmed: complete, and no report shows that the UAV was there; open: the mission is not over
+             *
+             *     * `inspected` - inspected
+             *     * `not-confirmed` - not-confirmed
+             *     * `not-inspected` - not-inspected
+             *     * `open` - open
+             */
+            result: components["schemas"]["ResultEnum"];
+            /** @description why it was not inspected, or is not confirmed */
+            reason: components["schemas"]["RecordReason"] | null;
+            /** @description from 1, in the order in which targets were reached; those that were not after them */
+            flown_place: number;
             /** @description place of the UAV that was to do it */
             uav: number | null;
             waypoint_sequence: number | null;
@@ -4164,7 +4261,17 @@ export interface components {
             reached_at: string | null;
             /**
              * Format: double
-             * @description the nearest at which the UAV was seen
+             * @description after its UAV's take-off
+             */
+            planned_after_s: number | null;
+            /**
+             * Format: double
+             * @description after its UAV's take-off, by the UAV's clock
+             */
+            reached_after_s: number | null;
+            /**
+             * Format: double
+             * @description the nearest that the track of its UAV came
              */
             closest_m: number | null;
             /** Format: double */
@@ -4728,6 +4835,14 @@ export interface components {
             /** @description your organisation's id of it; may be empty */
             external_id: string;
         };
+        /**
+         * @description * `inspected` - inspected
+         *     * `not-confirmed` - not-confirmed
+         *     * `not-inspected` - not-inspected
+         *     * `open` - open
+         * @enum {string}
+         */
+        ResultEnum: "inspected" | "not-confirmed" | "not-inspected" | "open";
         ResultMission: {
             /** Format: uuid */
             id: string;
@@ -5261,7 +5376,7 @@ export interface components {
             /** @description that its UAV must have; may be empty */
             sensor: string;
         };
-        /** @description What became of a mission that was sent or aborted. */
+        /** @description What became of a mission that was sent, aborted or closed. */
         Sent: {
             /** Format: uuid */
             mission: string;
@@ -5960,7 +6075,7 @@ export interface components {
             length_m: number;
             /**
              * Format: double
-             * @description from the first take-off to the last landing
+             * @description from the first take-off to the last landing, by the UAVs' clocks
              */
             duration_s: number | null;
             /**
@@ -7247,6 +7362,7 @@ export type ChangeFeature = components['schemas']['ChangeFeature'];
 export type ChangeProperties = components['schemas']['ChangeProperties'];
 export type Charging = components['schemas']['Charging'];
 export type Circle = components['schemas']['Circle'];
+export type CloseInputRequest = components['schemas']['CloseInputRequest'];
 export type ClosingInputRequest = components['schemas']['ClosingInputRequest'];
 export type Command = components['schemas']['Command'];
 export type CommandDetail = components['schemas']['CommandDetail'];
@@ -7348,6 +7464,8 @@ export type HistoryEntry = components['schemas']['HistoryEntry'];
 export type HistoryPage = components['schemas']['HistoryPage'];
 export type ImportInputRequest = components['schemas']['ImportInputRequest'];
 export type ImportKind = components['schemas']['ImportKind'];
+export type Incident = components['schemas']['Incident'];
+export type IncidentKindEnum = components['schemas']['IncidentKindEnum'];
 export type Invitation = components['schemas']['Invitation'];
 export type InvitationInputRequest = components['schemas']['InvitationInputRequest'];
 export type InvitationPage = components['schemas']['InvitationPage'];
@@ -7430,6 +7548,7 @@ export type NullEnum = components['schemas']['NullEnum'];
 export type ObjectiveEnum = components['schemas']['ObjectiveEnum'];
 export type Offer = components['schemas']['Offer'];
 export type OfferState = components['schemas']['OfferState'];
+export type OpenTargetReasonRequest = components['schemas']['OpenTargetReasonRequest'];
 export type Origin = components['schemas']['Origin'];
 export type OriginEnum = components['schemas']['OriginEnum'];
 export type Pace = components['schemas']['Pace'];
@@ -7500,7 +7619,9 @@ export type RecordCollection = components['schemas']['RecordCollection'];
 export type RecordFeature = components['schemas']['RecordFeature'];
 export type RecordMission = components['schemas']['RecordMission'];
 export type RecordProperties = components['schemas']['RecordProperties'];
+export type RecordReason = components['schemas']['RecordReason'];
 export type RecordResult = components['schemas']['RecordResult'];
+export type RecordResultCounts = components['schemas']['RecordResultCounts'];
 export type RecordRoute = components['schemas']['RecordRoute'];
 export type RecordSummary = components['schemas']['RecordSummary'];
 export type RecordTarget = components['schemas']['RecordTarget'];
@@ -7536,6 +7657,7 @@ export type ReportedResult = components['schemas']['ReportedResult'];
 export type ReportsRequest = components['schemas']['ReportsRequest'];
 export type Result = components['schemas']['Result'];
 export type ResultAsset = components['schemas']['ResultAsset'];
+export type ResultEnum = components['schemas']['ResultEnum'];
 export type ResultMission = components['schemas']['ResultMission'];
 export type ResultOutcomeEnum = components['schemas']['ResultOutcomeEnum'];
 export type ResultPage = components['schemas']['ResultPage'];

@@ -96,6 +96,10 @@ class RouteLine:
         last = max(len(self.vertices) - 2, 0)
         return min((self._beside(leg, east, north) for leg in range(min(before.leg, last), last + 1)), key=lambda place: place.across_m)
 
+    def beside(self, leg: int, position: LonLat) -> Place:
+        """The nearest point of one leg."""
+        return self._beside(leg, *self.east_north(position))
+
     def _beside(self, leg: int, east: float, north: float) -> Place:
         (east_1, north_1), (east_2, north_2) = self.vertices[leg], self.vertices[min(leg + 1, len(self.vertices) - 1)]
         de, dn = east_2 - east_1, north_2 - north_1

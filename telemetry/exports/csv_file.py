@@ -23,7 +23,7 @@ def csv_pieces(records: Iterable[LoggedRecord]) -> Iterator[str]:
     for number, record in enumerate(records, start=1):
         longitude, latitude = record.position or (None, None)
         times = (time_text(instant) for instant in (record.measured_at, record.received_at, record.stored_at))
-        whose = (record.uav, _text(record.uav_name), record.mission, _text(record.stream), record.sequence)
+        whose = (record.uav, without_formula(record.uav_name), record.mission, without_formula(record.stream), record.sequence)
         writer.writerow([*times, *whose, longitude, latitude, *(_cell(value) for value in record.values)])
         if number % LINES_A_PIECE == 0:
             yield piece.getvalue()
@@ -35,8 +35,9 @@ def csv_pieces(records: Iterable[LoggedRecord]) -> Iterator[str]:
 def _cell(value: Value) -> Value:
     if isinstance(value, bool):
         return "true" if value else "false"
-    return _text(value) if isinstance(value, str) else value
+    return without_formula(value) if isinstance(value, str) else value
 
 
-def _text(value: str) -> str:
+def without_formula(value: str) -> str:
+    """Return a text that no spreadsheet takes for a formula."""
     return _FORMULA.sub("'", value)

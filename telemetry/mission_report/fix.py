@@ -1,7 +1,10 @@
 """A report as the record of a mission reads it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import accumulate, pairwise
+
+import numpy as np
 
 from inspection.geodesy import LonLat
 
@@ -38,3 +41,40 @@ def in_order(fixes: Sequence[Fix]) -> list[Fix]:
         if not found or fix.at_s > found[-1].at_s:
             found.append(fix)
     return found
+
+
+def airborne(fixes: Sequence[Fix]) -> list[Fix]:
+    """Return those between each take-off and its landing; all where none tells whether it was in the air.
+
+    One that does not tell is where the one before it was, and on the ground before the first that does.
+    """
+    if all(fix.is_in_air is None for fix in fixes):
+        return list(fixes)
+    found, is_up = [], False
+    for fix in fixes:
+        is_up = is_up if fix.is_in_air is None else fix.is_in_air
+        if is_up:
+            found.append(fix)
+    return found
+
+
+def own_span_s(tracks: Iterable[Sequence[Fix]]) -> float:
+    """From the first of all fixes to the last [s]; each track in order.
+
+    Each stretch counts by the clock of a vehicle that was heard before and after it, by ours where none was.
+    """
+    pairs = sorted((before.at_s, after.at_s, own_s(before, after)) for track in tracks for before, after in pairwise(track))
+    total_s, until_s = 0.0, pairs[0][0] if pairs else 0.0
+    for began_s, ended_s, length_s in pairs:
+        total_s += max(began_s - until_s, 0.0)
+        until_s = max(until_s, began_s)
+        if ended_s > until_s:
+            total_s += length_s * (ended_s - until_s) / (ended_s - began_s)
+            until_s = ended_s
+    return total_s
+
+
+def own_after_s(track: Sequence[Fix], at_s: float) -> float:
+    """From the first fix of a track to a moment [Unix s], by the vehicle's clock [s]."""
+    passed_s = list(accumulate((own_s(before, after) for before, after in pairwise(track)), initial=0.0))
+    return float(np.interp(at_s, [fix.at_s for fix in track], passed_s))

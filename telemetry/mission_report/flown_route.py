@@ -10,7 +10,7 @@ import numpy as np
 from inspection.geodesy import LonLat, path_length_m
 from missions.mavlink.frozen import Flight, FrozenRoute
 from telemetry.alerting.route_line import Place, RouteLine
-from telemetry.mission_report.fix import Fix
+from telemetry.mission_report.fix import Fix, airborne, own_span_s
 
 PASSED_END_M = 15.0  # of the last waypoint: what comes after is the way home or down
 LONGEST_GAP_S = 60.0  # between two reports that are joined to a flown line
@@ -55,7 +55,11 @@ class Gap:
 
 @dataclass(frozen=True, slots=True)
 class FlownRoute:
-    """A whole route. flown_m is the length of the track as it was reported, without gaps; reports are those in the air."""
+    """A whole route, from its first take-off to its last landing; reports are those in the air.
+
+    flown_m is the length of the track as it was reported, without gaps; duration_s is by the vehicle's own clock, and clock_rate how many
+    of its seconds passed in one of ours: a simulation may fly faster than real time.
+    """
 
     legs: tuple[FlownLeg, ...]
     stages: tuple[FlownStage, ...]
@@ -67,8 +71,12 @@ class FlownRoute:
     across_max_m: float | None
     height_rms_m: float | None
     height_max_m: float | None
+    battery_start_percent: float | None
+    battery_end_percent: float | None
     battery_lowest_percent: float | None
     battery_used_percent: float | None
+    duration_s: float | None = None
+    clock_rate: float = 1.0
     gaps: tuple[Gap, ...] = ()
 
 
@@ -81,7 +89,7 @@ class _Seen:
 
 def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> FlownRoute:
     """fixes: of its UAV in this mission, in order."""
-    in_air = [fix for fix in fixes if fix.is_in_air is not False]
+    in_air = airborne(fixes)
     legs: list[FlownLeg] = []
     stages: list[FlownStage] = []
     seen: list[_Seen] = []
@@ -95,7 +103,9 @@ def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> FlownRoute:
         legs += [_between(line, number, number + 1, own) for number, own in enumerate(by_leg)]
         stages += _stages(flight, line, by_leg)
     across_m, height_m = _errors(seen)
-    batteries = [fix.battery_percent for fix in fixes if fix.battery_percent is not None]
+    batteries = [fix.battery_percent for fix in in_air if fix.battery_percent is not None]
+    duration_s = own_span_s([in_air]) if in_air else None
+    lasted_s = in_air[-1].at_s - in_air[0].at_s if in_air else 0.0
     return FlownRoute(
         legs=tuple(legs),
         stages=tuple(stages),
@@ -107,8 +117,12 @@ def flown_route(route: FrozenRoute, fixes: Sequence[Fix]) -> FlownRoute:
         across_max_m=max(across_m, default=None),
         height_rms_m=_rms(height_m),
         height_max_m=max(height_m, default=None),
+        battery_start_percent=batteries[0] if batteries else None,
+        battery_end_percent=batteries[-1] if batteries else None,
         battery_lowest_percent=min(batteries, default=None),
         battery_used_percent=sum(max(a - b, 0.0) for a, b in pairwise(batteries)) if batteries else None,
+        duration_s=duration_s,
+        clock_rate=duration_s / lasted_s if duration_s and lasted_s > 0.0 else 1.0,
         gaps=tuple(gaps),
     )
 

@@ -5,6 +5,7 @@ decides. Between two reports it can have been anywhere that its speed allows: a 
 passed, is taken for reached. One that it cannot have been at was not, whatever is said.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -12,11 +13,16 @@ from itertools import pairwise
 import numpy as np
 
 from inspection.geodesy import distance_m
+from inspection.geodesy.local_frame import LocalFrame
 from missions.mavlink.frozen import FrozenRoute, FrozenWaypoint
-from telemetry.mission_report.fix import Fix, own_s
+from telemetry.alerting.route_line import Place, RouteLine
+from telemetry.mission_report.fix import Fix, airborne, own_s
 
 REACHED_M = 15.0  # across: an autopilot takes a waypoint for reached some metres before it, and GPS errs by some more
 HOLD_SLACK_S = 3.0  # slowing down and setting out are part of a hold
+JOINED_S = 12.0  # between two reports that a straight line joins: UAVs report every ten seconds at least
+TURNED_M = 20.0  # back along a leg, after which the next one is flown
+OFF_LEG_M = 30.0  # more than off a later leg, which is flown then
 
 Pass = tuple[Sequence[Fix], int]  # reports, and how many of them are from before it flew to the waypoint
 
@@ -25,9 +31,10 @@ Pass = tuple[Sequence[Fix], int]  # reports, and how many of them are from befor
 class Visit:
     """What the reports say of one target of a route.
 
-    closest_m is the nearest that the UAV was seen, can_have_reached whether it may have been within REACHED_M between reports,
-    reached_s the first time at which it was seen there or, unseen, the middle of the time in which it can have been; held_s the longest
-    that it can have stayed by its own clock, all stays taken together.
+    closest_m is the nearest that the track of its reports came, altitude_relative_m its height at the nearest report [m above take-off],
+    can_have_reached whether it may have been within REACHED_M between reports, reached_s the first time at which it was seen there or,
+    unseen, the middle of the time in which it can have been; held_s the longest that it can have stayed by its own clock, all stays taken
+    together.
     """
 
     target: int
@@ -37,6 +44,12 @@ class Visit:
     reached_s: float | None = None
     held_s: float = 0.0
     can_have_reached: bool = False
+    altitude_relative_m: float | None = None
+
+    @property
+    def is_confirmed(self) -> bool:
+        """Tell whether its reports show that it was there, not merely that it can have been."""
+        return self.closest_m is not None and self.closest_m <= REACHED_M
 
     @property
     def is_done(self) -> bool:
@@ -45,7 +58,8 @@ class Visit:
 
 def visits_of(route: FrozenRoute, fixes: Sequence[Fix], *, fastest_mps: float) -> list[Visit]:
     """Of each waypoint with a target, in the order of the route. fixes: in order, of one UAV; fastest_mps: over ground, wind and all."""
-    in_air, told = _with_waypoints([fix for fix in fixes if fix.is_in_air is not False])
+    in_air = airborne(fixes)
+    told = _waypoints_told(in_air) or _waypoints_by_place(route, in_air)
     found = []
     for place, waypoint in enumerate(route.waypoints):
         if waypoint.target is None:
@@ -91,22 +105,58 @@ def _visit(waypoint: FrozenWaypoint, near: Sequence[Fix], before: int, fastest_m
         target=target,
         waypoint_sequence=waypoint.sequence,
         planned_hold_s=hold_s,
-        closest_m=min(away_m),
+        closest_m=_nearest_m(waypoint, near, away_m),
         reached_s=seen[0] if seen else first_between_s,
         held_s=held_s,
         can_have_reached=bool(seen) or first_between_s is not None,
+        altitude_relative_m=near[int(np.argmin(away_m))].altitude_relative_m,
     )
 
 
-def _with_waypoints(fixes: Sequence[Fix]) -> tuple[Sequence[Fix], list[int] | None]:
-    """The reports with the waypoint that each flies to; one that tells none flies to that of the one before. None: none tells it."""
+def _waypoints_told(fixes: Sequence[Fix]) -> list[int] | None:
+    """The waypoint that each flies to; one that tells none flies to that of the one before. None: none tells it."""
     if all(fix.waypoint_sequence is None for fix in fixes):
-        return fixes, None
+        return None
     told: list[int] = []
     for fix in fixes:
         before = told[-1] if told else -1
         told.append(before if fix.waypoint_sequence is None else fix.waypoint_sequence)
-    return fixes, told
+    return told
+
+
+def _waypoints_by_place(route: FrozenRoute, fixes: Sequence[Fix]) -> list[int] | None:
+    """Of a vehicle that tells no waypoints, by where it was along its route. None for a route of several flights: which is not known."""
+    if len(route.flights) != 1 or len(route.waypoints) < 2:
+        return None
+    line = RouteLine(route.flights[0], route.charging_stops)
+    told, leg, farthest_m = [], 0, 0.0
+    for fix in fixes:
+        here = line.east_north(fix.position)
+        on_leg = line.beside(leg, fix.position)
+        farthest_m = max(farthest_m, on_leg.along_m)
+        is_at_end = math.dist(here, line.vertices[leg + 1]) <= REACHED_M
+        has_turned = farthest_m - on_leg.along_m > TURNED_M
+        if is_at_end or has_turned:
+            leg = min(leg + 1, len(line.vertices) - 2)
+        elif on_leg.across_m > OFF_LEG_M:
+            ahead = line.place_from(fix.position, Place(line.along_m[leg], 0.0, leg, 0.0))
+            leg = ahead.leg if ahead.across_m + OFF_LEG_M < on_leg.across_m else leg
+        farthest_m = max(farthest_m, line.along_m[leg])
+        told.append(line.sequences[leg + 1])
+    return told
+
+
+def _nearest_m(waypoint: FrozenWaypoint, fixes: Sequence[Fix], away_m: Sequence[float]) -> float:
+    """The distance of a track: of its reports, and of straight lines between those that are at most JOINED_S apart."""
+    frame = LocalFrame.around(*waypoint.position)
+    metres = frame.to_metres(np.array([fix.position for fix in fixes]))
+    joined = [own_s(before, after) <= JOINED_S for before, after in pairwise(fixes)]
+    if not any(joined):
+        return min(away_m)
+    start, along = metres[:-1][joined], np.diff(metres, axis=0)[joined]
+    square = np.maximum((along**2).sum(axis=1), 1e-9)
+    share = np.clip(-(start * along).sum(axis=1) / square, 0.0, 1.0)[:, None]
+    return min(float(np.hypot(*(start + share * along).T).min()), *away_m)
 
 
 def _passes(sequence: int, fixes: Sequence[Fix], told: Sequence[int], *, is_followed_here: bool) -> list[Pass]:

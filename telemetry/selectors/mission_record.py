@@ -11,16 +11,20 @@ from django.db.models import Count, F
 
 from inspection.geodesy import LonLat
 from missions.mavlink.frozen import FrozenRoute, route_from_json
-from missions.models import Approval, InspectionTarget, LinkKind, Mission, OfferState, TargetState, Uav
-from telemetry.mission_report.fix import Fix, in_order
+from missions.models import Approval, InspectionTarget, LinkKind, Mission, MissionState, OfferState, TargetState, Uav
+from telemetry.mission_report.fix import Fix, airborne, in_order, own_after_s, own_span_s
 from telemetry.mission_report.flown_route import FlownRoute, flown_route
+from telemetry.mission_report.outcomes import FlightFacts, Incident, Outcome, Reason, Result, TargetFacts, outcome_of
 from telemetry.mission_report.visits import Visit, visits_of
 from telemetry.models import Alert, AlertLevel, InspectionResult, TelemetryRecord
 from telemetry.selectors.columns import latitude, longitude, unix_s
 from telemetry.selectors.estimates import estimate_quality_of
+from telemetry.selectors.incidents import incidents_of
+from telemetry.selectors.report_words import reason_words
 from workspace.models import Organisation
 
 _FIX_COLUMNS = ("altitude_relative_m", "battery_percent", "waypoint_sequence", "is_in_air")
+OVER = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
 HASTE = 1.5  # so much faster than it was told may a UAV be: down the wind, or flown by hand
 
 
@@ -35,6 +39,33 @@ class RouteOnRecord:
     planned: dict[str, Any]
     flown: FlownRoute
     visits: tuple[Visit, ...]
+    in_air: tuple[Fix, ...]
+
+
+@dataclass(frozen=True)
+class TargetOnRecord:
+    """A target with its UAV's route and visit, None where it is on none, and what came of it.
+
+    Seconds are after that UAV's take-off, flown ones by its own clock; None where they are not known.
+    """
+
+    row: InspectionTarget
+    route: RouteOnRecord | None
+    visit: Visit | None
+    outcome: Outcome
+    planned_after_s: float | None
+    reached_after_s: float | None
+
+
+@dataclass(frozen=True)
+class WholeRecord:
+    """What the report, and the files of results, are made of. Targets are in the operator's order."""
+
+    mission: Mission
+    approval: Approval | None
+    routes: tuple[RouteOnRecord, ...]
+    targets: tuple[TargetOnRecord, ...]
+    incidents: tuple[Incident, ...]
 
 
 def mission_on_record(organisation: Organisation, mission_id: UUID) -> Mission | None:
@@ -83,16 +114,37 @@ def routes_on_record(mission: Mission, approval: Approval | None) -> list[RouteO
                 planned={name: approved[name] for name in ("length_m", "duration_s", "energy_wh")} | {"figures": approved["figures"]},
                 flown=flown_route(route, fixes),
                 visits=tuple(visits_of(route, fixes, fastest_mps=fastest_mps(route, approved["figures"]))),
+                in_air=tuple(airborne(fixes)),
             )
         )
     return found
 
 
-def mission_record(mission: Mission) -> dict[str, Any]:
-    """As the API shows it, times as datetimes."""
+def whole_record(mission: Mission) -> WholeRecord:
+    """Read all that was planned, flown and reported."""
     approval = approval_on_record(mission)
     routes = routes_on_record(mission, approval)
-    targets = list(mission.targets.order_by("sequence"))
+    flown = {route.uav_id: (route.place, route.name, route.in_air) for route in routes if route.uav_id is not None}
+    incidents = incidents_of(mission, flown)
+    return WholeRecord(mission, approval, tuple(routes), tuple(_targets_on_record(mission, routes, incidents)), tuple(incidents))
+
+
+def in_flown_order(targets: Sequence[TargetOnRecord]) -> list[TargetOnRecord]:
+    """As they were reached; those that were not, by UAV as planned, after them, and those on no route last."""
+
+    def order(target: TargetOnRecord) -> tuple[bool, float, bool, int, int]:
+        reached_s = None if target.visit is None or target.outcome.result is Result.NOT_INSPECTED else target.visit.reached_s
+        place = -1 if target.route is None else target.route.place
+        sequence = target.row.sequence if target.visit is None else target.visit.waypoint_sequence
+        return reached_s is None, reached_s or 0.0, target.route is None, place, sequence
+
+    return sorted(targets, key=order)
+
+
+def mission_record(mission: Mission) -> dict[str, Any]:
+    """As the API shows it, times as datetimes."""
+    whole = whole_record(mission)
+    approval, routes = whole.approval, whole.routes
     flown_by = [route.uav_id for route in routes if route.uav_id is not None]
     simulated = set(Uav.objects.filter(pk__in=flown_by, is_simulated=True).values_list("pk", flat=True))
     return {
@@ -109,10 +161,22 @@ def mission_record(mission: Mission) -> dict[str, Any]:
             "continued_by": _continuation(mission),
             "approval": None if approval is None else _approval(approval),
         },
-        "summary": _summary(mission, routes, targets),
+        "summary": _summary(whole),
+        "incidents": [_incident(one, routes) for one in whole.incidents],
         "routes": [_route(route, mission) | {"is_simulated": route.uav_id in simulated} for route in routes],
-        "targets": _targets(mission, targets, routes),
+        "targets": _targets(whole),
         "results": _results(mission),
+    }
+
+
+def _incident(incident: Incident, routes: Sequence[RouteOnRecord]) -> dict[str, Any]:
+    return {
+        "kind": incident.kind.value,
+        "at": at(incident.at_s),
+        "uav": incident.place,
+        "uav_name": next((route.name for route in routes if route.place == incident.place), ""),
+        "position": None if incident.position is None else list(incident.position),
+        "message": reason_words(incident.reason),
     }
 
 
@@ -132,30 +196,41 @@ def _approval(approval: Approval) -> dict[str, Any]:
     }
 
 
-def _summary(mission: Mission, routes: Sequence[RouteOnRecord], targets: Sequence[InspectionTarget]) -> dict[str, Any]:
-    states = Counter(target.state for target in targets)
+def _summary(whole: WholeRecord) -> dict[str, Any]:
+    mission, routes = whole.mission, whole.routes
+    states = Counter(target.row.state for target in whole.targets)
+    results = Counter(target.outcome.result for target in whole.targets)
     levels = dict(Alert.objects.filter(mission=mission).values_list("level").annotate(Count("pk")).order_by())
     flown = [route.flown for route in routes if route.flown.reports]
+    departs_s = min((route.route.departs_s for route in routes), default=0.0)
     return {
-        "targets": {state.value: states[state] for state in TargetState} | {"all": len(targets)},
+        "targets": {state.value: states[state] for state in TargetState} | {"all": len(whole.targets)},
+        "results": {result.value: results[result] for result in Result} | {"all": len(whole.targets)},
         "alerts": {level.value: levels.get(level, 0) for level in AlertLevel},
         "planned": {
             "length_m": sum(route.planned["length_m"] for route in routes),
-            "duration_s": max((route.route.departs_s + route.planned["duration_s"] for route in routes), default=0.0),
+            "duration_s": max((route.route.departs_s + route.planned["duration_s"] for route in routes), default=0.0) - departs_s,
             "energy_wh": _sum([route.planned["energy_wh"] for route in routes]),
         },
         "flown": {
             "length_m": sum(route.flown_m for route in flown),
-            "duration_s": _duration_s(flown),
+            "duration_s": own_span_s([route.in_air for route in routes]) if flown else None,
             "energy_wh": _sum([_used_wh(route) for route in routes]),
             "unreported_m": sum(gap.length_m for route in flown for gap in route.gaps),
             "unreported_s": sum(gap.ended_s - gap.began_s for route in flown for gap in route.gaps),
         },
+        "clock_rate": _clock_rate(flown),
         "across_rms_m": _rms([(route.across_rms_m, route.reports) for route in flown]),
         "height_rms_m": _rms([(route.height_rms_m, route.reports) for route in flown]),
         "lowest_battery_percent": min((low for route in flown if (low := route.battery_lowest_percent) is not None), default=None),
         "estimates": _estimates(mission),
     }
+
+
+def _clock_rate(flown: Sequence[FlownRoute]) -> float:
+    """Of all UAVs together: seconds of their clocks in one of ours."""
+    ours_s = sum(route.duration_s / route.clock_rate for route in flown if route.duration_s)
+    return sum(route.duration_s for route in flown if route.duration_s) / ours_s if ours_s else 1.0
 
 
 def _estimates(mission: Mission) -> dict[str, Any]:
@@ -170,12 +245,6 @@ def _estimates(mission: Mission) -> dict[str, Any]:
         "height_share_inside": whole.height_inside_share,
         "height_rms_m": whole.height_rms_m,
     }
-
-
-def _duration_s(flown: Sequence[FlownRoute]) -> float | None:
-    began = [route.began_s for route in flown if route.began_s is not None]
-    ended = [route.ended_s for route in flown if route.ended_s is not None]
-    return max(ended) - min(began) if began and ended else None
 
 
 def _used_wh(route: RouteOnRecord) -> float | None:
@@ -235,33 +304,74 @@ def at(seconds: float | None) -> datetime | None:
     return None if seconds is None else datetime.fromtimestamp(seconds, UTC)
 
 
-def _targets(mission: Mission, targets: Sequence[InspectionTarget], routes: Sequence[RouteOnRecord]) -> list[dict[str, Any]]:
-    visits = {visit.target: (route, visit) for route in routes for visit in route.visits}
+def _targets_on_record(mission: Mission, routes: Sequence[RouteOnRecord], incidents: Sequence[Incident]) -> list[TargetOnRecord]:
+    on_route = {point.target: (route, point) for route in routes for point in route.route.waypoints if point.target is not None}
+    visits = {visit.target: visit for route in routes for visit in route.visits}
+    last_visits = {route.place: max((v.reached_s for v in route.visits if v.is_done and v.reached_s), default=None) for route in routes}
+    rows = InspectionResult.objects.filter(target__mission=mission).order_by("measured_at", "pk")
+    reported = {place: (outcome, note) for place, outcome, note in rows.values_list("target__sequence", "outcome", "note")}
+    continued = set(mission.routes.filter(continued_by__isnull=False).values_list("mission_uav__sequence", flat=True))
     found = []
-    for target in targets:
-        route, visit = visits.get(target.sequence, (None, None))
-        arrival_s = next((point.arrival_s for point in route.route.waypoints if point.target == target.sequence), None) if route else None
-        planned_at = None if mission.departs_at is None or arrival_s is None else mission.departs_at + timedelta(seconds=arrival_s)
+    for target in mission.targets.order_by("sequence").select_related("asset__line"):
+        route, waypoint = on_route.get(target.sequence, (None, None))
+        visit = visits.get(target.sequence)
+        flight = None
+        if route is not None:
+            flight = FlightFacts(
+                route.place, route.name, visit, bool(route.in_air), last_visits[route.place], is_continued=route.place in continued
+            )
+        facts = TargetFacts(
+            target.state, target.state_reason, target.unassigned_message,
+            None if target.reached_at is None else target.reached_at.timestamp(), reported.get(target.sequence),
+        )  # fmt: skip
+        outcome = outcome_of(facts, flight, incidents, is_over=mission.state in OVER)
+        arrival_s = None if waypoint is None else waypoint.arrival_s
+        reached_s = None if visit is None else visit.reached_s
         found.append(
-            {
-                "place": target.sequence,
-                "label": target.label,
-                "asset": target.asset_id,
-                "external_id": target.external_id,
-                "attributes": target.attributes,
-                "state": target.state,
-                "state_at": target.state_at,
-                "state_reason": target.state_reason or target.unassigned_message,
-                "uav": None if route is None else route.place,
-                "waypoint_sequence": None if visit is None else visit.waypoint_sequence,
-                "planned_at": planned_at,
-                "reached_at": None if visit is None else at(visit.reached_s),
-                "closest_m": None if visit is None else visit.closest_m,
-                "planned_hold_s": None if visit is None else visit.planned_hold_s,
-                "held_s": None if visit is None else visit.held_s,
-            }
-        )
+            TargetOnRecord(
+                target, route, visit, outcome,
+                planned_after_s=None if route is None or arrival_s is None else arrival_s - route.route.departs_s,
+                reached_after_s=None if route is None or reached_s is None or not route.in_air else own_after_s(route.in_air, reached_s),
+            )
+        )  # fmt: skip
     return found
+
+
+def _targets(whole: WholeRecord) -> list[dict[str, Any]]:
+    flown_places = {target.row.pk: number for number, target in enumerate(in_flown_order(whole.targets), start=1)}
+    return [_target(target, whole.mission) | {"flown_place": flown_places[target.row.pk]} for target in whole.targets]
+
+
+def _target(target: TargetOnRecord, mission: Mission) -> dict[str, Any]:
+    row, route, visit, after_s = target.row, target.route, target.visit, target.planned_after_s
+    departs_at, departs_s = mission.departs_at, route.route.departs_s if route else 0.0
+    return {
+        "place": row.sequence,
+        "label": row.label,
+        "asset": row.asset_id,
+        "external_id": row.external_id,
+        "attributes": row.attributes,
+        "state": row.state,
+        "state_at": row.state_at,
+        "state_reason": row.state_reason or row.unassigned_message,
+        "result": target.outcome.result.value,
+        "reason": _reason(target.outcome.reason),
+        "uav": None if route is None else route.place,
+        "waypoint_sequence": None if visit is None else visit.waypoint_sequence,
+        "planned_at": None if departs_at is None or after_s is None else departs_at + timedelta(seconds=departs_s + after_s),
+        "reached_at": None if visit is None else at(visit.reached_s),
+        "planned_after_s": after_s,
+        "reached_after_s": target.reached_after_s,
+        "closest_m": None if visit is None else visit.closest_m,
+        "planned_hold_s": None if visit is None else visit.planned_hold_s,
+        "held_s": None if visit is None else visit.held_s,
+    }
+
+
+def _reason(reason: Reason | None) -> dict[str, Any] | None:
+    if reason is None:
+        return None
+    return {"code": reason.code, "message": reason_words(reason), "at": at(reason.at_s)}
 
 
 def _results(mission: Mission) -> list[dict[str, Any]]:

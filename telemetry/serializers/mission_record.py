@@ -3,6 +3,7 @@
 from rest_framework import serializers
 
 from missions.models import MissionState, TargetState, WaypointKind
+from telemetry.mission_report.outcomes import IncidentKind, Result
 from workspace.external_data import AttributesField
 from workspace.serializers import Declared
 
@@ -36,6 +37,13 @@ class RecordTargetCountsSerializer(serializers.Serializer):
         return super().get_fields() | {state.value: serializers.IntegerField() for state in TargetState}
 
 
+class RecordResultCountsSerializer(serializers.Serializer):
+    all = serializers.IntegerField()
+
+    def get_fields(self) -> dict[str, serializers.Field]:
+        return super().get_fields() | {result.value: serializers.IntegerField() for result in Result}
+
+
 class AlertCountsSerializer(serializers.Serializer):
     critical = serializers.IntegerField()
     warning = serializers.IntegerField()
@@ -44,7 +52,7 @@ class AlertCountsSerializer(serializers.Serializer):
 
 class TotalsSerializer(serializers.Serializer):
     length_m = serializers.FloatField()
-    duration_s = serializers.FloatField(allow_null=True, help_text="from the first take-off to the last landing")
+    duration_s = serializers.FloatField(allow_null=True, help_text="from the first take-off to the last landing, by the UAVs' clocks")
     energy_wh = serializers.FloatField(allow_null=True, help_text="null where a battery is not known")
 
 
@@ -67,12 +75,14 @@ class EstimatesSerializer(serializers.Serializer):
 
 class RecordSummarySerializer(serializers.Serializer):
     targets = RecordTargetCountsSerializer()
+    results = RecordResultCountsSerializer()
     alerts = AlertCountsSerializer()
     planned = TotalsSerializer()
     flown = FlownTotalsSerializer()
+    clock_rate = serializers.FloatField(help_text="seconds of the UAVs' clocks in one of ours: over 1 in a simulation that is faster")
     across_rms_m = serializers.FloatField(allow_null=True, help_text="off the route, sideways")
     height_rms_m = serializers.FloatField(allow_null=True, help_text="outside of the heights that the plan has there")
-    lowest_battery_percent = serializers.FloatField(allow_null=True)
+    lowest_battery_percent = serializers.FloatField(allow_null=True, help_text="in the air")
     estimates = EstimatesSerializer()
 
 
@@ -110,7 +120,11 @@ class FlownGapSerializer(serializers.Serializer):
 class FlownRouteSerializer(FlownSerializer):
     flown_m = serializers.FloatField(help_text="length of the track as it was reported, without gaps")
     gaps = FlownGapSerializer(many=True)
-    battery_lowest_percent = serializers.FloatField(allow_null=True)
+    duration_s = serializers.FloatField(allow_null=True, help_text="from take-off to landing, by the UAV's clock")
+    clock_rate = serializers.FloatField(help_text="seconds of its clock in one of ours")
+    battery_start_percent = serializers.FloatField(allow_null=True, help_text="at take-off")
+    battery_end_percent = serializers.FloatField(allow_null=True, help_text="at landing")
+    battery_lowest_percent = serializers.FloatField(allow_null=True, help_text="in the air")
     battery_used_percent = serializers.FloatField(allow_null=True, help_text="of all batteries of the route together")
     energy_wh = serializers.FloatField(allow_null=True)
 
@@ -143,6 +157,23 @@ class RecordRouteSerializer(serializers.Serializer):
     waypoints = RecordWaypointSerializer(many=True)
 
 
+class RecordReasonSerializer(serializers.Serializer):
+    code = serializers.CharField()
+    message = serializers.CharField(help_text="part of a sentence, in the reader's language")
+    at = serializers.DateTimeField(allow_null=True)
+
+
+class IncidentSerializer(serializers.Serializer):
+    kind = serializers.ChoiceField(choices=[(kind.value, kind.value) for kind in IncidentKind])
+    at = serializers.DateTimeField()
+    uav = serializers.IntegerField(allow_null=True, help_text="place of the UAV in the mission; null: all of them")
+    uav_name = serializers.CharField(allow_blank=True)
+    position = serializers.ListField(
+        child=serializers.FloatField(), min_length=2, max_length=2, allow_null=True, help_text="longitude, latitude [deg] of the UAV then"
+    )
+    message = serializers.CharField()
+
+
 class RecordTargetSerializer(serializers.Serializer):
     place = serializers.IntegerField()
     label: Declared = serializers.CharField()
@@ -152,11 +183,19 @@ class RecordTargetSerializer(serializers.Serializer):
     state = serializers.ChoiceField(choices=TargetState.choices)
     state_at = serializers.DateTimeField(allow_null=True)
     state_reason = serializers.CharField(allow_blank=True)
+    result = serializers.ChoiceField(
+        choices=[(result.value, result.value) for result in Result],
+        help_text="not-confirmed: complete, and no report shows that the UAV was there; open: the mission is not over",
+    )
+    reason = RecordReasonSerializer(allow_null=True, help_text="why it was not inspected, or is not confirmed")
+    flown_place = serializers.IntegerField(help_text="from 1, in the order in which targets were reached; those that were not after them")
     uav = serializers.IntegerField(allow_null=True, help_text="place of the UAV that was to do it")
     waypoint_sequence = serializers.IntegerField(allow_null=True)
     planned_at = serializers.DateTimeField(allow_null=True)
     reached_at = serializers.DateTimeField(allow_null=True)
-    closest_m = serializers.FloatField(allow_null=True, help_text="the nearest at which the UAV was seen")
+    planned_after_s = serializers.FloatField(allow_null=True, help_text="after its UAV's take-off")
+    reached_after_s = serializers.FloatField(allow_null=True, help_text="after its UAV's take-off, by the UAV's clock")
+    closest_m = serializers.FloatField(allow_null=True, help_text="the nearest that the track of its UAV came")
     planned_hold_s = serializers.FloatField(allow_null=True)
     held_s = serializers.FloatField(allow_null=True, help_text="the longest that it can have stayed")
 
@@ -176,6 +215,7 @@ class RecordResultSerializer(serializers.Serializer):
 class MissionRecordSerializer(serializers.Serializer):
     mission = RecordMissionSerializer()
     summary = RecordSummarySerializer()
+    incidents = IncidentSerializer(many=True, help_text="what happened to UAVs, and what they were told, by time")
     routes = RecordRouteSerializer(many=True)
     targets = RecordTargetSerializer(many=True)
     results = RecordResultSerializer(many=True)

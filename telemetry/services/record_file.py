@@ -22,7 +22,7 @@ from telemetry.selectors.mission_record import approval_on_record, mission_recor
 from workspace.models import Organisation
 
 IN_MEMORY_BYTES = 4 << 20
-CONTENTS = """What this file holds, of one mission.
+CONTENTS = """What this file holds, of one mission. What was not recorded has no file.
 
 record.json       what was planned and flown, by leg and target, and what UAVs found
 approval.json     the plan as it was approved: routes, zones, conditions; content_sha256 names it
@@ -52,9 +52,11 @@ def record_file(organisation: Organisation, mission: Mission) -> IO[bytes]:
         packed.writestr("record.json", _json(mission_record(mission)))
         if approval is not None:
             packed.writestr("approval.json", _json({"content_sha256": approval.content_sha256, "document": approval.document}))
-        _write(packed, "telemetry.csv", csv_pieces(map(rounded, logged(records, "measured_at", "pk"))))
-        _write(packed, "telemetry.geojson", geojson_pieces(map(rounded, logged(records, "measured_at", "pk"))))
-        _write(packed, "estimates.jsonl", _estimates(mission))
+        if records.exists():
+            _write(packed, "telemetry.csv", csv_pieces(map(rounded, logged(records, "measured_at", "pk"))))
+            _write(packed, "telemetry.geojson", geojson_pieces(map(rounded, logged(records, "measured_at", "pk"))))
+        if PositionEstimate.objects.filter(mission=mission).exists():
+            _write(packed, "estimates.jsonl", _estimates(mission))
         packed.writestr("alerts.json", _json(_alerts(mission)))
         packed.writestr("commands.json", _json(_commands(mission)))
         for log in FlightLog.objects.filter(mission=mission).order_by("started_at"):

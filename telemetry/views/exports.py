@@ -3,14 +3,14 @@
 import math
 import re
 from collections.abc import Callable, Iterable, Iterator
-from typing import NamedTuple
+from typing import Any, NamedTuple
 from uuid import UUID
 
 from django.db.models import QuerySet
 from django.http import Http404, StreamingHttpResponse
 from django.utils.translation import gettext as _
 from drf_spectacular.types import OpenApiTypes
-from drf_spectacular.utils import OpenApiParameter, extend_schema
+from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
 from rest_framework.views import APIView
 
 from inspection.views.parameters import invalid
@@ -25,6 +25,7 @@ from telemetry.exports.thinning import EVERY_S, for_files
 from telemetry.models import TelemetryRecord
 from telemetry.selectors.log import LogFilter, logged, records_that_match
 from telemetry.views.log_filters import TIMES, time_of
+from workspace.errors import ApiProblem
 from workspace.negotiation import OneAnswer
 from workspace.signed_in import SignedInRequest
 
@@ -53,7 +54,8 @@ ABOUT = (
 EVERY = OpenApiParameter("every_s", float, description="of each UAV one record in so many seconds; 0 for all", default=EVERY_S)
 MOST_S = 3_600.0
 KIND = OpenApiParameter("kind", str, OpenApiParameter.PATH, enum=[*KINDS], description="how the file ends")
-FILES = {(200, kind.media_type.partition(";")[0]): OpenApiTypes.STR for kind in KINDS.values()}
+NOTHING = {409: OpenApiResponse(description="Nothing was recorded: there is no file.")}
+FILES: dict[Any, Any] = {(200, kind.media_type.partition(";")[0]): OpenApiTypes.STR for kind in KINDS.values()} | NOTHING
 
 
 class MissionTelemetryFile(APIView):
@@ -104,6 +106,8 @@ def _every_s(request: SignedInRequest) -> float:
 
 
 def _file(records: QuerySet[TelemetryRecord], kind: str, name: str, every_s: float) -> StreamingHttpResponse:
+    if not records.exists():
+        raise ApiProblem(409, "nothing_recorded", _("No telemetry was recorded: there is nothing to export."))
     wanted = KINDS[kind]
     chosen = for_files(logged(records, *wanted.order), every_s=every_s)
     response = StreamingHttpResponse(wanted.pieces(chosen, name), content_type=wanted.media_type)

@@ -148,7 +148,7 @@ def test_what_one_uav_leaves_is_offered_taken_by_one_operator_and_seen_by_the_ot
 
     watcher.goto(f"/missions/{flight.mission}/report")
     wait_for_map(watcher)
-    expect(watcher.get_by_role("region", name=re.compile("^Missed"))).to_contain_text(f"Taken over by {NAME}, continued.")
+    expect(watcher.get_by_role("region", name=re.compile("^Not inspected"))).to_contain_text(f"Taken over by {NAME}, continued.")
 
 
 @pytest.mark.long
@@ -166,7 +166,7 @@ def test_the_other_plan_is_flown_to_its_end_and_told_by_its_record(visitor: Visi
     in_both_themes(watcher, picture, "live-over")
     watcher.goto(watcher.url.replace("/fly", "/report"))
     wait_for_map(watcher)
-    expect(watcher.get_by_role("heading", name=re.compile(r"^(\d+) of \1 targets complete$"))).to_be_visible()
+    expect(watcher.get_by_role("heading", name=re.compile(r"^(\d+) of \1 targets inspected$"))).to_be_visible()
     in_both_themes(watcher, picture, "record-continued")
 
 

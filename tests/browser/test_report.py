@@ -24,6 +24,7 @@ VIEWS: dict[str, dict[str, Any]] = {
     "phone-light": {"theme": "light", "size": (390, 844), "touch": True},
     "phone-dark": {"theme": "dark", "size": (390, 844), "touch": True},
 }
+SENTENCE = re.compile(r"^\d of 8 targets inspected")
 _flown: dict[str, str] = {}
 
 
@@ -64,15 +65,20 @@ def opened(page: Page, address: str) -> Page:
 
 def test_a_flown_mission_is_told_and_flown_once_more(visitor: Visitor, flown: str) -> None:
     page = opened(visitor.signs_in("opal"), flown)
-    expect(page.get_by_role("heading", name="7 of 8 targets complete")).to_be_visible()
+    expect(page.get_by_role("heading", name=SENTENCE)).to_be_visible()
+    reasons = page.locator("#report-reasons")
+    expect(reasons).to_contain_text(re.compile(r"not inspected: Garganey passed it at \d+ m\."))
     figures = page.get_by_role("table", name="Planned and flown")
     expect(figures.get_by_role("row", name=re.compile(r"^Distance \d.* km \d.* km [+−]"))).to_be_visible()
-    missed = page.get_by_role("region", name=re.compile("^Missed"))
+    missed = page.get_by_role("region", name=re.compile("^Not inspected"))
     expect(missed.get_by_role("listitem")).to_have_count(1)
-    expect(missed).to_contain_text("The UAV went past it at a distance.")
+    expect(missed).to_contain_text(re.compile(r"Garganey passed it at \d+ m"))
+    expect(page.get_by_role("rowheader", name="Track error (RMS)")).to_be_hidden()
+    page.locator("#report-quality > summary").click()
+    expect(page.get_by_role("rowheader", name="Track error (RMS)")).to_be_visible()
 
     page.locator("#report-targets > summary").click()
-    expect(page.locator("#report-targets .report-target-state.complete")).to_have_count(7)
+    expect(page.locator("#report-targets .report-target-state:is(.inspected, .not-confirmed)")).to_have_count(7)
     page.locator("#report-legs > summary").click()
     page.locator(".report-route > summary").first.click()
     stage = page.locator(".report-leg[aria-expanded=false]").first
@@ -110,15 +116,19 @@ def test_a_flown_mission_is_told_and_flown_once_more(visitor: Visitor, flown: st
     with page.expect_download() as download:
         page.get_by_role("link", name="All data (ZIP)").click()
     assert download.value.suggested_filename.endswith("-record.zip")
+    for name, ending in (("Results (XLSX)", "xlsx"), ("KML", "kml")):
+        with page.expect_download() as download:
+            page.get_by_role("link", name=name).click()
+        assert download.value.suggested_filename.endswith(f"-results.{ending}")
 
 
 @pytest.mark.parametrize("view", [*VIEWS] if HAS_PICTURES else ["dark", "phone-light"])
 def test_the_record_fits_every_window(visitor: Visitor, flown: str, picture: Picture, view: str) -> None:
     page = opened(visitor.signs_in("vera", **VIEWS[view]), flown)
-    expect(page.get_by_role("heading", name="7 of 8 targets complete")).to_be_visible()
+    expect(page.get_by_role("heading", name=SENTENCE)).to_be_visible()
     page.locator("#report-alerts button").first.evaluate("(button) => button.click()")
     picture(page, f"report-{view}")
-    for part in ("targets", "legs", "alerts", "commands"):
+    for part in ("targets", "legs", "alerts", "commands", "quality"):
         page.locator(f"#report-{part} > summary").click()
     assert faults(page) == []
 
@@ -131,3 +141,36 @@ def test_a_mission_that_nobody_has_flown_says_so(visitor: Visitor, picture: Pict
     expect(page.get_by_role("slider")).to_have_count(0)
     assert page.evaluate(TOO_WIDE) == []
     picture(page, "report-empty-light")
+
+
+@pytest.mark.parametrize("start", ["report", "fly"])
+def test_a_mission_with_open_targets_is_closed_and_followed_up(visitor: Visitor, site: Site, picture: Picture, start: str) -> None:
+    """After an abort: each open target gets a reason, and the draft of the rest is there at once."""
+    page = visitor.signs_in("ada")
+    uav = posts(page, "/uavs", {"name": f"Wigeon {start}", "position": region.west, "is_simulated": True})["id"]
+    towers = asks(page, f"/assets?kind=tower&bbox={region.report_towers}&limit=400")["features"][:2]
+    body = {"name": f"West, {start}", "uavs": [{"id": uav}], "targets": [{"asset": tower["id"]} for tower in towers], "plan": True}
+    key = posts(page, "/missions", body)["id"]
+    for act in ("approve", "dispatch", "abort"):
+        posts(page, f"/missions/{key}/{act}", {} if act != "abort" else {"why": "thunderstorm"})
+    opened(page, f"/missions/{key}/{start}")
+    page.get_by_role("button", name="Close mission").click()
+    dialog = page.get_by_role("dialog", name=re.compile("^Close"))
+    reasons = dialog.locator(".close-reasons input")
+    expect(reasons).to_have_count(2)
+    expect(reasons.first).to_have_value("mission aborted by ada: thunderstorm")
+    reasons.nth(1).fill("")
+    dialog.get_by_role("button", name="Close mission").click()
+    expect(dialog).to_be_visible()
+    reasons.nth(1).fill("lightning over the valley")
+    picture(page, f"close-mission-{start}")
+    assert faults(page) == []
+    dialog.get_by_label("Plan a follow-up").check()
+    dialog.get_by_role("button", name="Close mission").click()
+    page.wait_for_url(lambda address: key not in address and "/missions/" in address)
+    expect(page.get_by_text(f"West, {start} – follow-up").first).to_be_visible()
+    opened(page, f"/missions/{key}/report")
+    expect(page.get_by_role("heading", name="0 of 2 targets inspected")).to_be_visible()
+    expect(page.locator("#report-reasons")).to_contain_text("not inspected: lightning over the valley.")
+    expect(page.get_by_role("button", name="Close mission")).to_be_hidden()
+    expect(page.get_by_role("button", name="Plan a follow-up")).to_be_visible()

@@ -89,3 +89,14 @@ def test_what_is_not_there_is_not_found(client: Client, mission: Mission) -> Non
 
 def test_a_stranger_downloads_nothing(mission: Mission) -> None:
     assert Client().get(f"/api/v1/missions/{mission.pk}/telemetry.csv").status_code == 401
+
+
+@pytest.mark.parametrize("kind", ["csv", "gpx", "kml", "geojson"])
+def test_nothing_is_exported_empty(client: Client, mission: Mission, kind: str) -> None:
+    TelemetryRecord.objects.filter(mission=mission).update(mission=None)
+    answer = client.get(f"/api/v1/missions/{mission.pk}/telemetry.{kind}")
+    assert (answer.status_code, answer.json()["error"]["code"]) == (409, "nothing_recorded")
+    silent = a_uav("Rook")
+    assert client.get(f"/api/v1/uavs/{silent.pk}/telemetry.{kind}").status_code == 409
+    assert client.get(f"/api/v1/missions/{mission.pk}/results.{kind if kind != 'gpx' else 'xlsx'}").status_code == 409
+    assert client.get(f"/api/v1/missions/{mission.pk}/record.zip").status_code == 409

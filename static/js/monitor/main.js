@@ -18,6 +18,7 @@ import { inOrder } from "./order.js";
 import { mountAlerts } from "./panels/alerts.js";
 import { mountBoard } from "./panels/board.js";
 import { mountCards } from "./panels/cards.js";
+import { mountCloseMission } from "./panels/close_mission.js";
 import { mountCommandBar } from "./panels/command_bar.js";
 import { mountHead } from "./panels/head.js";
 import { mountOffers } from "./panels/offers.js";
@@ -91,6 +92,7 @@ mountBoard(store, {
 mountSimulation(page);
 mountPlannedStarts({ mission: page.mission, canFly: page.canFly, offersBegin: false });
 mountPreflight(store, page);
+mountCloseMission(store, page);
 mountUrgent(store, { open: narrow.showBoard });
 const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
 

@@ -154,10 +154,10 @@ export function eventFrom(events, at_ms, direction) {
 }
 
 /**
- * Heights of the plan by time, begun when the UAV took off; none where the plan has no times.
+ * Heights of the plan by time, begun when the UAV took off, as fast as its clock went; none where the plan has no times.
  *
  * @param {{ waypoints: readonly Pick<RecordRoute["waypoints"][number], "arrival_s" | "altitude_relative_m">[],
- *   flown: Pick<RecordRoute["flown"], "began_at"> }} route
+ *   flown: Pick<RecordRoute["flown"], "began_at" | "clock_rate"> }} route
  * @returns {TimedValue[]}
  */
 export function plannedHeights({ waypoints, flown }) {
@@ -167,5 +167,8 @@ export function plannedHeights({ waypoints, flown }) {
     arrival_s === null ? [] : [{ arrival_s, value }],
   );
   if (timed.length < waypoints.length) return [];
-  return timed.map(({ arrival_s, value }) => ({ at_ms: began_ms + (arrival_s - timed[0].arrival_s) * SECOND, value }));
+  return timed.map(({ arrival_s, value }) => ({
+    at_ms: began_ms + ((arrival_s - timed[0].arrival_s) / flown.clock_rate) * SECOND,
+    value,
+  }));
 }

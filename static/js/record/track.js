@@ -138,7 +138,8 @@ export function nearestTo(samples, at_ms) {
 }
 
 /**
- * Stretches in the air. Silence does not end a flight, a report from the ground does.
+ * Stretches in the air. Silence does not end a flight, a report from the ground does; where some reports say whether it was in the air, one
+ * that does not begins no flight.
  *
  * @param {readonly Pick<Sample, "at_ms" | "isInAir">[]} samples
  */
@@ -147,10 +148,11 @@ export function flightsOf(samples) {
   const flights = [];
   /** @type {TimeSpan | null} */
   let flight = null;
+  const isTold = samples.some(({ isInAir }) => isInAir !== null);
   for (const { at_ms, isInAir } of samples) {
     if (isInAir === false) flight = null;
     else if (flight) flight.to_ms = at_ms;
-    else {
+    else if (isInAir || !isTold) {
       flight = { from_ms: at_ms, to_ms: at_ms };
       flights.push(flight);
     }
@@ -199,6 +201,21 @@ export function momentOf(track, at_ms) {
   if (at_ms > samples[samples.length - 1].at_ms) return null;
   return { kind: SILENT, sample: before };
 }
+
+/**
+ * Lines of one value from each take-off to its landing, broken where nothing was heard.
+ *
+ * @param {Pick<Track, "samples" | "flights" | "silence_ms">} track
+ * @param {"height_m" | "speed_mps" | "battery_percent"} name
+ */
+export const flownLinesOf = ({ samples, flights, silence_ms }, name) =>
+  flights.flatMap(({ from_ms, to_ms }) =>
+    linesOf(
+      samples.filter(({ at_ms }) => from_ms <= at_ms && at_ms <= to_ms),
+      name,
+      silence_ms,
+    ),
+  );
 
 /**
  * Lines of one value over time, each broken where nothing was heard.

@@ -3,7 +3,7 @@
 import { byId, h, svg } from "../dom.js";
 import { routeLetter, routeNumber } from "../domain/palette.js";
 import { hasLanded, plannedHeights, scaleOf, ticksOf } from "../record/timeline.js";
-import { ESTIMATED, linesOf, MEASURED, momentOf, SILENT } from "../record/track.js";
+import { ESTIMATED, flownLinesOf, MEASURED, momentOf, SILENT } from "../record/track.js";
 import { t } from "../text.js";
 import {
   clockText,
@@ -136,7 +136,7 @@ function stripRow(route, { x, width_px }, onChoose) {
 function chartRow(chart, { routes, span }, { x, width_px }) {
   const series = routes.map((route) => ({
     place: route.place,
-    lines: linesOf(route.track.samples, chart.name, route.track.silence_ms),
+    lines: flownLinesOf(route.track, chart.name),
     planned: chart.hasPlan ? plannedHeights(route).filter(({ at_ms }) => at_ms <= span.to_ms) : [],
   }));
   if (!series.some(({ lines }) => lines.length)) return [];

@@ -1,8 +1,9 @@
-/** "Plan a follow-up": a draft with the targets that were missed. */
+/** What is done with a report: close the mission, plan a follow-up with the targets that were missed, download. */
 
 import { post } from "../api.js";
 import { byId } from "../dom.js";
-import { isOver } from "../record/sentence.js";
+import { askToClose, canBeClosed } from "../page/close_mission.js";
+import { isOver, wasFlown } from "../record/sentence.js";
 import { t } from "../text.js";
 
 /** @import { Answer, ApiError } from "../api.js" */
@@ -19,8 +20,25 @@ let key = null; // of the asking: the same until it is answered, so that there i
  */
 export function offerFollowUp(record, { canPlan }) {
   const button = byId("report-follow-up", HTMLButtonElement);
-  button.hidden = !canPlan || !isOver(record);
+  const { all, inspected, "not-confirmed": unsure } = record.summary.results;
+  button.hidden = !canPlan || !isOver(record) || inspected + unsure === all;
   button.onclick = () => ask(button, record.mission.id);
+}
+
+/** @param {MissionRecord} record @param {{ canFly: boolean }} reader */
+export function offerClosing(record, { canFly }) {
+  const button = byId("report-close", HTMLButtonElement);
+  button.hidden = !canFly || !canBeClosed(record);
+  button.onclick = () => askToClose({ mission: record.mission.id, opener: button });
+}
+
+/** Only what there is. @param {MissionRecord} record */
+export function offerDownloads(record) {
+  byId("report-results-files").hidden = record.mission.approval === null;
+  for (const link of byId("report-raw-files").querySelectorAll("a"))
+    link.hidden = link.id === "report-zip" ? record.mission.approval === null : !wasFlown(record);
+  byId("report-raw-files").hidden = record.mission.approval === null && !wasFlown(record);
+  byId("report-foot").hidden = byId("report-results-files").hidden && byId("report-raw-files").hidden;
 }
 
 /** @param {HTMLButtonElement} button @param {string} mission */

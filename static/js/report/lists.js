@@ -4,12 +4,13 @@ import { h, icon } from "../dom.js";
 import { commandWords, timesOf } from "../domain/flying.js";
 import { routeLetter, routeNumber } from "../domain/palette.js";
 import { waypointName } from "../record/labels.js";
+import { capital } from "../record/sentence.js";
 import { simulatedMark } from "../simulated.js";
 import { t } from "../text.js";
 import { clockText, exactClockText, exactHeightText, exactText, lengthText } from "../units.js";
 import { fold } from "./side.js";
 
-/** @import { Alert, Command, FlownLeg, FlownStage, MissionRecord, RecordRoute } from "../api_types.d.ts" */
+/** @import { Alert, Command, FlownLeg, FlownStage, Incident, MissionRecord, RecordRoute } from "../api_types.d.ts" */
 /** @import { Properties } from "../dom.js" */
 /** @import { Labels } from "../record/labels.js" */
 /** @import { LookedLeg } from "./types.d.ts" */
@@ -159,6 +160,51 @@ function legTable(route, labels, onLook) {
     ),
   );
 }
+
+/**
+ * What happened to UAVs, by time.
+ *
+ * @param {readonly Incident[]} incidents
+ * @param {(incident: Incident) => void} onPick
+ */
+export function drawIncidents(incidents, onPick) {
+  const rows = incidents.map((incident) =>
+    h(
+      "li",
+      { class: `report-alert ${INCIDENTS[incident.kind].level}` },
+      icon(INCIDENTS[incident.kind].image, "small"),
+      h(
+        "span",
+        {},
+        h("strong", {}, capital(incident.message)),
+        h(
+          "small",
+          {},
+          h(
+            "button",
+            { type: "button", class: "text-button", title: exactText(incident.at), onclick: () => onPick(incident) },
+            exactClockText(incident.at),
+          ),
+        ),
+      ),
+    ),
+  );
+  fold("incidents", rows.length, h("ul", { class: "report-list" }, rows));
+}
+
+/** @type {Record<Incident["kind"], { image: string, level: string }>} */
+export const INCIDENTS = {
+  crashed: { image: "octagon-alert", level: "critical" },
+  down: { image: "octagon-alert", level: "critical" },
+  "failsafe-return": { image: "house", level: "warning" },
+  "failsafe-land": { image: "triangle-alert", level: "warning" },
+  "told-return": { image: "house", level: "" },
+  "told-land": { image: "circle-pause", level: "" },
+  aborted: { image: "octagon-alert", level: "warning" },
+  battery: { image: "triangle-alert", level: "critical" },
+  "link-lost": { image: "triangle-alert", level: "critical" },
+  alert: { image: "octagon-alert", level: "critical" },
+};
 
 /**
  * @param {readonly Alert[]} alerts

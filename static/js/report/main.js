@@ -13,19 +13,19 @@ import { mountSceneOpener } from "../scene/opener.js";
 import { t } from "../text.js";
 import { numberText } from "../units.js";
 import { createDock } from "./dock.js";
-import { offerFollowUp } from "./follow_up.js";
+import { offerClosing, offerDownloads, offerFollowUp } from "./follow_up.js";
 import { mountLayout } from "./layout.js";
-import { drawAlerts, drawCommands, drawLegs, drawResults } from "./lists.js";
+import { drawAlerts, drawCommands, drawIncidents, drawLegs, drawResults } from "./lists.js";
 import { replayTables } from "./replay_tables.js";
 import { createReportMap } from "./report_map.js";
-import { drawHead, drawTargets } from "./side.js";
+import { drawHead, drawQuality, drawTargets } from "./side.js";
 
 const AGAIN_MS = 30_000;
 const KEY_STEPS = 100; // of the whole replay, by an arrow key
 const NEAR_EVENT_MS = 2_000;
 
 /** @import { ApiError } from "../api.js" */
-/** @import { MissionRecord, RecordTarget } from "../api_types.d.ts" */
+/** @import { Incident, MissionRecord, RecordTarget } from "../api_types.d.ts" */
 /** @import { Labels } from "../record/labels.js" */
 /** @import { LoadedMission } from "../record/load.js" */
 /** @import { ReplayEvent } from "../record/timeline.js" */
@@ -34,7 +34,7 @@ const NEAR_EVENT_MS = 2_000;
 /** @type {ReportPage} */
 const page = readPage();
 const layout = mountLayout();
-const map = createReportMap(page, { onPick: choose });
+const map = createReportMap(page, { onPick: choose, onIncident: showIncident });
 const dock = createDock({ onChoose: choose });
 const player = createPlayer({ onMove: show });
 const scene = mountSceneOpener(
@@ -56,6 +56,18 @@ let looked = null;
 function choose(place) {
   looked = looked === place ? null : place;
   show();
+}
+
+/** @param {Incident} incident */
+function showIncident({ at, position }) {
+  player.seek(Date.parse(at));
+  if (position) map.showPlace(position);
+}
+
+/** @param {number} place of a target */
+function showTarget(place) {
+  const known = labels.get(place);
+  if (known) map.showPlace(known.position);
 }
 
 // reading
@@ -112,12 +124,13 @@ function take(answer) {
   labels = labelsOf(record.routes);
   routes = replayRoutes(answer);
   events = eventsOf({ routes, targets: record.targets, alerts: answer.alerts, isOver: isOver(record) });
-  drawHead(record);
-  drawTargets(record, labels, (place) => {
-    const known = labels.get(place);
-    if (known) map.showPlace(known.position);
-  });
+  drawHead(record, showTarget);
+  drawTargets(record, labels, showTarget);
   offerFollowUp(record, { canPlan: page.canFly });
+  offerClosing(record, { canFly: page.canFly });
+  offerDownloads(record);
+  drawIncidents(record.incidents, showIncident);
+  drawQuality(record);
   drawLegs(record, labels, lookAtLeg);
   drawAlerts(
     answer.alerts,
@@ -126,7 +139,7 @@ function take(answer) {
   );
   drawCommands(answer.commands);
   drawResults(record, labels);
-  map.show({ routes, targets: record.targets, labels });
+  map.show({ routes, targets: record.targets, labels, incidents: record.incidents });
   const span = spanOf(routes.map(({ track }) => track));
   player.setSpan(span);
   byId("dock").classList.toggle("without-replay", span === null);

@@ -1,7 +1,7 @@
 /** The map of a record: planned thin, flown solid, targets by what became of them, UAVs where they were at the cursor. */
 
 import { get } from "../api.js";
-import { byId } from "../dom.js";
+import { byId, h, icon } from "../dom.js";
 import { LOST } from "../domain/certainty.js";
 import { routeLetter } from "../domain/palette.js";
 import { mountControls } from "../map/controls.js";
@@ -9,24 +9,28 @@ import { createTip } from "../map/furniture.js";
 import * as routesLayer from "../map/layers/routes.js";
 import { rememberedUnder } from "../map/look/under.js";
 import { boxAround, createMap } from "../map/map_view.js";
+import { maplibre } from "../map/maplibre.js";
 import { showTipsOnly } from "../map/tips_only.js";
 import { createTargetPills } from "../monitor/map/target_pills.js";
 import { createUavMarkers } from "../monitor/map/uav_markers.js";
+import { capital } from "../record/sentence.js";
 import { ESTIMATED, momentOf, SILENT } from "../record/track.js";
 import { t, tn } from "../text.js";
-import { heightText } from "../units.js";
+import { clockText, heightText } from "../units.js";
+import { INCIDENTS } from "./lists.js";
 import * as layers from "./record_layers.js";
 
 /** @import { MarkedUav } from "../monitor/types.d.ts" */
 
 /** @import { Answer } from "../api.js" */
-/** @import { RecordTarget } from "../api_types.d.ts" */
-/** @import { Geometry, Ground, MapControls } from "../map/types.d.ts" */
+/** @import { Incident, RecordTarget } from "../api_types.d.ts" */
+/** @import { Marker } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
+/** @import { Geometry, Ground, MapControls, MapLibreMap } from "../map/types.d.ts" */
 /** @import { Moment } from "../record/track.js" */
 /** @import { Labels } from "../record/labels.js" */
 /** @import { ReplayRoute, ReportPage } from "./types.d.ts" */
 
-/** @typedef {{ routes: ReplayRoute[], targets: RecordTarget[], labels: Labels }} Shown */
+/** @typedef {{ routes: ReplayRoute[], targets: RecordTarget[], labels: Labels, incidents: Incident[] }} Shown */
 
 const REST = { light: 0.3, dark: 0.42 }; // of routes that are not looked at
 const NEAR_ZOOM = 14;
@@ -103,6 +107,20 @@ const placesOf = ({ routes }) =>
     [...waypoints, ...track.samples].flatMap(({ position }) => (position ? [position] : [])),
   );
 
+/** A pin where something happened to a UAV. @param {MapLibreMap} map @param {Incident} incident @param {() => void} onPick */
+function pinOf(map, { kind, message, at, position }, onPick) {
+  if (!position) return [];
+  const [longitude, latitude] = position;
+  const { image, level } = INCIDENTS[kind];
+  const words = `${clockText(at)} ${capital(message)}`;
+  const element = h(
+    "button",
+    { type: "button", class: `report-pin ${level}`, "aria-label": words, title: words, onclick: onPick },
+    icon(image, "small"),
+  );
+  return [new maplibre.Marker({ element, anchor: "bottom" }).setLngLat([longitude, latitude]).addTo(map)];
+}
+
 /** @param {Shown} shown */
 function describe({ routes, targets }) {
   const words = [
@@ -129,8 +147,11 @@ async function readGround(controls) {
   if (answer) controls.setGround(answer.data);
 }
 
-/** @param {ReportPage} page @param {{ onPick: (place: number) => void }} options onPick: a UAV was clicked */
-export function createReportMap(page, { onPick }) {
+/**
+ * @param {ReportPage} page
+ * @param {{ onPick: (place: number) => void, onIncident: (incident: Incident) => void }} options onPick: a UAV was clicked
+ */
+export function createReportMap(page, { onPick, onIncident }) {
   const container = byId("map");
   const view = openMap(container, page);
   const { map } = view;
@@ -141,6 +162,8 @@ export function createReportMap(page, { onPick }) {
   let looked = null;
   /** @type {{ pills: ReturnType<typeof createTargetPills>, markers: ReturnType<typeof createUavMarkers> } | null} */
   let parts = null;
+  /** @type {Marker[]} */
+  let pins = [];
   let hasFitted = view.opensAtPlace;
   const light = () => {
     routesLayer.lookAt(map, view.palette(), looked);
@@ -180,6 +203,8 @@ export function createReportMap(page, { onPick }) {
     routesLayer.update(map, plannedLines(shown));
     layers.showTracks(map, shown.routes);
     parts.pills.update(pillsOf(shown));
+    for (const pin of pins) pin.remove();
+    pins = shown.incidents.flatMap((incident) => pinOf(map, incident, () => onIncident(incident)));
     map.getCanvas().setAttribute("aria-label", describe(shown));
     if (!hasFitted) fit({ animate: false });
     hasFitted = true;

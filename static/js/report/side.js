@@ -3,9 +3,18 @@
 import { byId, find, h, icon } from "../dom.js";
 import { routeNumber } from "../domain/palette.js";
 import { STATES as MISSION_STATES } from "../missions/rows.js";
-import { reasonWords, STATES } from "../monitor/board.js";
-import { factsOf, figuresOf, isOver, isUnderWay, sentenceOf, wasFlown } from "../record/sentence.js";
-import { t } from "../text.js";
+import {
+  capital,
+  factsOf,
+  figuresOf,
+  hasOwnClock,
+  isUnderWay,
+  qualityOf,
+  reasonsOf,
+  sentenceOf,
+  wasFlown,
+} from "../record/sentence.js";
+import { t, tn } from "../text.js";
 import { clockText, dateText, durationText, exactText, lengthText } from "../units.js";
 
 /** @import { MissionRecord, RecordMission, RecordTarget } from "../api_types.d.ts" */
@@ -14,6 +23,14 @@ import { clockText, dateText, durationText, exactText, lengthText } from "../uni
 /** @typedef {(target: number) => void} OnLook the target's pill was clicked */
 
 const HASH_LETTERS = 8;
+const MAX_NAMED = 4; // targets in a sentence
+/** @type {Record<RecordTarget["result"], { words: string, image: string }>} */
+const RESULTS = {
+  inspected: { words: t("Inspected"), image: "circle-check" },
+  "not-confirmed": { words: t("Complete, not confirmed"), image: "circle-dashed" },
+  "not-inspected": { words: t("Not inspected"), image: "circle-x" },
+  open: { words: t("Open"), image: "circle-dashed" },
+};
 
 /** @param {RecordMission} mission */
 function whenWords({ started_at, ended_at, departs_at }) {
@@ -24,11 +41,12 @@ function whenWords({ started_at, ended_at, departs_at }) {
 }
 
 /**
- * Name, state, when, by whom, the plan's hash; the sentence, and the figures once something was flown.
+ * Name, state, when, by whom, the plan's hash; the sentence with its reasons, and the figures once something was flown.
  *
  * @param {MissionRecord} record
+ * @param {OnLook} onLook
  */
-export function drawHead(record) {
+export function drawHead(record, onLook) {
   const { mission } = record;
   const chip = byId("report-state");
   chip.hidden = false;
@@ -46,6 +64,9 @@ export function drawHead(record) {
   byId("report-facts").textContent = facts.filter(Boolean).join(" · ");
   const sentence = sentenceOf(record);
   if (byId("report-sentence").textContent !== sentence) byId("report-sentence").textContent = sentence;
+  const reasons = reasonsOf(record);
+  byId("report-reasons").hidden = !reasons.length;
+  byId("report-reasons").replaceChildren(...reasons.map((reason) => reasonLine(reason, onLook)));
   byId("report-said").textContent = factsOf(record);
   const others = [
     [mission.continues, t("Flies the rest of an earlier mission: its report")],
@@ -60,33 +81,64 @@ export function drawHead(record) {
   );
   const table = byId("report-figures", HTMLTableElement);
   table.hidden = !record.routes.length;
-  table.tBodies[0].replaceChildren(
-    ...figuresOf(record).map(({ words, planned, flown, more }) =>
-      h(
-        "tr",
-        {},
-        h("th", { scope: "row" }, words),
-        h("td", { class: "number quiet-text" }, planned),
-        h("td", { class: "number flown" }, flown),
-        h("td", { class: "number quiet-text" }, more),
-      ),
+  table.tBodies[0].replaceChildren(...figuresOf(record).map(figureRow));
+}
+
+/** @param {ReturnType<typeof figuresOf>[number]} figure */
+const figureRow = ({ words, planned, flown, more }) =>
+  h(
+    "tr",
+    {},
+    h("th", { scope: "row" }, words),
+    h("td", { class: "number quiet-text" }, planned),
+    h("td", { class: "number flown" }, flown),
+    h("td", { class: "number quiet-text" }, more),
+  );
+
+/** A sentence whose targets are shown on the map by a click. @param {ReturnType<typeof reasonsOf>[number]} reason @param {OnLook} onLook */
+function reasonLine({ targets, words }, onLook) {
+  const [before, after = ""] = words.split("{targets}");
+  const named = targets.slice(0, MAX_NAMED).map(({ place, label }, index) => [
+    index ? ", " : "",
+    h(
+      "button",
+      {
+        type: "button",
+        class: "text-button",
+        title: t("Show {target} on the map", { target: label }),
+        onclick: () => onLook(place),
+      },
+      label,
+    ),
+  ]);
+  const rest = targets.length - named.length;
+  return h("li", {}, before, named, rest > 0 && ` ${tn(rest, "and {count} more", "and {count} more")}`, after);
+}
+
+/** How well tracks and estimates were: figures for those who judge the data. @param {MissionRecord} record */
+export function drawQuality(record) {
+  const part = byId("report-quality");
+  part.hidden = !wasFlown(record);
+  find(part, ".report-part-body").replaceChildren(
+    h(
+      "table",
+      { class: "report-table report-quality" },
+      h("caption", {}, t("Tracks against routes, and estimates against what was measured")),
+      h("tbody", {}, qualityOf(record).map(figureRow)),
     ),
   );
 }
 
-/** @param {MissionRecord} record @param {RecordTarget} target */
-const isMissed = (record, { state }) =>
-  state === "skipped" || state === "failed" || (state === "pending" && isOver(record));
-
 /** @param {MissionRecord} record @param {Labels} labels @param {OnLook} onLook */
 export function drawTargets(record, labels, onLook) {
-  const missed = record.targets.filter((target) => isMissed(record, target));
+  const targets = [...record.targets].sort((a, b) => a.flown_place - b.flown_place);
+  const missed = targets.filter(({ result }) => result === "not-inspected");
   const section = byId("report-missed");
   section.hidden = missed.length === 0;
   find(section, ".count").textContent = `${missed.length}`;
   find(section, ".report-list").replaceChildren(...missed.map((target) => missedRow(target, labels, onLook)));
   const isClose = wasFlown(record) || isUnderWay(record);
-  fold("targets", record.targets.length, targetTable(record.targets, labels, onLook, isClose));
+  fold("targets", targets.length, targetTable(targets, labels, onLook, { isClose, hasOwnClock: hasOwnClock(record) }));
 }
 
 /** @param {RecordTarget} target @param {Labels} labels @param {OnLook} onLook */
@@ -108,17 +160,7 @@ function pill(target, labels, onLook) {
 
 /** @param {RecordTarget} target @param {Labels} labels @param {OnLook} onLook */
 function missedRow(target, labels, onLook) {
-  const state = STATES[target.state];
-  const why = reasonWords(target.state_reason);
-  const nearest =
-    target.closest_m === null ? "" : t("It came within {distance}.", { distance: lengthText(target.closest_m) });
-  const words = [
-    target.state === "pending" ? t("Not reached before the mission ended.") : `${state.words}.`,
-    why,
-    nearest,
-  ]
-    .filter(Boolean)
-    .join(" ");
+  const { reason } = target;
   return h(
     "li",
     {},
@@ -130,9 +172,8 @@ function missedRow(target, labels, onLook) {
       h(
         "small",
         {},
-        words,
-        target.state_at &&
-          h("time", { datetime: target.state_at, title: exactText(target.state_at) }, ` ${clockText(target.state_at)}`),
+        reason && capital(reason.message),
+        reason?.at && h("time", { datetime: reason.at, title: exactText(reason.at) }, ` ${clockText(reason.at)}`),
       ),
     ),
   );
@@ -144,11 +185,24 @@ const time = (iso) => (iso ? h("time", { datetime: iso, title: exactText(iso) },
 const seconds = (value) =>
   value === null ? "—" : value < 100 ? t("{count} s", { count: Math.round(value) }) : durationText(value);
 
-/** @param {readonly RecordTarget[]} targets @param {Labels} labels @param {OnLook} onLook @param {boolean} isClose */
-function targetTable(targets, labels, onLook, isClose) {
+/** Minutes and seconds after take-off. @param {number | null} seconds_s */
+const after = (seconds_s) =>
+  seconds_s === null
+    ? "—"
+    : `+${Math.floor(seconds_s / 60)}:${String(Math.floor(Math.max(seconds_s, 0) % 60)).padStart(2, "0")}`;
+
+/**
+ * In flown order. hasOwnClock: it was simulated faster than real time, and times are after take-off.
+ *
+ * @param {readonly RecordTarget[]} targets
+ * @param {Labels} labels
+ * @param {OnLook} onLook
+ * @param {{ isClose: boolean, hasOwnClock: boolean }} how isClose: whether there is something to tell of how it was flown
+ */
+function targetTable(targets, labels, onLook, { isClose, hasOwnClock: isOwn }) {
   const head = [t("Target"), t("Planned"), t("Reached"), t("Closest"), t("Held")];
   const rows = targets.map((target) => {
-    const state = STATES[target.state];
+    const state = RESULTS[target.result];
     return [
       h(
         "tr",
@@ -161,7 +215,7 @@ function targetTable(targets, labels, onLook, isClose) {
             "div",
             {},
             h("span", { class: "report-name" }, target.label),
-            h("span", { class: `report-target-state ${target.state}` }, icon(state.image, "small"), state.words),
+            h("span", { class: `report-target-state ${target.result}` }, icon(state.image, "small"), state.words),
           ),
         ),
       ),
@@ -169,8 +223,8 @@ function targetTable(targets, labels, onLook, isClose) {
         h(
           "tr",
           {},
-          h("td", { class: "number" }, time(target.planned_at)),
-          h("td", { class: "number" }, time(target.reached_at)),
+          h("td", { class: "number" }, isOwn ? after(target.planned_after_s) : time(target.planned_at)),
+          h("td", { class: "number" }, isOwn ? after(target.reached_after_s) : time(target.reached_at)),
           h("td", { class: "number" }, target.closest_m === null ? "—" : lengthText(target.closest_m)),
           h("td", { class: "number" }, seconds(target.held_s)),
         ),
@@ -179,6 +233,7 @@ function targetTable(targets, labels, onLook, isClose) {
   return h(
     "table",
     { class: "report-table report-targets" },
+    isOwn && h("caption", {}, t("Times after take-off, in simulated time")),
     h(
       "thead",
       {},

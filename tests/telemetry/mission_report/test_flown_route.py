@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from telemetry.mission_report.fix import Fix, in_order
+from telemetry.mission_report.fix import Fix, in_order, own_after_s, own_span_s
 from telemetry.mission_report.flown_route import flown_route, track_of
 from tests.telemetry.mission_report.flights import SECOND, flown, flown_twice, place, route, route_of_two_flights
 
@@ -105,3 +105,24 @@ def along_with_a_gap() -> list[tuple[int, tuple[float, float], int]]:
         told = 1 if second <= 110 else 3
         found.append((second, (along_m, 0.0) if along_m <= 600.0 else (600.0, along_m - 600.0), told))
     return found
+
+
+def test_battery_and_duration_are_from_take_off_to_landing() -> None:
+    """It charged on the ground before, says nothing of the air at first, and is carried to another battery after."""
+    silent = [Fix(800.0 + second, place(0.0, 0.0), 0.0, 55.0, None) for second in range(5)]
+    before = [Fix(900.0 + second, place(0.0, 0.0), 0.0, 60.0 + second, None, is_in_air=False) for second in range(20)]
+    after = [Fix(1_200.0 + second, place(600.0, 400.0), 0.0, 40.0 - second, None, is_in_air=False) for second in range(20)]
+    found = flown_route(route(), in_order([*silent, *before, *flown(), *after]))
+    assert (found.began_s, found.ended_s, found.duration_s) == (1_001.0, 1_120.0, 119.0)
+    assert found.battery_start_percent == pytest.approx(99.9) and found.battery_end_percent == pytest.approx(88.0)
+    assert found.battery_lowest_percent == pytest.approx(88.0) and found.battery_used_percent == pytest.approx(11.9)
+
+
+def test_a_flight_faster_than_real_time_lasts_as_long_as_by_its_own_clock() -> None:
+    fast = [replace(fix, at_s=1_000.0 + (fix.at_s - 1_000.0) / 2.0, boot=1, clock_s=fix.at_s) for fix in flown()]
+    found = flown_route(route(), fast)
+    assert found.duration_s == pytest.approx(119.0) and found.clock_rate == pytest.approx(2.0)
+    assert own_after_s(fast, fast[-1].at_s) == pytest.approx(119.0) and own_after_s(fast, 1_030.5) == pytest.approx(60.0)
+    later = [replace(fix, at_s=fix.at_s + 100.0) for fix in fast]
+    assert own_span_s([fast, later]) == pytest.approx(119.0 + 40.5 + 119.0), "between them nobody was heard"
+    assert own_span_s([fast, [replace(fix, at_s=fix.at_s + 30.0) for fix in fast]]) == pytest.approx(119.0 + 60.0)

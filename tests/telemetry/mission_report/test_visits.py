@@ -99,3 +99,41 @@ def test_two_targets_at_one_place_are_held_each_by_itself() -> None:
     first, second = visits_of(replace(way, waypoints=tuple(waypoints)), fixes, fastest_mps=FASTEST_MPS)
     assert first.held_s == pytest.approx(21.0, abs=2.5) and first.is_done
     assert second.held_s == pytest.approx(11.0, abs=2.5) and not second.is_done
+
+
+OUT_AND_BACK_M = ((0.0, 0.0), (900.0, 0.0), (300.0, 0.0), (0.0, 0.0))  # over the second target on the way out to the first
+
+
+def out_and_back():
+    way = route()
+    points = [replace(point, position=place(*OUT_AND_BACK_M[point.sequence]), task=None) for point in way.waypoints]
+    return replace(way, waypoints=tuple(points))
+
+
+@pytest.mark.parametrize("tells", [True, False])
+def test_a_pass_on_the_way_out_is_neither_a_visit_nor_the_nearest(tells: bool) -> None:
+    """It crashes 200 m after it turned back, whether or not it tells its waypoints."""
+    out = [(1_000.0 + second, place(10.0 * second, 0.0)) for second in range(91)]
+    fixes = [Fix(at_s, here, 30.0, None, 1 if tells else None, is_in_air=True) for at_s, here in out]
+    back = [(1_090.0 + second, place(900.0 - 10.0 * second, 0.0)) for second in range(1, 21)]
+    fixes += [Fix(at_s, here, 30.0, None, 2 if tells else None, is_in_air=True) for at_s, here in back]
+    first, second = visits_of(out_and_back(), fixes, fastest_mps=FASTEST_MPS)
+    assert first.is_done and first.is_confirmed
+    assert not second.is_done and not second.is_confirmed
+    assert second.closest_m == pytest.approx(400.0, abs=5.0)
+
+
+def test_a_visit_is_confirmed_by_the_track_and_not_by_what_can_have_been() -> None:
+    """Reports every 10 s pass it in a straight line; with a gap of 40 s it can have been there, and nobody knows."""
+    on_line = flown(every_s=10)
+    _, second = visits_of(route(), on_line, fastest_mps=FASTEST_MPS)
+    assert second.is_done and second.is_confirmed
+    gap = [fix for fix in flown() if not 1_060.0 < fix.at_s < 1_100.0]
+    _, second = visits_of(route(), gap, fastest_mps=FASTEST_MPS)
+    assert second.is_done and not second.is_confirmed
+    assert second.closest_m is not None and second.closest_m > 15.0
+
+
+def test_a_visit_has_the_height_at_its_nearest_report() -> None:
+    first, second = visits_of(route(), flown(), fastest_mps=FASTEST_MPS)
+    assert (first.altitude_relative_m, second.altitude_relative_m) == (30.0, pytest.approx(60.0, abs=1.0))

@@ -175,4 +175,18 @@ export default {
     "{count} UAVs fliegen insgesamt {length}: {names}.",
   ],
   "Send the mission to {count} UAV?": ["Die Mission an {count} UAV senden?", "Die Mission an {count} UAVs senden?"],
+  "In the air: {names}. The mission can be closed once all UAVs are down.":
+    "In der Luft: {names}. Die Mission kann abgeschlossen werden, sobald alle UAVs gelandet sind.",
+  "Keep open": "Offen lassen",
+  "Close mission": "Mission abschließen",
+  "Not closed.": "Nicht abgeschlossen.",
+  "No target is open. Nothing of this mission can be started any more.":
+    "Kein Ziel ist offen. Danach kann nichts mehr von dieser Mission gestartet werden.",
+  "Plan a follow-up with the targets not inspected": "Folgemission mit den nicht inspizierten Zielen planen",
+  "Close “{name}”?": "„{name}“ abschließen?",
+  "The same reason for all without one": "Derselbe Grund für alle ohne Grund",
+  "{count} target is open. Say why it is left; the reason is in the report.": [
+    "{count} Ziel ist offen. Geben Sie an, warum es entfällt; der Grund steht im Bericht.",
+    "{count} Ziele sind offen. Geben Sie an, warum sie entfallen; die Gründe stehen im Bericht.",
+  ],
 };

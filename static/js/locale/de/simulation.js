@@ -1,8 +1,6 @@
 /** German: simulated UAVs that fly in real time. */
 
 export default {
-  "Times are of the clock on the wall: it was flown faster than real time.":
-    "Zeiten sind die der Uhr an der Wand: Es wurde schneller als in Echtzeit geflogen.",
   "Fly": "Fliegen",
   "Report": "Bericht",
   "Stages of the mission": "Abschnitte der Mission",
@@ -55,7 +53,6 @@ export default {
   "Waiting for a simulator.": "Wartet auf einen Simulator.",
   "Crashed: {names}.": "Abgestürzt: {names}.",
   "Lost with their simulator: {names}.": "Mit ihrem Simulator verloren: {names}.",
-  "Flown in simulation, by no real aircraft.": "In der Simulation geflogen, von keinem echten Luftfahrzeug.",
   "Simulated, no real aircraft: {names}.": "Simuliert, kein echtes Luftfahrzeug: {names}.",
   "{count} simulated UAV at {speed} times real time.": [
     "{count} simuliertes UAV in {speed}-facher Echtzeit.",

@@ -1,0 +1,77 @@
+"""Closing a mission: a person says why each open target is left, and then nothing of it is to be flown any more."""
+
+from collections.abc import Mapping
+
+from django.db import transaction
+from django.db.models.functions import Now
+from django.utils.translation import gettext as _
+
+from missions.in_air_hooks import uavs_in_the_air
+from missions.models import CommandKind, InspectionTarget, Mission, MissionState, TargetState, Uav
+from missions.selectors import approval_in_force
+from missions.services.approval import OVER, change_state, held_mission, uavs_that_may_hold
+from missions.services.flying import ON_ITS_WAY, UNDECIDED
+from missions.services.missions import note
+from missions.services.outbox import queue_command
+from missions.services.refused import Reason, refuse, refuse_for
+from workspace.models import User
+
+MAX_REASON_LENGTH = 300
+
+
+def close_mission(*, mission: Mission, actor: User, reasons: Mapping[int, str], expected_revision: int | None = None) -> Mission:
+    """Skip each open target, by its place in the mission, for the reason that is given of it, and end a mission that is on its way.
+
+    It ends as completed where no target was open, else as aborted, or failed where a flight has failed. One that has ended already keeps
+    its state. UAVs that may hold a mission that was not started are told to drop it. Raises MissionChanged, or Refused: while a UAV of it
+    is in the air, where an open target has no reason, and where nothing is left to close.
+    """
+    with transaction.atomic():
+        held = held_mission(mission.pk, expected_revision)
+        if held.state not in (*ON_ITS_WAY, *OVER):
+            raise refuse("not_sent", _("Only a mission that was sent to UAVs can be closed."))
+        refuse_for(_in_the_air(held))
+        still_open = {target.sequence: target for target in held.targets.filter(state__in=UNDECIDED)}
+        if held.state in OVER and not still_open:
+            raise refuse("nothing_open", _("This mission is closed: no target is open."))
+        said = {place: reasons.get(place, "").strip() or target.unassigned_message for place, target in still_open.items()}
+        missing = [target.label for place, target in still_open.items() if not said[place]]
+        if missing:
+            raise refuse("reason_missing", _("Say why each open target is left: %(targets)s.") % {"targets": ", ".join(missing)})
+        for place, target in still_open.items():
+            target.state, target.state_reason = TargetState.SKIPPED, said[place][:MAX_REASON_LENGTH]
+        facts = {"targets": {str(place): target.state_reason for place, target in still_open.items()}}
+        _store(held, still_open)
+        if held.state in OVER:
+            note(held, actor, "close", before={"state": str(held.state)}, after={"state": str(held.state), **facts})
+        else:
+            _drop_from_uavs(held, actor)
+            change_state(held, _end_state(held, bool(still_open)), actor, "close", facts)
+    return held
+
+
+def _in_the_air(held: Mission) -> list[Reason]:
+    names = dict(held.mission_uavs.filter(uav__isnull=False, route__geometry__isnull=False).values_list("uav", "name"))
+    return [
+        Reason("in_the_air", _("%(uav)s is in the air: the mission can be closed once it is down.") % {"uav": names[uav_id]})
+        for uav_id in sorted(uavs_in_the_air(list(names)))
+    ]
+
+
+def _store(held: Mission, targets: Mapping[int, InspectionTarget]) -> None:
+    for target in targets.values():
+        InspectionTarget.objects.filter(pk=target.pk).update(state=target.state, state_reason=target.state_reason, state_at=Now())
+
+
+def _end_state(held: Mission, had_open_targets: bool) -> MissionState:
+    if held.routes.filter(has_failed=True).exists():
+        return MissionState.FAILED
+    return MissionState.ABORTED if had_open_targets else MissionState.COMPLETED
+
+
+def _drop_from_uavs(held: Mission, actor: User) -> None:
+    approval = approval_in_force(held)
+    if held.state != MissionState.DISPATCHED or approval is None:
+        return
+    for uav in Uav.objects.filter(pk__in=uavs_that_may_hold(approval)).order_by("pk"):
+        queue_command(uav=uav, kind=CommandKind.CLEAR_MISSION, actor=actor, why="", mission=held, approval=approval)

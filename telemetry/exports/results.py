@@ -1,0 +1,74 @@
+"""What came of the targets of a mission, as rows that the files of results are made of."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from inspection.geodesy import LonLat
+
+
+@dataclass(frozen=True, slots=True)
+class ResultRow:
+    """One target. `result` is a code, `result_words` and `reason` are in the reader's language; None is not known, "" nothing.
+
+    Times are datetimes in UTC; distance_m is the nearest that its UAV came, altitude_relative_m its height then above take-off.
+    """
+
+    number: int  # in flown order, from 1
+    asset_id: int | None
+    external_id: str
+    asset: str
+    line: str
+    result: str
+    result_words: str
+    reason: str
+    reason_at: datetime | None
+    uav: str
+    reached_at: datetime | None
+    planned_hold_s: float | None
+    held_s: float | None
+    distance_m: float | None
+    altitude_relative_m: float | None
+    position: LonLat | None
+
+
+@dataclass(frozen=True, slots=True)
+class TrackPoint:
+    """Where a UAV was: its height above take-off, and above mean sea level, as far as they are known."""
+
+    at: datetime
+    position: LonLat
+    altitude_relative_m: float | None
+    altitude_amsl_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedPoint:
+    position: LonLat
+    altitude_relative_m: float
+    altitude_amsl_m: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class RouteLines:
+    """A UAV's route as it was approved, and its track, cut where nothing was heard."""
+
+    uav: str
+    planned: tuple[PlannedPoint, ...]
+    flown: tuple[tuple[TrackPoint, ...], ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Happening:
+    at: datetime
+    uav: str
+    words: str
+    position: LonLat | None
+
+
+@dataclass(frozen=True, slots=True)
+class MissionResults:
+    name: str
+    rows: Sequence[ResultRow]
+    routes: Sequence[RouteLines]
+    happenings: Sequence[Happening]

@@ -1,0 +1,162 @@
+"""What came of a target and why: by what its UAV was seen to do, what happened to that UAV, and what people said."""
+
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+from inspection.geodesy import LonLat
+from telemetry.mission_report.visits import Visit
+
+CAUSE_BEFORE_S, CAUSE_AFTER_S = 60.0, 5.0  # of an incident: what a vehicle says then may name its cause
+_CAUSES = {
+    "motor": re.compile(r"motor|thrust|\besc\b|propeller", re.IGNORECASE),
+    "battery": re.compile(r"\bbatt", re.IGNORECASE),
+    "position": re.compile(r"\bgps\b|\bekf|position", re.IGNORECASE),
+    "link": re.compile(r"\blink\b|\brc\b|\bgcs\b|radio", re.IGNORECASE),
+}
+
+
+class Result(StrEnum):
+    INSPECTED = "inspected"
+    NOT_CONFIRMED = "not-confirmed"  # counted as complete, and no report shows that the UAV was there
+    NOT_INSPECTED = "not-inspected"
+    OPEN = "open"  # the mission is not over
+
+
+class IncidentKind(StrEnum):
+    CRASHED = "crashed"
+    DOWN = "down"  # on the ground where its flight does not end
+    FAILSAFE_RETURN = "failsafe-return"
+    FAILSAFE_LAND = "failsafe-land"
+    TOLD_RETURN = "told-return"
+    TOLD_LAND = "told-land"
+    ABORTED = "aborted"
+    BATTERY = "battery"
+    LINK_LOST = "link-lost"
+    ALERT = "alert"  # any other critical one
+
+
+ENDS_A_FLIGHT = frozenset(IncidentKind) - {IncidentKind.BATTERY, IncidentKind.LINK_LOST, IncidentKind.ALERT}
+EXPLAINS = ENDS_A_FLIGHT | {IncidentKind.BATTERY, IncidentKind.LINK_LOST}
+
+
+@dataclass(frozen=True, slots=True)
+class Reason:
+    """`code` names the words, `values` are put into them; `at_s` is when it happened [Unix s], None where that says nothing."""
+
+    code: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+    at_s: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Incident:
+    """`place` is the UAV's in the mission, None for all of them; `position` where it was then, as far as that is known."""
+
+    kind: IncidentKind
+    reason: Reason
+    at_s: float
+    place: int | None = None
+    position: LonLat | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class TargetFacts:
+    """What is stored of a target. `stated` are the words of a person or a plan, `reported` the last outcome and note of a UAV."""
+
+    state: str
+    state_reason: str = ""
+    unassigned: str = ""
+    reached_s: float | None = None
+    reported: tuple[str, str] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class FlightFacts:
+    """The UAV that was to do a target, and what it did: its name, visit of the target, and when it was last at one [Unix s]."""
+
+    place: int
+    name: str
+    visit: Visit | None
+    has_reports: bool
+    last_visit_s: float | None
+    is_continued: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    result: Result
+    reason: Reason | None = None
+
+
+def cause_in(texts: Iterable[tuple[float, str]], at_s: float) -> str:
+    """Return motor, battery, position or link where what a vehicle said about then [Unix s, text] names it, else nothing."""
+    about = [text for said_s, text in texts if at_s - CAUSE_BEFORE_S <= said_s <= at_s + CAUSE_AFTER_S]
+    return next((cause for cause, pattern in _CAUSES.items() if any(pattern.search(text) for text in about)), "")
+
+
+def outcome_of(target: TargetFacts, flight: FlightFacts | None, incidents: Sequence[Incident], *, is_over: bool) -> Outcome:
+    """flight: None for a target of no route. incidents: of the whole mission, in order."""
+    if target.state == "complete":
+        return _complete(target, flight)
+    reason = _why(target, flight, incidents)
+    if target.state in ("pending", "in-progress") and not is_over:
+        return Outcome(Result.OPEN, reason)
+    return Outcome(Result.NOT_INSPECTED, reason or Reason("ended"))
+
+
+def _complete(target: TargetFacts, flight: FlightFacts | None) -> Outcome:
+    """Where the log was forgotten, what was stored of the visit counts."""
+    visit = flight.visit if flight is not None and flight.has_reports else None
+    if target.reported is not None and target.reported[0] == "complete":
+        return Outcome(Result.INSPECTED)
+    if visit is None:
+        return Outcome(Result.INSPECTED) if target.reached_s is not None else Outcome(Result.NOT_CONFIRMED, Reason("no-report"))
+    if visit.is_confirmed:
+        return Outcome(Result.INSPECTED)
+    if visit.closest_m is None:
+        return Outcome(Result.NOT_CONFIRMED, Reason("no-report"))
+    return Outcome(Result.NOT_CONFIRMED, Reason("nearest-report", {"metres": round(visit.closest_m)}))
+
+
+def _why(target: TargetFacts, flight: FlightFacts | None, incidents: Sequence[Incident]) -> Reason | None:
+    """None where nothing says it yet."""
+    if target.reported is not None:
+        outcome, note = target.reported
+        values = {"uav": flight.name if flight else "", "outcome": outcome, "note": note}
+        return Reason("reported-note" if note else "reported", values)
+    if flight is None:
+        return _stated(target.state_reason or target.unassigned) or Reason("not-planned")
+    visit = flight.visit
+    if target.state_reason == "not-reached":
+        metres = None if visit is None or visit.closest_m is None else round(visit.closest_m)
+        return Reason("not-seen", {"uav": flight.name}) if metres is None else Reason("not-reached", {"uav": flight.name, "metres": metres})
+    if target.state_reason == "not-held" and visit is not None:
+        held = {"held": math.floor(visit.held_s), "planned": round(visit.planned_hold_s)}
+        return Reason("not-held", {"uav": flight.name, **held})
+    if target.state_reason not in ("", "flight-failed", "not-held"):
+        return _stated(target.state_reason)
+    if flight.is_continued:
+        return Reason("continued")
+    found = _decisive(flight, incidents)
+    if found is not None:
+        return found.reason
+    if target.state_reason == "flight-failed":
+        return Reason("flight-failed", {"uav": flight.name})
+    return None if flight.has_reports else Reason("not-flown", {"uav": flight.name})
+
+
+def _stated(words: str) -> Reason | None:
+    return Reason("stated", {"words": words}) if words else None
+
+
+def _decisive(flight: FlightFacts, incidents: Sequence[Incident]) -> Incident | None:
+    """What kept its UAV from the target: a crash, else the first that ended its flight after the last target that it was at."""
+    own = [one for one in incidents if one.place in (None, flight.place) and one.kind in EXPLAINS]
+    since_s = -math.inf if flight.last_visit_s is None else flight.last_visit_s
+    after = [one for one in own if one.at_s >= since_s] or own[-1:]
+    crash = next((one for one in after if one.kind is IncidentKind.CRASHED), None)
+    return crash or next((one for one in after if one.kind in ENDS_A_FLIGHT), None) or next(iter(after), None)
