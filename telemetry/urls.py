@@ -10,6 +10,7 @@ from telemetry.views.live import Live
 from telemetry.views.log import LatestTelemetry, TelemetryLog
 from telemetry.views.mission_record import MissionRecord, MissionRecordFile
 from telemetry.views.results import Results
+from telemetry.views.returns import Returns
 from telemetry.views.unknown_vehicles import UnknownVehicleAdoption, UnknownVehicleIgnoring, UnknownVehicles
 from telemetry.views.vehicle_logs import FlightLogFile, FlightLogs, UavConnection, VehicleTexts
 
@@ -42,6 +43,7 @@ urlpatterns = [
     path("uav-types/<int:type_id>/alert-limits", UavTypeAlertLimits.as_view(), name="api-uav-type-alert-limits"),
     path("missions/<uuid:mission_id>/alert-limits", MissionAlertLimits.as_view(), name="api-mission-alert-limits"),
     path("results", Results.as_view(), name="api-results"),
+    path("returns", Returns.as_view(), name="api-returns"),
     path("live", Live.as_view(), name="api-live"),
     path("telemetry", TelemetryLog.as_view(), name="api-telemetry"),
     path("missions/<uuid:mission_id>/record", MissionRecord.as_view(), name="api-mission-record"),
