@@ -558,6 +558,30 @@ export interface components {
          * @enum {string}
          */
         BatchKind: "hold" | "land" | "pause" | "resume" | "return";
+        /** @description Percent of the full battery. */
+        BatteryAtLanding: {
+            /** Format: double */
+            left_percent: number | null;
+            /**
+             * Format: double
+             * @description that the way home and the landing take
+             */
+            home_percent: number | null;
+            /**
+             * Format: double
+             * @description left at the landing; null: not known, see `unknown`
+             */
+            landing_percent: number | null;
+            /** Format: double */
+            reserve_percent: number | null;
+            /**
+             * Format: double
+             * @description that it can stay where it is and still land at home with its reserve
+             */
+            hold_s: number | null;
+            /** @description why it is not known what is left at the landing; empty where it is */
+            unknown: string;
+        };
         /** @description What a UAV's battery still allows, by its drain in the same kind of flight; seconds are the UAV's own. */
         BatteryOutlook: {
             /**
@@ -584,6 +608,11 @@ export interface components {
              * @description until its reserve is reached, flying on as on the way home
              */
             reserve_in_s: number;
+            /**
+             * Format: double
+             * @description that it can stay where it is and still return and land with its reserve; null: not known
+             */
+            hold_s: number | null;
         };
         /**
          * @description * `` -
@@ -2492,6 +2521,27 @@ export interface components {
             /** @description index of the waypoint at which it begins; -1 is the climb to the first one */
             leg: number;
         };
+        MetOnReturn: {
+            uav: number;
+            name: string;
+            /**
+             * Format: double
+             * @description across the ground, at the closest
+             */
+            metres: number;
+            /**
+             * Format: double
+             * @description then; null: heights are not known, and count as the same
+             */
+            vertical_m: number | null;
+            /**
+             * Format: double
+             * @description from now
+             */
+            in_s: number;
+            /** @description whether the other one returns, too */
+            is_returning: boolean;
+        };
         Mission: {
             /** Format: uuid */
             id: string;
@@ -3655,6 +3705,92 @@ export interface components {
             /** @description their page has a plan of the mission made at present */
             is_planning: boolean;
         };
+        PresentPosition: {
+            /**
+             * @description lon, lat [deg], WGS84
+             * @example [
+             *       9.52,
+             *       47.14
+             *     ]
+             */
+            position: number[];
+            /**
+             * Format: double
+             * @description above take-off
+             */
+            altitude_relative_m: number | null;
+            /** @description false: estimated */
+            is_measured: boolean;
+            /**
+             * Format: double
+             * @description of the last report of a position
+             */
+            age_s: number;
+            /**
+             * Format: double
+             * @description within which it is, 95 of 100 times; the check is of all that lies within
+             */
+            uncertainty_m: number;
+        };
+        PresentReturn: {
+            /** @description the UAV's in its mission; null: it flies none */
+            place: number | null;
+            name: string;
+            uav: number | null;
+            state: components["schemas"]["State30fEnum"];
+            /** @description what an operator must know; none where all is clear */
+            warnings: string[];
+            /** @description of the vehicle, that sets the height */
+            parameter: string | null;
+            /**
+             * Format: double
+             * @description above the take-off, as that parameter was read
+             */
+            height_m: number | null;
+            /**
+             * Format: double
+             * @description at which nothing would be in the way; null: none, or it is clear
+             */
+            safe_height_m: number | null;
+            /** Format: date-time */
+            read_at: string | null;
+            /** @description that its autopilot ignores the fence of the mission; empty: it does not, or is not known to */
+            fence_warning: string;
+            /** Format: uuid */
+            mission: string | null;
+            /** @description nothing in the way, nobody met, and the reserve is kept as far as that is known */
+            is_clear: boolean;
+            /** @description whence it was checked; null: where it is now is not known */
+            present: components["schemas"]["PresentPosition"] | null;
+            /**
+             * Format: double
+             * @description of the way home
+             */
+            distance_m: number | null;
+            /**
+             * Format: double
+             * @description to the landing
+             */
+            duration_s: number | null;
+            /**
+             * Format: double
+             * @description above the take-off, at which it would fly home from here
+             */
+            level_m: number | null;
+            battery: components["schemas"]["BatteryAtLanding"];
+            /** @description UAVs that it comes near on its way home, the first one first */
+            met: components["schemas"]["MetOnReturn"][];
+            /**
+             * Format: double
+             * @description by which returns are kept apart; null: no wait does, or not known
+             */
+            wait_s: number | null;
+        };
+        PresentReturns: {
+            /** Format: date-time */
+            at: string;
+            results: components["schemas"]["PresentReturn"][];
+        };
         Profile: {
             /** Format: double */
             length_m: number;
@@ -4754,7 +4890,7 @@ export interface components {
             place: number;
             name: string;
             uav: number | null;
-            state: components["schemas"]["ReturnCheckStateEnum"];
+            state: components["schemas"]["State30fEnum"];
             /** @description what an operator must know; none where all is clear */
             warnings: string[];
             /** @description of the vehicle, that sets the height */
@@ -4774,14 +4910,6 @@ export interface components {
             /** @description that its autopilot ignores the fence of the mission; empty: it does not, or is not known to */
             fence_warning: string;
         };
-        /**
-         * @description * `clear` - clear
-         *     * `in_the_way` - in_the_way
-         *     * `unknown` - unknown
-         *     * `not_checked` - not_checked
-         * @enum {string}
-         */
-        ReturnCheckStateEnum: "clear" | "in_the_way" | "unknown" | "not_checked";
         ReturnChecks: {
             results: components["schemas"]["ReturnCheck"][];
         };
@@ -5542,6 +5670,14 @@ export interface components {
          * @enum {string}
          */
         StaleCauseWhatEnum: "zone" | "uav" | "base" | "asset" | "terrain" | "elsewhere";
+        /**
+         * @description * `clear` - clear
+         *     * `in_the_way` - in_the_way
+         *     * `unknown` - unknown
+         *     * `not_checked` - not_checked
+         * @enum {string}
+         */
+        State30fEnum: "clear" | "in_the_way" | "unknown" | "not_checked";
         /** @description Every record of the batch is stored, known or refused: none of them needs to be sent again as it is. */
         StoredReports: {
             /** @description new ones */
@@ -7168,6 +7304,7 @@ export type BatchAnswer = components['schemas']['BatchAnswer'];
 export type BatchAnswers = components['schemas']['BatchAnswers'];
 export type BatchInputRequest = components['schemas']['BatchInputRequest'];
 export type BatchKind = components['schemas']['BatchKind'];
+export type BatteryAtLanding = components['schemas']['BatteryAtLanding'];
 export type BatteryOutlook = components['schemas']['BatteryOutlook'];
 export type BatteryOutlookLevelEnum = components['schemas']['BatteryOutlookLevelEnum'];
 export type BehaviourEnum = components['schemas']['BehaviourEnum'];
@@ -7332,6 +7469,7 @@ export type Measured = components['schemas']['Measured'];
 export type MeasuredAt = components['schemas']['MeasuredAt'];
 export type Meeting = components['schemas']['Meeting'];
 export type MetLeg = components['schemas']['MetLeg'];
+export type MetOnReturn = components['schemas']['MetOnReturn'];
 export type Mission = components['schemas']['Mission'];
 export type MissionApproval = components['schemas']['MissionApproval'];
 export type MissionAuthor = components['schemas']['MissionAuthor'];
@@ -7405,6 +7543,9 @@ export type PoolUavRequest = components['schemas']['PoolUavRequest'];
 export type Presence = components['schemas']['Presence'];
 export type PresenceInputRequest = components['schemas']['PresenceInputRequest'];
 export type Present = components['schemas']['Present'];
+export type PresentPosition = components['schemas']['PresentPosition'];
+export type PresentReturn = components['schemas']['PresentReturn'];
+export type PresentReturns = components['schemas']['PresentReturns'];
 export type Profile = components['schemas']['Profile'];
 export type ProfileInputRequest = components['schemas']['ProfileInputRequest'];
 export type Progress = components['schemas']['Progress'];
@@ -7475,7 +7616,6 @@ export type ResultRequest = components['schemas']['ResultRequest'];
 export type ResultStateEnum = components['schemas']['ResultStateEnum'];
 export type ResultsRequest = components['schemas']['ResultsRequest'];
 export type ReturnCheck = components['schemas']['ReturnCheck'];
-export type ReturnCheckStateEnum = components['schemas']['ReturnCheckStateEnum'];
 export type ReturnChecks = components['schemas']['ReturnChecks'];
 export type RevertRequest = components['schemas']['RevertRequest'];
 export type Rhythm = components['schemas']['Rhythm'];
@@ -7527,6 +7667,7 @@ export type Span = components['schemas']['Span'];
 export type SpeedEnum = components['schemas']['SpeedEnum'];
 export type StaleCause = components['schemas']['StaleCause'];
 export type StaleCauseWhatEnum = components['schemas']['StaleCauseWhatEnum'];
+export type State30fEnum = components['schemas']['State30fEnum'];
 export type StoredReports = components['schemas']['StoredReports'];
 export type StoredResults = components['schemas']['StoredResults'];
 export type Straight = components['schemas']['Straight'];

@@ -9,7 +9,7 @@ from missions.serializers.returns import ReturnCheckSerializer
 from telemetry.services.present_returns import PresentReturn
 
 
-class PresentSerializer(serializers.Serializer):
+class PresentPositionSerializer(serializers.Serializer):
     position = PositionField()
     altitude_relative_m = serializers.FloatField(allow_null=True, help_text="above take-off")
     is_measured = serializers.BooleanField(help_text="false: estimated")
@@ -41,7 +41,7 @@ class PresentReturnSerializer(ReturnCheckSerializer):
     place = serializers.IntegerField(allow_null=True, help_text="the UAV's in its mission; null: it flies none")
     mission = serializers.UUIDField(allow_null=True)
     is_clear = serializers.BooleanField(help_text="nothing in the way, nobody met, and the reserve is kept as far as that is known")
-    present = PresentSerializer(allow_null=True, help_text="whence it was checked; null: where it is now is not known")
+    present = PresentPositionSerializer(allow_null=True, help_text="whence it was checked; null: where it is now is not known")
     distance_m = serializers.FloatField(allow_null=True, help_text="of the way home")
     duration_s = serializers.FloatField(allow_null=True, help_text="to the landing")
     level_m = serializers.FloatField(allow_null=True, help_text="above the take-off, at which it would fly home from here")

@@ -141,6 +141,8 @@ def present_returns(*, uavs: Sequence[Uav], now: datetime) -> list[PresentReturn
 def battery_at_landing(heard: Heard) -> BatteryAtLanding:
     """By what the watch has made of its reports; with the reason where that is not known."""
     values, outlook = {"uav": heard.uav.name}, heard.battery
+    if heard.is_in_air is False:
+        return BatteryAtLanding(left_percent=heard.battery_percent)
     if heard.battery_percent is None:
         return BatteryAtLanding(unknown=_("%(uav)s reports no battery percentage.") % values)
     if outlook is None or heard.battery_age_s is None or heard.battery_age_s > MAX_BATTERY_AGE_S:
@@ -200,7 +202,7 @@ def _checked(one: _Flown, now: datetime) -> _Flown:
     """With what is in its way home. One on the ground has none."""
     heard, present, own = one.heard, one.heard.present, one.own
     if heard.is_in_air is False:
-        words = _("%(uav)s is on the ground.") % {"uav": heard.uav.name}
+        words = _("It is on the ground.")
         return replace(one, check=replace(one.check, state=ReturnState.NOT_CHECKED, warnings=(words,)), straight=None)
     if one.straight is None or present is None or one.home is None:
         return replace(one, check=_from_route(one))

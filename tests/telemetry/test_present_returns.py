@@ -233,7 +233,7 @@ def test_one_on_the_ground_has_no_way_home(user, uav):
     read(uav)
     flies(uav, HOME, is_in_air=False)
     (found,) = told(user, uav)
-    assert (found["state"], found["warnings"]) == ("not_checked", ["Tern is on the ground."])
+    assert (found["state"], found["warnings"]) == ("not_checked", ["It is on the ground."])
 
 
 def test_only_uavs_of_ones_own_organisation_are_told(user, uav):

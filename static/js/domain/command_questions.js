@@ -2,9 +2,9 @@
 
 import { t } from "../text.js";
 import { durationText, lengthText, speedText } from "../units.js";
-import { returnLines, returnLinesOfAll } from "./own_return.js";
+import { returnLines, returnLinesOfAll, togetherLine } from "./own_return.js";
 
-/** @import { CommandKind, ReturnCheck, Route } from "../api_types.d.ts" */
+/** @import { CommandKind, PresentReturn, ReturnCheck, Route } from "../api_types.d.ts" */
 
 /**
  * A field of a question.
@@ -51,9 +51,10 @@ const ABORT_DOES = t(
 export const WHY = { name: "why", label: t("Why (kept in the history)") };
 
 /**
- * A UAV of whose flight is asked, as far as the command needs it.
+ * A UAV of whose flight is asked, as far as the command needs it. `returns`: from where it is now; `planned`: from all along its route.
  *
- * @typedef {{ name: string, route: Pick<Route, "length_m" | "duration_s">, speed_mps: number, returns?: ReturnCheck | null }} AskedFlyer
+ * @typedef {{ name: string, route: Pick<Route, "length_m" | "duration_s">, speed_mps: number, returns?: PresentReturn | null,
+ *   planned?: ReturnCheck | null }} AskedFlyer
  */
 /** @typedef {Partial<AskedFlyer> & { name: string }} AskedOf */
 
@@ -61,14 +62,14 @@ export const WHY = { name: "why", label: t("Why (kept in the history)") };
 
 /** @type {Record<AskedKind, (flyer: AskedFlyer) => Omit<Question, "opener">>} */
 const ASKED = {
-  start: ({ name, route, returns }) => ({
+  start: ({ name, route, planned }) => ({
     title: t("Start {name}?", { name }),
     lines: [
       t("It takes off and flies its approved route: {length}, {time}.", {
         length: lengthText(route.length_m),
         time: durationText(route.duration_s),
       }),
-      returns?.fence_warning,
+      planned?.fence_warning,
       LATE,
     ],
     act: t("Start {name}", { name }),
@@ -196,7 +197,7 @@ export const outOfSlotQuestion = (name, why) => ({
 /**
  * Before a mission is aborted: what each aircraft does, and what is in its way home.
  *
- * @param {{ name: string, isActive: boolean, uavs: { name: string, check: ReturnCheck | null | undefined }[] }} mission
+ * @param {{ name: string, isActive: boolean, uavs: { name: string, check: PresentReturn | null | undefined }[] }} mission
  * @returns {Omit<Question, "opener">}
  */
 export const abortQuestion = ({ name, isActive, uavs }) => ({
@@ -207,7 +208,7 @@ export const abortQuestion = ({ name, isActive, uavs }) => ({
       { names: uavs.map((uav) => uav.name).join(", ") },
     ),
     ABORT_DOES,
-    uavs.length > 1 && t("All return at once: nothing keeps them apart on the way home."),
+    togetherLine(uavs.map(({ check }) => check)),
     ...returnLinesOfAll(uavs),
     LATE,
   ],

@@ -1,10 +1,10 @@
 /** Whom a command to several UAVs reaches, mission by mission, and what the question before it says. Values in, values out. */
 
 import { inAir } from "../domain/in_air.js";
-import { returnLinesOfAll, returnOf } from "../domain/own_return.js";
+import { returnLinesOfAll } from "../domain/own_return.js";
 import { t, tn } from "../text.js";
 
-/** @import { BatchAnswer, LiveMission, LiveUav, ReturnCheck } from "../api_types.d.ts" */
+/** @import { BatchAnswer, LiveMission, LiveUav, PresentReturn } from "../api_types.d.ts" */
 
 /**
  * UAVs of one mission that a batch would reach, and those it would not, with the reason.
@@ -69,14 +69,10 @@ export function scopeChoices(scopes) {
  * What is in each UAV's way home, as the question of one UAV says it; those that say the same stand together.
  *
  * @param {BatchScope[]} scopes
- * @param {Map<string, ReturnCheck[] | undefined>} returns by mission
+ * @param {Map<number, PresentReturn>} returns by UAV
  */
 export const returnLinesOf = (scopes, returns) =>
-  returnLinesOfAll(
-    scopes.flatMap(({ id, uavs }) =>
-      uavs.map(({ name, place }) => ({ name, check: place === null ? null : returnOf(returns.get(id), place) })),
-    ),
-  );
+  returnLinesOfAll(scopes.flatMap(({ uavs }) => uavs.map(({ id, name }) => ({ name, check: returns.get(id) }))));
 
 /** @param {BatchScope[]} scopes */
 export const leftLines = (scopes) => scopes.flatMap(({ left }) => left.map(({ why }) => t("Not told: {why}", { why })));

@@ -1,21 +1,21 @@
 /** Commands to several UAVs at once: one question that names them, one request that names their missions. */
 
-import { ApiError, freshKey, get, post } from "../api.js";
+import { ApiError, freshKey, post } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
 import { LATE } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
+import { togetherLine } from "../domain/own_return.js";
 import { confirmAct } from "../page/confirm.js";
+import { returnsNow } from "../page/present_returns.js";
 import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { answerWords, batchRequest, batchScopes, leftLines, returnLinesOf, scopeChoices } from "./batch.js";
 import { unheardLines } from "./unheard.js";
 
-/** @import { BatchAnswers, ReturnCheck, ReturnChecks } from "../api_types.d.ts" */
+/** @import { BatchAnswers } from "../api_types.d.ts" */
 /** @import { Answer } from "../api.js" */
 /** @import { BatchScope } from "./batch.js" */
 /** @import { Commanding, MonitorPage, MonitorStore } from "./types.d.ts" */
-
-const CHECK_TIMEOUT_MS = 3000; // the question waits no longer for what is in the way home
 
 /** @type {Record<"pause" | "return", { title: (uavs: number) => string, lines: string[], act: string }>} */
 const ALL = {
@@ -30,28 +30,6 @@ const ALL = {
     act: t("Return all"),
   },
 };
-
-/**
- * What is in the way home of each UAV of a mission; undefined where that could not be read: the question then says that nobody has looked.
- *
- * @param {string} mission
- * @returns {Promise<ReturnCheck[] | undefined>}
- */
-export async function returnsOf(mission) {
-  const signal = AbortSignal.timeout(CHECK_TIMEOUT_MS);
-  try {
-    return /** @type {Answer<ReturnChecks>} */ (await get(`/missions/${mission}/returns`, { signal })).data.results;
-  } catch (error) {
-    if (!(error instanceof ApiError || signal.aborted)) throw error;
-    return undefined;
-  }
-}
-
-/** Checks of the way home of each mission. @param {BatchScope[]} scopes */
-async function waysHome(scopes) {
-  const checks = await Promise.all(scopes.map(({ id }) => returnsOf(id)));
-  return new Map(scopes.map(({ id }, at) => [id, checks[at]]));
-}
 
 /** One request, whatever its number of UAVs. @param {"pause" | "return"} kind @param {BatchScope[]} scopes */
 async function tellBatch(kind, scopes) {
@@ -85,14 +63,15 @@ export function createBatch(store, page) {
     if (!scopes.length) return void toast(t("No UAV is in the air."));
     const { title, lines, act } = ALL[kind];
     const uavs = scopes.flatMap((scope) => scope.uavs);
+    const returns = kind === "return" ? await returnsNow(uavs.map(({ id }) => id)) : new Map();
     const silent = uavs.filter((uav) => certaintyOf(uav, store.state.now_ms) !== MEASURED);
     const asked = await confirmAct({
       title: page.mission === null ? t("{act}: of which mission?", { act }) : title(uavs.length),
       lines: [
         page.mission !== null && `${uavs.map(({ name }) => name).join(", ")}.`,
         ...lines,
-        kind === "return" && uavs.length > 1 && t("All return at once: nothing keeps them apart on the way home."),
-        ...(kind === "return" ? returnLinesOf(scopes, await waysHome(scopes)) : []),
+        kind === "return" && togetherLine(uavs.map(({ id }) => returns.get(id))),
+        ...(kind === "return" ? returnLinesOf(scopes, returns) : []),
         ...leftLines(scopes),
         ...unheardLines(silent, kind, store.state.now_ms),
         LATE,

@@ -6,8 +6,9 @@
 import { ApiError, freshKey, get, post, signInAddress } from "../../api.js";
 import { abortQuestion, questionOf } from "../../domain/command_questions.js";
 import { flyersOf, isFrozen, isOnItsWay, KINDS } from "../../domain/flying.js";
-import { returnLines, returnOf } from "../../domain/own_return.js";
+import { returnOf } from "../../domain/own_return.js";
 import { confirmAct } from "../../page/confirm.js";
+import { returnsNow } from "../../page/present_returns.js";
 import { tellUav } from "../../page/tell_uav.js";
 import { say } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
@@ -67,7 +68,8 @@ const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
 function returnsOf(returns, flyers) {
   const lines = flyers.flatMap(({ place }) => {
     const check = returnOf(returns, place);
-    return check ? [...check.warnings, check.fence_warning].filter(Boolean) : returnLines(check);
+    if (!check) return [t("Its way home has not been checked: it flies straight, at a height of its own.")];
+    return [...check.warnings, check.fence_warning].filter(Boolean);
   });
   return [...new Set(lines)];
 }
@@ -210,10 +212,9 @@ async function send(acting, flyer, flight) {
 async function abort(acting) {
   const { mission } = acting.store.state;
   if (!mission) return;
-  const uavs = flyersOf(mission).map(({ name, place }) => ({
-    name,
-    check: returnOf(acting.store.state.returns, place),
-  }));
+  const flyers = flyersOf(mission);
+  const returns = await returnsNow(flyers.flatMap(({ uav }) => uav ?? []));
+  const uavs = flyers.map(({ name, uav }) => ({ name, check: returns.get(uav ?? 0) }));
   const asked = await confirmAct(abortQuestion({ name: mission.name, isActive: mission.state === "active", uavs }));
   if (!asked) return;
   await tried(acting, t("Not aborted."), async () => {
@@ -224,8 +225,10 @@ async function abort(acting) {
 
 /** @param {Acting} acting @param {Flyer} flyer @param {Parameters<typeof questionOf>[0]} kind */
 async function command(acting, flyer, kind) {
-  const returns = returnOf(acting.store.state.returns, flyer.place);
-  const asked = await confirmAct(questionOf(kind, { ...flyer, returns }));
+  const planned = returnOf(acting.store.state.returns, flyer.place);
+  const isReturn = kind === "return" || kind === "abort";
+  const returns = isReturn && flyer.uav !== null ? (await returnsNow([flyer.uav])).get(flyer.uav) : undefined;
+  const asked = await confirmAct(questionOf(kind, { ...flyer, planned, returns }));
   if (!asked) return;
   const title = t("{name} was not told: {act}.", { name: flyer.name, act: KINDS[kind] });
   await tried(acting, title, async () => {
