@@ -10,7 +10,7 @@ from telemetry.views.live import Live
 from telemetry.views.log import LatestTelemetry, TelemetryLog
 from telemetry.views.mission_record import MissionRecord, MissionRecordFile
 from telemetry.views.results import Results
-from telemetry.views.returns import Returns
+from telemetry.views.returns import Returns, UavLanding
 from telemetry.views.unknown_vehicles import UnknownVehicleAdoption, UnknownVehicleIgnoring, UnknownVehicles
 from telemetry.views.vehicle_logs import FlightLogFile, FlightLogs, UavConnection, VehicleTexts
 
@@ -52,6 +52,7 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/telemetry.<file_kind:kind>", MissionTelemetryFile.as_view(), name="api-mission-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry.<file_kind:kind>", UavTelemetryFile.as_view(), name="api-uav-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry/latest", LatestTelemetry.as_view(), name="api-latest-telemetry"),
+    path("uavs/<int:uav_id>/landing", UavLanding.as_view(), name="api-uav-landing"),
     path("uavs/<int:uav_id>/connection", UavConnection.as_view(), name="api-uav-connection"),
     path("uavs/<int:uav_id>/vehicle-texts", VehicleTexts.as_view(), name="api-vehicle-texts"),
     path("uavs/<int:uav_id>/flight-logs", FlightLogs.as_view(), name="api-flight-logs"),

@@ -1986,6 +1986,30 @@ export interface components {
          * @enum {string}
          */
         JobState: "queued" | "running" | "done" | "failed" | "cancelled";
+        LandingHere: {
+            /** Format: date-time */
+            at: string;
+            /** @description above what it was looked at; null: not known */
+            present: components["schemas"]["PresentPosition"] | null;
+            /**
+             * Format: double
+             * @description above the ground, as measured, else by the terrain model
+             */
+            altitude_agl_m: number | null;
+            /**
+             * Format: double
+             * @description of the terrain model, the steepest to any side; null: not known
+             */
+            slope_deg: number | null;
+            /** @description lines, towers, railways and bridges below and beside it, the nearest first */
+            assets: components["schemas"]["NearAsset"][];
+            /** @description names of zones in force that it comes down through */
+            zones: string[];
+            /** @description what is in the way of a landing here, in sentences */
+            warnings: string[];
+            /** @description what else is known of the place, and what is not */
+            facts: string[];
+        };
         /**
          * @description * `` - As the browser
          *     * `en` - English
@@ -2905,6 +2929,17 @@ export interface components {
             over: number[];
             /** @description of models that it meets: heights may step there */
             other_datums: string[];
+        };
+        NearAsset: {
+            /** @description id of the asset */
+            asset: number;
+            kind: string;
+            name: string;
+            /**
+             * Format: double
+             * @description from straight below the UAV, across the ground
+             */
+            distance_m: number;
         };
         /** @description Where two UAVs come nearest to each other. */
         Nearest: {
@@ -7428,6 +7463,7 @@ export type JobError = components['schemas']['JobError'];
 export type JobLink = components['schemas']['JobLink'];
 export type JobPage = components['schemas']['JobPage'];
 export type JobState = components['schemas']['JobState'];
+export type LandingHere = components['schemas']['LandingHere'];
 export type Language = components['schemas']['Language'];
 export type LastPlan = components['schemas']['LastPlan'];
 export type LastRoute = components['schemas']['LastRoute'];
@@ -7492,6 +7528,7 @@ export type MissionsInputRequest = components['schemas']['MissionsInputRequest']
 export type ModelCollection = components['schemas']['ModelCollection'];
 export type ModelFeature = components['schemas']['ModelFeature'];
 export type ModelProperties = components['schemas']['ModelProperties'];
+export type NearAsset = components['schemas']['NearAsset'];
 export type Nearest = components['schemas']['Nearest'];
 export type NewCredential = components['schemas']['NewCredential'];
 export type NewInvitation = components['schemas']['NewInvitation'];

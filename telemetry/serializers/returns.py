@@ -1,11 +1,14 @@
-"""What UAVs meet if they return now, in the shapes of the API."""
+"""What UAVs meet if they return now, or land where they are, in the shapes of the API."""
 
+from datetime import datetime
 from typing import Any
 
 from rest_framework import serializers
 
 from missions.fields import PositionField
 from missions.serializers.returns import ReturnCheckSerializer
+from telemetry.selectors.present import Present
+from telemetry.services.landing_here import LandingHere
 from telemetry.services.present_returns import PresentReturn
 
 
@@ -55,9 +58,36 @@ class PresentReturnsSerializer(serializers.Serializer):
     results = PresentReturnSerializer(many=True)
 
 
+class NearAssetSerializer(serializers.Serializer):
+    asset = serializers.IntegerField(help_text="id of the asset")
+    kind = serializers.CharField()
+    name = serializers.CharField()
+    distance_m = serializers.FloatField(help_text="from straight below the UAV, across the ground")
+
+
+class LandingHereSerializer(serializers.Serializer):
+    at = serializers.DateTimeField()
+    present = PresentPositionSerializer(allow_null=True, help_text="above what it was looked at; null: not known")
+    altitude_agl_m = serializers.FloatField(allow_null=True, help_text="above the ground, as measured, else by the terrain model")
+    slope_deg = serializers.FloatField(allow_null=True, help_text="of the terrain model, the steepest to any side; null: not known")
+    assets = NearAssetSerializer(many=True, help_text="lines, towers, railways and bridges below and beside it, the nearest first")
+    zones = serializers.ListField(child=serializers.CharField(), help_text="names of zones in force that it comes down through")
+    warnings = serializers.ListField(child=serializers.CharField(), help_text="what is in the way of a landing here, in sentences")
+    facts = serializers.ListField(child=serializers.CharField(), help_text="what else is known of the place, and what is not")
+
+
+def landing_here_json(found: LandingHere, at: datetime) -> dict[str, Any]:
+    """As LandingHereSerializer has it."""
+    return {
+        "at": at,
+        "present": _present_json(found.present),
+        **{name: getattr(found, name) for name in ("altitude_agl_m", "slope_deg", "assets", "zones", "warnings", "facts")},
+    }
+
+
 def present_return_json(found: PresentReturn) -> dict[str, Any]:
     """As PresentReturnSerializer has it."""
-    check, present, battery = found.check, found.present, found.battery
+    check, battery = found.check, found.battery
     return {
         "place": check.place,
         "name": check.name,
@@ -71,21 +101,25 @@ def present_return_json(found: PresentReturn) -> dict[str, Any]:
         "read_at": check.read_at,
         "fence_warning": check.fence_warning,
         "is_clear": found.is_clear,
-        "present": None
-        if present is None
-        else {
-            "position": present.position,
-            "altitude_relative_m": _rounded(present.altitude_relative_m),
-            "is_measured": present.is_measured,
-            "age_s": _rounded(present.age_s),
-            "uncertainty_m": _rounded(present.uncertainty_m),
-        },
+        "present": _present_json(found.present),
         "distance_m": _rounded(found.distance_m),
         "duration_s": _rounded(found.duration_s),
         "level_m": _rounded(found.level_m),
         "battery": {name: getattr(battery, name) for name in BatteryAtLandingSerializer().fields},
         "met": found.met,
         "wait_s": found.wait_s,
+    }
+
+
+def _present_json(present: Present | None) -> dict[str, Any] | None:
+    if present is None:
+        return None
+    return {
+        "position": present.position,
+        "altitude_relative_m": _rounded(present.altitude_relative_m),
+        "is_measured": present.is_measured,
+        "age_s": _rounded(present.age_s),
+        "uncertainty_m": _rounded(present.uncertainty_m),
     }
 
 

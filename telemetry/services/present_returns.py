@@ -1,4 +1,4 @@
-"""What UAVs meet if they return now, all at once: from where each is, at the height of its own autopilot, beside everybody else in the air."""
+"""What UAVs meet if they return now, all at once: from where each is, at its autopilot's own height, beside all others in the air."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What UAVs meet if they return now."""
+"""What UAVs meet if they return now, or land where they are."""
 
 from django.http import Http404
 from django.utils import timezone
@@ -11,7 +11,9 @@ from inspection.views.parameters import invalid
 from missions.fleet_selectors import uavs_of_organisation
 from missions.models import Uav
 from missions.views.problems import api_problems
-from telemetry.serializers.returns import PresentReturnsSerializer, present_return_json
+from missions.views.uavs import uav_or_404
+from telemetry.serializers.returns import LandingHereSerializer, PresentReturnsSerializer, landing_here_json, present_return_json
+from telemetry.services.landing_here import landing_here
 from telemetry.services.present_returns import present_returns
 from workspace.signed_in import SignedInRequest
 
@@ -33,6 +35,20 @@ class Returns(APIView):
         with api_problems():
             found = present_returns(uavs=uavs, now=now)
         return Response(PresentReturnsSerializer({"at": now, "results": [present_return_json(one) for one in found]}).data)
+
+
+class UavLanding(APIView):
+    @extend_schema(
+        operation_id="get_uav_landing",
+        summary="What lies below a UAV that is told to land where it is",
+        description="Below its place at this moment, measured or estimated, and beside it as far as that is uncertain: lines, towers,"
+        " railways and bridges, zones that apply now, its height above the ground and the slope of the terrain model. Other things are not"
+        " in the data.",
+        responses=LandingHereSerializer,
+    )
+    def get(self, request: SignedInRequest, uav_id: int) -> Response:
+        uav, now = uav_or_404(request.user, uav_id), timezone.now()
+        return Response(LandingHereSerializer(landing_here_json(landing_here(uav=uav, now=now), now)).data)
 
 
 def _asked(request: SignedInRequest) -> list[Uav]:

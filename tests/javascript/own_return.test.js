@@ -2,7 +2,16 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { abortQuestion, questionOf } from "../../static/js/domain/command_questions.js";
-import { returnLines, returnOf, returnSaid, togetherLine } from "../../static/js/domain/own_return.js";
+import {
+  holdLine,
+  holdLinesOfAll,
+  landingLines,
+  returnLines,
+  returnOf,
+  returnSaid,
+  togetherLine,
+} from "../../static/js/domain/own_return.js";
+import { batteryWords } from "../../static/js/monitor/uav_words.js";
 
 const check = (state, warnings = [], more = {}) => ({
   place: 1,
@@ -49,6 +58,44 @@ test("of several it says whether they keep apart on the way home", () => {
   assert.match(togetherLine([check("clear"), check("clear", ["Returning now, …"], met)]), /nothing keeps them apart/);
   assert.match(togetherLine([check("clear"), undefined]), /nothing keeps them apart/);
   assert.equal(togetherLine([check("clear")]), "");
+});
+
+test("a landing where it is says what lies below", () => {
+  const landing = {
+    warnings: ["Railway Dee line is below it."],
+    facts: ["It is 42 m above the ground.", "The ground slopes by 3° there."],
+    present: { is_measured: true, age_s: 1, uncertainty_m: 1 },
+  };
+  const { lines } = questionOf("land", { name: "Tern", landing });
+  assert.equal(lines[1], "Railway Dee line is below it.");
+  assert.equal(lines[2], "It is 42 m above the ground. The ground slopes by 3° there.");
+  assert.deepEqual(landingLines(null), ["What lies below it has not been looked at."]);
+});
+
+test("a hold says how long it can last", () => {
+  assert.match(holdLine(400), /^It can hold for about 7\Wmin: the rest of its battery is for the way home/);
+  assert.match(holdLine(10), /^It cannot hold/);
+  assert.equal(holdLine(null), "How long it can hold is not known.");
+  assert.match(questionOf("hold", { name: "Tern", hold_s: 400 }).lines[1], /7\Wmin/);
+  const [shortest, unknown] = holdLinesOfAll([
+    { name: "Tern", hold_s: 900 },
+    { name: "Kite", hold_s: 400 },
+    { name: "Crow", hold_s: null },
+  ]);
+  assert.match(shortest, /^Kite: It can hold for about 7\Wmin/);
+  assert.equal(unknown, "Not known how long they can hold: Crow.");
+});
+
+test("the card of a UAV that is held says how long it can", () => {
+  const battery = { level: "", reserve_in_s: 720, home_s: 240, hold_s: 400 };
+  const held = (hold_s, mode = "LOITER") => ({
+    measured: { mode, is_in_air: true },
+    estimated: { battery: { ...battery, hold_s } },
+  });
+  assert.match(batteryWords(held(400)), /^Battery: can hold for 7\Wmin$/);
+  assert.equal(batteryWords(held(10)), "Battery: too low to hold longer");
+  assert.match(batteryWords(held(400, "AUTO")), /to the reserve/);
+  assert.match(batteryWords(held(null)), /to the reserve/);
 });
 
 test("what is in the way is a warning, what is not known is said", () => {

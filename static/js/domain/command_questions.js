@@ -2,9 +2,9 @@
 
 import { t } from "../text.js";
 import { durationText, lengthText, speedText } from "../units.js";
-import { returnLines, returnLinesOfAll, togetherLine } from "./own_return.js";
+import { holdLine, landingLines, returnLines, returnLinesOfAll, togetherLine } from "./own_return.js";
 
-/** @import { CommandKind, PresentReturn, ReturnCheck, Route } from "../api_types.d.ts" */
+/** @import { CommandKind, LandingHere, PresentReturn, ReturnCheck, Route } from "../api_types.d.ts" */
 
 /**
  * A field of a question.
@@ -52,9 +52,10 @@ export const WHY = { name: "why", label: t("Why (kept in the history)") };
 
 /**
  * A UAV of whose flight is asked, as far as the command needs it. `returns`: from where it is now; `planned`: from all along its route.
+ * `landing`: what lies below it; `hold_s`: how long it can stay where it is.
  *
  * @typedef {{ name: string, route: Pick<Route, "length_m" | "duration_s">, speed_mps: number, returns?: PresentReturn | null,
- *   planned?: ReturnCheck | null }} AskedFlyer
+ *   planned?: ReturnCheck | null, landing?: LandingHere | null, hold_s?: number | null }} AskedFlyer
  */
 /** @typedef {Partial<AskedFlyer> & { name: string }} AskedOf */
 
@@ -96,9 +97,9 @@ const ASKED = {
     },
     image: "plane-takeoff",
   }),
-  pause: ({ name }) => ({
+  pause: ({ name, hold_s }) => ({
     title: t("Pause {name}?", { name }),
-    lines: [t("It stops on its route and waits for Resume, as long as its battery lasts."), LATE],
+    lines: [t("It stops on its route and waits for Resume, as long as its battery lasts."), holdLine(hold_s), LATE],
     keep: t("Keep flying"),
     act: t("Pause {name}", { name }),
     isBack: true,
@@ -109,9 +110,13 @@ const ASKED = {
     act: t("Resume {name}", { name }),
     isBack: true,
   }),
-  hold: ({ name }) => ({
+  hold: ({ name, hold_s }) => ({
     title: t("Hold {name}?", { name }),
-    lines: [t("It stops where it is and stays there until it is told otherwise, as long as its battery lasts."), LATE],
+    lines: [
+      t("It stops where it is and stays there until it is told otherwise, as long as its battery lasts."),
+      holdLine(hold_s),
+      LATE,
+    ],
     keep: t("Keep flying"),
     act: t("Hold {name}", { name }),
     isBack: true,
@@ -129,10 +134,11 @@ const ASKED = {
     isBack: true,
     image: "rotate-ccw",
   }),
-  land: ({ name }) => ({
+  land: ({ name, landing }) => ({
     title: t("Land {name} here?", { name }),
     lines: [
-      t("It comes straight down where it is now, whatever is below. Targets that it has not reached stay undone."),
+      t("It comes straight down where it is now. Targets that it has not reached stay undone."),
+      ...landingLines(landing),
       LATE,
     ],
     keep: t("Keep flying"),

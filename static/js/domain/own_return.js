@@ -3,7 +3,9 @@
 import { t } from "../text.js";
 import { clockText, durationText, heightText, lengthText, percentText } from "../units.js";
 
-/** @import { PresentReturn, ReturnCheck } from "../api_types.d.ts" */
+/** @import { LandingHere, PresentReturn, ReturnCheck } from "../api_types.d.ts" */
+
+export const LEAST_HOLD_S = 30; // a shorter hold is none
 
 /**
  * Of answers of the API; undefined while they are not there.
@@ -43,7 +45,48 @@ function landingText({ landing_percent, reserve_percent, unknown }) {
   });
 }
 
-/** Whence the way home was looked at. @param {PresentReturn["present"]} present */
+/**
+ * Sentences for a question before a landing where the UAV is: never none.
+ *
+ * @param {LandingHere | null | undefined} landing
+ * @returns {string[]}
+ */
+export function landingLines(landing) {
+  if (!landing) return [t("What lies below it has not been looked at.")];
+  return [...landing.warnings, landing.facts.join(" "), basisText(landing.present)].filter(Boolean);
+}
+
+/**
+ * How long it can stay where it is and still return and land with its reserve.
+ *
+ * @param {number | null | undefined} hold_s
+ */
+export function holdLine(hold_s) {
+  if (typeof hold_s !== "number") return t("How long it can hold is not known.");
+  if (hold_s < LEAST_HOLD_S)
+    return t("It cannot hold: the rest of its battery is needed for the way home and the reserve.");
+  return t("It can hold for about {time}: the rest of its battery is for the way home and the reserve.", {
+    time: durationText(hold_s),
+  });
+}
+
+/**
+ * The same of several: of the one that can hold the shortest, and of those of which it is not known.
+ *
+ * @param {{ name: string, hold_s: number | null | undefined }[]} uavs
+ * @returns {string[]}
+ */
+export function holdLinesOfAll(uavs) {
+  const known = uavs.flatMap(({ name, hold_s }) => (typeof hold_s === "number" ? [{ name, hold_s }] : []));
+  const [first] = known.sort((a, b) => a.hold_s - b.hold_s);
+  const unknown = uavs.filter(({ hold_s }) => typeof hold_s !== "number").map(({ name }) => name);
+  return [
+    first && `${first.name}: ${holdLine(first.hold_s)}`,
+    unknown.length && t("Not known how long they can hold: {names}.", { names: unknown.join(", ") }),
+  ].filter((line) => typeof line === "string");
+}
+
+/** Whence it was looked at. @param {PresentReturn["present"]} present */
 function basisText(present) {
   if (!present) return "";
   const age = durationOfReport(present.age_s);

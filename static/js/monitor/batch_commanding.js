@@ -4,7 +4,7 @@ import { ApiError, freshKey, post } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
 import { LATE } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
-import { togetherLine } from "../domain/own_return.js";
+import { holdLinesOfAll, togetherLine } from "../domain/own_return.js";
 import { confirmAct } from "../page/confirm.js";
 import { returnsNow } from "../page/present_returns.js";
 import { toast } from "../page/toast.js";
@@ -71,6 +71,9 @@ export function createBatch(store, page) {
         page.mission !== null && `${uavs.map(({ name }) => name).join(", ")}.`,
         ...lines,
         kind === "return" && togetherLine(uavs.map(({ id }) => returns.get(id))),
+        ...(kind === "pause"
+          ? holdLinesOfAll(uavs.map(({ name, estimated }) => ({ name, hold_s: estimated?.battery?.hold_s })))
+          : []),
         ...(kind === "return" ? returnLinesOf(scopes, returns) : []),
         ...leftLines(scopes),
         ...unheardLines(silent, kind, store.state.now_ms),

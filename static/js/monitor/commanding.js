@@ -5,7 +5,7 @@ import { certaintyOf, MEASURED } from "../domain/certainty.js";
 import { questionOf } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
 import { confirmAct } from "../page/confirm.js";
-import { returnsNow } from "../page/present_returns.js";
+import { presentOf } from "../page/present_returns.js";
 import { tellUav } from "../page/tell_uav.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
@@ -103,10 +103,11 @@ export function createCommanding(store, page) {
     if (!uav) return;
     const mission = store.state.missions.find((entry) => entry.id === uav.mission);
     const planned = plannedOf(uav, store.state.details);
+    const isStop = kind === "hold" || kind === "pause"; // waits for no answer
     const question = questionOf(kind, {
       name: uav.name,
       speed_mps: planned?.cruise_speed_mps ?? uav.measured?.speed_mps ?? 5,
-      returns: ["return", "abort"].includes(kind) ? (await returnsNow([uav.id])).get(uav.id) : undefined,
+      ...(isStop ? { hold_s: uav.estimated?.battery?.hold_s } : await presentOf(uav.id, kind)),
     });
     const late = certainty(uav) === MEASURED ? null : unheardLines([uav], kind, store.state.now_ms)[0];
     const [first, ...rest] = question.lines;

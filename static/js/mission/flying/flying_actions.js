@@ -8,7 +8,7 @@ import { abortQuestion, questionOf } from "../../domain/command_questions.js";
 import { flyersOf, isFrozen, isOnItsWay, KINDS } from "../../domain/flying.js";
 import { returnOf } from "../../domain/own_return.js";
 import { confirmAct } from "../../page/confirm.js";
-import { returnsNow } from "../../page/present_returns.js";
+import { presentOf, returnsNow } from "../../page/present_returns.js";
 import { tellUav } from "../../page/tell_uav.js";
 import { say } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
@@ -226,9 +226,8 @@ async function abort(acting) {
 /** @param {Acting} acting @param {Flyer} flyer @param {Parameters<typeof questionOf>[0]} kind */
 async function command(acting, flyer, kind) {
   const planned = returnOf(acting.store.state.returns, flyer.place);
-  const isReturn = kind === "return" || kind === "abort";
-  const returns = isReturn && flyer.uav !== null ? (await returnsNow([flyer.uav])).get(flyer.uav) : undefined;
-  const asked = await confirmAct(questionOf(kind, { ...flyer, planned, returns }));
+  const present = await presentOf(flyer.uav, kind);
+  const asked = await confirmAct(questionOf(kind, { ...flyer, planned, ...present }));
   if (!asked) return;
   const title = t("{name} was not told: {act}.", { name: flyer.name, act: KINDS[kind] });
   await tried(acting, title, async () => {
