@@ -546,6 +546,10 @@ export interface components {
             /** @default  */
             why: string;
             kind: components["schemas"]["BatchKind"];
+            /** @description of return: how long UAVs, by their ids, hold before they return, so that they keep apart */
+            waits_s?: {
+                [key: string]: number;
+            };
             /** @description ids; without it: all with a route of the mission sent or in flight */
             uavs?: number[];
         };
@@ -828,9 +832,10 @@ export interface components {
          *     * `land` - Land
          *     * `abort` - Abort the mission
          *     * `change-speed` - Change speed
+         *     * `set-return-height` - Set the return height
          * @enum {string}
          */
-        CommandKind: "upload-mission" | "clear-mission" | "arm" | "take-off" | "start" | "pause" | "resume" | "hold" | "return" | "land" | "abort" | "change-speed";
+        CommandKind: "upload-mission" | "clear-mission" | "arm" | "take-off" | "start" | "pause" | "resume" | "hold" | "return" | "land" | "abort" | "change-speed" | "set-return-height";
         CommandPage: {
             results: components["schemas"]["Command"][];
             next: string | null;
@@ -842,6 +847,18 @@ export interface components {
              * @description over ground; of change-speed
              */
             speed_mps?: number;
+            /**
+             * Format: double
+             * @description above the take-off; of set-return-height
+             */
+            height_m?: number;
+            /** @description of set-return-height: the UAV returns once it is set */
+            then_return?: boolean;
+            /**
+             * Format: double
+             * @description of return: it holds for so long, and returns then
+             */
+            wait_s?: number;
             /**
              * Format: double
              * @description above the place of take-off; of take-off
@@ -1603,6 +1620,15 @@ export interface components {
         GivenParameters: {
             /** Format: double */
             speed_mps?: number;
+            /** Format: double */
+            height_m?: number;
+            /** @description it is followed by a return */
+            then_return?: boolean;
+            /**
+             * Format: double
+             * @description of a hold: the return follows so long after it was given; of a return: it waits
+             */
+            wait_s?: number;
             /** Format: double */
             altitude_relative_m?: number;
             /** @description number of the flight whose mission is sent, from 1 */
@@ -2881,6 +2907,10 @@ export interface components {
             /** @default  */
             why: string;
             kind: components["schemas"]["BatchKind"];
+            /** @description of return: how long UAVs, by their ids, hold before they return, so that they keep apart */
+            waits_s?: {
+                [key: string]: number;
+            };
             missions: components["schemas"]["ScopeRequest"][];
         };
         MissionsDone: {

@@ -48,6 +48,17 @@ test("the request of one mission names that mission and its UAVs alone", () => {
   });
 });
 
+test("a request in turn says how long each holds, of those that it names", () => {
+  const [south] = batchScopes([uav(1, "south", true, 0), uav(7, "south", true, 1)], missions);
+  const waits = new Map([
+    [1, 0],
+    [7, 50],
+    [9, 80],
+  ]);
+  assert.deepEqual(batchRequest("return", [south], waits).body.waits_s, { 7: 50 });
+  assert.equal("waits_s" in batchRequest("return", [south]).body, false);
+});
+
 test("several missions are one request, each named", () => {
   const { path, body } = batchRequest("pause", batchScopes(uavs, missions));
   assert.equal(path, "/missions/commands");

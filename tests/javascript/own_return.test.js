@@ -9,7 +9,9 @@ import {
   returnLines,
   returnOf,
   returnSaid,
+  saferReturn,
   togetherLine,
+  waitsInTurn,
 } from "../../static/js/domain/own_return.js";
 import { batteryWords } from "../../static/js/monitor/uav_words.js";
 
@@ -145,4 +147,29 @@ test("an abort says what each aircraft does, and what is in the way of each", ()
   assert.match(lines.at(-2), /^Crow: Its way home has not been checked/);
   assert.match(questionOf("abort", { name: "Tern", returns: inTheWay }).lines[0], /^In the air: it returns/);
   assert.equal(abortQuestion({ name: "South", isActive: true, uavs: uavs.slice(0, 1) }).lines[2], "");
+});
+
+test("what meets less than a straight return at once is offered in its place", () => {
+  const higher = check("in_the_way", ["…"], { safe_height_m: 75, wait_s: 0 });
+  assert.deepEqual(saferReturn(higher).parameters, { height_m: 75, then_return: true });
+  assert.match(saferReturn(higher).words, /^Return at 75\Wm$/);
+  assert.equal(saferReturn({ ...higher, safe_height_m: null }), null);
+  const meets = check("clear", ["…"], { met: [{ name: "Kite" }], wait_s: 40, safe_height_m: null });
+  assert.deepEqual(saferReturn(meets).parameters, { wait_s: 40 });
+  assert.equal(saferReturn({ ...meets, wait_s: null }), null);
+  assert.equal(saferReturn(check("clear", [], { wait_s: 0 })), null);
+  const question = questionOf("return", { name: "Tern", returns: higher });
+  assert.deepEqual([question.safer.kind, question.act], ["set-return-height", "Return straight now"]);
+  assert.equal(questionOf("return", { name: "Tern", returns: check("clear") }).act, "Return Tern");
+});
+
+test("several return in turn where they meet otherwise, and where that helps", () => {
+  const one = check("clear", [], { uav: 1, met: [{ name: "Kite" }], wait_s: 0 });
+  const other = { ...one, uav: 2, wait_s: 50 };
+  assert.deepEqual([...waitsInTurn([one, other])], [
+    [1, 0],
+    [2, 50],
+  ]);
+  assert.equal(waitsInTurn([one, { ...other, wait_s: null }]), null);
+  assert.equal(waitsInTurn([{ ...one, met: [] }]), null);
 });

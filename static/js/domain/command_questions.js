@@ -2,7 +2,7 @@
 
 import { t } from "../text.js";
 import { durationText, lengthText, speedText } from "../units.js";
-import { holdLine, landingLines, returnLines, returnLinesOfAll, togetherLine } from "./own_return.js";
+import { holdLine, landingLines, returnLines, returnLinesOfAll, saferReturn, togetherLine } from "./own_return.js";
 
 /** @import { CommandKind, LandingHere, PresentReturn, ReturnCheck, Route } from "../api_types.d.ts" */
 
@@ -28,6 +28,11 @@ import { holdLine, landingLines, returnLines, returnLinesOfAll, togetherLine } f
  * @property {{ value: string, words: string, detail?: string }[]} of
  */
 /**
+ * What is done instead, as it meets less; it is the primary button then.
+ *
+ * @typedef {{ words: string, kind: CommandKind, parameters: Record<string, any> }} Safer
+ */
+/**
  * A question before an act; page/confirm.js asks it.
  *
  * @typedef {object} Question
@@ -37,6 +42,8 @@ import { holdLine, landingLines, returnLines, returnLinesOfAll, togetherLine } f
  * @property {string} [keep] the words of the way out
  * @property {QuestionField | null} [field]
  * @property {QuestionChoices | null} [choices]
+ * @property {{ name: string, words: string }[]} [checks] what is done with it unless it is unticked
+ * @property {Safer | null} [safer]
  * @property {boolean} [isDanger]
  * @property {boolean} [isBack] whether the act can be taken back: then it has the focus, else the way out
  * @property {string | null} [image] name of an icon
@@ -59,7 +66,7 @@ export const WHY = { name: "why", label: t("Why (kept in the history)") };
  */
 /** @typedef {Partial<AskedFlyer> & { name: string }} AskedOf */
 
-/** @typedef {Exclude<CommandKind, "upload-mission" | "clear-mission">} AskedKind */
+/** @typedef {Exclude<CommandKind, "upload-mission" | "clear-mission" | "set-return-height">} AskedKind */
 
 /** @type {Record<AskedKind, (flyer: AskedFlyer) => Omit<Question, "opener">>} */
 const ASKED = {
@@ -130,7 +137,8 @@ const ASKED = {
       LATE,
     ],
     keep: t("Keep flying"),
-    act: t("Return {name}", { name }),
+    act: returns && saferReturn(returns) ? t("Return straight now") : t("Return {name}", { name }),
+    safer: returns && saferReturn(returns),
     isBack: true,
     image: "rotate-ccw",
   }),

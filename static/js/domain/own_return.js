@@ -3,6 +3,7 @@
 import { t } from "../text.js";
 import { clockText, durationText, heightText, lengthText, percentText } from "../units.js";
 
+/** @import { Safer } from "./command_questions.js" */
 /** @import { LandingHere, PresentReturn, ReturnCheck } from "../api_types.d.ts" */
 
 export const LEAST_HOLD_S = 30; // a shorter hold is none
@@ -89,7 +90,7 @@ export function holdLinesOfAll(uavs) {
 /** Whence it was looked at. @param {PresentReturn["present"]} present */
 function basisText(present) {
   if (!present) return "";
-  const age = durationOfReport(present.age_s);
+  const age = holdText(present.age_s);
   return present.is_measured
     ? t("Checked from where it was measured {age} ago.", { age })
     : t("Checked from where it is estimated, ± {distance}; last report {age} ago.", {
@@ -97,9 +98,6 @@ function basisText(present) {
         age,
       });
 }
-
-/** @param {number} age_s */
-const durationOfReport = (age_s) => (age_s < 100 ? `${Math.round(age_s)}\u00a0s` : durationText(age_s));
 
 /**
  * The same of several UAVs: each sentence once, after the names of those of which it is true.
@@ -113,6 +111,40 @@ export function returnLinesOfAll(uavs) {
     for (const line of returnLines(check)) said.set(line, [...(said.get(line) ?? []), name]);
   return [...said].map(([line, names]) => `${names.join(", ")}: ${line}`);
 }
+
+/**
+ * What meets less than a straight return at once: higher up, or after a hold; null where that is as good, or where there is nothing.
+ *
+ * @param {PresentReturn} check
+ * @returns {Safer | null}
+ */
+export function saferReturn({ state, safe_height_m, met, wait_s }) {
+  if (state === "in_the_way")
+    return safe_height_m === null
+      ? null
+      : {
+          words: t("Return at {height}", { height: heightText(safe_height_m) }),
+          kind: "set-return-height",
+          parameters: { height_m: safe_height_m, then_return: true },
+        };
+  return met.length && wait_s
+    ? { words: t("Hold {time}, then return", { time: holdText(wait_s) }), kind: "return", parameters: { wait_s } }
+    : null;
+}
+
+/**
+ * How long each of several holds before it returns, so that none meets another; null where they need not, or where that does not help.
+ *
+ * @param {PresentReturn[]} checks
+ * @returns {Map<number, number> | null} seconds by UAV
+ */
+export function waitsInTurn(checks) {
+  if (!checks.some(({ met }) => met.length) || checks.some(({ wait_s }) => wait_s === null)) return null;
+  return new Map(checks.map(({ uav, wait_s }) => [uav ?? 0, wait_s ?? 0]));
+}
+
+/** @param {number} seconds */
+const holdText = (seconds) => (seconds < 100 ? `${Math.round(seconds)}\u00a0s` : durationText(seconds));
 
 /**
  * What is said of several that return at once, before what is said of each; "" of one alone.

@@ -82,12 +82,17 @@ export const leftLines = (scopes) => scopes.flatMap(({ left }) => left.map(({ wh
  *
  * @param {"pause" | "return"} kind
  * @param {BatchScope[]} scopes
+ * @param {Map<number, number> | null} [waits] seconds that each holds before it returns
  */
-export function batchRequest(kind, scopes) {
+export function batchRequest(kind, scopes, waits = null) {
   const missions = scopes.map(({ id, uavs }) => ({ mission: id, uavs: uavs.map((uav) => uav.id) }));
-  if (missions.length > 1) return { path: "/missions/commands", body: { kind, missions } };
+  const told = new Set(missions.flatMap(({ uavs }) => uavs));
+  const in_turn = waits && {
+    waits_s: Object.fromEntries([...waits].filter(([uav, wait_s]) => wait_s > 0 && told.has(uav))),
+  };
+  if (missions.length > 1) return { path: "/missions/commands", body: { kind, missions, ...in_turn } };
   const [{ mission, uavs }] = missions;
-  return { path: `/missions/${mission}/commands`, body: { kind, uavs } };
+  return { path: `/missions/${mission}/commands`, body: { kind, uavs, ...in_turn } };
 }
 
 /** What became of it, in words. @param {BatchAnswer[]} results */

@@ -4,11 +4,12 @@ import { ApiError, freshKey, post } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
 import { LATE } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
-import { holdLinesOfAll, togetherLine } from "../domain/own_return.js";
+import { holdLinesOfAll, togetherLine, waitsInTurn } from "../domain/own_return.js";
 import { confirmAct } from "../page/confirm.js";
 import { returnsNow } from "../page/present_returns.js";
 import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
+import { durationText } from "../units.js";
 import { answerWords, batchRequest, batchScopes, leftLines, returnLinesOf, scopeChoices } from "./batch.js";
 import { unheardLines } from "./unheard.js";
 
@@ -31,9 +32,15 @@ const ALL = {
   },
 };
 
-/** One request, whatever its number of UAVs. @param {"pause" | "return"} kind @param {BatchScope[]} scopes */
-async function tellBatch(kind, scopes) {
-  const { path, body } = batchRequest(kind, scopes);
+/**
+ * One request, whatever its number of UAVs.
+ *
+ * @param {"pause" | "return"} kind
+ * @param {BatchScope[]} scopes
+ * @param {Map<number, number> | null} [waits] seconds that each holds before
+ */
+async function tellBatch(kind, scopes, waits = null) {
+  const { path, body } = batchRequest(kind, scopes, waits);
   try {
     const headers = { "Idempotency-Key": freshKey() };
     const { data } = /** @type {Answer<BatchAnswers>} */ (await post(path, body, { headers }));
@@ -64,6 +71,8 @@ export function createBatch(store, page) {
     const { title, lines, act } = ALL[kind];
     const uavs = scopes.flatMap((scope) => scope.uavs);
     const returns = kind === "return" ? await returnsNow(uavs.map(({ id }) => id)) : new Map();
+    const waits = waitsInTurn([...returns.values()]);
+    const longest_s = waits ? Math.max(...waits.values()) : 0;
     const silent = uavs.filter((uav) => certaintyOf(uav, store.state.now_ms) !== MEASURED);
     const asked = await confirmAct({
       title: page.mission === null ? t("{act}: of which mission?", { act }) : title(uavs.length),
@@ -75,11 +84,16 @@ export function createBatch(store, page) {
           ? holdLinesOfAll(uavs.map(({ name, estimated }) => ({ name, hold_s: estimated?.battery?.hold_s })))
           : []),
         ...(kind === "return" ? returnLinesOf(scopes, returns) : []),
+        longest_s > 0 &&
+          t("In turn they keep apart: the last one holds {time} first, those with the least battery hold least.", {
+            time: durationText(longest_s),
+          }),
         ...leftLines(scopes),
         ...unheardLines(silent, kind, store.state.now_ms),
         LATE,
       ],
       choices: page.mission === null ? { name: "scope", legend: t("Whom it is for"), of: scopeChoices(scopes) } : null,
+      safer: longest_s > 0 ? { words: t("Return in turn"), kind: "return", parameters: {} } : null,
       act: page.mission === null ? act : `${KINDS[kind]}: ${uavs.length}`,
       keep: t("Keep flying"),
       isBack: true,
@@ -89,6 +103,7 @@ export function createBatch(store, page) {
       await tellBatch(
         kind,
         asked.scope && asked.scope !== "all" ? scopes.filter(({ id }) => id === asked.scope) : scopes,
+        asked.isSafer ? waits : null,
       );
   };
 }

@@ -112,7 +112,8 @@ export function createCommanding(store, page) {
     const late = certainty(uav) === MEASURED ? null : unheardLines([uav], kind, store.state.now_ms)[0];
     const [first, ...rest] = question.lines;
     const asked = await confirmAct({ ...question, lines: [first, figuresLine(uav, mission), late, ...rest], opener });
-    if (asked) await told(uav, kind, asked);
+    if (asked?.isSafer && question.safer) await told(uav, question.safer.kind, question.safer.parameters);
+    else if (asked) await told(uav, kind, asked);
   }
 
   dropArrived(store);
