@@ -3802,7 +3802,7 @@ export interface components {
             place: number | null;
             name: string;
             uav: number | null;
-            state: components["schemas"]["State30fEnum"];
+            state: components["schemas"]["ReturnState"];
             /** @description what an operator must know; none where all is clear */
             warnings: string[];
             /** @description of the vehicle, that sets the height */
@@ -4955,7 +4955,7 @@ export interface components {
             place: number;
             name: string;
             uav: number | null;
-            state: components["schemas"]["State30fEnum"];
+            state: components["schemas"]["ReturnState"];
             /** @description what an operator must know; none where all is clear */
             warnings: string[];
             /** @description of the vehicle, that sets the height */
@@ -4978,6 +4978,14 @@ export interface components {
         ReturnChecks: {
             results: components["schemas"]["ReturnCheck"][];
         };
+        /**
+         * @description * `clear` - clear
+         *     * `in_the_way` - in_the_way
+         *     * `unknown` - unknown
+         *     * `not_checked` - not_checked
+         * @enum {string}
+         */
+        ReturnState: "clear" | "in_the_way" | "unknown" | "not_checked";
         RevertRequest: {
             /** @description the state before this entry comes back */
             entry: number;
@@ -5735,14 +5743,6 @@ export interface components {
          * @enum {string}
          */
         StaleCauseWhatEnum: "zone" | "uav" | "base" | "asset" | "terrain" | "elsewhere";
-        /**
-         * @description * `clear` - clear
-         *     * `in_the_way` - in_the_way
-         *     * `unknown` - unknown
-         *     * `not_checked` - not_checked
-         * @enum {string}
-         */
-        State30fEnum: "clear" | "in_the_way" | "unknown" | "not_checked";
         /** @description Every record of the batch is stored, known or refused: none of them needs to be sent again as it is. */
         StoredReports: {
             /** @description new ones */
@@ -7684,6 +7684,7 @@ export type ResultStateEnum = components['schemas']['ResultStateEnum'];
 export type ResultsRequest = components['schemas']['ResultsRequest'];
 export type ReturnCheck = components['schemas']['ReturnCheck'];
 export type ReturnChecks = components['schemas']['ReturnChecks'];
+export type ReturnState = components['schemas']['ReturnState'];
 export type RevertRequest = components['schemas']['RevertRequest'];
 export type Rhythm = components['schemas']['Rhythm'];
 export type Role = components['schemas']['Role'];
@@ -7734,7 +7735,6 @@ export type Span = components['schemas']['Span'];
 export type SpeedEnum = components['schemas']['SpeedEnum'];
 export type StaleCause = components['schemas']['StaleCause'];
 export type StaleCauseWhatEnum = components['schemas']['StaleCauseWhatEnum'];
-export type State30fEnum = components['schemas']['State30fEnum'];
 export type StoredReports = components['schemas']['StoredReports'];
 export type StoredResults = components['schemas']['StoredResults'];
 export type Straight = components['schemas']['Straight'];
