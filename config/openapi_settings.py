@@ -45,6 +45,7 @@ def openapi_settings() -> dict[str, Any]:
             "GapState": "inspection.models.GapState",
             "MissionState": "missions.models.MissionState",
             "OfferState": "missions.models.OfferState",
+            "ReturnState": ["clear", "in_the_way", "unknown", "not_checked"],
             "VerdictLevel": "simulation.models.VerdictLevel",
             "SimulationState": "simulation.models.SimulationState",
             "VehicleFlavour": "simulation.models.VehicleFlavour",

@@ -18,6 +18,7 @@ PRIORITIES = {
     "take-off": MISSION,
     "start": MISSION,
     "change-speed": PARAMETER,
+    "set-return-height": PARAMETER,
 }
 
 
@@ -27,10 +28,18 @@ class Axis(StrEnum):
     FLIGHT = "flight"
     MISSION = "mission"
     SPEED = "speed"
+    PARAMETER = "parameter"
 
 
-AXES = {"upload-mission": Axis.MISSION, "clear-mission": Axis.MISSION, "change-speed": Axis.SPEED}
+AXES = {
+    "upload-mission": Axis.MISSION,
+    "clear-mission": Axis.MISSION,
+    "change-speed": Axis.SPEED,
+    "set-return-height": Axis.PARAMETER,
+}
 SAFETY_RANKS = {"hold": 1, "return": 2, "land": 3, "abort": 4}
+THEN_RETURN = "then_return"  # a command's parameter: once it is done its UAV is told to return
+WAIT_S = "wait_s"  # a return's parameter: after so many seconds of holding
 HAND_OVER = "hand_over"  # a command's parameter: a step of giving its UAV another route
 SETS_IN_MOTION = frozenset({"arm", "take-off", "start", "resume"})
 
@@ -69,14 +78,14 @@ class CommandRules:
 
     motion_s: float = 30.0  # arm, take off, start, resume
     stop_s: float = 600.0  # pause, hold, return, land, abort
-    upload_s: float = 3_600.0
+    upload_s: float = 3_600.0  # and a return height
     speed_s: float = 60.0
     read_back_s: float = 120.0  # by which a start or resume may be wanted longer, while what is on the UAV is read back before it
 
     def wanted_for_s(self, kind: str) -> float | None:
         if kind == "clear-mission":
             return None
-        if kind == "upload-mission":
+        if kind in ("upload-mission", "set-return-height"):
             return self.upload_s
         if kind == "change-speed":
             return self.speed_s

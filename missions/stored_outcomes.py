@@ -109,6 +109,7 @@ PARTS = (
     gettext_noop("land"),
     gettext_noop("abort"),
     gettext_noop("change-speed"),
+    gettext_noop("set-return-height"),
     gettext_noop("disarm"),
     gettext_noop("leave the ground"),
     gettext_noop("start the mission"),

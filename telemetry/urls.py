@@ -11,6 +11,7 @@ from telemetry.views.log import LatestTelemetry, TelemetryLog
 from telemetry.views.mission_record import RESULT_KINDS, MissionRecord, MissionRecordFile, MissionResultsFile
 from telemetry.views.preflight import MissionPreflight
 from telemetry.views.results import Results
+from telemetry.views.returns import Returns, UavLanding
 from telemetry.views.unknown_vehicles import UnknownVehicleAdoption, UnknownVehicleIgnoring, UnknownVehicles
 from telemetry.views.vehicle_logs import FlightLogFile, FlightLogs, UavConnection, VehicleTexts
 
@@ -48,6 +49,7 @@ urlpatterns = [
     path("uav-types/<int:type_id>/alert-limits", UavTypeAlertLimits.as_view(), name="api-uav-type-alert-limits"),
     path("missions/<uuid:mission_id>/alert-limits", MissionAlertLimits.as_view(), name="api-mission-alert-limits"),
     path("results", Results.as_view(), name="api-results"),
+    path("returns", Returns.as_view(), name="api-returns"),
     path("live", Live.as_view(), name="api-live"),
     path("telemetry", TelemetryLog.as_view(), name="api-telemetry"),
     path("missions/<uuid:mission_id>/preflight", MissionPreflight.as_view(), name="api-mission-preflight"),
@@ -58,6 +60,7 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/telemetry.<file_kind:kind>", MissionTelemetryFile.as_view(), name="api-mission-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry.<file_kind:kind>", UavTelemetryFile.as_view(), name="api-uav-telemetry-file"),
     path("uavs/<int:uav_id>/telemetry/latest", LatestTelemetry.as_view(), name="api-latest-telemetry"),
+    path("uavs/<int:uav_id>/landing", UavLanding.as_view(), name="api-uav-landing"),
     path("uavs/<int:uav_id>/connection", UavConnection.as_view(), name="api-uav-connection"),
     path("uavs/<int:uav_id>/vehicle-texts", VehicleTexts.as_view(), name="api-vehicle-texts"),
     path("uavs/<int:uav_id>/flight-logs", FlightLogs.as_view(), name="api-flight-logs"),

@@ -1,15 +1,20 @@
 """Assets and zones as lists, and what they are called."""
 
+import math
 import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, TypedDict
 
-from django.contrib.gis.db.models.functions import AsGeoJSON
-from django.contrib.gis.geos import MultiPolygon, Polygon
+from django.contrib.gis.db.models import GeometryField
+from django.contrib.gis.db.models.functions import AsGeoJSON, Distance
+from django.contrib.gis.geos import MultiPolygon, Point, Polygon
 from django.db.models import Q, QuerySet
+from django.db.models.functions import Cast
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
+from inspection.geodesy import LonLat
+from inspection.graph.zone_index import METRES_PER_DEGREE_LON
 from inspection.models import Asset, AssetKind, AssetReference, NoFlyZone
 from inspection.selectors.made_names import made_name, word_of
 
@@ -72,6 +77,17 @@ def asset_with_geometry(asset_id: int) -> DrawnAsset:
         .annotate(geometry_json=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
         .get(pk=asset_id)
     )
+
+
+def assets_near(position: LonLat, within_m: float) -> list[tuple[Asset, float]]:
+    """Assets above the ground within so many metres of a position, the nearest first, each with its distance [m]."""
+    stretched = METRES_PER_DEGREE_LON * max(math.cos(math.radians(position.lat)), 0.01)
+    place = Point(position.lon, position.lat, srid=4326)
+    found = Asset.objects.select_related("line").filter(vanished_at=None, geometry__dwithin=(place, within_m / stretched))
+    away = Distance(Cast("geometry", GeometryField(geography=True)), place)
+    near = found.exclude(kind=AssetKind.LINE, subtype="cable").annotate(away=away).order_by("away", "pk")
+    near = near.defer("node_osm_ids", "parts", *UNREAD_OF_A_LINE)
+    return [(asset, asset.away.m) for asset in near if asset.away.m <= within_m]
 
 
 def references_of(organisation_id: int, assets: Iterable[int]) -> dict[int, AssetReference]:

@@ -133,6 +133,14 @@ def own_return(autopilot: str, parameters: Mapping[str, float]) -> OwnReturn | N
     )
 
 
+def return_height_parameter(autopilot: str | None, parameters: Mapping[str, float], height_m: float) -> tuple[str, float] | None:
+    """Return the parameter of a vehicle and the value that set its return height, rounded up to whole metres; None where it told none."""
+    known = PARAMETERS.get(autopilot or "", ((),))[0]
+    name = next((name for name in known if name in parameters), None)
+    metres = float(math.ceil(height_m))
+    return None if name is None else (name, metres * 100.0 if name in IN_CENTIMETRES else metres)
+
+
 def fence_off_by(autopilot: str, parameters: Mapping[str, float]) -> str:
     """The parameter by which an ArduPilot ignores the fence that it holds, as "FENCE_ENABLE 0"; empty: it does not, or has not told."""
     if autopilot != ARDUPILOT or "FENCE_ENABLE" not in parameters:

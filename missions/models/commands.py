@@ -56,6 +56,7 @@ class CommandKind(models.TextChoices):
     LAND = "land", "Land"
     ABORT = "abort", "Abort the mission"
     CHANGE_SPEED = "change-speed", "Change speed"
+    SET_RETURN_HEIGHT = "set-return-height", "Set the return height"
 
 
 class CommandState(models.TextChoices):
@@ -73,6 +74,7 @@ class CommandAxis(models.TextChoices):
     FLIGHT = "flight", "Flight"
     MISSION = "mission", "Mission"
     SPEED = "speed", "Speed"
+    PARAMETER = "parameter", "Parameter"
 
 
 OPEN_COMMANDS = (CommandState.QUEUED, CommandState.SENT, CommandState.ACKNOWLEDGED)

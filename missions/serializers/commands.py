@@ -11,6 +11,7 @@ from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import LONGEST_LEG_M, SHORTEST_LEG_M
 from missions.services.batch_commands import BATCH_KINDS, UavAnswer
 from missions.services.closing import MAX_REASON_LENGTH
+from missions.services.steering import MAX_WAIT_S
 from missions.stored_outcomes import outcome_in_words
 
 LONGEST_WHY = 300
@@ -88,6 +89,9 @@ class DispatchInputSerializer(WhyInputSerializer):
 
 class CommandParametersSerializer(KnownFieldsSerializer):
     speed_mps = serializers.FloatField(required=False, help_text="over ground; of change-speed")
+    height_m = serializers.FloatField(required=False, help_text="above the take-off; of set-return-height")
+    then_return = serializers.BooleanField(required=False, help_text="of set-return-height: the UAV returns once it is set")
+    wait_s = serializers.FloatField(required=False, help_text="of return: it holds for so long, and returns then")
     altitude_relative_m = serializers.FloatField(required=False, help_text="above the place of take-off; of take-off")
     out_of_slot = serializers.BooleanField(
         required=False, help_text="of start, after 409 `start_slot`: take off although others in the air come near its route"
@@ -103,6 +107,11 @@ class GivenParametersSerializer(serializers.Serializer):
     """Those of its kind alone."""
 
     speed_mps = serializers.FloatField(required=False)
+    height_m = serializers.FloatField(required=False)
+    then_return = serializers.BooleanField(required=False, help_text="it is followed by a return")
+    wait_s = serializers.FloatField(
+        required=False, help_text="of a hold: the return follows so long after it was given; of a return: it waits"
+    )
     altitude_relative_m = serializers.FloatField(required=False)
     flight = serializers.IntegerField(required=False, help_text="number of the flight whose mission is sent, from 1")
     out_of_slot = serializers.BooleanField(required=False, help_text="it was asked for although others in the air come near its route")
@@ -165,8 +174,21 @@ class CommandPageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
-class BatchInputSerializer(WhyInputSerializer):
+class _BatchSerializer(WhyInputSerializer):
     kind = serializers.ChoiceField(choices=sorted(BATCH_KINDS))
+    waits_s = serializers.DictField(
+        child=serializers.FloatField(min_value=0.0, max_value=MAX_WAIT_S),
+        required=False,
+        help_text="of return: how long UAVs, by their ids, hold before they return, so that they keep apart",
+    )
+
+    def validate_waits_s(self, waits_s: dict[str, float]) -> dict[int, float]:
+        if not all(uav.isascii() and uav.isdigit() and len(uav) < 19 for uav in waits_s):
+            raise serializers.ValidationError("The names are ids of UAVs.")
+        return {int(uav): wait_s for uav, wait_s in waits_s.items()}
+
+
+class BatchInputSerializer(_BatchSerializer):
     uavs = serializers.ListField(
         child=serializers.IntegerField(),
         required=False,
@@ -187,8 +209,7 @@ class ScopeSerializer(KnownFieldsSerializer):
     )
 
 
-class MissionsBatchInputSerializer(WhyInputSerializer):
-    kind = serializers.ChoiceField(choices=sorted(BATCH_KINDS))
+class MissionsBatchInputSerializer(_BatchSerializer):
     missions = ScopeSerializer(many=True, allow_empty=False)
 
 

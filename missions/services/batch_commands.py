@@ -1,13 +1,14 @@
 """Commands to several UAVs of missions at once: one request, answered UAV by UAV."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 from uuid import UUID
 
 from django.db import transaction
 from django.utils.translation import gettext as _
 
-from missions.command_rules import SETS_IN_MOTION
+from missions.command_rules import SETS_IN_MOTION, WAIT_S
 from missions.command_selectors import places_in_flight
 from missions.in_air_hooks import uavs_never_heard, uavs_on_the_ground
 from missions.models import CommandKind, Mission, MissionState, Uav, UavCommand
@@ -47,17 +48,22 @@ class UavAnswer:
         return self.command is not None
 
 
-def command_missions(*, scopes: Sequence[Scope], kind: CommandKind, actor: User, why: str = "") -> list[UavAnswer]:
+def command_missions(
+    *, scopes: Sequence[Scope], kind: CommandKind, actor: User, why: str = "", waits_s: Mapping[int, float] | None = None
+) -> list[UavAnswer]:
     """Give UAVs of these missions a command, all in one transaction: a refusal of one is none of the others.
 
-    Reached are UAVs with a route sent or in flight in the mission that is named, and no others. Raises Refused for a kind that is not in
-    BATCH_KINDS, and where nobody is named and no mission has a UAV to reach.
+    Reached are UAVs with a route sent or in flight in the mission that is named, and no others. waits_s: for how long UAVs, by their ids,
+    hold before they return. Raises Refused for a kind that is not in
+    BATCH_KINDS, for waits of another kind than a return, and where nobody is named and no mission has a UAV to reach.
     """
     if kind not in BATCH_KINDS:
         raise refuse("no_batch", _("This command is given to one UAV at a time."))
+    if waits_s and kind != CommandKind.RETURN:
+        raise refuse("no_parameters", _("This command has no parameters."))
     with transaction.atomic():
         _hold(scopes, kind)
-        answers = [answer for scope in scopes for answer in _command_mission(scope, kind, actor, why)]
+        answers = [answer for scope in scopes for answer in _command_mission(scope, kind, actor, why, waits_s or {})]
     if not answers:
         raise refuse("nobody_in_mission", _("No UAV has a route of this mission sent or in flight."))
     return answers
@@ -72,7 +78,7 @@ def _hold(scopes: Sequence[Scope], kind: CommandKind) -> None:
     list(Uav.objects.select_for_update(no_key=True).filter(pk__in=flown_by).order_by("pk").values_list("pk"))
 
 
-def _command_mission(scope: Scope, kind: CommandKind, actor: User, why: str) -> list[UavAnswer]:
+def _command_mission(scope: Scope, kind: CommandKind, actor: User, why: str, waits_s: Mapping[int, float]) -> list[UavAnswer]:
     mission = scope.mission
     places = places_in_flight(mission) if mission.state in REACHABLE else {}
     on_the_ground, never_heard = uavs_on_the_ground(places), uavs_never_heard(places)
@@ -94,14 +100,17 @@ def _command_mission(scope: Scope, kind: CommandKind, actor: User, why: str) -> 
             reason = Reason("on_the_ground", _("%(uav)s is on the ground.") % {"uav": uav.name}, place)
             answers.append(UavAnswer(mission.pk, uav_id, uav.name, place, reasons=(reason,)))
         else:
-            answers.append(_command(mission, uav, place, kind, actor, why))
+            parameters = {WAIT_S: waits_s[uav_id]} if waits_s.get(uav_id) else {}
+            answers.append(_command(mission, uav, place, kind, actor, why, parameters))
     return answers
 
 
-def _command(mission: Mission, uav: Uav, place: int | None, kind: CommandKind, actor: User, why: str) -> UavAnswer:
+def _command(
+    mission: Mission, uav: Uav, place: int | None, kind: CommandKind, actor: User, why: str, parameters: dict[str, Any]
+) -> UavAnswer:
     try:
         with transaction.atomic():
-            command = command_uav(uav=uav, kind=kind, actor=actor, why=why)
+            command = command_uav(uav=uav, kind=kind, actor=actor, why=why, parameters=parameters)
     except Refused as error:
         return UavAnswer(mission.pk, uav.pk, uav.name, place, reasons=error.reasons)
     return UavAnswer(mission.pk, uav.pk, uav.name, place, command)

@@ -7,7 +7,7 @@ from uuid import UUID
 
 from django.db import transaction
 
-from missions.command_rules import HAND_OVER
+from missions.command_rules import HAND_OVER, THEN_RETURN
 from missions.models import CommandKind, Mission, UavCommand
 from missions.services import outbox
 from missions.services.approval import finish_revocation
@@ -29,6 +29,7 @@ from missions.services.outbox import (
     release_claims_of_others,
     renew_claims,
 )
+from missions.services.returns_in_turn import return_after
 
 __all__ = [
     "CHANNEL",
@@ -52,7 +53,7 @@ __all__ = [
 def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "", warnings: str = "") -> bool:
     """The vehicle was seen to do it: a mission that is started is active, one that is off its last UAV may be revoked.
 
-    Of what hands a UAV over to another mission the next step is given.
+    Of what hands a UAV over to another mission the next step is given, and after what it does before it returns, the return.
     """
     with transaction.atomic():
         command = UavCommand.objects.only("kind", "uav_id", "mission_id", "approval_id", "parameters").filter(pk=command_id).first()
@@ -67,4 +68,6 @@ def note_applied(command_id: UUID, *, attempt: int, holder: str, note: str = "",
             finish_revocation(approval_id=command.approval_id)
         if command.parameters.get(HAND_OVER):
             go_on_after(UavCommand.objects.select_related("uav", "mission", "approval", "created_by").get(pk=command_id))
+        if command.parameters.get(THEN_RETURN):
+            return_after(UavCommand.objects.select_related("uav", "mission", "approval", "created_by").get(pk=command_id))
     return True

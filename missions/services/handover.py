@@ -42,7 +42,7 @@ def stuck_hand_overs() -> list[UavCommand]:
     found = []
     for uav, mission in routes.filter(has_failed=False, mission_uav__uav__isnull=False).values_list("mission_uav__uav", "mission"):
         commands = UavCommand.objects.filter(uav=uav).select_related("uav", "mission").order_by("-sequence")
-        last = commands.exclude(axis=CommandAxis.SPEED).first()
+        last = commands.exclude(axis__in=[CommandAxis.SPEED, CommandAxis.PARAMETER]).first()
         if last is None or last.mission_id != mission or not last.parameters.get(HAND_OVER) or last.state in OPEN_COMMANDS:
             continue
         if last.state != CommandState.APPLIED and last.outcome_code != SUPERSEDED:

@@ -16,7 +16,7 @@ from django.db.models import F, Max, Q, QuerySet
 from django.db.models.functions import Coalesce, Greatest, Least, Now
 from django.utils.translation import gettext as _
 
-from missions.command_rules import HAND_OVER, axes_overtaken_by, axis_of, may_overtake, priority_of
+from missions.command_rules import HAND_OVER, WAIT_S, axes_overtaken_by, axis_of, may_overtake, priority_of
 from missions.models import (
     OPEN_COMMANDS,
     Approval,
@@ -66,14 +66,17 @@ def queue_command(
     mission: Mission | None = None,
     approval: Approval | None = None,
     expires_in_s: float | None = None,
+    wait_s: float = 0.0,
 ) -> UavCommand:
     """Give a UAV a command; unfinished ones about the same thing no longer count.
 
     Raises Refused while one of them makes the UAV safer than this one would: that one is not called off. Without `expires_in_s` it is
-    wanted for as long as the settings say of its kind. Rows are taken in the order mission, UAV, command: a caller that needs a mission's
+    wanted for as long as the settings say of its kind. After `wait_s` it is carried, and until then any other command about the same thing
+    takes its place. Rows are taken in the order mission, UAV, command: a caller that needs a mission's
     takes it before.
     """
     wanted_for_s = settings.COMMAND_RULES.wanted_for_s(kind) if expires_in_s is None else expires_in_s
+    waits = {"lease_expires_at": Now() + timedelta(seconds=wait_s)} if wait_s > 0.0 else {}
     with transaction.atomic():
         link = Uav.objects.select_for_update(no_key=True).values_list("link", flat=True).get(pk=uav.pk)
         overtaken = UavCommand.objects.filter(uav=uav, axis__in=axes_overtaken_by(kind))
@@ -97,7 +100,8 @@ def queue_command(
             link=link,
             created_by=actor,
             why=why,
-            expires_at=None if wanted_for_s is None else Now() + timedelta(seconds=wanted_for_s),
+            expires_at=None if wanted_for_s is None else Now() + timedelta(seconds=wanted_for_s + wait_s),
+            **waits,
         )
         command.refresh_from_db(fields=["created_at", "expires_at"])
         UavCommandEvent.objects.create(command=command, state=CommandState.QUEUED, attempt=0)
@@ -253,7 +257,8 @@ def end_commands(commands: QuerySet[UavCommand], *, code: str, words: str) -> in
 
 
 def _refuse_to_overtake(uav: Uav, kind: CommandKind, commands: QuerySet[UavCommand]) -> None:
-    unfinished = commands.filter(state__in=OPEN_COMMANDS).values_list("kind", flat=True)
+    waiting = Q(parameters__has_key=WAIT_S, sent_at=None, lease_expires_at__gt=Now())
+    unfinished = commands.filter(state__in=OPEN_COMMANDS).exclude(waiting).values_list("kind", flat=True)
     if not all(may_overtake(kind, other) for other in unfinished):
         words = _("A safer command to %(uav)s is not done yet: this one cannot take its place.")
         raise refuse("safety_first", words % {"uav": uav.name})

@@ -5,17 +5,19 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from enum import StrEnum
-from functools import partial
 
 import numpy as np
 from django.conf import settings
 from django.db.models.functions import Now
 from django.utils.translation import gettext as _
+from numpy.typing import NDArray
 
+from inspection.geodesy import LonLat
 from inspection.graph.spans import spans_of
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import planning_read
 from inspection.zones.reach import ZoneTable
+from missions.flight_plan.clearance import ZoneFacts
 from missions.flight_plan.ways_home import Haven, InTheWay, Places, Trouble, WaysHome
 from missions.flight_plan.zone_facts import zones_near
 from missions.mavlink.fence import fence_of
@@ -38,13 +40,15 @@ class ReturnState(StrEnum):
 
 @dataclass(frozen=True)
 class ReturnCheck:
-    """Of one UAV of a mission. `height_m` counts from where it took off; `warnings` are sentences, none where all is clear.
+    """Of one UAV; `place` is its own in a mission, None without one.
+
+    `height_m` counts from where it took off; `warnings` are sentences, none where all is clear.
 
     `fence_warning` tells that its autopilot ignores the fence that goes with the mission; empty where it does not, or is not known to.
     `safe_height_m` is one at which nothing is in the way; None where it is clear, or where no height would be.
     """
 
-    place: int
+    place: int | None
     name: str
     uav: int | None
     state: ReturnState
@@ -84,39 +88,97 @@ def _fence_warning(mission: Mission, route: Route) -> str:
     return words % {"uav": route.mission_uav.name, "parameter": off_by} if fence.items else ""
 
 
-def _check(mission: Mission, route: Route) -> ReturnCheck:
-    flown_by, uav = route.mission_uav, route.mission_uav.uav
-    place, name, key = flown_by.sequence, flown_by.name, flown_by.uav_id
+@dataclass(frozen=True)
+class ReportedReturn:
+    """How a UAV flies home by itself, as far as it was read from it: `own` is None where that is not known, and `why` tells the reason."""
+
+    own: OwnReturn | None
+    state: ReturnState = ReturnState.CLEAR
+    why: str = ""
+    parameter: str | None = None
+    height_m: float | None = None
+    read_at: datetime | None = None
+
+    def check(self, place: int | None, name: str, uav: int | None) -> ReturnCheck:
+        """Return the check of a UAV so far."""
+        warnings = (self.why,) if self.why else ()
+        return ReturnCheck(place, name, uav, self.state, warnings, self.parameter, self.height_m, read_at=self.read_at)
+
+
+def reported_return(uav: Uav | None, name: str, *, has_rally: bool) -> ReportedReturn:
+    """has_rally: its mission gives it rally points, so that those that it holds are known."""
     values = {"uav": name}
     if uav is None:
-        return ReturnCheck(
-            place, name, key, ReturnState.UNKNOWN, (_("%(uav)s is not a UAV of the fleet: how it returns is not known.") % values,)
-        )
+        words = _("%(uav)s is not a UAV of the fleet: how it returns is not known.")
+        return ReportedReturn(None, ReturnState.UNKNOWN, words % values)
     if uav.link == LinkKind.HTTP:
         words = _("What the companion of %(uav)s does on Return and Abort is not known here: nothing on that way is checked.")
-        return ReturnCheck(place, name, key, ReturnState.NOT_CHECKED, (words % values,))
+        return ReportedReturn(None, ReturnState.NOT_CHECKED, words % values)
     told = uav.autopilot_return
     own = own_return(told.get("autopilot", ""), told.get("parameters", {}))
     if own is None:
         words = _(
             "%(parameter)s was not read from %(uav)s: how high it returns is not known, and the way of Return and Abort is not checked."
         )
-        return ReturnCheck(place, name, key, ReturnState.UNKNOWN, (words % {**values, "parameter": _height_names()},))
-    checked = partial(ReturnCheck, place, name, key, parameter=own.parameter, height_m=own.height_m, read_at=uav.autopilot_return_read_at)
-    unknown = _why_unknown(own, name, has_rally=bool(rally_points(mission, place)))
-    if unknown:
-        return checked(ReturnState.UNKNOWN, (unknown,))
+        return ReportedReturn(None, ReturnState.UNKNOWN, words % {**values, "parameter": _height_names()})
+    reported = ReportedReturn(own, parameter=own.parameter, height_m=own.height_m, read_at=uav.autopilot_return_read_at)
+    unknown = _why_unknown(own, name, has_rally=has_rally)
+    return replace(reported, own=None, state=ReturnState.UNKNOWN, why=unknown) if unknown else reported
+
+
+def _check(mission: Mission, route: Route) -> ReturnCheck:
+    flown_by = route.mission_uav
+    rally = rally_points(mission, flown_by.sequence)
+    reported = reported_return(flown_by.uav, flown_by.name, has_rally=bool(rally))
+    checked = reported.check(flown_by.sequence, flown_by.name, flown_by.uav_id)
+    if reported.own is None:
+        return checked
     try:
         flights = frozen_route(route, mission).flights
     except NotARoute:
-        return checked(ReturnState.NOT_CHECKED, ())
-    table, ways = _ways(mission, route, flights, shuns_home=own.shuns_home)
+        return replace(checked, state=ReturnState.NOT_CHECKED)
+    table, ways = _ways(mission, route, flights, shuns_home=reported.own.shuns_home)
+    return checked_ways(checked, reported.own, ways, table)
+
+
+def checked_ways(checked: ReturnCheck, own: OwnReturn, ways: Sequence[WaysHome], table: ZoneTable, *, where: str = "") -> ReturnCheck:
+    """The check with what is in these ways. where: from where they lead, in words; empty: from waypoints of a route, by their numbers."""
     found = [trouble for way in ways for trouble in way.troubles(_levels(way, own))]
     if not found:
-        return checked(ReturnState.CLEAR)
+        return checked
     safe_m = _safe_height_m(ways, own)
-    warnings = [*dict.fromkeys(_words(trouble, table) for trouble in found), _advice(own, safe_m)]
-    return checked(ReturnState.IN_THE_WAY, tuple(warnings), safe_height_m=safe_m)
+    warnings = [*dict.fromkeys(_words(trouble, table, where) for trouble in found), _advice(own, safe_m)]
+    return replace(checked, state=ReturnState.IN_THE_WAY, warnings=tuple(warnings), safe_height_m=safe_m)
+
+
+def return_from(
+    checked: ReturnCheck, own: OwnReturn, places: Places, home: LonLat, rally: Sequence[tuple[LonLat, float]], window: tuple[float, float]
+) -> ReturnCheck:
+    """The check of the way home from places at which a UAV may be now, and of that to the rally point that it would take instead.
+
+    window: from when to when it flies home, in seconds since the epoch. Raises NoGraph.
+    """
+    ground = planning_read().ground()
+    home_amsl_m = float(ground_heights_m(np.array([home]))[0])
+    positions = np.concatenate([places.position, np.array([home, *(place for place, _height_m in rally)])])
+    near, facts = zones_applying(ground.table, positions, window)
+    havens = [Haven(place, float(math.ceil(height_m)), is_rally=True) for place, height_m in rally]
+    ways = [
+        WaysHome(
+            own_places, haven, home_amsl_m=None if math.isnan(home_amsl_m) else home_amsl_m, ground_heights_m=ground_heights_m,
+            spans=spans_of(ground.network()), zones=facts, margins=zone_margins(), clearance_m=settings.FLIGHT_RULES.clearance_m,
+        )
+        for haven, own_places in _places_by_haven(places, Haven(home), havens, shuns_home=own.shuns_home)
+    ]  # fmt: skip
+    return checked_ways(checked, own, ways, near, where=_("From where it is now"))
+
+
+def zones_applying(table: ZoneTable, positions: NDArray[np.float64], window: tuple[float, float]) -> tuple[ZoneTable, ZoneFacts]:
+    """The zones near positions (n, 2), lon, lat [deg], that apply at any moment of a window."""
+    margins = zone_margins()
+    near, _facts = zones_near(table, positions, margins)
+    in_force = near.only(near.active_within(window[0] - margins.time_s, window[1] + margins.time_s)) if len(near) else near
+    return zones_near(in_force, positions, margins, window)
 
 
 def _why_unknown(own: OwnReturn, name: str, *, has_rally: bool) -> str:
@@ -153,7 +215,12 @@ def _ways(mission: Mission, route: Route, flights: Sequence[Flight], *, shuns_ho
     ways = []
     for flight in flights:
         havens = [Haven(place, float(math.ceil(height_m - flight.above_first_m)), is_rally=True) for place, height_m in rally]
-        for haven, places in _places_by_haven(flight, Haven(flight.take_off.position), havens, shuns_home=shuns_home):
+        along = Places.along(
+            np.array([waypoint.position for waypoint in flight.waypoints], dtype=np.float64),
+            np.array([waypoint.altitude_relative_m for waypoint in flight.waypoints], dtype=np.float64),
+            [waypoint.sequence for waypoint in flight.waypoints],
+        )
+        for haven, places in _places_by_haven(along, Haven(flight.take_off.position), havens, shuns_home=shuns_home):
             ways.append(
                 WaysHome(
                     places, haven, home_amsl_m=flight.take_off.altitude_amsl_m, ground_heights_m=ground_heights_m, spans=spans,
@@ -163,13 +230,7 @@ def _ways(mission: Mission, route: Route, flights: Sequence[Flight], *, shuns_ho
     return near, ways
 
 
-def _places_by_haven(flight: Flight, home: Haven, rally: Sequence[Haven], *, shuns_home: bool) -> Iterable[tuple[Haven, Places]]:
-    waypoints = flight.waypoints
-    places = Places.along(
-        np.array([waypoint.position for waypoint in waypoints], dtype=np.float64),
-        np.array([waypoint.altitude_relative_m for waypoint in waypoints], dtype=np.float64),
-        [waypoint.sequence for waypoint in waypoints],
-    )
+def _places_by_haven(places: Places, home: Haven, rally: Sequence[Haven], *, shuns_home: bool) -> Iterable[tuple[Haven, Places]]:
     yield home, places
     if not rally:
         return
@@ -206,16 +267,20 @@ def _safe_height_m(ways: Sequence[WaysHome], own: OwnReturn) -> float | None:
     return None
 
 
-def _words(trouble: Trouble, table: ZoneTable) -> str:
-    values = {"first": trouble.first + 1, "last": trouble.last + 1, "height": f"{trouble.level_m:.0f}"}
+def _along(trouble: Trouble) -> str:
+    """From where on a route something is in the way."""
+    values = {"first": trouble.first + 1, "last": trouble.last + 1}
     if trouble.to_end and trouble.last > trouble.first:
-        where = _("From waypoint %(first)s on") % values
-    elif trouble.last > trouble.first:
-        where = _("Between waypoints %(first)s and %(last)s") % values
-    else:
-        where = _("On the way to waypoint %(first)s") % values
+        return _("From waypoint %(first)s on") % values
+    if trouble.last > trouble.first:
+        return _("Between waypoints %(first)s and %(last)s") % values
+    return _("On the way to waypoint %(first)s") % values
+
+
+def _words(trouble: Trouble, table: ZoneTable, where: str) -> str:
     goes = _("the way to the rally point") if trouble.is_rally else _("the way home")
-    values |= {"where": where, "way": goes, "zone": "" if trouble.zone is None else table.names[trouble.zone]}
+    zone = "" if trouble.zone is None else table.names[trouble.zone]
+    values = {"where": where or _along(trouble), "way": goes, "zone": zone, "height": f"{trouble.level_m:.0f}"}
     return {
         InTheWay.ZONE: _("%(where)s, on Return and Abort %(way)s crosses %(zone)s at %(height)s m above the take-off."),
         InTheWay.OBSTACLE: _("%(where)s, on Return and Abort %(way)s passes towers or wires too low, at %(height)s m above the take-off."),

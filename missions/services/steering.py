@@ -8,14 +8,16 @@ from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
-from missions.command_rules import SETS_IN_MOTION
+from missions.command_rules import SETS_IN_MOTION, THEN_RETURN, WAIT_S
 from missions.command_selectors import route_commands
 from missions.fleet_selectors import performance_of
+from missions.mavlink.own_return import own_return
 from missions.models import (
     Approval,
     CommandAxis,
     CommandKind,
     CommandState,
+    LinkKind,
     Mission,
     MissionState,
     MissionUav,
@@ -29,11 +31,14 @@ from missions.services.approval_checks import Look, look_at, look_that_counts
 from missions.services.flying import ON_ITS_WAY
 from missions.services.outbox import queue_command
 from missions.services.refused import Reason, refuse, refuse_for
+from missions.services.returns_in_turn import hold_then_return
 from missions.services.start_slots import OUT_OF_SLOT, hold_starts, reasons_to_wait
 from workspace.models import User
 
 SLOWEST_MPS = 0.5
 LOWEST_TAKE_OFF_M = 1.0
+MAX_WAIT_S = 900.0  # before a return
+IN_FLIGHT_S = 60.0  # for which a return height is wanted that a return waits for
 BY_HAND = tuple(kind for kind in CommandKind if kind not in {CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION})
 
 
@@ -41,7 +46,8 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
     """Give one UAV a command, as part of the mission that it has in hand if there is one.
 
     parameters: `speed_mps` over ground for a change of speed, `altitude_relative_m` above the take-off place for a take-off, `out_of_slot`
-    for a start although others in the air are near its route.
+    for a start although others in the air are near its route, `height_m` above the take-off for a return height, with `then_return` where
+    it is to return at that, `wait_s` for a return before which it is to hold so long.
     Raises Refused.
     """
     if kind not in BY_HAND:
@@ -59,7 +65,13 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
             mission, approval = _to_move_for(uav, kind, mission, approval)
             if kind == CommandKind.START:
                 checked["flight"] = _flight_to_start(uav, mission, approval, look, timezone.now(), out_of_slot=OUT_OF_SLOT in checked)
-        return queue_command(uav=uav, kind=kind, actor=actor, why=why, parameters=checked, mission=mission, approval=approval)
+        about = {"mission": mission, "approval": approval}
+        if WAIT_S in checked:
+            return hold_then_return(uav=uav, wait_s=checked[WAIT_S], actor=actor, why=why, **about)
+        expires_in_s = IN_FLIGHT_S if THEN_RETURN in checked else None
+        return queue_command(
+            uav=uav, kind=kind, actor=actor, why=why, parameters=checked, mission=mission, approval=approval, expires_in_s=expires_in_s
+        )
 
 
 def mission_in_hand(uav: Uav) -> Mission | None:
@@ -88,11 +100,29 @@ def _parameters(uav: Uav, kind: CommandKind, given: dict[str, Any]) -> dict[str,
         return {"speed_mps": _within("speed_mps", given, *speed_limits_mps(uav), "m/s")}
     if kind == CommandKind.TAKE_OFF:
         return {"altitude_relative_m": _within("altitude_relative_m", given, LOWEST_TAKE_OFF_M, settings.FLIGHT_RULES.max_agl_m, "m")}
+    if kind == CommandKind.SET_RETURN_HEIGHT:
+        return _return_height(uav, given)
+    if kind == CommandKind.RETURN and given:
+        wait_s = _within(WAIT_S, given, 0.0, MAX_WAIT_S, "s")
+        return {WAIT_S: wait_s} if wait_s > 0.0 else {}
     if kind == CommandKind.START and set(given) == {OUT_OF_SLOT}:
         return dict(given) if given[OUT_OF_SLOT] else {}
     if given:
         raise refuse("no_parameters", _("This command has no parameters."))
     return {}
+
+
+def _return_height(uav: Uav, given: dict[str, Any]) -> dict[str, Any]:
+    """Raises Refused, also of a UAV whose autopilot has not told how it returns: what to set on it is not known then."""
+    values = {"uav": uav.name}
+    if uav.link == LinkKind.HTTP:
+        raise refuse("not_by_companion", _("The return height of %(uav)s is set by its companion, not from here.") % values)
+    told = uav.autopilot_return
+    if own_return(told.get("autopilot", ""), told.get("parameters", {})) is None:
+        raise refuse("not_read", _("The return height of %(uav)s was never read: connect it first.") % values)
+    heights = {name: value for name, value in given.items() if name != THEN_RETURN}
+    checked = {"height_m": _within("height_m", heights, LOWEST_TAKE_OFF_M, settings.FLIGHT_RULES.max_agl_m, "m")}
+    return checked | {THEN_RETURN: True} if given.get(THEN_RETURN) else checked
 
 
 def _within(name: str, given: dict[str, Any], low: float, high: float, unit: str) -> float:

@@ -546,6 +546,10 @@ export interface components {
             /** @default  */
             why: string;
             kind: components["schemas"]["BatchKind"];
+            /** @description of return: how long UAVs, by their ids, hold before they return, so that they keep apart */
+            waits_s?: {
+                [key: string]: number;
+            };
             /** @description ids; without it: all with a route of the mission sent or in flight */
             uavs?: number[];
         };
@@ -558,6 +562,30 @@ export interface components {
          * @enum {string}
          */
         BatchKind: "hold" | "land" | "pause" | "resume" | "return";
+        /** @description Percent of the full battery. */
+        BatteryAtLanding: {
+            /** Format: double */
+            left_percent: number | null;
+            /**
+             * Format: double
+             * @description that the way home and the landing take
+             */
+            home_percent: number | null;
+            /**
+             * Format: double
+             * @description left at the landing; null: not known, see `unknown`
+             */
+            landing_percent: number | null;
+            /** Format: double */
+            reserve_percent: number | null;
+            /**
+             * Format: double
+             * @description that it can stay where it is and still land at home with its reserve
+             */
+            hold_s: number | null;
+            /** @description why it is not known what is left at the landing; empty where it is */
+            unknown: string;
+        };
         /** @description What a UAV's battery still allows, by its drain in the same kind of flight; seconds are the UAV's own. */
         BatteryOutlook: {
             /**
@@ -584,6 +612,11 @@ export interface components {
              * @description until its reserve is reached, flying on as on the way home
              */
             reserve_in_s: number;
+            /**
+             * Format: double
+             * @description that it can stay where it is and still return and land with its reserve; null: not known
+             */
+            hold_s: number | null;
         };
         /**
          * @description * `` -
@@ -804,9 +837,10 @@ export interface components {
          *     * `land` - Land
          *     * `abort` - Abort the mission
          *     * `change-speed` - Change speed
+         *     * `set-return-height` - Set the return height
          * @enum {string}
          */
-        CommandKind: "upload-mission" | "clear-mission" | "arm" | "take-off" | "start" | "pause" | "resume" | "hold" | "return" | "land" | "abort" | "change-speed";
+        CommandKind: "upload-mission" | "clear-mission" | "arm" | "take-off" | "start" | "pause" | "resume" | "hold" | "return" | "land" | "abort" | "change-speed" | "set-return-height";
         CommandPage: {
             results: components["schemas"]["Command"][];
             next: string | null;
@@ -818,6 +852,18 @@ export interface components {
              * @description over ground; of change-speed
              */
             speed_mps?: number;
+            /**
+             * Format: double
+             * @description above the take-off; of set-return-height
+             */
+            height_m?: number;
+            /** @description of set-return-height: the UAV returns once it is set */
+            then_return?: boolean;
+            /**
+             * Format: double
+             * @description of return: it holds for so long, and returns then
+             */
+            wait_s?: number;
             /**
              * Format: double
              * @description above the place of take-off; of take-off
@@ -1603,6 +1649,15 @@ export interface components {
             /** Format: double */
             speed_mps?: number;
             /** Format: double */
+            height_m?: number;
+            /** @description it is followed by a return */
+            then_return?: boolean;
+            /**
+             * Format: double
+             * @description of a hold: the return follows so long after it was given; of a return: it waits
+             */
+            wait_s?: number;
+            /** Format: double */
             altitude_relative_m?: number;
             /** @description number of the flight whose mission is sent, from 1 */
             flight?: number;
@@ -2010,6 +2065,30 @@ export interface components {
          * @enum {string}
          */
         JobState: "queued" | "running" | "done" | "failed" | "cancelled";
+        LandingHere: {
+            /** Format: date-time */
+            at: string;
+            /** @description above what it was looked at; null: not known */
+            present: components["schemas"]["PresentPosition"] | null;
+            /**
+             * Format: double
+             * @description above the ground, as measured, else by the terrain model
+             */
+            altitude_agl_m: number | null;
+            /**
+             * Format: double
+             * @description of the terrain model, the steepest to any side; null: not known
+             */
+            slope_deg: number | null;
+            /** @description lines, towers, railways and bridges below and beside it, the nearest first */
+            assets: components["schemas"]["NearAsset"][];
+            /** @description names of zones in force that it comes down through */
+            zones: string[];
+            /** @description what is in the way of a landing here, in sentences */
+            warnings: string[];
+            /** @description what else is known of the place, and what is not */
+            facts: string[];
+        };
         /**
          * @description * `` - As the browser
          *     * `en` - English
@@ -2545,6 +2624,27 @@ export interface components {
             /** @description index of the waypoint at which it begins; -1 is the climb to the first one */
             leg: number;
         };
+        MetOnReturn: {
+            uav: number;
+            name: string;
+            /**
+             * Format: double
+             * @description across the ground, at the closest
+             */
+            metres: number;
+            /**
+             * Format: double
+             * @description then; null: heights are not known, and count as the same
+             */
+            vertical_m: number | null;
+            /**
+             * Format: double
+             * @description from now
+             */
+            in_s: number;
+            /** @description whether the other one returns, too */
+            is_returning: boolean;
+        };
         Mission: {
             /** Format: uuid */
             id: string;
@@ -2862,6 +2962,10 @@ export interface components {
             /** @default  */
             why: string;
             kind: components["schemas"]["BatchKind"];
+            /** @description of return: how long UAVs, by their ids, hold before they return, so that they keep apart */
+            waits_s?: {
+                [key: string]: number;
+            };
             missions: components["schemas"]["ScopeRequest"][];
         };
         MissionsDone: {
@@ -2910,6 +3014,17 @@ export interface components {
             over: number[];
             /** @description of models that it meets: heights may step there */
             other_datums: string[];
+        };
+        NearAsset: {
+            /** @description id of the asset */
+            asset: number;
+            kind: string;
+            name: string;
+            /**
+             * Format: double
+             * @description from straight below the UAV, across the ground
+             */
+            distance_m: number;
         };
         /** @description Where two UAVs come nearest to each other. */
         Nearest: {
@@ -3762,6 +3877,92 @@ export interface components {
             is_me: boolean;
             /** @description their page has a plan of the mission made at present */
             is_planning: boolean;
+        };
+        PresentPosition: {
+            /**
+             * @description lon, lat [deg], WGS84
+             * @example [
+             *       9.52,
+             *       47.14
+             *     ]
+             */
+            position: number[];
+            /**
+             * Format: double
+             * @description above take-off
+             */
+            altitude_relative_m: number | null;
+            /** @description false: estimated */
+            is_measured: boolean;
+            /**
+             * Format: double
+             * @description of the last report of a position
+             */
+            age_s: number;
+            /**
+             * Format: double
+             * @description within which it is, 95 of 100 times; the check is of all that lies within
+             */
+            uncertainty_m: number;
+        };
+        PresentReturn: {
+            /** @description the UAV's in its mission; null: it flies none */
+            place: number | null;
+            name: string;
+            uav: number | null;
+            state: components["schemas"]["ReturnState"];
+            /** @description what an operator must know; none where all is clear */
+            warnings: string[];
+            /** @description of the vehicle, that sets the height */
+            parameter: string | null;
+            /**
+             * Format: double
+             * @description above the take-off, as that parameter was read
+             */
+            height_m: number | null;
+            /**
+             * Format: double
+             * @description at which nothing would be in the way; null: none, or it is clear
+             */
+            safe_height_m: number | null;
+            /** Format: date-time */
+            read_at: string | null;
+            /** @description that its autopilot ignores the fence of the mission; empty: it does not, or is not known to */
+            fence_warning: string;
+            /** Format: uuid */
+            mission: string | null;
+            /** @description nothing in the way, nobody met, and the reserve is kept as far as that is known */
+            is_clear: boolean;
+            /** @description whence it was checked; null: where it is now is not known */
+            present: components["schemas"]["PresentPosition"] | null;
+            /**
+             * Format: double
+             * @description of the way home
+             */
+            distance_m: number | null;
+            /**
+             * Format: double
+             * @description to the landing
+             */
+            duration_s: number | null;
+            /**
+             * Format: double
+             * @description above the take-off, at which it would fly home from here
+             */
+            level_m: number | null;
+            battery: components["schemas"]["BatteryAtLanding"];
+            /** @description UAVs that it comes near on its way home, the first one first */
+            met: components["schemas"]["MetOnReturn"][];
+            /**
+             * Format: double
+             * @description by which returns are kept apart; null: no wait does, or not known
+             */
+            wait_s: number | null;
+        };
+        PresentReturns: {
+            /** Format: date-time */
+            at: string;
+            results: components["schemas"]["PresentReturn"][];
         };
         Profile: {
             /** Format: double */
@@ -4916,7 +5117,7 @@ export interface components {
             place: number;
             name: string;
             uav: number | null;
-            state: components["schemas"]["ReturnCheckStateEnum"];
+            state: components["schemas"]["ReturnState"];
             /** @description what an operator must know; none where all is clear */
             warnings: string[];
             /** @description of the vehicle, that sets the height */
@@ -4936,6 +5137,9 @@ export interface components {
             /** @description that its autopilot ignores the fence of the mission; empty: it does not, or is not known to */
             fence_warning: string;
         };
+        ReturnChecks: {
+            results: components["schemas"]["ReturnCheck"][];
+        };
         /**
          * @description * `clear` - clear
          *     * `in_the_way` - in_the_way
@@ -4943,10 +5147,7 @@ export interface components {
          *     * `not_checked` - not_checked
          * @enum {string}
          */
-        ReturnCheckStateEnum: "clear" | "in_the_way" | "unknown" | "not_checked";
-        ReturnChecks: {
-            results: components["schemas"]["ReturnCheck"][];
-        };
+        ReturnState: "clear" | "in_the_way" | "unknown" | "not_checked";
         RevertRequest: {
             /** @description the state before this entry comes back */
             entry: number;
@@ -7348,6 +7549,7 @@ export type BatchAnswer = components['schemas']['BatchAnswer'];
 export type BatchAnswers = components['schemas']['BatchAnswers'];
 export type BatchInputRequest = components['schemas']['BatchInputRequest'];
 export type BatchKind = components['schemas']['BatchKind'];
+export type BatteryAtLanding = components['schemas']['BatteryAtLanding'];
 export type BatteryOutlook = components['schemas']['BatteryOutlook'];
 export type BatteryOutlookLevelEnum = components['schemas']['BatteryOutlookLevelEnum'];
 export type BehaviourEnum = components['schemas']['BehaviourEnum'];
@@ -7474,6 +7676,7 @@ export type JobError = components['schemas']['JobError'];
 export type JobLink = components['schemas']['JobLink'];
 export type JobPage = components['schemas']['JobPage'];
 export type JobState = components['schemas']['JobState'];
+export type LandingHere = components['schemas']['LandingHere'];
 export type Language = components['schemas']['Language'];
 export type LastPlan = components['schemas']['LastPlan'];
 export type LastRoute = components['schemas']['LastRoute'];
@@ -7515,6 +7718,7 @@ export type Measured = components['schemas']['Measured'];
 export type MeasuredAt = components['schemas']['MeasuredAt'];
 export type Meeting = components['schemas']['Meeting'];
 export type MetLeg = components['schemas']['MetLeg'];
+export type MetOnReturn = components['schemas']['MetOnReturn'];
 export type Mission = components['schemas']['Mission'];
 export type MissionApproval = components['schemas']['MissionApproval'];
 export type MissionAuthor = components['schemas']['MissionAuthor'];
@@ -7537,6 +7741,7 @@ export type MissionsInputRequest = components['schemas']['MissionsInputRequest']
 export type ModelCollection = components['schemas']['ModelCollection'];
 export type ModelFeature = components['schemas']['ModelFeature'];
 export type ModelProperties = components['schemas']['ModelProperties'];
+export type NearAsset = components['schemas']['NearAsset'];
 export type Nearest = components['schemas']['Nearest'];
 export type NewCredential = components['schemas']['NewCredential'];
 export type NewInvitation = components['schemas']['NewInvitation'];
@@ -7593,6 +7798,9 @@ export type PreflightCheckStateEnum = components['schemas']['PreflightCheckState
 export type Presence = components['schemas']['Presence'];
 export type PresenceInputRequest = components['schemas']['PresenceInputRequest'];
 export type Present = components['schemas']['Present'];
+export type PresentPosition = components['schemas']['PresentPosition'];
+export type PresentReturn = components['schemas']['PresentReturn'];
+export type PresentReturns = components['schemas']['PresentReturns'];
 export type Profile = components['schemas']['Profile'];
 export type ProfileInputRequest = components['schemas']['ProfileInputRequest'];
 export type Progress = components['schemas']['Progress'];
@@ -7666,8 +7874,8 @@ export type ResultRequest = components['schemas']['ResultRequest'];
 export type ResultStateEnum = components['schemas']['ResultStateEnum'];
 export type ResultsRequest = components['schemas']['ResultsRequest'];
 export type ReturnCheck = components['schemas']['ReturnCheck'];
-export type ReturnCheckStateEnum = components['schemas']['ReturnCheckStateEnum'];
 export type ReturnChecks = components['schemas']['ReturnChecks'];
+export type ReturnState = components['schemas']['ReturnState'];
 export type RevertRequest = components['schemas']['RevertRequest'];
 export type Rhythm = components['schemas']['Rhythm'];
 export type Role = components['schemas']['Role'];

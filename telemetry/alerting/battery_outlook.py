@@ -26,6 +26,7 @@ class BatteryOutlook:
     down_percent      takes a landing where it is
     reserve_in_s      until the reserve is reached, flying on as on the way home
     drain_per_s       now, in the kind of flight that it is in
+    hold_s            it can stay where it is, and then still return and land with the reserve
     """
 
     left_percent: float
@@ -38,6 +39,7 @@ class BatteryOutlook:
     landing_m: float | None = None
     rest_percent: float | None = None
     down_percent: float | None = None
+    hold_s: float | None = None
 
     def as_json(self, level: str) -> dict[str, float | str | None]:
         """As live pages show it; times in the UAV's own seconds."""
@@ -49,6 +51,7 @@ class BatteryOutlook:
             "home_percent": None if home_s is None or self.home_percent is None else round(self.home_percent, 1),
             "home_s": None if home_s is None else round(home_s),
             "reserve_in_s": round(self.reserve_in_s),
+            "hold_s": None if home_s is None or self.hold_s is None else round(self.hold_s),
         }
 
 
@@ -68,6 +71,8 @@ def battery_outlook(situation: Situation, fresh: Report, left_percent: float) ->
     rest_percent = None if model is None else _rest_percent(situation, model, told, consumption)
     if rest_percent is not None and ways.down_percent is not None and _lands_at_end(situation):
         rest_percent = min(rest_percent, ways.down_percent)
+    spare_percent = None if ways.home_percent is None else max(left_percent - reserve_percent - ways.home_percent, 0.0)
+    still_per_s = consumption.percent_per_s(math.hypot(*wind_mps)) * memory.drain.ratio(FlightKind.STILL)
     return BatteryOutlook(
         left_percent=left_percent,
         reserve_percent=reserve_percent,
@@ -79,6 +84,7 @@ def battery_outlook(situation: Situation, fresh: Report, left_percent: float) ->
         landing_m=ways.landing_m,
         rest_percent=rest_percent,
         down_percent=ways.down_percent,
+        hold_s=None if spare_percent is None else spare_percent / max(still_per_s, 1e-6),
     )
 
 

@@ -14,6 +14,7 @@ from typing import Any
 from django.conf import settings
 
 from missions.mavlink.content import FlightLoad, MissionType
+from missions.mavlink.own_return import return_height_parameter
 from missions.models import CommandKind, UavCommand
 from missions.services.commands import (
     is_wanted,
@@ -39,6 +40,7 @@ from telemetry.ground_station.ends import Ends
 from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState
 from telemetry.ground_station.mission_keeper import MissionKeeper
 from telemetry.ground_station.orders import Order
+from telemetry.ground_station.parameters import ParameterSetting
 from telemetry.services.loads import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading
 from telemetry.services.mission_alerts import tell_of_mission, tell_of_other_list
 
@@ -94,6 +96,8 @@ class Carriage:
                 await self._refuse(task)
             elif task.load is not None:
                 await self._load(task)
+            elif task.return_height_m is not None:
+                await self._set_return_height(task.return_height_m)
             else:
                 await self._order(task)
         except Exception:
@@ -157,6 +161,23 @@ class Carriage:
 
         self.session.commanded_s = time.monotonic()
         outcome = await Conversation(self.session, keeper, lambda: self.is_ours).run(on_change=change)
+        if isinstance(outcome, CommandOutcome):
+            await self._tell_order(outcome)
+        else:
+            await self._end(note_released)
+
+    async def _set_return_height(self, height_m: float) -> None:
+        """By the parameter that the vehicle has for it, read back afterwards."""
+        wanted = return_height_parameter(self.session.flavour, self.session.state.parameters, height_m)
+        if wanted is None:
+            words = "The vehicle has not told how high it returns."
+            await self._refuse(CannotCarry("not-read", words, is_for_good=False))
+            return
+        if not await self._surely(note_sent, self.command.pk, **self._fence):
+            await self._end(note_released)
+            return
+        setting = ParameterSetting(*wanted, self.session.state, Ends(self.session.uav.system), settings.TRANSFER_RULES)
+        outcome = await Conversation(self.session, setting, lambda: self.is_ours).run(on_change=lambda: None)
         if isinstance(outcome, CommandOutcome):
             await self._tell_order(outcome)
         else:

@@ -74,7 +74,8 @@ class Desk:
         if served:
             await self._claim(served, CommandAxis.FLIGHT, len(served))
             await self._claim(served, CommandAxis.MISSION, MOST_UPLOADS - sum(command.kind in LOADING for command in self._commands()))
-            await self._claim(served, CommandAxis.SPEED, settings.GATEWAY_MOST_COMMANDS - len(self._carriages))
+            for axis in (CommandAxis.SPEED, CommandAxis.PARAMETER):
+                await self._claim(served, axis, settings.GATEWAY_MOST_COMMANDS - len(self._carriages))
         if unheard:
             await self._claim(unheard, CommandAxis.FLIGHT, len(unheard), is_blind=True)
         self._begin()

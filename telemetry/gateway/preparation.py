@@ -43,7 +43,7 @@ class Task:
     """`load` is to be on the vehicle, or `order` to be followed. `wanted` is what UavLink shows then, `before` what it showed.
 
     `aboard` is what the vehicle is to hold, seen once more, before an order is followed that makes it fly its list. `begun_by`: the flight
-    is begun in the air, on the way to this waypoint.
+    is begun in the air, on the way to this waypoint. `return_height_m` is to be set on the vehicle, above its take-off.
     """
 
     load: FlightLoad | None = None
@@ -54,6 +54,7 @@ class Task:
     wanted: Loaded | None = None
     before: Loaded | None = None
     begun_by: int | None = None
+    return_height_m: float | None = None
     known: Sequence[FlightLoad] = ()
 
 
@@ -68,6 +69,8 @@ def task_of(command: UavCommand) -> Task | CannotCarry:
     before = loaded_on(command.uav_id)
     if command.kind == CommandKind.CLEAR_MISSION:
         return Task(load=EMPTY, before=before, known=_others(command, EMPTY))
+    if command.kind == CommandKind.SET_RETURN_HEIGHT:
+        return Task(return_height_m=float(command.parameters["height_m"]), before=before)
     if command.kind not in (CommandKind.UPLOAD_MISSION, *FLIES_LIST):
         parameters = {name: float(value) for name, value in command.parameters.items() if isinstance(value, int | float)}
         return Task(order=Order(command.kind), parameters=parameters, before=before)

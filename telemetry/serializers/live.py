@@ -107,6 +107,9 @@ class BatteryOutlookSerializer(serializers.Serializer):
     home_percent = serializers.FloatField(allow_null=True, help_text="takes the straight way home; null: cannot be told, or no headway")
     home_s = serializers.FloatField(allow_null=True)
     reserve_in_s = serializers.FloatField(help_text="until its reserve is reached, flying on as on the way home")
+    hold_s = serializers.FloatField(
+        allow_null=True, help_text="that it can stay where it is and still return and land with its reserve; null: not known"
+    )
 
 
 class EstimateShapeSerializer(serializers.Serializer):

@@ -48,6 +48,17 @@ test("the request of one mission names that mission and its UAVs alone", () => {
   });
 });
 
+test("a request in turn says how long each holds, of those that it names", () => {
+  const [south] = batchScopes([uav(1, "south", true, 0), uav(7, "south", true, 1)], missions);
+  const waits = new Map([
+    [1, 0],
+    [7, 50],
+    [9, 80],
+  ]);
+  assert.deepEqual(batchRequest("return", [south], waits).body.waits_s, { 7: 50 });
+  assert.equal("waits_s" in batchRequest("return", [south]).body, false);
+});
+
 test("several missions are one request, each named", () => {
   const { path, body } = batchRequest("pause", batchScopes(uavs, missions));
   assert.equal(path, "/missions/commands");
@@ -80,12 +91,16 @@ test("a command that makes no sense has its reason", () => {
 });
 
 test("Return of all says of each way home what Return of one says", () => {
-  const check = (place, state, warnings) => ({ place, state, warnings, height_m: 60, read_at: HEARD });
+  const battery = { landing_percent: null, reserve_percent: null, unknown: "" };
+  const about = { height_m: 60, read_at: HEARD, fence_warning: "", present: null, battery, met: [] };
+  const check = (state, warnings) => ({ state, warnings, ...about });
   const flying = [uav(1, "south", true, 0), uav(7, "south", true, 1), uav(8, "south", true, 2)];
   const [south] = batchScopes(flying, missions);
   const low = "Between waypoints 2 and 4, the way home passes wires too low.";
   const returns = new Map([
-    ["south", [check(0, "in_the_way", [low]), check(1, "in_the_way", [low]), check(2, "clear", [])]],
+    [1, check("in_the_way", [low])],
+    [7, check("in_the_way", [low])],
+    [8, check("clear", [])],
   ]);
   const [wires, clear] = returnLinesOf([south], returns);
   assert.equal(wires, `UAV 1, UAV 7: ${low}`);

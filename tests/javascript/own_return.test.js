@@ -2,16 +2,102 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { abortQuestion, questionOf } from "../../static/js/domain/command_questions.js";
-import { returnLines, returnOf, returnSaid } from "../../static/js/domain/own_return.js";
+import {
+  holdLine,
+  holdLinesOfAll,
+  landingLines,
+  returnLines,
+  returnOf,
+  returnSaid,
+  saferReturn,
+  togetherLine,
+  waitsInTurn,
+} from "../../static/js/domain/own_return.js";
+import { batteryWords } from "../../static/js/monitor/uav_words.js";
 
-const check = (state, warnings = []) => ({ place: 1, state, warnings, height_m: 30, read_at: "2027-05-04T09:00:00Z" });
+const check = (state, warnings = [], more = {}) => ({
+  place: 1,
+  state,
+  warnings,
+  height_m: 30,
+  read_at: "2027-05-04T09:00:00Z",
+  fence_warning: "",
+  present: { is_measured: true, age_s: 2, uncertainty_m: 1 },
+  battery: { landing_percent: 46, reserve_percent: 20, unknown: "" },
+  met: [],
+  ...more,
+});
 
 test("a question before Return or Abort says something of the way home in any case", () => {
   assert.deepEqual(returnLines(undefined), [
     "Its way home has not been checked: it flies straight, at a height of its own.",
   ]);
-  assert.deepEqual(returnLines(check("unknown", ["Not read."])), ["Not read."]);
+  assert.equal(returnLines(check("unknown", ["Not read."]))[0], "Not read.");
   assert.match(returnLines(check("clear"))[0], /nothing in the way home, 30\Wm/);
+});
+
+test("it says whence that was looked at, and how certain that is", () => {
+  assert.match(returnLines(check("clear")).at(-1), /^Checked from where it was measured 2\Ws ago\.$/);
+  const estimated = { present: { is_measured: false, age_s: 34, uncertainty_m: 60 } };
+  assert.match(
+    returnLines(check("clear", [], estimated)).at(-1),
+    /where it is estimated, ± 60\Wm; last report 34\Ws ago/,
+  );
+  assert.equal(returnLines(check("unknown", ["Not known."], { present: null })).length, 2);
+});
+
+test("it says what is left of the battery at the landing, or why nobody knows", () => {
+  assert.match(returnLines(check("clear"))[1], /^Lands with about 46\W% of its battery \(reserve 20\W%\)\.$/);
+  const unknown = { battery: { landing_percent: null, reserve_percent: null, unknown: "Tern reports none." } };
+  assert.equal(returnLines(check("clear", [], unknown))[1], "Battery at landing not known: Tern reports none.");
+  const short = { battery: { landing_percent: 12, reserve_percent: 20, unknown: "" } };
+  assert.equal(returnLines(check("clear", ["It would land with 12 %."], short)).length, 3, "the warning is enough");
+});
+
+test("of several it says whether they keep apart on the way home", () => {
+  const met = { met: [{ name: "Kite" }] };
+  assert.match(togetherLine([check("clear"), check("clear")]), /their ways home keep apart/);
+  assert.match(togetherLine([check("clear"), check("clear", ["Returning now, …"], met)]), /nothing keeps them apart/);
+  assert.match(togetherLine([check("clear"), undefined]), /nothing keeps them apart/);
+  assert.equal(togetherLine([check("clear")]), "");
+});
+
+test("a landing where it is says what lies below", () => {
+  const landing = {
+    warnings: ["Railway Dee line is below it."],
+    facts: ["It is 42 m above the ground.", "The ground slopes by 3° there."],
+    present: { is_measured: true, age_s: 1, uncertainty_m: 1 },
+  };
+  const { lines } = questionOf("land", { name: "Tern", landing });
+  assert.equal(lines[1], "Railway Dee line is below it.");
+  assert.equal(lines[2], "It is 42 m above the ground. The ground slopes by 3° there.");
+  assert.deepEqual(landingLines(null), ["What lies below it has not been looked at."]);
+});
+
+test("a hold says how long it can last", () => {
+  assert.match(holdLine(400), /^It can hold for about 7\Wmin: the rest of its battery is for the way home/);
+  assert.match(holdLine(10), /^It cannot hold/);
+  assert.equal(holdLine(null), "How long it can hold is not known.");
+  assert.match(questionOf("hold", { name: "Tern", hold_s: 400 }).lines[1], /7\Wmin/);
+  const [shortest, unknown] = holdLinesOfAll([
+    { name: "Tern", hold_s: 900 },
+    { name: "Kite", hold_s: 400 },
+    { name: "Crow", hold_s: null },
+  ]);
+  assert.match(shortest, /^Kite: It can hold for about 7\Wmin/);
+  assert.equal(unknown, "Not known how long they can hold: Crow.");
+});
+
+test("the card of a UAV that is held says how long it can", () => {
+  const battery = { level: "", reserve_in_s: 720, home_s: 240, hold_s: 400 };
+  const held = (hold_s, mode = "LOITER") => ({
+    measured: { mode, is_in_air: true },
+    estimated: { battery: { ...battery, hold_s } },
+  });
+  assert.match(batteryWords(held(400)), /^Battery: can hold for 7\Wmin$/);
+  assert.equal(batteryWords(held(10)), "Battery: too low to hold longer");
+  assert.match(batteryWords(held(400, "AUTO")), /to the reserve/);
+  assert.match(batteryWords(held(null)), /to the reserve/);
 });
 
 test("what is in the way is a warning, what is not known is said", () => {
@@ -35,7 +121,7 @@ test("a fence that the autopilot ignores is a warning under its name and before 
   assert.match(said.words, /nothing in the way home.*FENCE_ENABLE 0\.$/);
   const flyer = { name: "Tern", route: { length_m: 900, duration_s: 120 }, speed_mps: 8 };
   assert.ok(
-    questionOf("start", { ...flyer, returns: { ...check("clear"), fence_warning } }).lines.includes(fence_warning),
+    questionOf("start", { ...flyer, planned: { ...check("clear"), fence_warning } }).lines.includes(fence_warning),
   );
   assert.deepEqual(questionOf("start", flyer).lines.filter(Boolean).length, 2);
 });
@@ -58,7 +144,32 @@ test("an abort says what each aircraft does, and what is in the way of each", ()
   assert.match(lines[1], /^In the air: it returns and lands where it took off/);
   assert.match(lines[2], /^All return at once/);
   assert.equal(lines[3], `Tern, Kite: ${wires}`);
-  assert.match(lines[4], /^Crow: Its way home has not been checked/);
+  assert.match(lines.at(-2), /^Crow: Its way home has not been checked/);
   assert.match(questionOf("abort", { name: "Tern", returns: inTheWay }).lines[0], /^In the air: it returns/);
-  assert.equal(abortQuestion({ name: "South", isActive: true, uavs: uavs.slice(0, 1) }).lines[2], false);
+  assert.equal(abortQuestion({ name: "South", isActive: true, uavs: uavs.slice(0, 1) }).lines[2], "");
+});
+
+test("what meets less than a straight return at once is offered in its place", () => {
+  const higher = check("in_the_way", ["…"], { safe_height_m: 75, wait_s: 0 });
+  assert.deepEqual(saferReturn(higher).parameters, { height_m: 75, then_return: true });
+  assert.match(saferReturn(higher).words, /^Return at 75\Wm$/);
+  assert.equal(saferReturn({ ...higher, safe_height_m: null }), null);
+  const meets = check("clear", ["…"], { met: [{ name: "Kite" }], wait_s: 40, safe_height_m: null });
+  assert.deepEqual(saferReturn(meets).parameters, { wait_s: 40 });
+  assert.equal(saferReturn({ ...meets, wait_s: null }), null);
+  assert.equal(saferReturn(check("clear", [], { wait_s: 0 })), null);
+  const question = questionOf("return", { name: "Tern", returns: higher });
+  assert.deepEqual([question.safer.kind, question.act], ["set-return-height", "Return straight now"]);
+  assert.equal(questionOf("return", { name: "Tern", returns: check("clear") }).act, "Return Tern");
+});
+
+test("several return in turn where they meet otherwise, and where that helps", () => {
+  const one = check("clear", [], { uav: 1, met: [{ name: "Kite" }], wait_s: 0 });
+  const other = { ...one, uav: 2, wait_s: 50 };
+  assert.deepEqual([...waitsInTurn([one, other])], [
+    [1, 0],
+    [2, 50],
+  ]);
+  assert.equal(waitsInTurn([one, { ...other, wait_s: null }]), null);
+  assert.equal(waitsInTurn([{ ...one, met: [] }]), null);
 });

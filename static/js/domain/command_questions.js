@@ -2,9 +2,9 @@
 
 import { t } from "../text.js";
 import { durationText, lengthText, speedText } from "../units.js";
-import { returnLines, returnLinesOfAll } from "./own_return.js";
+import { holdLine, landingLines, returnLines, returnLinesOfAll, saferReturn, togetherLine } from "./own_return.js";
 
-/** @import { CommandKind, ReturnCheck, Route } from "../api_types.d.ts" */
+/** @import { CommandKind, LandingHere, PresentReturn, ReturnCheck, Route } from "../api_types.d.ts" */
 
 /**
  * A field of a question.
@@ -28,6 +28,11 @@ import { returnLines, returnLinesOfAll } from "./own_return.js";
  * @property {{ value: string, words: string, detail?: string }[]} of
  */
 /**
+ * What is done instead, as it meets less; it is the primary button then.
+ *
+ * @typedef {{ words: string, kind: CommandKind, parameters: Record<string, any> }} Safer
+ */
+/**
  * A question before an act; page/confirm.js asks it.
  *
  * @typedef {object} Question
@@ -37,6 +42,8 @@ import { returnLines, returnLinesOfAll } from "./own_return.js";
  * @property {string} [keep] the words of the way out
  * @property {QuestionField | null} [field]
  * @property {QuestionChoices | null} [choices]
+ * @property {{ name: string, words: string }[]} [checks] what is done with it unless it is unticked
+ * @property {Safer | null} [safer]
  * @property {boolean} [isDanger]
  * @property {boolean} [isBack] whether the act can be taken back: then it has the focus, else the way out
  * @property {string | null} [image] name of an icon
@@ -51,24 +58,26 @@ const ABORT_DOES = t(
 export const WHY = { name: "why", label: t("Why (kept in the history)") };
 
 /**
- * A UAV of whose flight is asked, as far as the command needs it.
+ * A UAV of whose flight is asked, as far as the command needs it. `returns`: from where it is now; `planned`: from all along its route.
+ * `landing`: what lies below it; `hold_s`: how long it can stay where it is.
  *
- * @typedef {{ name: string, route: Pick<Route, "length_m" | "duration_s">, speed_mps: number, returns?: ReturnCheck | null }} AskedFlyer
+ * @typedef {{ name: string, route: Pick<Route, "length_m" | "duration_s">, speed_mps: number, returns?: PresentReturn | null,
+ *   planned?: ReturnCheck | null, landing?: LandingHere | null, hold_s?: number | null }} AskedFlyer
  */
 /** @typedef {Partial<AskedFlyer> & { name: string }} AskedOf */
 
-/** @typedef {Exclude<CommandKind, "upload-mission" | "clear-mission">} AskedKind */
+/** @typedef {Exclude<CommandKind, "upload-mission" | "clear-mission" | "set-return-height">} AskedKind */
 
 /** @type {Record<AskedKind, (flyer: AskedFlyer) => Omit<Question, "opener">>} */
 const ASKED = {
-  start: ({ name, route, returns }) => ({
+  start: ({ name, route, planned }) => ({
     title: t("Start {name}?", { name }),
     lines: [
       t("It takes off and flies its approved route: {length}, {time}.", {
         length: lengthText(route.length_m),
         time: durationText(route.duration_s),
       }),
-      returns?.fence_warning,
+      planned?.fence_warning,
       LATE,
     ],
     act: t("Start {name}", { name }),
@@ -95,9 +104,9 @@ const ASKED = {
     },
     image: "plane-takeoff",
   }),
-  pause: ({ name }) => ({
+  pause: ({ name, hold_s }) => ({
     title: t("Pause {name}?", { name }),
-    lines: [t("It stops on its route and waits for Resume, as long as its battery lasts."), LATE],
+    lines: [t("It stops on its route and waits for Resume, as long as its battery lasts."), holdLine(hold_s), LATE],
     keep: t("Keep flying"),
     act: t("Pause {name}", { name }),
     isBack: true,
@@ -108,9 +117,13 @@ const ASKED = {
     act: t("Resume {name}", { name }),
     isBack: true,
   }),
-  hold: ({ name }) => ({
+  hold: ({ name, hold_s }) => ({
     title: t("Hold {name}?", { name }),
-    lines: [t("It stops where it is and stays there until it is told otherwise, as long as its battery lasts."), LATE],
+    lines: [
+      t("It stops where it is and stays there until it is told otherwise, as long as its battery lasts."),
+      holdLine(hold_s),
+      LATE,
+    ],
     keep: t("Keep flying"),
     act: t("Hold {name}", { name }),
     isBack: true,
@@ -124,14 +137,16 @@ const ASKED = {
       LATE,
     ],
     keep: t("Keep flying"),
-    act: t("Return {name}", { name }),
+    act: returns && saferReturn(returns) ? t("Return straight now") : t("Return {name}", { name }),
+    safer: returns && saferReturn(returns),
     isBack: true,
     image: "rotate-ccw",
   }),
-  land: ({ name }) => ({
+  land: ({ name, landing }) => ({
     title: t("Land {name} here?", { name }),
     lines: [
-      t("It comes straight down where it is now, whatever is below. Targets that it has not reached stay undone."),
+      t("It comes straight down where it is now. Targets that it has not reached stay undone."),
+      ...landingLines(landing),
       LATE,
     ],
     keep: t("Keep flying"),
@@ -196,7 +211,7 @@ export const outOfSlotQuestion = (name, why) => ({
 /**
  * Before a mission is aborted: what each aircraft does, and what is in its way home.
  *
- * @param {{ name: string, isActive: boolean, uavs: { name: string, check: ReturnCheck | null | undefined }[] }} mission
+ * @param {{ name: string, isActive: boolean, uavs: { name: string, check: PresentReturn | null | undefined }[] }} mission
  * @returns {Omit<Question, "opener">}
  */
 export const abortQuestion = ({ name, isActive, uavs }) => ({
@@ -207,7 +222,7 @@ export const abortQuestion = ({ name, isActive, uavs }) => ({
       { names: uavs.map((uav) => uav.name).join(", ") },
     ),
     ABORT_DOES,
-    uavs.length > 1 && t("All return at once: nothing keeps them apart on the way home."),
+    togetherLine(uavs.map(({ check }) => check)),
     ...returnLinesOfAll(uavs),
     LATE,
   ],

@@ -23,6 +23,7 @@ export const KINDS = {
   land: t("Land here"),
   abort: t("Abort"),
   "change-speed": t("Change speed"),
+  "set-return-height": t("Set return height"),
 };
 
 /** @type {Record<CommandState, { words: string, image: string }>} */

@@ -1,9 +1,12 @@
 /** What is in the way when a UAV is told to return or abort: its autopilot flies home by itself, as high as its own parameters say. */
 
 import { t } from "../text.js";
-import { clockText, heightText } from "../units.js";
+import { clockText, durationText, heightText, lengthText, percentText } from "../units.js";
 
-/** @import { ReturnCheck } from "../api_types.d.ts" */
+/** @import { Safer } from "./command_questions.js" */
+/** @import { LandingHere, PresentReturn, ReturnCheck } from "../api_types.d.ts" */
+
+export const LEAST_HOLD_S = 30; // a shorter hold is none
 
 /**
  * Of answers of the API; undefined while they are not there.
@@ -13,24 +16,147 @@ import { clockText, heightText } from "../units.js";
  */
 export const returnOf = (returns, place) => returns?.find((check) => check.place === place);
 
-/** Sentences for a question before Return or Abort: never none. @param {ReturnCheck | null | undefined} check */
+/**
+ * Sentences for a question before Return or Abort: never none. What is in the way goes first, then the battery, then whence that was
+ * looked at.
+ *
+ * @param {PresentReturn | null | undefined} check
+ * @returns {string[]}
+ */
 export function returnLines(check) {
   if (!check) return [t("Its way home has not been checked: it flies straight, at a height of its own.")];
-  return check.state === "clear" ? [clearText(check)] : check.warnings;
+  const { warnings, state, fence_warning } = check;
+  return [
+    ...warnings,
+    state === "clear" && !check.met.length ? clearText(check) : "",
+    landingText(check.battery),
+    basisText(check.present),
+    fence_warning,
+  ].filter(Boolean);
+}
+
+/** @param {PresentReturn["battery"]} battery */
+function landingText({ landing_percent, reserve_percent, unknown }) {
+  if (landing_percent === null || reserve_percent === null)
+    return unknown && t("Battery at landing not known: {why}", { why: unknown });
+  if (landing_percent < reserve_percent) return ""; // a warning says it
+  return t("Lands with about {landing} of its battery (reserve {reserve}).", {
+    landing: percentText(Math.round(landing_percent)),
+    reserve: percentText(reserve_percent),
+  });
+}
+
+/**
+ * Sentences for a question before a landing where the UAV is: never none.
+ *
+ * @param {LandingHere | null | undefined} landing
+ * @returns {string[]}
+ */
+export function landingLines(landing) {
+  if (!landing) return [t("What lies below it has not been looked at.")];
+  return [...landing.warnings, landing.facts.join(" "), basisText(landing.present)].filter(Boolean);
+}
+
+/**
+ * How long it can stay where it is and still return and land with its reserve.
+ *
+ * @param {number | null | undefined} hold_s
+ */
+export function holdLine(hold_s) {
+  if (typeof hold_s !== "number") return t("How long it can hold is not known.");
+  if (hold_s < LEAST_HOLD_S)
+    return t("It cannot hold: the rest of its battery is needed for the way home and the reserve.");
+  return t("It can hold for about {time}: the rest of its battery is for the way home and the reserve.", {
+    time: durationText(hold_s),
+  });
+}
+
+/**
+ * The same of several: of the one that can hold the shortest, and of those of which it is not known.
+ *
+ * @param {{ name: string, hold_s: number | null | undefined }[]} uavs
+ * @returns {string[]}
+ */
+export function holdLinesOfAll(uavs) {
+  const known = uavs.flatMap(({ name, hold_s }) => (typeof hold_s === "number" ? [{ name, hold_s }] : []));
+  const [first] = known.sort((a, b) => a.hold_s - b.hold_s);
+  const unknown = uavs.filter(({ hold_s }) => typeof hold_s !== "number").map(({ name }) => name);
+  return [
+    first && `${first.name}: ${holdLine(first.hold_s)}`,
+    unknown.length && t("Not known how long they can hold: {names}.", { names: unknown.join(", ") }),
+  ].filter((line) => typeof line === "string");
+}
+
+/** Whence it was looked at. @param {PresentReturn["present"]} present */
+function basisText(present) {
+  if (!present) return "";
+  const age = holdText(present.age_s);
+  return present.is_measured
+    ? t("Checked from where it was measured {age} ago.", { age })
+    : t("Checked from where it is estimated, ± {distance}; last report {age} ago.", {
+        distance: lengthText(present.uncertainty_m),
+        age,
+      });
 }
 
 /**
  * The same of several UAVs: each sentence once, after the names of those of which it is true.
  *
- * @param {{ name: string, check: ReturnCheck | null | undefined }[]} uavs
+ * @param {{ name: string, check: PresentReturn | null | undefined }[]} uavs
  */
 export function returnLinesOfAll(uavs) {
   /** @type {Map<string, string[]>} */
   const said = new Map();
   for (const { name, check } of uavs)
-    for (const line of [...returnLines(check), check?.fence_warning ?? ""].filter(Boolean))
-      said.set(line, [...(said.get(line) ?? []), name]);
+    for (const line of returnLines(check)) said.set(line, [...(said.get(line) ?? []), name]);
   return [...said].map(([line, names]) => `${names.join(", ")}: ${line}`);
+}
+
+/**
+ * What meets less than a straight return at once: higher up, or after a hold; null where that is as good, or where there is nothing.
+ *
+ * @param {PresentReturn} check
+ * @returns {Safer | null}
+ */
+export function saferReturn({ state, safe_height_m, met, wait_s }) {
+  if (state === "in_the_way")
+    return safe_height_m === null
+      ? null
+      : {
+          words: t("Return at {height}", { height: heightText(safe_height_m) }),
+          kind: "set-return-height",
+          parameters: { height_m: safe_height_m, then_return: true },
+        };
+  return met.length && wait_s
+    ? { words: t("Hold {time}, then return", { time: holdText(wait_s) }), kind: "return", parameters: { wait_s } }
+    : null;
+}
+
+/**
+ * How long each of several holds before it returns, so that none meets another; null where they need not, or where that does not help.
+ *
+ * @param {PresentReturn[]} checks
+ * @returns {Map<number, number> | null} seconds by UAV
+ */
+export function waitsInTurn(checks) {
+  if (!checks.some(({ met }) => met.length) || checks.some(({ wait_s }) => wait_s === null)) return null;
+  return new Map(checks.map(({ uav, wait_s }) => [uav ?? 0, wait_s ?? 0]));
+}
+
+/** @param {number} seconds */
+const holdText = (seconds) => (seconds < 100 ? `${Math.round(seconds)}\u00a0s` : durationText(seconds));
+
+/**
+ * What is said of several that return at once, before what is said of each; "" of one alone.
+ *
+ * @param {(PresentReturn | null | undefined)[]} checks
+ */
+export function togetherLine(checks) {
+  if (checks.length < 2) return "";
+  const isKnown = checks.every((check) => check?.present);
+  return isKnown && checks.every((check) => !check?.met.length)
+    ? t("All return at once: their ways home keep apart.")
+    : t("All return at once: nothing keeps them apart on the way home.");
 }
 
 /**
@@ -50,7 +176,7 @@ export function returnSaid(check) {
   };
 }
 
-/** @param {ReturnCheck} check */
+/** @param {Pick<ReturnCheck, "height_m" | "read_at">} check */
 function clearText({ height_m, read_at }) {
   const values = { height: heightText(height_m ?? 0), time: read_at ? clockText(read_at) : "—" };
   return t("Return and Abort: nothing in the way home, {height} above its take-off (read {time}).", values);

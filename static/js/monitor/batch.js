@@ -1,10 +1,10 @@
 /** Whom a command to several UAVs reaches, mission by mission, and what the question before it says. Values in, values out. */
 
 import { inAir } from "../domain/in_air.js";
-import { returnLinesOfAll, returnOf } from "../domain/own_return.js";
+import { returnLinesOfAll } from "../domain/own_return.js";
 import { t, tn } from "../text.js";
 
-/** @import { BatchAnswer, LiveMission, LiveUav, ReturnCheck } from "../api_types.d.ts" */
+/** @import { BatchAnswer, LiveMission, LiveUav, PresentReturn } from "../api_types.d.ts" */
 
 /**
  * UAVs of one mission that a batch would reach, and those it would not, with the reason.
@@ -69,14 +69,10 @@ export function scopeChoices(scopes) {
  * What is in each UAV's way home, as the question of one UAV says it; those that say the same stand together.
  *
  * @param {BatchScope[]} scopes
- * @param {Map<string, ReturnCheck[] | undefined>} returns by mission
+ * @param {Map<number, PresentReturn>} returns by UAV
  */
 export const returnLinesOf = (scopes, returns) =>
-  returnLinesOfAll(
-    scopes.flatMap(({ id, uavs }) =>
-      uavs.map(({ name, place }) => ({ name, check: place === null ? null : returnOf(returns.get(id), place) })),
-    ),
-  );
+  returnLinesOfAll(scopes.flatMap(({ uavs }) => uavs.map(({ id, name }) => ({ name, check: returns.get(id) }))));
 
 /** @param {BatchScope[]} scopes */
 export const leftLines = (scopes) => scopes.flatMap(({ left }) => left.map(({ why }) => t("Not told: {why}", { why })));
@@ -86,12 +82,17 @@ export const leftLines = (scopes) => scopes.flatMap(({ left }) => left.map(({ wh
  *
  * @param {"pause" | "return"} kind
  * @param {BatchScope[]} scopes
+ * @param {Map<number, number> | null} [waits] seconds that each holds before it returns
  */
-export function batchRequest(kind, scopes) {
+export function batchRequest(kind, scopes, waits = null) {
   const missions = scopes.map(({ id, uavs }) => ({ mission: id, uavs: uavs.map((uav) => uav.id) }));
-  if (missions.length > 1) return { path: "/missions/commands", body: { kind, missions } };
+  const told = new Set(missions.flatMap(({ uavs }) => uavs));
+  const in_turn = waits && {
+    waits_s: Object.fromEntries([...waits].filter(([uav, wait_s]) => wait_s > 0 && told.has(uav))),
+  };
+  if (missions.length > 1) return { path: "/missions/commands", body: { kind, missions, ...in_turn } };
   const [{ mission, uavs }] = missions;
-  return { path: `/missions/${mission}/commands`, body: { kind, uavs } };
+  return { path: `/missions/${mission}/commands`, body: { kind, uavs, ...in_turn } };
 }
 
 /** What became of it, in words. @param {BatchAnswer[]} results */

@@ -1,21 +1,22 @@
 /** Commands to several UAVs at once: one question that names them, one request that names their missions. */
 
-import { ApiError, freshKey, get, post } from "../api.js";
+import { ApiError, freshKey, post } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
 import { LATE } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
+import { holdLinesOfAll, togetherLine, waitsInTurn } from "../domain/own_return.js";
 import { confirmAct } from "../page/confirm.js";
+import { returnsNow } from "../page/present_returns.js";
 import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
+import { durationText } from "../units.js";
 import { answerWords, batchRequest, batchScopes, leftLines, returnLinesOf, scopeChoices } from "./batch.js";
 import { unheardLines } from "./unheard.js";
 
-/** @import { BatchAnswers, ReturnCheck, ReturnChecks } from "../api_types.d.ts" */
+/** @import { BatchAnswers } from "../api_types.d.ts" */
 /** @import { Answer } from "../api.js" */
 /** @import { BatchScope } from "./batch.js" */
 /** @import { Commanding, MonitorPage, MonitorStore } from "./types.d.ts" */
-
-const CHECK_TIMEOUT_MS = 3000; // the question waits no longer for what is in the way home
 
 /** @type {Record<"pause" | "return", { title: (uavs: number) => string, lines: string[], act: string }>} */
 const ALL = {
@@ -32,30 +33,14 @@ const ALL = {
 };
 
 /**
- * What is in the way home of each UAV of a mission; undefined where that could not be read: the question then says that nobody has looked.
+ * One request, whatever its number of UAVs.
  *
- * @param {string} mission
- * @returns {Promise<ReturnCheck[] | undefined>}
+ * @param {"pause" | "return"} kind
+ * @param {BatchScope[]} scopes
+ * @param {Map<number, number> | null} [waits] seconds that each holds before
  */
-export async function returnsOf(mission) {
-  const signal = AbortSignal.timeout(CHECK_TIMEOUT_MS);
-  try {
-    return /** @type {Answer<ReturnChecks>} */ (await get(`/missions/${mission}/returns`, { signal })).data.results;
-  } catch (error) {
-    if (!(error instanceof ApiError || signal.aborted)) throw error;
-    return undefined;
-  }
-}
-
-/** Checks of the way home of each mission. @param {BatchScope[]} scopes */
-async function waysHome(scopes) {
-  const checks = await Promise.all(scopes.map(({ id }) => returnsOf(id)));
-  return new Map(scopes.map(({ id }, at) => [id, checks[at]]));
-}
-
-/** One request, whatever its number of UAVs. @param {"pause" | "return"} kind @param {BatchScope[]} scopes */
-async function tellBatch(kind, scopes) {
-  const { path, body } = batchRequest(kind, scopes);
+async function tellBatch(kind, scopes, waits = null) {
+  const { path, body } = batchRequest(kind, scopes, waits);
   try {
     const headers = { "Idempotency-Key": freshKey() };
     const { data } = /** @type {Answer<BatchAnswers>} */ (await post(path, body, { headers }));
@@ -85,19 +70,30 @@ export function createBatch(store, page) {
     if (!scopes.length) return void toast(t("No UAV is in the air."));
     const { title, lines, act } = ALL[kind];
     const uavs = scopes.flatMap((scope) => scope.uavs);
+    const returns = kind === "return" ? await returnsNow(uavs.map(({ id }) => id)) : new Map();
+    const waits = waitsInTurn([...returns.values()]);
+    const longest_s = waits ? Math.max(...waits.values()) : 0;
     const silent = uavs.filter((uav) => certaintyOf(uav, store.state.now_ms) !== MEASURED);
     const asked = await confirmAct({
       title: page.mission === null ? t("{act}: of which mission?", { act }) : title(uavs.length),
       lines: [
         page.mission !== null && `${uavs.map(({ name }) => name).join(", ")}.`,
         ...lines,
-        kind === "return" && uavs.length > 1 && t("All return at once: nothing keeps them apart on the way home."),
-        ...(kind === "return" ? returnLinesOf(scopes, await waysHome(scopes)) : []),
+        kind === "return" && togetherLine(uavs.map(({ id }) => returns.get(id))),
+        ...(kind === "pause"
+          ? holdLinesOfAll(uavs.map(({ name, estimated }) => ({ name, hold_s: estimated?.battery?.hold_s })))
+          : []),
+        ...(kind === "return" ? returnLinesOf(scopes, returns) : []),
+        longest_s > 0 &&
+          t("In turn they keep apart: the last one holds {time} first, those with the least battery hold least.", {
+            time: durationText(longest_s),
+          }),
         ...leftLines(scopes),
         ...unheardLines(silent, kind, store.state.now_ms),
         LATE,
       ],
       choices: page.mission === null ? { name: "scope", legend: t("Whom it is for"), of: scopeChoices(scopes) } : null,
+      safer: longest_s > 0 ? { words: t("Return in turn"), kind: "return", parameters: {} } : null,
       act: page.mission === null ? act : `${KINDS[kind]}: ${uavs.length}`,
       keep: t("Keep flying"),
       isBack: true,
@@ -107,6 +103,7 @@ export function createBatch(store, page) {
       await tellBatch(
         kind,
         asked.scope && asked.scope !== "all" ? scopes.filter(({ id }) => id === asked.scope) : scopes,
+        asked.isSafer ? waits : null,
       );
   };
 }

@@ -4,16 +4,16 @@ import { ApiError, freshKey } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
 import { questionOf } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
-import { returnOf } from "../domain/own_return.js";
 import { confirmAct } from "../page/confirm.js";
+import { presentOf } from "../page/present_returns.js";
 import { tellUav } from "../page/tell_uav.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
-import { createBatch, returnsOf } from "./batch_commanding.js";
+import { createBatch } from "./batch_commanding.js";
 import { unheardLines } from "./unheard.js";
 
-/** @import { CommandKind, LiveMission, LiveUav, Mission, ReturnCheck } from "../api_types.d.ts" */
+/** @import { CommandKind, LiveMission, LiveUav, Mission } from "../api_types.d.ts" */
 /** @import { Commanding, MonitorPage, MonitorStore, UnsentCommand } from "./types.d.ts" */
 
 /**
@@ -97,27 +97,23 @@ export function createCommanding(store, page) {
     }
   }
 
-  /** @param {LiveUav} uav @param {CommandKind} kind @returns {Promise<ReturnCheck | undefined>} */
-  async function wayHome(uav, kind) {
-    if (!["return", "abort"].includes(kind) || uav.mission === null || uav.place === null) return undefined;
-    return returnOf(await returnsOf(uav.mission), uav.place);
-  }
-
   /** @type {Commanding["ask"]} */
   async function ask(id, kind, opener = null) {
     const uav = store.state.uavs.find((entry) => entry.id === id);
     if (!uav) return;
     const mission = store.state.missions.find((entry) => entry.id === uav.mission);
     const planned = plannedOf(uav, store.state.details);
+    const isStop = kind === "hold" || kind === "pause"; // waits for no answer
     const question = questionOf(kind, {
       name: uav.name,
       speed_mps: planned?.cruise_speed_mps ?? uav.measured?.speed_mps ?? 5,
-      returns: await wayHome(uav, kind),
+      ...(isStop ? { hold_s: uav.estimated?.battery?.hold_s } : await presentOf(uav.id, kind)),
     });
     const late = certainty(uav) === MEASURED ? null : unheardLines([uav], kind, store.state.now_ms)[0];
     const [first, ...rest] = question.lines;
     const asked = await confirmAct({ ...question, lines: [first, figuresLine(uav, mission), late, ...rest], opener });
-    if (asked) await told(uav, kind, asked);
+    if (asked?.isSafer && question.safer) await told(uav, question.safer.kind, question.safer.parameters);
+    else if (asked) await told(uav, kind, asked);
   }
 
   dropArrived(store);

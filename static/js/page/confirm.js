@@ -22,6 +22,8 @@ export function confirmAct(question) {
     keep = t("Not yet"),
     field = null,
     choices = null,
+    checks = [],
+    safer = null,
     isDanger,
     isBack,
     image,
@@ -35,7 +37,9 @@ export function confirmAct(question) {
       { class: "button", value: "out", type: "button", onclick: () => dialog.close("out") },
       keep,
     );
-    const go = h("button", { class: `button ${isDanger ? "danger filled" : "primary"}`, value: "go" }, act);
+    const rank = isDanger ? "danger filled" : safer ? "" : "primary";
+    const go = h("button", { class: `button ${rank}`, value: "go" }, act);
+    const better = safer && h("button", { class: "button primary", value: "safer" }, safer.words);
     const form = h(
       "form",
       { method: "dialog" },
@@ -46,7 +50,15 @@ export function confirmAct(question) {
       ),
       group,
       input && h("div", { class: "field" }, h("label", { for: "confirm-field" }, field.label), input),
-      h("div", { class: "acts" }, out, go),
+      checks.map(({ name, words }) =>
+        h(
+          "label",
+          { class: "confirm-check" },
+          h("input", { type: "checkbox", name, checked: true }),
+          h("span", {}, words),
+        ),
+      ),
+      h("div", { class: "acts" }, out, go, better),
     );
     /** @type {HTMLDialogElement} */
     const dialog = h(
@@ -56,22 +68,33 @@ export function confirmAct(question) {
       form,
     );
     dialog.addEventListener("close", () => {
-      if (dialog.returnValue !== "go") return resolve(null);
+      if (dialog.returnValue !== "go" && dialog.returnValue !== "safer") return resolve(null);
       const filled = input && { [field.name]: field.type === "number" ? input.valueAsNumber : input.value.trim() };
-      resolve({ ...filled, ...(choices && { [choices.name]: new FormData(form).get(choices.name) }) });
+      const told = new FormData(form);
+      resolve({
+        ...filled,
+        ...(choices && { [choices.name]: told.get(choices.name) }),
+        ...Object.fromEntries(checks.map(({ name }) => [name, told.has(name)])),
+        ...(dialog.returnValue === "safer" && { isSafer: true }),
+      });
     });
     open(dialog);
     if (opener) growFrom(dialog, opener);
     const first = group?.querySelector("input");
     if (first) {
-      go.disabled = true;
-      go.title = t("Choose whom it is for first.");
+      const acts = [go, better].filter((button) => button !== null);
+      for (const button of acts) {
+        button.disabled = true;
+        button.title = t("Choose whom it is for first.");
+      }
       group?.addEventListener("change", () => {
-        go.disabled = false;
-        go.removeAttribute("title");
+        for (const button of acts) {
+          button.disabled = false;
+          button.removeAttribute("title");
+        }
       });
     }
-    (first ?? (input && field.isNeeded ? input : isBack ? go : out)).focus();
+    (first ?? (input && field.isNeeded ? input : isBack ? (better ?? go) : out)).focus();
   });
 }
 

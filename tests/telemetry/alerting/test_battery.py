@@ -1,5 +1,7 @@
 """What is said of a battery, and what is proposed."""
 
+import math
+
 import pytest
 
 from inspection.geodesy import LonLat
@@ -115,3 +117,30 @@ def test_pages_are_told_minutes_to_the_reserve_and_home(flight):
     watch = Watch()
     found(flight, told(flight, far_from_home(flight), 60.0), watch)
     assert watch.memory.battery["level"] == "" and watch.memory.battery["reserve_in_s"] > 60 < watch.memory.battery["home_s"]
+
+
+def test_a_hold_lasts_as_long_as_more_is_left_than_the_way_home_and_the_reserve_take(flight):
+    watch, second = Watch(), far_from_home(flight)
+    found(flight, told(flight, second, 80.0), watch)
+    battery_now = watch.memory.battery
+    spare = 80.0 - battery_now["reserve_percent"] - battery_now["home_percent"]
+    wind_mps = math.hypot(*flight.conditions.wind_at(60.0))
+    assert battery_now["hold_s"] == pytest.approx(spare / flight.model.consumption.percent_per_s(wind_mps), rel=0.02)
+
+
+def test_a_hold_that_drains_more_than_planned_lasts_less(flight):
+    watch, second = Watch(), far_from_home(flight)
+    per_s, left = flight.model.consumption.percent_per_s(math.hypot(*flight.conditions.wind_at(60.0))), 95.0
+    planned_s = None
+    for after_s in range(0, 120):
+        found(flight, told(flight, second, left, "LOITER", moves=False), watch, float(after_s))
+        planned_s = planned_s or watch.memory.battery["hold_s"]
+        left -= 2.0 * per_s
+    as_planned_s = planned_s - 120.0 * 2.0
+    assert watch.memory.battery["hold_s"] < 0.8 * as_planned_s
+
+
+def test_one_with_nothing_to_spare_cannot_hold(flight):
+    watch = Watch()
+    found(flight, told(flight, far_from_home(flight), 21.0), watch)
+    assert watch.memory.battery["hold_s"] == 0

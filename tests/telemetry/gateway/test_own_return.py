@@ -2,8 +2,9 @@
 
 import pytest
 
-from missions.models import CommandState, Mission, Uav
+from missions.models import CommandKind, CommandState, Mission, Uav
 from missions.services.own_return import return_checks
+from missions.services.steering import command_uav
 from telemetry.ground_station.flavour import Flavour
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world
@@ -45,3 +46,18 @@ def test_the_height_of_its_return_is_read_and_read_anew(flavour, uav, mission, t
     (check,) = return_checks(Mission.objects.get(pk=mission.pk))
     assert check.height_m == height_m
     assert check.read_at is not None
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_the_height_of_its_return_is_set_and_read_back(flavour, uav, mission, tmp_path):
+    first, _later, _height_m = TOLD[flavour]
+    vehicle = FLAVOURS[flavour](parameters=dict(first))
+    name = next(iter(first))
+    with gateway_at_work(tmp_path) as gateway, flyer(vehicle, gateway, loss=0.1):
+        wait_for(lambda: bool(Uav.objects.get(pk=uav.pk).autopilot_return), "parameters that were told")
+        command = command_uav(
+            uav=Uav.objects.get(pk=uav.pk), kind=CommandKind.SET_RETURN_HEIGHT, actor=mission.author, parameters={"height_m": 74.2}
+        )
+        assert ended(command).state == CommandState.APPLIED
+        assert vehicle.parameters[name] == (75.0 if flavour is Flavour.PX4 else 7_500.0)
+        wait_for(lambda: return_checks(Mission.objects.get(pk=mission.pk))[0].height_m == 75.0, "the height that was read back")

@@ -6,7 +6,8 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from telemetry.ground_station.parameters import ParameterReading
+from telemetry.ground_station.command import CommandEnd
+from telemetry.ground_station.parameters import ParameterReading, ParameterSetting
 from telemetry.ground_station.rules import TransferRules
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ENDS, known
@@ -47,3 +48,32 @@ def test_parameter_that_the_vehicle_does_not_have_is_missing_in_the_end():
 def test_nothing_to_read_is_read_at_once():
     reading = ParameterReading([], known(Px4()), ENDS, RULES)
     assert (reading.start(0.0), reading.outcome) == ([], {})
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_parameter_is_set_over_a_bad_link_and_read_back(seed: int):
+    vehicle = Px4(parameters={"RTL_RETURN_ALT": 60.0})
+    state = known(vehicle)
+    setting = ParameterSetting("RTL_RETURN_ALT", 85.0, state, ENDS, RULES)
+    outcome = Channel(setting, vehicle, Link(0.3, duplicates=0.1, reordered=0.1), seed, listeners=[state]).run()
+    assert (outcome.state, vehicle.parameters["RTL_RETURN_ALT"]) == (CommandEnd.APPLIED, 85.0)
+    assert "read back" in outcome.words
+
+
+def test_a_parameter_that_the_vehicle_keeps_as_it_was_is_not_set():
+    vehicle = Px4(parameters={"RTL_RETURN_ALT": 60.0})
+    vehicle.parameters_kept = {"RTL_RETURN_ALT"}
+    state = known(vehicle)
+    setting = ParameterSetting("RTL_RETURN_ALT", 85.0, state, ENDS, RULES)
+    outcome = Channel(setting, vehicle, Link(), 1, listeners=[state]).run()
+    assert (outcome.state, outcome.code) == (CommandEnd.FAILED, "denied")
+    assert "stays 60" in outcome.words
+
+
+def test_a_vehicle_that_does_not_answer_is_silent():
+    vehicle = Px4()
+    state = known(vehicle)
+    setting = ParameterSetting("RTL_RETURN_ALT", 85.0, state, ENDS, RULES)
+    vehicle.parameters_kept = {"RTL_RETURN_ALT"}
+    outcome = Channel(setting, vehicle, Link(), 1, listeners=[state]).run()
+    assert (outcome.state, outcome.code) == (CommandEnd.FAILED, "silent")

@@ -122,10 +122,6 @@ class FlyingCopter(ArduPilot):
         else:
             self.intervals_s.pop(number, None)
 
-    def _param_set(self, message: Any, now_s: float) -> list[Any]:
-        self.parameters[message.param_id] = message.param_value
-        return self._param_request_read(message, now_s)
-
     def _mission_count(self, message: Any, now_s: float) -> list[Any]:
         if self.is_armed and self.custom_mode == AUTO:
             self._say(mavlink.MAV_SEVERITY_INFO, "Auto mission changed, restarted command")

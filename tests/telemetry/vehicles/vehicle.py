@@ -32,6 +32,7 @@ class Vehicle:
     is_mute: bool = False  # commands are carried out and never answered
     says: str = ""  # with every refusal
     parameters: dict[str, float] = field(default_factory=lambda: {"MIS_RESTART": 0.0})  # of others it says nothing
+    parameters_kept: set[str] = field(default_factory=set)  # that it does not let be set
     denied: dict[int, int] = field(default_factory=dict)  # MAV_CMD: the result that is answered
     taken: list[tuple[int, tuple[float, ...]]] = field(default_factory=list)  # commands that were carried out
     _next_heartbeat_s: float = 0.0
@@ -132,6 +133,11 @@ class Vehicle:
             return []
         value = self.parameters[message.param_id]
         return [mavlink.MAVLink_param_value_message(message.param_id.encode(), value, mavlink.MAV_PARAM_TYPE_REAL32, 2, 0)]
+
+    def _param_set(self, message: Any, now_s: float) -> list[Any]:
+        if message.param_id not in self.parameters_kept:
+            self.parameters[message.param_id] = message.param_value
+        return self._param_request_read(message, now_s)
 
     def _set_current(self, item: int) -> int:
         if item >= len(self.lists[MissionType.MISSION]):

@@ -102,8 +102,30 @@ export default {
     "Es fliegt dahin zurück, wo es abgehoben hat, und landet dort. Ziele, die es nicht erreicht hat, bleiben offen.",
   "Return {name}": "{name} zurückholen",
   "Land {name} here?": "{name} hier landen?",
-  "It comes straight down where it is now, whatever is below. Targets that it has not reached stay undone.":
-    "Es kommt senkrecht herunter, wo es gerade ist, gleich was darunter ist. Ziele, die es nicht erreicht hat, bleiben offen.",
+  "It comes straight down where it is now. Targets that it has not reached stay undone.":
+    "Es kommt da, wo es jetzt ist, senkrecht herunter. Ziele, die es nicht erreicht hat, bleiben offen.",
+  "Return straight now": "Jetzt geradeaus zurück",
+  "Set return height": "Rückkehrhöhe setzen",
+  "Battery at landing not known: {why}": "Akku bei der Landung nicht bekannt: {why}",
+  "Lands with about {landing} of its battery (reserve {reserve}).":
+    "Landet mit etwa {landing} seines Akkus (Reserve {reserve}).",
+  "What lies below it has not been looked at.": "Was darunter liegt, wurde nicht geprüft.",
+  "How long it can hold is not known.": "Wie lange es halten kann, ist nicht bekannt.",
+  "It cannot hold: the rest of its battery is needed for the way home and the reserve.":
+    "Es kann nicht halten: Den Rest seines Akkus brauchen Heimweg und Reserve.",
+  "It can hold for about {time}: the rest of its battery is for the way home and the reserve.":
+    "Es kann etwa {time} halten: Der Rest seines Akkus ist für Heimweg und Reserve.",
+  "Not known how long they can hold: {names}.": "Nicht bekannt, wie lange sie halten können: {names}.",
+  "Checked from where it was measured {age} ago.": "Geprüft von da, wo es vor {age} gemessen wurde.",
+  "Checked from where it is estimated, ± {distance}; last report {age} ago.":
+    "Geprüft von seinem geschätzten Ort aus, ± {distance}; letzte Meldung vor {age}.",
+  "Return at {height}": "Auf {height} zurück",
+  "Hold {time}, then return": "{time} halten, dann zurück",
+  "All return at once: their ways home keep apart.": "Alle kehren zugleich zurück: Ihre Heimwege halten Abstand.",
+  "Set the return height of {name} to {height} with it: lower, something is in its way home":
+    "Rückkehrhöhe von {name} dabei auf {height} setzen: Tiefer ist etwas im Heimweg",
+  "It is being set.": "Sie wird gerade gesetzt.",
+  "Set return height to {height}": "Rückkehrhöhe auf {height} setzen",
   "Land {name} here": "{name} hier landen",
   "Abort the flight of {name}?": "Den Flug von {name} abbrechen?",
   "Whatever else it was told no longer counts. Targets that it has not reached stay undone; the other UAVs go on.":

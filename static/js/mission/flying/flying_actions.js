@@ -6,16 +6,17 @@
 import { ApiError, freshKey, get, post, signInAddress } from "../../api.js";
 import { abortQuestion, questionOf } from "../../domain/command_questions.js";
 import { flyersOf, isFrozen, isOnItsWay, KINDS } from "../../domain/flying.js";
-import { returnLines, returnOf } from "../../domain/own_return.js";
+import { returnOf } from "../../domain/own_return.js";
 import { confirmAct } from "../../page/confirm.js";
+import { presentOf, returnsNow } from "../../page/present_returns.js";
 import { tellUav } from "../../page/tell_uav.js";
 import { say } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
-import { lengthText } from "../../units.js";
+import { heightText, lengthText } from "../../units.js";
 import { createFlightReading } from "./flight_reading.js";
 
 /** @import { Answer } from "../../api.js" */
-/** @import { Mission } from "../../api_types.d.ts" */
+/** @import { CommandKind, Mission } from "../../api_types.d.ts" */
 /** @import { Flyer } from "../../domain/flying.js" */
 /** @import { MissionContext, MissionPageData, MissionPageState, MissionStore } from "../types.d.ts" */
 
@@ -50,6 +51,8 @@ export function createFlying(store, { failed, page }) {
     abort: () => abort(acting),
     /** @param {Flyer} flyer @param {Parameters<typeof questionOf>[0]} kind */
     command: (flyer, kind) => command(acting, flyer, kind),
+    /** To a height at which nothing is in its way home. @param {Flyer} flyer @param {number} height_m */
+    setReturnHeight: (flyer, height_m) => tell(acting, flyer, "set-return-height", { height_m }),
     watch,
   };
 }
@@ -67,7 +70,8 @@ const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
 function returnsOf(returns, flyers) {
   const lines = flyers.flatMap(({ place }) => {
     const check = returnOf(returns, place);
-    return check ? [...check.warnings, check.fence_warning].filter(Boolean) : returnLines(check);
+    if (!check) return [t("Its way home has not been checked: it flies straight, at a height of its own.")];
+    return [...check.warnings, check.fence_warning].filter(Boolean);
   });
   return [...new Set(lines)];
 }
@@ -179,6 +183,10 @@ async function send(acting, flyer, flight) {
   const { mission } = acting.store.state;
   if (!mission) return;
   const flyers = flyer ? [flyer] : flyersOf(mission);
+  const tooLow = flyers.flatMap(({ place, uav, name }) => {
+    const height_m = returnOf(acting.store.state.returns, place)?.safe_height_m;
+    return uav === null || typeof height_m !== "number" ? [] : [{ uav, name, height_m }];
+  });
   const title = flyer
     ? flight > 1
       ? t("Send flight {flight} to {name}?", { flight, name: flyer.name })
@@ -194,6 +202,13 @@ async function send(acting, flyer, flight) {
       t("A UAV that is not connected gets its route when it is, within the hour."),
       ...flyers.map(({ place }) => returnOf(acting.store.state.returns, place)?.fence_warning),
     ],
+    checks: tooLow.map(({ uav, name, height_m }) => ({
+      name: `height-${uav}`,
+      words: t("Set the return height of {name} to {height} with it: lower, something is in its way home", {
+        name,
+        height: heightText(height_m),
+      }),
+    })),
     act: flyer ? t("Send to {name}", { name: flyer.name }) : t("Send to UAVs"),
     isBack: true,
     image: "send",
@@ -204,16 +219,17 @@ async function send(acting, flyer, flight) {
     await post(`/missions/${mission.id}/dispatch`, body, asSeen(acting.store));
     await readMission(acting.store, mission.id);
   });
+  for (const { uav, name, height_m } of tooLow)
+    if (asked[`height-${uav}`]) await tell(acting, { uav, name }, "set-return-height", { height_m });
 }
 
 /** @param {Acting} acting */
 async function abort(acting) {
   const { mission } = acting.store.state;
   if (!mission) return;
-  const uavs = flyersOf(mission).map(({ name, place }) => ({
-    name,
-    check: returnOf(acting.store.state.returns, place),
-  }));
+  const flyers = flyersOf(mission);
+  const returns = await returnsNow(flyers.flatMap(({ uav }) => uav ?? []));
+  const uavs = flyers.map(({ name, uav }) => ({ name, check: returns.get(uav ?? 0) }));
   const asked = await confirmAct(abortQuestion({ name: mission.name, isActive: mission.state === "active", uavs }));
   if (!asked) return;
   await tried(acting, t("Not aborted."), async () => {
@@ -224,12 +240,20 @@ async function abort(acting) {
 
 /** @param {Acting} acting @param {Flyer} flyer @param {Parameters<typeof questionOf>[0]} kind */
 async function command(acting, flyer, kind) {
-  const returns = returnOf(acting.store.state.returns, flyer.place);
-  const asked = await confirmAct(questionOf(kind, { ...flyer, returns }));
+  const planned = returnOf(acting.store.state.returns, flyer.place);
+  const present = await presentOf(flyer.uav, kind);
+  const question = questionOf(kind, { ...flyer, planned, ...present });
+  const asked = await confirmAct(question);
   if (!asked) return;
+  if (asked.isSafer && question.safer) await tell(acting, flyer, question.safer.kind, question.safer.parameters);
+  else await tell(acting, flyer, kind, asked);
+}
+
+/** @param {Acting} acting @param {Pick<Flyer, "uav" | "name">} flyer @param {CommandKind} kind @param {Record<string, any>} filled */
+async function tell(acting, flyer, kind, filled) {
   const title = t("{name} was not told: {act}.", { name: flyer.name, act: KINDS[kind] });
   await tried(acting, title, async () => {
-    if (await tellUav(flyer.uav, flyer.name, kind, asked)) {
+    if (await tellUav(flyer.uav, flyer.name, kind, filled)) {
       say(t("{act}: {name} is being told.", { act: KINDS[kind], name: flyer.name }));
     }
   });

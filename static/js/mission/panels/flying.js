@@ -10,6 +10,7 @@ import {
   flyersOf,
   isMixed,
   isOnItsWay,
+  isOpen,
   KINDS,
   stageActs,
   stageWords,
@@ -22,9 +23,9 @@ import { routeNumber } from "../../domain/palette.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { simulatedMark } from "../../simulated.js";
 import { t } from "../../text.js";
-import { exactClockText, exactText } from "../../units.js";
+import { exactClockText, exactText, heightText } from "../../units.js";
 
-/** @import { Command, Mission } from "../../api_types.d.ts" */
+/** @import { Command, Mission, ReturnCheck } from "../../api_types.d.ts" */
 /** @import { AskedKind } from "../../domain/command_questions.js" */
 /** @import { Flyer, Said } from "../../domain/flying.js" */
 /** @import { Binding } from "../../page/keyboard.js" */
@@ -153,7 +154,9 @@ function flyerRow(flyer, mission, read, context) {
   const board = read === null ? undefined : boardOf(commands, uav);
   const onBoard = boardWords(board, (uav !== null && connections.get(uav)) || null);
   const flight = flightOf(commands, uav);
-  const home = isFlown(mission) && returnSaid(returnOf(returns, place));
+  const check = isFlown(mission) ? returnOf(returns, place) : null;
+  const home = check && returnSaid(check);
+  const height = commands.find((command) => command.kind === "set-return-height" && command.uav.id === uav);
   return h(
     "li",
     { class: `flyer route-${routeNumber(place)}`, "aria-label": name },
@@ -171,6 +174,8 @@ function flyerRow(flyer, mission, read, context) {
       onBoard.share !== undefined && uploadBar(name, onBoard.share),
       flight && saidLine(commandWords(flight), { title: timesOf(flight, exactClockText) }),
       home && saidLine(home),
+      height && saidLine(commandWords(height), { title: timesOf(height, exactClockText) }),
+      context.canFly && check && heightButton(flyer, check, height, context),
     ),
     context.canFly &&
       isOnItsWay(mission) &&
@@ -179,6 +184,30 @@ function flyerRow(flyer, mission, read, context) {
         { class: "flyer-acts", role: "group", "aria-label": t("Commands to {name}", { name }) },
         actsOf(withSpeed(mission, flyer), mission, read, context),
       ),
+  );
+}
+
+/**
+ * One click to a height at which nothing is in the way home; null where it is high enough, or where none is.
+ *
+ * @param {Flyer} flyer
+ * @param {ReturnCheck} check
+ * @param {Command | undefined} command that was given for it last
+ * @param {FlyingContext} context
+ */
+function heightButton(flyer, { safe_height_m }, command, { flying }) {
+  if (safe_height_m === null || flyer.uav === null) return null;
+  return h(
+    "button",
+    {
+      type: "button",
+      class: "button small",
+      disabled: Boolean(command && isOpen(command)),
+      title: command && isOpen(command) ? t("It is being set.") : null,
+      onclick: () => void flying.setReturnHeight(flyer, safe_height_m),
+    },
+    icon("rotate-ccw", "small"),
+    t("Set return height to {height}", { height: heightText(safe_height_m) }),
   );
 }
 

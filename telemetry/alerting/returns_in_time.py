@@ -1,0 +1,123 @@
+"""Straight returns of UAVs, now or after a wait: where they come near each other, and the waits by which none does.
+
+Heights are above the sea; NaN where that is not known: what cannot be compared counts as the same height.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from inspection.geodesy import LonLat, distance_m
+from missions.flight_plan.rules import SeparationRules
+from missions.flight_plan.separation import TimedRoute, conflicts
+
+CLIMB_MPS, DESCENT_MPS = 2.5, 1.0  # ArduCopter's WPNAV_SPEED_UP; between WPNAV_SPEED_DN and the slow end of a landing
+WAIT_STEP_S = 10.0
+
+
+@dataclass(frozen=True)
+class StraightReturn:
+    """A UAV at `position` that climbs where it is to `level_m`, flies straight to `goal` and comes down there to `ground_m`."""
+
+    uav: str
+    position: LonLat
+    height_m: float
+    goal: LonLat
+    level_m: float
+    ground_m: float
+    speed_mps: float
+
+    def duration_s(self) -> float:
+        """Seconds to the landing. Without heights those of the flight over ground."""
+        length_m = float(distance_m(np.array([self.position]), np.array([self.goal]))[0])
+        return self.climb_s + length_m / self.speed_mps + self.descent_s
+
+    @property
+    def climb_s(self) -> float:
+        return _seconds(self.level_m - self.height_m, CLIMB_MPS)
+
+    @property
+    def descent_s(self) -> float:
+        return _seconds(self.level_m - self.ground_m, DESCENT_MPS)
+
+    def after(self, wait_s: float) -> TimedRoute:
+        """The return as a timed route, in seconds from now: it stays where it is for `wait_s` before."""
+        climbed_s = wait_s + self.climb_s
+        lands_s = wait_s + self.duration_s()
+        return TimedRoute(
+            self.uav,
+            position=np.array([self.position, self.position, self.goal], dtype=np.float64),
+            height_m=np.array([self.height_m, self.level_m, self.level_m]),
+            arrival_s=np.array([0.0, climbed_s, lands_s - self.descent_s]),
+            hold_s=np.array([wait_s, 0.0, 0.0]),
+            take_off_m=self.height_m,
+            lands_s=lands_s,
+            landing_m=self.ground_m,
+        )
+
+
+def staying(uav: str, position: LonLat, height_m: float) -> TimedRoute:
+    """A UAV that hovers where it is, in seconds from now."""
+    return TimedRoute(
+        uav, np.array([position], dtype=np.float64), np.array([height_m]), np.zeros(1), np.zeros(1), take_off_m=height_m, lands_s=None
+    )
+
+
+def flying_on(uav: str, points: Sequence[tuple[LonLat, float, float]], speed_mps: float, *, lands: bool) -> TimedRoute:
+    """A UAV that flies through points from now on, each with a height and the seconds that it stays there."""
+    position = np.array([place for place, _height_m, _hold_s in points], dtype=np.float64)
+    hold_s = np.array([stay_s for _place, _height_m, stay_s in points])
+    legs_s = np.concatenate([[0.0], distance_m(position[:-1], position[1:]) / speed_mps])
+    arrival_s = np.cumsum(legs_s) + np.cumsum(hold_s) - hold_s
+    height_m = np.array([at_m for _place, at_m, _hold_s in points])
+    ends_s = float(arrival_s[-1] + hold_s[-1])
+    return TimedRoute(
+        uav, position, height_m, arrival_s, hold_s, take_off_m=float(height_m[0]), lands_s=ends_s if lands else None,
+        landing_m=float(height_m[-1]),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Waits:
+    """How long each return waits before it begins, in their order; `is_clear`: none comes near another one or any other UAV then."""
+
+    seconds: tuple[float, ...]
+    is_clear: bool
+
+
+def waits_apart(returns: Sequence[StraightReturn], fixed: Sequence[TimedRoute], rules: SeparationRules, most_s: Sequence[float]) -> Waits:
+    """Waits by which returns keep apart; those that wait hover where they are. The first ones are to wait least.
+
+    most_s: the longest that each may wait. Placed one after another, in their order; where that leaves a conflict, the nearest to its goal
+    first, or the farthest. What no wait solves begins at once, and is told by `is_clear`.
+    """
+    in_order = list(range(len(returns)))
+    by_duration = sorted(in_order, key=lambda number: (returns[number].duration_s(), number))
+    found = []
+    for order in (in_order, by_duration, by_duration[::-1]):
+        waits = _placed(returns, fixed, rules, most_s, order)
+        if waits.is_clear:
+            return waits
+        found.append(waits)
+    return found[0]
+
+
+def _placed(
+    returns: Sequence[StraightReturn], fixed: Sequence[TimedRoute], rules: SeparationRules, most_s: Sequence[float], order: Sequence[int]
+) -> Waits:
+    placed: list[TimedRoute] = []
+    seconds = [0.0] * len(returns)
+    for number in order:
+        one, steps = returns[number], int(most_s[number] // WAIT_STEP_S) + 1
+        choices = (one.after(step * WAIT_STEP_S) for step in range(steps))
+        free = ((step, route) for step, route in enumerate(choices) if not conflicts([route], [*placed, *fixed], rules=rules))
+        step, route = next(free, (0, one.after(0.0)))
+        seconds[number] = step * WAIT_STEP_S
+        placed.append(route)
+    return Waits(tuple(seconds), not conflicts(placed, fixed, rules=rules))
+
+
+def _seconds(metres: float, mps: float) -> float:
+    return 0.0 if math.isnan(metres) else max(metres, 0.0) / mps

@@ -1,0 +1,127 @@
+"""What UAVs meet if they return now, or land where they are, in the shapes of the API."""
+
+from datetime import datetime
+from typing import Any
+
+from rest_framework import serializers
+
+from missions.fields import PositionField
+from missions.serializers.returns import ReturnCheckSerializer
+from telemetry.selectors.present import Present
+from telemetry.services.landing_here import LandingHere
+from telemetry.services.present_returns import PresentReturn
+
+
+class PresentPositionSerializer(serializers.Serializer):
+    position = PositionField()
+    altitude_relative_m = serializers.FloatField(allow_null=True, help_text="above take-off")
+    is_measured = serializers.BooleanField(help_text="false: estimated")
+    age_s = serializers.FloatField(help_text="of the last report of a position")
+    uncertainty_m = serializers.FloatField(help_text="within which it is, 95 of 100 times; the check is of all that lies within")
+
+
+class BatteryAtLandingSerializer(serializers.Serializer):
+    """Percent of the full battery."""
+
+    left_percent = serializers.FloatField(allow_null=True)
+    home_percent = serializers.FloatField(allow_null=True, help_text="that the way home and the landing take")
+    landing_percent = serializers.FloatField(allow_null=True, help_text="left at the landing; null: not known, see `unknown`")
+    reserve_percent = serializers.FloatField(allow_null=True)
+    hold_s = serializers.FloatField(allow_null=True, help_text="that it can stay where it is and still land at home with its reserve")
+    unknown = serializers.CharField(allow_blank=True, help_text="why it is not known what is left at the landing; empty where it is")
+
+
+class MetOnReturnSerializer(serializers.Serializer):
+    uav = serializers.IntegerField()
+    name = serializers.CharField()
+    metres = serializers.FloatField(help_text="across the ground, at the closest")
+    vertical_m = serializers.FloatField(allow_null=True, help_text="then; null: heights are not known, and count as the same")
+    in_s = serializers.FloatField(help_text="from now")
+    is_returning = serializers.BooleanField(help_text="whether the other one returns, too")
+
+
+class PresentReturnSerializer(ReturnCheckSerializer):
+    place = serializers.IntegerField(allow_null=True, help_text="the UAV's in its mission; null: it flies none")
+    mission = serializers.UUIDField(allow_null=True)
+    is_clear = serializers.BooleanField(help_text="nothing in the way, nobody met, and the reserve is kept as far as that is known")
+    present = PresentPositionSerializer(allow_null=True, help_text="whence it was checked; null: where it is now is not known")
+    distance_m = serializers.FloatField(allow_null=True, help_text="of the way home")
+    duration_s = serializers.FloatField(allow_null=True, help_text="to the landing")
+    level_m = serializers.FloatField(allow_null=True, help_text="above the take-off, at which it would fly home from here")
+    battery = BatteryAtLandingSerializer()
+    met = MetOnReturnSerializer(many=True, help_text="UAVs that it comes near on its way home, the first one first")
+    wait_s = serializers.FloatField(allow_null=True, help_text="by which returns are kept apart; null: no wait does, or not known")
+
+
+class PresentReturnsSerializer(serializers.Serializer):
+    at = serializers.DateTimeField()
+    results = PresentReturnSerializer(many=True)
+
+
+class NearAssetSerializer(serializers.Serializer):
+    asset = serializers.IntegerField(help_text="id of the asset")
+    kind = serializers.CharField()
+    name = serializers.CharField()
+    distance_m = serializers.FloatField(help_text="from straight below the UAV, across the ground")
+
+
+class LandingHereSerializer(serializers.Serializer):
+    at = serializers.DateTimeField()
+    present = PresentPositionSerializer(allow_null=True, help_text="above what it was looked at; null: not known")
+    altitude_agl_m = serializers.FloatField(allow_null=True, help_text="above the ground, as measured, else by the terrain model")
+    slope_deg = serializers.FloatField(allow_null=True, help_text="of the terrain model, the steepest to any side; null: not known")
+    assets = NearAssetSerializer(many=True, help_text="lines, towers, railways and bridges below and beside it, the nearest first")
+    zones = serializers.ListField(child=serializers.CharField(), help_text="names of zones in force that it comes down through")
+    warnings = serializers.ListField(child=serializers.CharField(), help_text="what is in the way of a landing here, in sentences")
+    facts = serializers.ListField(child=serializers.CharField(), help_text="what else is known of the place, and what is not")
+
+
+def landing_here_json(found: LandingHere, at: datetime) -> dict[str, Any]:
+    """As LandingHereSerializer has it."""
+    return {
+        "at": at,
+        "present": _present_json(found.present),
+        **{name: getattr(found, name) for name in ("altitude_agl_m", "slope_deg", "assets", "zones", "warnings", "facts")},
+    }
+
+
+def present_return_json(found: PresentReturn) -> dict[str, Any]:
+    """As PresentReturnSerializer has it."""
+    check, battery = found.check, found.battery
+    return {
+        "place": check.place,
+        "name": check.name,
+        "uav": check.uav,
+        "mission": found.mission,
+        "state": check.state,
+        "warnings": check.warnings,
+        "parameter": check.parameter,
+        "height_m": check.height_m,
+        "safe_height_m": check.safe_height_m,
+        "read_at": check.read_at,
+        "fence_warning": check.fence_warning,
+        "is_clear": found.is_clear,
+        "present": _present_json(found.present),
+        "distance_m": _rounded(found.distance_m),
+        "duration_s": _rounded(found.duration_s),
+        "level_m": _rounded(found.level_m),
+        "battery": {name: getattr(battery, name) for name in BatteryAtLandingSerializer().fields},
+        "met": found.met,
+        "wait_s": found.wait_s,
+    }
+
+
+def _present_json(present: Present | None) -> dict[str, Any] | None:
+    if present is None:
+        return None
+    return {
+        "position": present.position,
+        "altitude_relative_m": _rounded(present.altitude_relative_m),
+        "is_measured": present.is_measured,
+        "age_s": _rounded(present.age_s),
+        "uncertainty_m": _rounded(present.uncertainty_m),
+    }
+
+
+def _rounded(value: float | None) -> float | None:
+    return None if value is None else round(value, 1)
