@@ -103,6 +103,7 @@ class ProposalPanel {
       this.#line?.element,
       isNew && h("div", { class: "notice warning" }, icon("triangle-alert"), h("p", {}, job.message)),
       isDecided && h("p", sentence, sentenceOf(proposal)),
+      heldBack(proposal),
       difference.unchanged > 0 &&
         state !== "discarded" &&
         h("p", { class: "caption" }, tn(difference.unchanged, "{count} is as it was.", "{count} are as they were.")),
@@ -360,5 +361,18 @@ function versionRow({ version: number, zone_count, created_by, created_at }, rol
     rollBack
       ? h("button", button, icon("rotate-ccw", "small"), t("Roll back"))
       : h("span", { class: "caption" }, t("now")),
+  );
+}
+
+/** Why it was not applied by itself, although that was asked for. @param {Proposal} proposal */
+function heldBack({ state, held_back }) {
+  if (state !== "ready" || !held_back.length) return null;
+  const reasons = held_back.map(({ message }) => h("li", {}, message));
+  const words = t("It was to be applied once it was read, and waits for you:");
+  return h(
+    "div",
+    { class: "notice warning", id: "held-back" },
+    icon("triangle-alert"),
+    h("div", {}, h("p", {}, words), h("ul", {}, reasons)),
   );
 }
