@@ -46,6 +46,8 @@ class Command(ImportCommand):
         self.stdout.write(f"{name}: {counts['format']}, {counts['crs']}")
         numbers = ", ".join(f"{counts[action]} {action}" for action in ("new", "changed", "vanished", "kept", "unchanged"))
         self.stdout.write(numbers)
+        if counts["external_ids"]:
+            self.stdout.write(f"{counts['external_ids']} external ids given")
         for reason, rows in counts["left_out"].items():
             self.stdout.write(f"{rows} rows were left out: {reason}")
         for role, values in counts["unread_values"].items():

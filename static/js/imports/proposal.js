@@ -107,6 +107,12 @@ class ProposalPanel {
       difference.unchanged > 0 &&
         state !== "discarded" &&
         h("p", { class: "caption" }, tn(difference.unchanged, "{count} is as it was.", "{count} are as they were.")),
+      Boolean(summary.external_ids) &&
+        h(
+          "p",
+          { class: "caption" },
+          tn(summary.external_ids ?? 0, "{count} external id given", "{count} external ids given"),
+        ),
       notesOf(summary).map((note) => h("p", { class: "caption" }, note)),
       kind === "assets" && Array.isArray(summary.columns) && columnMapping(proposal, readAgain),
       regionChoice(proposal, readAgain),
@@ -151,7 +157,7 @@ class ProposalPanel {
     if (state !== "ready") return [];
     const count = touched(difference, { overwrites: this.#overwrites });
     const needsMapping = Boolean(summary.needs_mapping);
-    const isIdle = needsMapping || (count === 0 && Object.keys(difference).length > 0);
+    const isIdle = needsMapping || (count === 0 && Object.keys(difference).length > 0 && !summary.external_ids);
     const unseen = (summary.not_read ?? []).filter(({ place }) => !this.#seen.has(place)).length;
     const isCounted = count > 0 && kind !== "terrain";
     const words = isCounted ? tn(count, "Apply {count} change", "Apply {count} changes") : t("Apply");

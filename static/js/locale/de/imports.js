@@ -16,6 +16,8 @@ export default {
   "always empty": "immer leer",
   "It was to be applied once it was read, and waits for you:":
     "Dies sollte übernommen werden, sobald es gelesen ist, und wartet auf Sie:",
+  "External id: your own, of each asset": "Externe Kennung: Ihre eigene, je Objekt",
+  "{count} external id given": ["{count} externe Kennung vergeben", "{count} externe Kennungen vergeben"],
   "Applied": "Übernommen",
   "Applied by {name}, {when}": "Übernommen von {name}, {when}",
   "Apply": "Übernehmen",
