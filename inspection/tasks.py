@@ -71,7 +71,9 @@ def fetch_subscription(job_id: str) -> None:
 
 def _read_within_bounds(*, job: Job, progress: Progress) -> None:
     with processor_limit(settings.READ_PROCESSOR_S + settings.READ_PROCESSOR_S_PER_MIB * pipeline.size_mib_of(job=job)):
-        pipeline.read_proposal(job=job, progress=progress)
+        applying = pipeline.read_proposal(job=job, progress=progress)
+    if applying is not None:
+        send_job_on_commit(applying)
 
 
 def _fetch(*, job: Job, progress: Progress) -> None:

@@ -5,3 +5,8 @@ from django.apps import AppConfig
 
 class MissionsConfig(AppConfig):
     name = "missions"
+
+    def ready(self) -> None:
+        from inspection.auto_apply_hooks import register_check  # noqa: PLC0415 (models are there by then)
+
+        register_check("missions.flown_ground_selectors.flown_missions_touched")

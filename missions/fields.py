@@ -1,6 +1,5 @@
-"""Fields of the planning API: positions and finite numbers."""
+"""Fields of the planning API: positions and numbers above 0."""
 
-import math
 from typing import Any
 
 from django.utils.translation import gettext_lazy as _
@@ -8,6 +7,7 @@ from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
 from inspection.geodesy import LonLat
+from workspace.fields import FiniteFloatField, is_number
 
 
 @extend_schema_field(
@@ -29,7 +29,7 @@ class PositionField(serializers.Field):
     }
 
     def to_internal_value(self, data: Any) -> LonLat:
-        if not isinstance(data, list) or len(data) != 2 or not all(_is_number(part) for part in data):
+        if not isinstance(data, list) or len(data) != 2 or not all(is_number(part) for part in data):
             self.fail("shape")
         lon, lat = float(data[0]), float(data[1])
         if not (-180 <= lon <= 180 and -90 <= lat <= 90):
@@ -38,15 +38,6 @@ class PositionField(serializers.Field):
 
     def to_representation(self, value: Any) -> list[float]:
         return [float(value[0]), float(value[1])]
-
-
-class FiniteFloatField(serializers.FloatField):
-    """A JSON number; texts such as "inf" are not numbers."""
-
-    def to_internal_value(self, data: Any) -> float:
-        if not _is_number(data):
-            self.fail("invalid")
-        return float(data)
 
 
 class AboveZeroField(FiniteFloatField):
@@ -59,9 +50,3 @@ class AboveZeroField(FiniteFloatField):
         if value <= 0:
             self.fail("above_zero")
         return value
-
-
-def _is_number(value: Any) -> bool:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return False
-    return abs(value) < 1e300 and math.isfinite(value)

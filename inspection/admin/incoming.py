@@ -36,7 +36,7 @@ class ImportProposalAdmin(CommonGroundAdmin):
     date_hierarchy = "created_at"
     fields = [
         "page", "kind", "origin", "state", "file_name", "parameters", "provenance", "faults", "difference", "ground_revision",
-        "data_import", "created_by", "created_at", "decided_by", "decided_at",
+        "auto_apply", "max_removed_percent", "held_back", "data_import", "created_by", "created_at", "decided_by", "decided_at",
     ]  # fmt: skip
 
     def get_queryset(self, request: HttpRequest) -> QuerySet[ImportProposal]:

@@ -21,9 +21,10 @@ from inspection.zones.geometry_gate import GeometryFault
 RECORD_VERSION = 1  # counted up when the rules that make records change, so that the next import refreshes the rows
 KINDS = ("tower", "line", "railway", "bridge")
 BY_GEOMETRY = "by_geometry"  # points are towers, lines are power lines, areas are bridges
-ROLES = ("name", "ref", "operator", "voltage", "circuits", "height", "subtype", "key")
+ROLES = ("name", "ref", "operator", "voltage", "circuits", "height", "subtype", "key", "external_id")
 UNITS = {"height": ("m", "ft"), "voltage": ("V", "kV")}
 MAX_KEY = 180
+MAX_EXTERNAL_ID = 200  # as the workspace has it
 _KIND_OF_SHAPE = {"Point": "tower", "LineString": "line", "MultiLineString": "line", "MultiPolygon": "bridge"}
 _SHAPES = {
     "tower": {"Point"},
@@ -57,7 +58,9 @@ class Mapping:
 
 @dataclass(frozen=True)
 class AssetRecord:
-    """An asset as the file describes it. source_key tells it apart in its set, the same in each file of the source."""
+    """An asset as the file describes it. source_key tells it apart in its set, the same in each file of the source. external_id is the
+    id of whoever sends the file, no fact about the asset; empty: none.
+    """
 
     kind: str
     subtype: str
@@ -72,6 +75,7 @@ class AssetRecord:
     length_m: float | None
     is_flyable: bool
     tags: dict[str, str]
+    external_id: str = ""
 
     @property
     def content_hash(self) -> str:
@@ -124,6 +128,7 @@ def checked_mapping(parameters: dict[str, Any], columns: Iterable[str]) -> Mappi
 def records_of(rows: Iterable[Row], mapping: Mapping, faults: RowFaults, tally: Tally) -> Iterator[AssetRecord]:
     """The assets that the rows are. Two rows with one key are a fault; without a key column the geometry is the key."""
     place_of_key: dict[tuple[str, str], str] = {}
+    place_of_id: dict[str, str] = {}
     for row in rows:
         shape = row.geometry
         if shape is None:
@@ -139,6 +144,7 @@ def records_of(rows: Iterable[Row], mapping: Mapping, faults: RowFaults, tally: 
         try:
             _check_shape(kind, shape, row.place)
             key = _stated_key(row, mapping)
+            external_id = _external_id(row, mapping, place_of_id)
             for number, part in enumerate(_parts(shape), start=1):
                 own = f"{key}/{number}" if key and number > 1 else key or _key_of_shape(part)
                 if not key:  # the same twice, such as two lines on the same towers
@@ -146,12 +152,12 @@ def records_of(rows: Iterable[Row], mapping: Mapping, faults: RowFaults, tally: 
                 if earlier := place_of_key.get((kind, own)):
                     raise GeometryFault(row.place, f"the key {own[:60]!r} stands at {earlier} already")
                 place_of_key[kind, own] = row.place
-                yield _record(row, kind, own, part, mapping, tally)
+                yield _record(row, kind, own, part, mapping, tally, external_id if number == 1 else "")
         except GeometryFault as fault:
             faults.add(fault)
 
 
-def _record(row: Row, kind: str, key: str, shape: BaseGeometry, mapping: Mapping, tally: Tally) -> AssetRecord:
+def _record(row: Row, kind: str, key: str, shape: BaseGeometry, mapping: Mapping, tally: Tally, external_id: str) -> AssetRecord:
     def stated(role: str) -> str:
         return _text(row.properties.get(mapping.columns.get(role, "")))
 
@@ -165,7 +171,8 @@ def _record(row: Row, kind: str, key: str, shape: BaseGeometry, mapping: Mapping
         operator=stated("operator")[:255], voltages_v=volts if kind in {"tower", "line"} else (),
         circuits=number, height_m=metres, length_m=path_length_m(np.asarray(shape.coords)) if shape.geom_type == "LineString" else None,
         is_flyable=not (kind == "line" and subtype in CABLE_KINDS) and not (kind == "railway" and subtype in RAILWAYS_OUT_OF_USE),
-        tags={name: _text(value) for name, value in row.properties.items() if _text(value)},
+        tags={name: _text(value) for name, value in row.properties.items() if _text(value) and name != mapping.columns.get("external_id")},
+        external_id=external_id,
     )  # fmt: skip
 
 
@@ -188,6 +195,18 @@ def _stated_key(row: Row, mapping: Mapping) -> str:
     if not key:
         raise GeometryFault(row.place, f"the column {mapping.columns['key']!r}, which tells the assets apart, is empty")
     return key if len(key) <= MAX_KEY else "sha256:" + hashlib.sha256(key.encode()).hexdigest()
+
+
+def _external_id(row: Row, mapping: Mapping, taken: dict[str, str]) -> str:
+    """Of a line that becomes several assets it is the first one's. Raises GeometryFault for one that cannot be, or is given twice."""
+    found = _text(row.properties.get(mapping.columns.get("external_id", ""))).strip()
+    if len(found) > MAX_EXTERNAL_ID or not found.isprintable():
+        raise GeometryFault(row.place, f"an external id has at most {MAX_EXTERNAL_ID} characters, and no control characters")
+    if found and found in taken:
+        raise GeometryFault(row.place, f"the external id {found[:60]!r} stands at {taken[found]} already")
+    if found:
+        taken[found] = row.place
+    return found
 
 
 def _key_of_shape(shape: BaseGeometry) -> str:

@@ -10,6 +10,7 @@ from inspection.asset_files.survey import ColumnSurvey, Survey
 # Names as they are found in the open data of grid operators, surveys and railways; compared without case, accents and signs.
 _NAMES = {
     "key": ("uuid", "globalid", "guid", "fid", "gid", "objectid", "objid", "osmid", "id", "key", "t_id", "xtf_id", "egid"),
+    "external_id": ("externalid", "externeid", "assetid", "sapid", "sapnr", "equipmentnumber", "equipmentnr", "equnr"),
     "ref": (
         "ref", "nummer", "number", "nr", "no", "num", "mastnr", "mastnummer", "mast", "towerno", "towernumber", "structno", "bezeichnung",
         "designation", "code", "kennung", "linenr", "pylon", "numero", "id",
@@ -62,7 +63,7 @@ _FOLDED = str.maketrans(
 def suggested_mapping(survey: Survey, *, file_name: str = "", geometry_columns: dict[str, str] | None = None) -> dict[str, Any]:
     """The same shape as the parameters of an import; what cannot be guessed is not in it."""
     columns: dict[str, str] = {}
-    for role in ("key", "ref", "name", "operator", "voltage", "circuits", "height", "subtype"):
+    for role in ("key", "external_id", "ref", "name", "operator", "voltage", "circuits", "height", "subtype"):
         if (name := _column_for(role, survey, columns)) is not None:
             columns[role] = name
     found: dict[str, Any] = {"columns": columns}
@@ -82,7 +83,7 @@ def _column_for(role: str, survey: Survey, taken: dict[str, str]) -> str | None:
         if name is None or (name in taken.values() and role != "ref"):
             continue
         column = survey.columns[name]
-        if column.filled == 0 or (role == "key" and not _can_be_key(column, survey)):
+        if column.filled == 0 or (role in {"key", "external_id"} and not _can_be_key(column, survey)):
             continue
         if role in {"voltage", "circuits"} and not any(character.isdigit() for sample in column.samples for character in str(sample)):
             continue

@@ -5,6 +5,7 @@ from inspection.models.assets import Asset, AssetKind, AssetSet, Bridge, OsmType
 from inspection.models.gaps import DataGap, GapKind, GapSearch, GapState
 from inspection.models.graph import GraphSnapshot, Ground
 from inspection.models.imports import (
+    MAX_REMOVED_PERCENT,
     ROW_ACTIONS,
     ChangeAction,
     DataImport,
@@ -20,6 +21,7 @@ from inspection.models.terrain import TerrainTile
 from inspection.models.zones import HeightReference, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 
 __all__ = [
+    "MAX_REMOVED_PERCENT",
     "ROW_ACTIONS",
     "Asset",
     "AssetKind",

@@ -9,6 +9,8 @@ from django.db.models.functions import Now
 
 from workspace.models import Job
 
+MAX_REMOVED_PERCENT = 5.0  # of auto_apply, where nobody states another
+
 
 class ImportKind(models.TextChoices):
     OSM = "osm", "OpenStreetMap"
@@ -117,6 +119,13 @@ class ImportProposal(models.Model):
     summary = models.JSONField(default=dict, blank=True, help_text="what is in the file")
     difference = models.JSONField(default=dict, blank=True, help_text="numbers of changes by action")
     ground_revision = models.PositiveBigIntegerField(null=True, blank=True, help_text="the ground that the difference was taken against")
+    auto_apply = models.BooleanField(default=False, db_default=False, help_text="applied once it is read, if it keeps to the bounds")
+    max_removed_percent = models.FloatField(
+        default=MAX_REMOVED_PERCENT, db_default=MAX_REMOVED_PERCENT, help_text="bound of auto_apply: of the rows that the source has had"
+    )
+    held_back = models.JSONField(
+        default=list, db_default=[], blank=True, help_text='[{"code", "message"}] why it was not applied although auto_apply was asked'
+    )
     data_import = models.ForeignKey(DataImport, on_delete=models.SET_NULL, null=True, blank=True, related_name="proposals")
     created_by = models.ForeignKey(settings.AUTH_USER_MODEL, on_delete=models.SET_NULL, null=True, blank=True, related_name="+")
     created_at = models.DateTimeField(db_default=Now(), editable=False)

@@ -3,12 +3,15 @@
 import json
 from typing import Any
 
+from django.utils.translation import gettext as _
 from rest_framework import serializers
 
-from inspection.models import ChangeAction, ImportKind, ImportProposal, ProposalOrigin, ProposalState, Upload
+from inspection.models import MAX_REMOVED_PERCENT, ChangeAction, ImportKind, ImportProposal, ProposalOrigin, ProposalState, Upload
 from inspection.selectors.imports import DrawnChange
 from inspection.serializers.features import GeometrySerializer
+from inspection.services.proposals.bounds import KINDS
 from inspection.services.uploads import PART_BYTES
+from workspace.fields import FiniteFloatField
 from workspace.models import JobState, User
 from workspace.serializers import Declared
 from workspace.stored_words import in_words
@@ -41,6 +44,18 @@ class ImportInputSerializer(serializers.Serializer):
     upload = serializers.UUIDField(required=False, help_text="a complete upload; not for what is fetched")
     parameters = serializers.DictField(required=False, help_text="by kind: set_name; columns; vertical_datum; overpass_bbox [W, S, E, N]")
     provenance = ProvenanceInputSerializer(required=False)
+    auto_apply = serializers.BooleanField(
+        default=False,
+        help_text="apply it once it is read, if no record and no value of it has a fault, it removes no more than `max_removed_percent` "
+        "of the rows that its source has had, and it changes nothing about missions that are flown or were sent to UAVs; else it stays a "
+        "proposal, and `held_back` says why. Not for terrain.",
+    )
+    max_removed_percent = FiniteFloatField(default=MAX_REMOVED_PERCENT, min_value=0.0, max_value=100.0, help_text="for `auto_apply`")
+
+    def validate(self, attrs: dict[str, Any]) -> dict[str, Any]:
+        if attrs["auto_apply"] and attrs["kind"] not in KINDS:
+            raise serializers.ValidationError({"auto_apply": [_("Imports of this kind are applied by somebody who has looked at them.")]})
+        return attrs
 
 
 class ParametersSerializer(serializers.Serializer):
@@ -60,6 +75,11 @@ class ProposalJobSerializer(serializers.Serializer):
     message = serializers.CharField()
 
 
+class HeldBackSerializer(serializers.Serializer):
+    code = serializers.ChoiceField(choices=["needs_mapping", "not_read", "removed", "flown_missions", "not_applied"])
+    message: Declared = serializers.CharField()
+
+
 class ProposalSerializer(serializers.Serializer):
     """What a file would change. Nothing of it counts before somebody applies it."""
 
@@ -74,6 +94,11 @@ class ProposalSerializer(serializers.Serializer):
     faults = ProposalFaultSerializer(many=True)
     summary = serializers.DictField(help_text="what is in the file")
     difference = serializers.DictField(child=serializers.IntegerField(), help_text="numbers by action, and unchanged")
+    auto_apply = serializers.BooleanField()
+    max_removed_percent = serializers.FloatField(help_text="the bound of `auto_apply`")
+    held_back = HeldBackSerializer(
+        many=True, help_text="why it was not applied by itself; empty: it was, was not asked to, or is being read"
+    )
     job = ProposalJobSerializer(allow_null=True)
     created_by = serializers.CharField(allow_null=True)
     created_at = serializers.DateTimeField()
@@ -140,6 +165,9 @@ def proposal_json(proposal: ImportProposal, *, is_brief: bool = False) -> dict[s
         "faults": [fault | {"message": in_words(fault["message"])} for fault in proposal.faults],
         "summary": summary,
         "difference": proposal.difference,
+        "auto_apply": proposal.auto_apply,
+        "max_removed_percent": proposal.max_removed_percent,
+        "held_back": [reason | {"message": in_words(reason["message"])} for reason in proposal.held_back],
         "job": job and {"id": str(job.pk), "state": job.state, "progress": job.progress, "message": in_words(job.message)},
         "created_by": _name(proposal.created_by),
         "created_at": proposal.created_at,

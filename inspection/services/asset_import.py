@@ -19,6 +19,7 @@ from inspection.asset_files.rows import AssetFileError
 from inspection.models import ROW_ACTIONS, Asset, AssetSet, ChangeAction, DataImport, ImportKind
 from inspection.services.facts import asset_facts, says_the_same
 from inspection.services.ground import hold_ground, mark_ground_changed
+from inspection.services.imported_ids import count_of_ids, give_ids
 from inspection.services.osm_import import SYNTHETIC_ATTRIBUTION
 from inspection.services.proposals.reading import Progress, Provenance
 from inspection.services.supports import number_supports
@@ -38,10 +39,10 @@ _STAGING = """
 CREATE TEMPORARY TABLE asset_staging (
     id serial, kind text, subtype text, source_key text, geometry geometry, centre geometry, name text, ref text, operator text,
     voltages_v integer[], max_voltage_v integer, circuits smallint, height_m double precision, length_m double precision,
-    is_flyable boolean, tags jsonb, content_hash text
+    is_flyable boolean, tags jsonb, content_hash text, external_id text
 ) ON COMMIT DROP
 """
-_COPY = f"COPY asset_staging ({', '.join(_COLUMNS)}) FROM STDIN"
+_COPY = f"COPY asset_staging ({', '.join(_COLUMNS)}, external_id) FROM STDIN"
 # What becomes of each row of the file and of the set. An edited row is kept when the source now says something else than it did before.
 _FATES = """
 CREATE TEMPORARY TABLE asset_fate ON COMMIT DROP AS
@@ -118,7 +119,8 @@ def import_assets(
     """Make the set what the file says under the mapping in parameters, and return the import with its counts.
 
     The same file again changes nothing. Rows that a curator edited stay as they are unless replace_edited says otherwise; what the set
-    has and the file has not is marked as vanished, never deleted. Raises AssetFileError and UnfinishedMapping, and changes nothing.
+    has and the file has not is marked as vanished, never deleted. External ids are those of the organisation in provenance, else of who
+    imports it. Raises AssetFileError and UnfinishedMapping, and changes nothing.
     """
     tell = progress or (lambda stage, share: None)
     name = set_name_of(path, parameters.get("set_name"))
@@ -135,10 +137,13 @@ def import_assets(
             file, parameters, asset_set, tally=tally, faults=faults, replace_edited=replace_edited, progress=progress
         ) as found:  # fmt: skip
             tell("writing the assets", 0.6)
-            counts: dict[str, Any] = found.numbers | counts_of(file, tally, faults)
+            owner = organisation_of(provenance, imported_by)
+            ids = count_of_ids(asset_set.pk, owner)
+            counts: dict[str, Any] = found.numbers | counts_of(file, tally, faults, ids)
             known = asset_set.data_import
             if known is not None and known.sha256 == sha256 and not found.changes_something:
                 _keep_source_of_edited()
+                give_ids(asset_set.pk, owner, imported_by and imported_by.pk)
                 known.counts = counts  # of this run, for the caller; the row keeps those of its own
                 return known
             data_import = DataImport.objects.create(
@@ -146,11 +151,19 @@ def import_assets(
                 counts=counts, **_origin(provenance, is_synthetic=is_synthetic),
             )  # fmt: skip
             _write(asset_set, data_import, imported_by)
+            give_ids(asset_set.pk, owner, imported_by and imported_by.pk)
         stored = {key: parameters[key] for key in MAPPING_PARAMETERS if parameters.get(key)}
         AssetSet.objects.filter(pk=asset_set.pk).update(data_import=data_import, mapping=stored)
         if number_supports() or found.changes_something:
             mark_ground_changed()
     return data_import
+
+
+def organisation_of(provenance: Provenance | None, actor: User | None) -> int:
+    """Whose external ids a file has."""
+    if provenance is not None and provenance.organisation_id is not None:
+        return provenance.organisation_id
+    return actor.organisation_id if actor else DEFAULT_ORGANISATION_ID
 
 
 def set_name_of(path: Path, stated: Any) -> str:
@@ -237,11 +250,12 @@ def unknown_kinds(column: str, tally: Tally) -> str:
     return f"Say what these values of {column!r} are, or leave their rows out: {shown}."
 
 
-def counts_of(file: AssetFile, tally: Tally, faults: RowFaults) -> dict[str, Any]:
+def counts_of(file: AssetFile, tally: Tally, faults: RowFaults, external_ids: int) -> dict[str, Any]:
     """What was read, for people and for the row of the import."""
     return {
         "format": file.source.file_format, "crs": file.crs_name, "layer": file.source.layer, "left_out": dict(tally.left_out),
         "unread_values": {role: number for role, number in tally.unread.items() if number}, "faulty_rows_left_out": faults.number,
+        "external_ids": external_ids,
     }  # fmt: skip
 
 
@@ -330,7 +344,7 @@ def _row(record: AssetRecord) -> tuple[Any, ...]:
     return (
         record.kind, record.subtype, record.source_key, geometry, point, record.name, record.ref, record.operator, list(record.voltages_v),
         max(record.voltages_v, default=None), record.circuits, record.height_m, record.length_m, record.is_flyable,
-        json.dumps(record.tags), record.content_hash,
+        json.dumps(record.tags), record.content_hash, record.external_id,
     )  # fmt: skip
 
 

@@ -87,7 +87,7 @@ class ImportList(APIView):
     @extend_schema(
         operation_id="propose_import",
         summary="Have a file read: what would it change?",
-        description="Nothing changes before the proposal is applied.",
+        description="Nothing changes before the proposal is applied: by `apply`, or by itself where `auto_apply` asks for it.",
         request=ImportInputSerializer,
         responses={202: ProposalSerializer},
     )
@@ -101,7 +101,8 @@ class ImportList(APIView):
         with transaction.atomic():
             proposal = pipeline.start_proposal(
                 kind=values["kind"], created_by=request.user, parameters=values.get("parameters", {}),
-                provenance=dict(values.get("provenance", {})), **self._where_from(values),
+                provenance=dict(values.get("provenance", {})), auto_apply=values["auto_apply"],
+                max_removed_percent=values["max_removed_percent"], **self._where_from(values),
             )  # fmt: skip
             send_job_of(proposal)
         response = _answer(proposal.pk, 202)

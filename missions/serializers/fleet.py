@@ -5,13 +5,14 @@ from typing import Any
 from django.utils.translation import gettext as _
 from rest_framework import serializers
 
-from missions.fields import AboveZeroField, FiniteFloatField, PositionField
+from missions.fields import AboveZeroField, PositionField
 from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json
 from missions.models import Base, CredentialKind, UavCredential, UavType
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, LARGEST_DISK_M2, LARGEST_POWER_W, MOST_RESERVE_PERCENT
 from missions.serializers.performance import fault_words
+from workspace.fields import FiniteFloatField
 
 MOST_SENSORS = 12
 

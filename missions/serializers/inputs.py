@@ -9,7 +9,7 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 from rest_framework import serializers
 
-from missions.fields import AboveZeroField, FiniteFloatField, PositionField
+from missions.fields import AboveZeroField, PositionField
 from missions.fleet_selectors import FIGURES, figures_of, uavs_of_organisation
 from missions.flight_plan.conditions import Conditions, InvalidConditions, conditions_from_json
 from missions.flight_plan.lost_link import LostLink
@@ -53,6 +53,7 @@ from missions.services import (
 )
 from missions.services.requests import GO_ON, LostLinkRequest, lost_link_from_json
 from workspace.external_data import AttributesField, ExternalIdField
+from workspace.fields import FiniteFloatField
 
 
 class TaskSerializer(KnownFieldsSerializer):

@@ -6,11 +6,11 @@ from django.utils.translation import gettext as _
 from rest_framework import serializers
 
 from inspection.geodesy import LonLat
-from missions.fields import FiniteFloatField
 from missions.fleet_selectors import bases_of_organisation
 from missions.serializers.inputs import OptionsSerializer, UavInputSerializer, plan_request
 from missions.services import BaseRequest, InvalidRequest, PlanRequest, with_bases
 from missions.services.reachability import CODES, NO_UAV
+from workspace.fields import FiniteFloatField
 from workspace.serializers import Declared
 
 MOST_FLIGHTS = 100  # a UAV from a base is one

@@ -5,7 +5,7 @@ from typing import Any
 from django.utils.translation import gettext as _
 from rest_framework import serializers
 
-from missions.fields import AboveZeroField, FiniteFloatField, PositionField
+from missions.fields import AboveZeroField, PositionField
 from missions.fleet_selectors import UavWithUse, bases_of_organisation, performance_with, types_of_organisation
 from missions.flight_plan.performance import OWN_PERFORMANCE_KEYS, InvalidPerformance
 from missions.models import CredentialKind, EndAction, LinkKind, Uav, UavState
@@ -14,6 +14,7 @@ from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, MOST_RESERVE_PERCENT
 from missions.serializers.performance import fault_words
 from workspace.external_data import AttributesField, ExternalIdField
+from workspace.fields import FiniteFloatField
 
 OWN = (
     "name", "base_name", "state", "serial_number", "mavlink_system_id", "link", "is_simulated", "allows_unsigned", "heading_deg",

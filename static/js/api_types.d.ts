@@ -1913,6 +1913,19 @@ export interface components {
             /** @description unless told, the first position */
             take_off?: number[];
         };
+        HeldBack: {
+            code: components["schemas"]["HeldBackCodeEnum"];
+            message: string;
+        };
+        /**
+         * @description * `needs_mapping` - needs_mapping
+         *     * `not_read` - not_read
+         *     * `removed` - removed
+         *     * `flown_missions` - flown_missions
+         *     * `not_applied` - not_applied
+         * @enum {string}
+         */
+        HeldBackCodeEnum: "needs_mapping" | "not_read" | "removed" | "flown_missions" | "not_applied";
         HistoryEntry: {
             action: string;
             actor?: string | null;
@@ -1937,6 +1950,17 @@ export interface components {
                 [key: string]: unknown;
             };
             provenance?: components["schemas"]["ProvenanceInputRequest"];
+            /**
+             * @description apply it once it is read, if no record and no value of it has a fault, it removes no more than `max_removed_percent` of the rows that its source has had, and it changes nothing about missions that are flown or were sent to UAVs; else it stays a proposal, and `held_back` says why. Not for terrain.
+             * @default false
+             */
+            auto_apply: boolean;
+            /**
+             * Format: double
+             * @description for `auto_apply`
+             * @default 5
+             */
+            max_removed_percent: number;
         };
         /**
          * @description * `osm` - OpenStreetMap
@@ -4032,6 +4056,14 @@ export interface components {
             difference: {
                 [key: string]: number;
             };
+            auto_apply: boolean;
+            /**
+             * Format: double
+             * @description the bound of `auto_apply`
+             */
+            max_removed_percent: number;
+            /** @description why it was not applied by itself; empty: it was, was not asked to, or is being read */
+            held_back: components["schemas"]["HeldBack"][];
             job: components["schemas"]["ProposalJob"] | null;
             created_by: string | null;
             /** Format: date-time */
@@ -7662,6 +7694,8 @@ export type HeightReference = components['schemas']['HeightReference'];
 export type Heights = components['schemas']['Heights'];
 export type HeightsInputReferenceEnum = components['schemas']['HeightsInputReferenceEnum'];
 export type HeightsInputRequest = components['schemas']['HeightsInputRequest'];
+export type HeldBack = components['schemas']['HeldBack'];
+export type HeldBackCodeEnum = components['schemas']['HeldBackCodeEnum'];
 export type HistoryEntry = components['schemas']['HistoryEntry'];
 export type HistoryPage = components['schemas']['HistoryPage'];
 export type ImportInputRequest = components['schemas']['ImportInputRequest'];

@@ -3,7 +3,7 @@ import test from "node:test";
 
 import { isWide } from "../../static/js/map/lasso.js";
 import { partOfLine } from "../../static/js/map/line_part.js";
-import { refsIn, rowsToAdd } from "../../static/js/mission/list_reading.js";
+import { listIn, refsIn, rowsToAdd } from "../../static/js/mission/list_reading.js";
 import {
   EMPTY,
   isUsualTask,
@@ -35,6 +35,34 @@ const place = storedTarget({
 test("a list is parted at line ends, tabs, commas and semicolons; each reference counts once", () => {
   assert.deepEqual(refsIn(' T 1\r\n"T 2"\tT 3,T 4; T 5\n\nT 1\n'), ["T 1", "T 2", "T 3", "T 4", "T 5"]);
   assert.deepEqual(refsIn(" \n , ;"), []);
+});
+
+test("a table whose first line names external_id gives each reference its id", () => {
+  const table = '\uFEFFref;External_ID;note\r\n"T;1";SAP-1;x\r\nT 2;;"a ""b"" c"\r\n;SAP-3;\r\nT 4;"SAP-4"\r\n';
+  const { refs, externalIds } = listIn(table);
+  assert.deepEqual(refs, ["T;1", "T 2", "T 4"]);
+  assert.deepEqual(
+    [...externalIds],
+    [
+      ["T;1", "SAP-1"],
+      ["T 4", "SAP-4"],
+    ],
+  );
+  assert.deepEqual(listIn("external_id\tmast\nA\tT 1\n").refs, ["T 1"]);
+  assert.deepEqual(listIn("a,,external_id\nT 1,,X").externalIds.get("T 1"), "X");
+  assert.deepEqual(listIn("T 1,T 2\nT 3"), { refs: ["T 1", "T 2", "T 3"], externalIds: new Map() });
+  const results = [
+    { ref: "T 1", match: "found", assets: [{ id: 1 }] },
+    { ref: "T 2", match: "several", assets: [{ id: 2 }, { id: 3 }] },
+  ];
+  const ids = new Map([
+    ["T 1", "A"],
+    ["T 2", "B"],
+  ]);
+  assert.deepEqual(rowsToAdd(results, new Map([["T 2", "3"]]), ids), [
+    { id: 1, external_id: "A" },
+    { id: 3, external_id: "B" },
+  ]);
 });
 
 test("what has one meaning is added, of several meanings what was chosen", () => {

@@ -10,6 +10,7 @@ import pytest
 from django.conf import settings
 from django.utils import timezone
 
+from inspection.tasks import apply_proposal, read_proposal
 from missions.tasks import solve_plan
 from tests.missions.worlds import world
 from tests.telemetry.live.conftest import closed_door, door, here, live_program, without_redis
@@ -31,9 +32,11 @@ def examples() -> dict[str, str]:
     return {title: code for title, code in found.items() if code}
 
 
+TASKS = {f"{task.__module__}.{task.__name__}": task for task in (solve_plan, read_proposal, apply_proposal)}
+
+
 def run_here(task: str, *, args: list[str], retry: bool) -> None:
-    assert task == "missions.tasks.solve_plan"
-    solve_plan(*args)
+    TASKS[task](*args)
 
 
 def test_every_example_of_the_document_runs(live_server: Any, here: Door) -> None:

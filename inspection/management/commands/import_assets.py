@@ -7,11 +7,12 @@ from typing import Any
 from django.core.management.base import CommandError, CommandParser
 
 from inspection.management.import_command import ImportCommand, Progress
-from inspection.models import DataImport
+from inspection.models import DataImport, ImportKind
 from inspection.services import AssetFileError, UnfinishedMapping, import_assets
 
 
 class Command(ImportCommand):
+    kind = ImportKind.ASSETS
     help = (
         "Read assets from a GeoJSON, KML, KMZ, zipped Shapefile, GeoPackage or CSV file. They become one set; the next file of that set "
         "brings it up to date. --mapping says what the columns mean, as JSON or as the name of a file with it, such as "
@@ -37,10 +38,16 @@ class Command(ImportCommand):
         except UnfinishedMapping as error:
             raise CommandError(f"{error} (--mapping)") from error
 
+    def parameters(self, options: dict[str, Any]) -> dict[str, Any]:
+        stated = _mapping(options["mapping"]) | {"replace_edited": options["replace_edited"]}
+        return stated | ({"set_name": options["set_name"]} if options["set_name"] else {})
+
     def tell(self, name: str, counts: dict[str, Any]) -> None:
         self.stdout.write(f"{name}: {counts['format']}, {counts['crs']}")
         numbers = ", ".join(f"{counts[action]} {action}" for action in ("new", "changed", "vanished", "kept", "unchanged"))
         self.stdout.write(numbers)
+        if counts["external_ids"]:
+            self.stdout.write(f"{counts['external_ids']} external ids given")
         for reason, rows in counts["left_out"].items():
             self.stdout.write(f"{rows} rows were left out: {reason}")
         for role, values in counts["unread_values"].items():

@@ -6,12 +6,13 @@ from typing import Any
 from django.core.management.base import CommandError
 
 from inspection.management.import_command import ImportCommand, Progress
-from inspection.models import DataImport
+from inspection.models import DataImport, ImportKind
 from inspection.osm.file_gate import OsmFileError
 from inspection.services import import_osm
 
 
 class Command(ImportCommand):
+    kind = ImportKind.OSM
     help = (
         "Read power lines, towers, railways and bridges from an OpenStreetMap file (.osm.pbf, .osm, .osm.gz, .osm.bz2 or Overpass JSON). "
         "The same file again changes nothing; a newer file updates what changed and marks what vanished; edited assets stay as they are."

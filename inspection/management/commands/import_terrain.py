@@ -6,11 +6,12 @@ from typing import Any
 from django.core.management.base import CommandError, CommandParser
 
 from inspection.management.import_command import ImportCommand, Progress
-from inspection.models import DataImport
+from inspection.models import DataImport, ImportKind
 from inspection.services import TerrainFileError, import_terrain
 
 
 class Command(ImportCommand):
+    kind = ImportKind.TERRAIN
     help = (
         "Read a terrain model: a GeoTIFF with one band of heights above sea level, an SRTM .hgt file, or a zip of several of them. "
         "Without terrain data every plan says 'flat ground assumed'."

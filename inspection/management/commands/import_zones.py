@@ -6,12 +6,13 @@ from typing import Any
 from django.core.management.base import CommandError, CommandParser
 
 from inspection.management.import_command import ImportCommand, Progress
-from inspection.models import DataImport
+from inspection.models import DataImport, ImportKind
 from inspection.services import ZoneFileError, import_zones
 from inspection.services.proposals.reading import Provenance
 
 
 class Command(ImportCommand):
+    kind = ImportKind.ZONES
     help = (
         "Read no-fly zones from an ED-269, ED-318, OpenAir or GeoJSON file. The zones become one set, named after the file; the next "
         "file of that name replaces it, and zones that a curator edited stay. "
@@ -31,6 +32,12 @@ class Command(ImportCommand):
         except ZoneFileError as error:
             faults = "".join(f"\n  {fault}" for fault in error.faults)
             raise CommandError(f"{path.name} is refused, nothing of it was stored:{faults}") from error
+
+    def parameters(self, options: dict[str, Any]) -> dict[str, Any]:
+        return {"set_name": options["set_name"], "replace_all": True} if options["set_name"] else {}
+
+    def provenance(self, options: dict[str, Any]) -> dict[str, Any]:
+        return {"licence": options["licence"][:200], "attribution": options["attribution"][:300]}
 
     def tell(self, name: str, counts: dict[str, Any]) -> None:
         self.stdout.write(f"{name}: {counts['zones']} zones in {counts['layers']} layers ({counts['format']})")

@@ -21,6 +21,7 @@ from inspection.services.asset_import import (
     counts_of,
     import_assets,
     opened,
+    organisation_of,
     row_faults,
     set_name_of,
     staged,
@@ -28,6 +29,7 @@ from inspection.services.asset_import import (
     with_what_is_known,
 )
 from inspection.services.facts import ASSET_FACTS, asset_facts, differing
+from inspection.services.imported_ids import count_of_ids
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
 from workspace.models import User
 
@@ -51,7 +53,10 @@ def read(*, path: Path | None, parameters: dict[str, Any], provenance: Provenanc
             if words := _nothing_to_read(file, survey):
                 return Reading(summary | {"needs_mapping": True, "words": words}, dict(NOTHING))
             progress("comparing", 0.5)
-            return _compared(file, stated, asset_set, summary, replace_edited=parameters.get("replace_edited") is True, progress=progress)
+            return _compared(
+                file, stated, asset_set, summary, replace_edited=parameters.get("replace_edited") is True, progress=progress,
+                organisation=organisation_of(provenance, None),
+            )  # fmt: skip
 
 
 def apply(
@@ -73,6 +78,7 @@ def _compared(
     *,
     replace_edited: bool,
     progress: Progress,
+    organisation: int,
 ) -> Reading:
     tally, faults = Tally(), row_faults(stated)
     columns = [column["name"] for column in summary["columns"]]
@@ -84,9 +90,10 @@ def _compared(
             ) as found,
         ):
             changes = tuple(_changes(found))
+            ids = count_of_ids(asset_set.pk if asset_set else None, organisation)
     except UnfinishedMapping as error:
         return Reading(summary | {"needs_mapping": True, "words": str(error)}, dict(NOTHING))
-    return Reading(summary | counts_of(file, tally, faults), found.numbers, changes)
+    return Reading(summary | counts_of(file, tally, faults, ids), found.numbers, changes)
 
 
 def _nothing_to_read(file: AssetFile, survey: Survey) -> str:

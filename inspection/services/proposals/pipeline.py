@@ -9,17 +9,27 @@ from functools import partial
 from itertools import groupby
 from pathlib import Path
 from typing import Any
-from uuid import UUID
 
 from django.db import transaction
 from django.utils import timezone
 from django.utils.dateparse import parse_datetime
 
-from inspection.models import DataImport, ImportKind, ImportProposal, ProposalOrigin, ProposalState, ProposedChange, Upload
+from inspection.auto_apply_hooks import HeldBack, further_reasons, ground_mark
+from inspection.models import (
+    MAX_REMOVED_PERCENT,
+    DataImport,
+    ImportKind,
+    ImportProposal,
+    ProposalOrigin,
+    ProposalState,
+    ProposedChange,
+    Upload,
+)
 from inspection.selectors import ground_revision
 from inspection.services.ground import hold_ground
 from inspection.services.overpass import fetch_area
 from inspection.services.proposals import assets, osm, terrain, zones
+from inspection.services.proposals.bounds import reasons_against
 from inspection.services.proposals.reading import Change, Fault, FileKind, FileRefused, Progress, Provenance, Reading
 from inspection.services.uploads import UploadRefused, upload_as_file
 from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
@@ -59,8 +69,14 @@ def start_proposal(
     provenance: dict[str, Any],
     created_by: User | None,
     origin: str = ProposalOrigin.UPLOAD,
+    auto_apply: bool = False,
+    max_removed_percent: float = MAX_REMOVED_PERCENT,
 ) -> ImportProposal:
-    """A proposal and the job that reads it; the caller sends the job to its queue after the commit."""
+    """A proposal and the job that reads it; the caller sends the job to its queue after the commit.
+
+    With auto_apply it is applied once it is read, if it keeps to the bounds (bounds.py) and no later app has anything against it
+    (auto_apply_hooks.py); else it waits for somebody like any other, and `held_back` says why.
+    """
     with transaction.atomic():
         proposal = ImportProposal.objects.create(
             kind=kind,
@@ -70,6 +86,8 @@ def start_proposal(
             parameters=parameters,
             provenance=provenance,
             created_by=created_by,
+            auto_apply=auto_apply,
+            max_removed_percent=max_removed_percent,
         )
         _give_job(proposal, READ_TASK, created_by, "Waiting to be read")
     return proposal
@@ -80,7 +98,7 @@ def read_again(*, proposal: ImportProposal, parameters: dict[str, Any], actor: U
     with _held(proposal, {ProposalState.READY, ProposalState.REFUSED}) as held:
         held.parameters = held.parameters | parameters
         held.state = ProposalState.READING
-        held.faults, held.summary, held.difference = [], {}, {}
+        held.faults, held.summary, held.difference, held.held_back = [], {}, {}, []
         held.changes.all().delete()
         _give_job(held, READ_TASK, actor, "Waiting to be read")
     return held
@@ -126,11 +144,14 @@ def size_mib_of(*, job: Job) -> float:
     return 0.0 if proposal is None or proposal.upload is None else proposal.upload.size_bytes / 1024**2
 
 
-def read_proposal(*, job: Job, progress: Progress) -> None:
-    """Look at the file and store what it would change. A file with faults is a refused proposal, not a failed job."""
+def read_proposal(*, job: Job, progress: Progress) -> Job | None:
+    """Look at the file and store what it would change. A file with faults is a refused proposal, not a failed job.
+
+    Returns the job that applies it, where it is applied by itself; the caller sends it to its queue.
+    """
     proposal = ImportProposal.objects.select_related("upload").get(pk=job.parameters["proposal"])
     if proposal.job_id != job.pk or proposal.state != ProposalState.READING:
-        return
+        return None
     revision = ground_revision()
     try:
         if proposal.origin == ProposalOrigin.OVERPASS and proposal.upload is None:
@@ -138,9 +159,34 @@ def read_proposal(*, job: Job, progress: Progress) -> None:
         reading = _with_file(proposal, lambda path, provenance: _module(proposal).read(
             path=path, parameters=proposal.parameters, provenance=provenance, progress=progress
         ))  # fmt: skip
-        _store_reading(proposal, job, reading, revision)
+        with transaction.atomic():
+            _store_reading(proposal, job, reading, revision)
+            return _go_on_by_itself(proposal, job) if proposal.auto_apply else None
     except FileRefused as error:
         refuse_proposal(proposal=proposal, faults=error.faults, job=job)
+    return None
+
+
+def _go_on_by_itself(proposal: ImportProposal, job: Job) -> Job | None:
+    """What was just read is to be applied if it keeps to the bounds; whether flights are touched is looked at when it is written."""
+    held = ImportProposal.objects.select_for_update(of=["self"]).get(pk=proposal.pk)
+    if held.state != ProposalState.READY:
+        return None
+    reasons = reasons_against(held.difference, held.summary, held.max_removed_percent)
+    if reasons:
+        _hold_back(held, reasons)
+        return None
+    held.state = ProposalState.APPLYING
+    held.decided_by, held.decided_at = job.created_by, timezone.now()
+    _give_job(held, APPLY_TASK, job.created_by, "Waiting to be applied", by_itself=True)
+    return held.job
+
+
+def _hold_back(proposal: ImportProposal, reasons: list[HeldBack]) -> None:
+    ImportProposal.objects.filter(pk=proposal.pk, state__in=(ProposalState.READY, ProposalState.APPLYING)).update(
+        state=ProposalState.READY, decided_by=None, decided_at=None,
+        held_back=[{"code": reason.code, "message": reason.message} for reason in reasons],
+    )  # fmt: skip
 
 
 def _fetch(proposal: ImportProposal, progress: Progress) -> None:
@@ -154,12 +200,15 @@ def apply_proposal(*, job: Job, progress: Progress) -> None:
     """Make the ground what the file says: the rows, the import, the proposal's state and the job's end in one transaction.
 
     If the ground has changed since somebody looked, and with it the difference, nothing is applied: the new difference waits to be
-    looked at.
+    looked at. One that nobody looked at is measured against its bounds as it is written, and taken back where it does not keep to them.
     """
     proposal = ImportProposal.objects.select_related("upload", "decided_by").get(pk=job.parameters["proposal"])
     if proposal.job_id != job.pk or proposal.state != ProposalState.APPLYING:
         return
     try:
+        if job.parameters.get("by_itself"):
+            _with_file(proposal, partial(_apply_by_itself, proposal, job, progress))
+            return
         seen = proposal.ground_revision
         while True:
             revision = ground_revision()
@@ -195,6 +244,10 @@ def settle_proposal_of(*, job: Job) -> None:
         return
     job.refresh_from_db()
     if proposal.state == ProposalState.APPLYING:
+        if job.parameters.get("by_itself"):
+            message = (job.error or {}).get("message") or job.message
+            _hold_back(proposal, [HeldBack("not_applied", message)])
+            return
         ImportProposal.objects.filter(pk=proposal.pk, state=ProposalState.APPLYING).update(
             state=ProposalState.READY, decided_by=None, decided_at=None
         )
@@ -231,6 +284,39 @@ def _apply(proposal: ImportProposal, job: Job, revision: int | None, progress: P
         if not finish_job(job=job, result={"data_import": data_import.pk}, message="Applied"):
             raise LostJob
         ImportProposal.objects.filter(pk=proposal.pk).update(state=ProposalState.APPLIED, data_import=data_import)
+
+
+class _TakenBack(Exception):
+    """What was written does not keep to the bounds; the transaction that wrote it is rolled back."""
+
+    def __init__(self, reasons: list[HeldBack]) -> None:
+        super().__init__(f"{len(reasons)} reasons")
+        self.reasons = reasons
+
+
+def _apply_by_itself(proposal: ImportProposal, job: Job, progress: Progress, path: Path | None, provenance: Provenance) -> None:
+    """Write it, and look in the tables at all that it changes: the stored difference holds the first changes alone."""
+    try:
+        with transaction.atomic():
+            hold_ground()
+            mark = ground_mark()
+            data_import: DataImport = _module(proposal).apply(
+                path=path, parameters=proposal.parameters, provenance=provenance, applied_by=proposal.decided_by, progress=progress
+            )
+            counts = data_import.counts  # of this run
+            reasons = reasons_against(counts, counts, proposal.max_removed_percent)
+            if any(counts[action] for action in ("new", "changed", "vanished")):
+                reasons += further_reasons(mark, data_import)
+            if reasons:
+                raise _TakenBack(reasons)
+            if not finish_job(job=job, result={"data_import": data_import.pk}, message="Applied"):
+                raise LostJob
+            ImportProposal.objects.filter(pk=proposal.pk).update(state=ProposalState.APPLIED, data_import=data_import)
+    except _TakenBack as taken_back:
+        with transaction.atomic():
+            if not finish_job(job=job, result={"proposal": str(proposal.pk)}, message="Held back: look at the difference."):
+                raise LostJob from taken_back
+            _hold_back(proposal, taken_back.reasons)
 
 
 def _differs_now(proposal: ImportProposal, job: Job, revision: int, progress: Progress) -> bool:
@@ -302,6 +388,7 @@ def _provenance(proposal: ImportProposal) -> Provenance:
     return Provenance(
         file_name=proposal.file_name, source_address=stated.get("source_address", ""), licence=stated.get("licence", ""),
         attribution=stated.get("attribution", ""), fetched_at=fetched,
+        organisation_id=proposal.created_by.organisation_id if proposal.created_by else DEFAULT_ORGANISATION_ID,
     )  # fmt: skip
 
 
@@ -309,10 +396,10 @@ def _module(proposal: ImportProposal) -> FileKind:
     return FILE_KINDS[proposal.kind]
 
 
-def _give_job(proposal: ImportProposal, task: str, actor: User | None, message: str) -> None:
+def _give_job(proposal: ImportProposal, task: str, actor: User | None, message: str, *, by_itself: bool = False) -> None:
     organisation = actor.organisation if actor else Organisation.objects.get(pk=DEFAULT_ORGANISATION_ID)
-    key: UUID = proposal.pk
-    proposal.job = create_job(organisation=organisation, created_by=actor, task=task, parameters={"proposal": str(key)}, message=message)
+    parameters: dict[str, Any] = {"proposal": str(proposal.pk)} | ({"by_itself": True} if by_itself else {})
+    proposal.job = create_job(organisation=organisation, created_by=actor, task=task, parameters=parameters, message=message)
     proposal.save()
 
 

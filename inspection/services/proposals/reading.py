@@ -54,6 +54,7 @@ class Provenance:
     licence: str = ""
     attribution: str = ""
     fetched_at: datetime | None = None
+    organisation_id: int | None = None  # whose file it is, and whose ids it has
 
 
 @dataclass

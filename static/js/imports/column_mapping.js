@@ -16,6 +16,7 @@ const BY_COLUMN = "column";
 const MEANINGS = {
   key: t("Key: tells them apart"),
   kind: t("Kind of asset"),
+  external_id: t("External id: your own, of each asset"),
   ref: t("Reference"),
   name: t("Name"),
   operator: t("Operator"),

@@ -103,9 +103,16 @@ class ProposalPanel {
       this.#line?.element,
       isNew && h("div", { class: "notice warning" }, icon("triangle-alert"), h("p", {}, job.message)),
       isDecided && h("p", sentence, sentenceOf(proposal)),
+      heldBack(proposal),
       difference.unchanged > 0 &&
         state !== "discarded" &&
         h("p", { class: "caption" }, tn(difference.unchanged, "{count} is as it was.", "{count} are as they were.")),
+      Boolean(summary.external_ids) &&
+        h(
+          "p",
+          { class: "caption" },
+          tn(summary.external_ids ?? 0, "{count} external id given", "{count} external ids given"),
+        ),
       notesOf(summary).map((note) => h("p", { class: "caption" }, note)),
       kind === "assets" && Array.isArray(summary.columns) && columnMapping(proposal, readAgain),
       regionChoice(proposal, readAgain),
@@ -150,7 +157,7 @@ class ProposalPanel {
     if (state !== "ready") return [];
     const count = touched(difference, { overwrites: this.#overwrites });
     const needsMapping = Boolean(summary.needs_mapping);
-    const isIdle = needsMapping || (count === 0 && Object.keys(difference).length > 0);
+    const isIdle = needsMapping || (count === 0 && Object.keys(difference).length > 0 && !summary.external_ids);
     const unseen = (summary.not_read ?? []).filter(({ place }) => !this.#seen.has(place)).length;
     const isCounted = count > 0 && kind !== "terrain";
     const words = isCounted ? tn(count, "Apply {count} change", "Apply {count} changes") : t("Apply");
@@ -360,5 +367,18 @@ function versionRow({ version: number, zone_count, created_by, created_at }, rol
     rollBack
       ? h("button", button, icon("rotate-ccw", "small"), t("Roll back"))
       : h("span", { class: "caption" }, t("now")),
+  );
+}
+
+/** Why it was not applied by itself, although that was asked for. @param {Proposal} proposal */
+function heldBack({ state, held_back }) {
+  if (state !== "ready" || !held_back.length) return null;
+  const reasons = held_back.map(({ message }) => h("li", {}, message));
+  const words = t("It was to be applied once it was read, and waits for you:");
+  return h(
+    "div",
+    { class: "notice warning", id: "held-back" },
+    icon("triangle-alert"),
+    h("div", {}, h("p", {}, words), h("ul", {}, reasons)),
   );
 }

@@ -36,6 +36,8 @@ export interface Summary {
   layer?: string;
   crs?: string;
   format?: string;
+  /** of an asset file: how many assets get one */
+  external_ids?: number;
   lowest_m?: number;
   highest_m?: number;
   vertical_datum?: string;

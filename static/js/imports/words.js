@@ -175,7 +175,7 @@ const isEmpty = (value) =>
   value === "" ||
   (typeof value === "object" && Object.keys(value).length === 0);
 
-const NOT_SAID = new Set(["words", "needs_mapping", "datum_is_stated"]); // said elsewhere
+const NOT_SAID = new Set(["words", "needs_mapping", "datum_is_stated", "external_ids"]); // said elsewhere
 
 /** Figures of a file, for people: numbers and short texts alone. @param {Summary} summary */
 export function summaryLines(summary) {

@@ -25,6 +25,40 @@ export function refsIn(text) {
 }
 
 /**
+ * The references of a list, and by reference the external id that its target is to have. A list whose first line names a
+ * column `external_id` is a table: references stand in its column `ref`, or in the first of the others.
+ *
+ * @param {string} text
+ * @returns {{ refs: string[], externalIds: Map<string, string> }}
+ */
+export function listIn(text) {
+  const [head, ...lines] = text.replace(/^\uFEFF/, "").split(/[\n\r]+/);
+  const sign = ["\t", ";", ","].find((known) => head.includes(known)) ?? ",";
+  const names = cellsOf(head, sign).map((name) => name.toLowerCase());
+  const ids = names.indexOf("external_id");
+  if (ids < 0 || names.length < 2) return { refs: refsIn(text), externalIds: new Map() };
+  const named = names.indexOf("ref");
+  const refs = named < 0 ? Number(ids === 0) : named;
+  const rows = lines.map((line) => cellsOf(line, sign)).filter((cells) => cells[refs]);
+  return {
+    refs: [...new Set(rows.map((cells) => cells[refs]))],
+    externalIds: new Map(rows.filter((cells) => cells[ids]).map((cells) => [cells[refs], cells[ids]])),
+  };
+}
+
+/** Of a line of a table; a sign between quotes parts nothing. @param {string} line @param {string} sign */
+function cellsOf(line, sign) {
+  const cells = line.match(new RegExp(`(?:"(?:[^"]|"")*"|[^${sign}])+|(?<=^|${sign})(?=${sign}|$)`, "g")) ?? [];
+  return cells.map((cell) =>
+    cell
+      .trim()
+      .replace(/^"(.*)"$/s, "$1")
+      .replaceAll('""', '"')
+      .trim(),
+  );
+}
+
+/**
  * What the server says of each: [{ ref, match, count, assets }].
  *
  * @param {string[]} refs
@@ -45,14 +79,18 @@ export async function lookUp(refs, kinds, signal) {
 
 /**
  * The rows to add: every reference with one meaning, and of the others what was chosen: ref → "all", an id, or nothing.
+ * Each with the external id that the list has for its reference.
  *
  * @param {LookupResult[]} results
  * @param {Map<string, string>} choices
+ * @param {Map<string, string>} [externalIds]
  */
-export function rowsToAdd(results, choices) {
+export function rowsToAdd(results, choices, externalIds = new Map()) {
   return results.flatMap(({ ref, match, assets }) => {
-    if (match === "found") return assets;
-    const choice = choices.get(ref) ?? "";
-    return choice === "all" ? assets : assets.filter((asset) => String(asset.id) === choice);
+    const choice = match === "found" ? "all" : (choices.get(ref) ?? "");
+    const external_id = externalIds.get(ref) ?? "";
+    return assets
+      .filter((asset) => choice === "all" || String(asset.id) === choice)
+      .map((asset) => ({ ...asset, external_id }));
   });
 }

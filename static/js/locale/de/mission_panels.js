@@ -117,6 +117,8 @@ export default {
   "Nothing to save yet": "Noch nichts zu speichern",
   "One a line, or parted by commas, semicolons or tabs.":
     "Eine je Zeile oder durch Komma, Semikolon oder Tabulator getrennt.",
+  "With a first line “ref;external_id” it is a table, and targets get these ids.":
+    "Mit der ersten Zeile „ref;external_id“ ist sie eine Tabelle, und Ziele erhalten diese Kennungen.",
   "No other UAV has the range left after its other targets.":
     "Kein anderes UAV hat nach seinen anderen Zielen noch die Reichweite.",
   "One UAV alone could fly there, but none has range or battery left after its other targets.":

@@ -4,7 +4,7 @@ import { ApiError } from "../../api.js";
 import { find, h, icon } from "../../dom.js";
 import { open } from "../../page/keyboard.js";
 import { t, tn } from "../../text.js";
-import { lookUp, MOST_REFS, refsIn, rowsToAdd } from "../list_reading.js";
+import { listIn, lookUp, MOST_REFS, rowsToAdd } from "../list_reading.js";
 import { nameOf, targetOfRow } from "../selection.js";
 
 /** @import { AssetKind, LookupResult } from "../../api_types.d.ts" */
@@ -20,18 +20,23 @@ const KINDS = () => [
 ];
 const LONGEST_FILE = 2_000_000;
 
+/** @typedef {ReturnType<typeof rowsToAdd>[number]} Row */
+
+/** @param {Row} row */
+const targetOf = ({ external_id, ...row }) => ({ ...targetOfRow(row), ...(external_id ? { external_id } : {}) });
+
 /** @param {MissionActions} actions */
 export function askForList(actions) {
   const dialog = h("dialog", { class: "paste-list", "aria-labelledby": "paste-title" });
   const asking = new AbortController();
   const { form, words } = createForm({ showAnswer, signal: asking.signal, close: () => dialog.close() });
 
-  /** @param {LookupResult[]} results */
-  function showAnswer(results) {
-    const content = answer(results, {
+  /** @param {LookupResult[]} results @param {Map<string, string>} externalIds */
+  function showAnswer(results, externalIds) {
+    const content = answer(results, externalIds, {
       add(rows) {
         dialog.close();
-        actions.addMany(rows.map(targetOfRow), (added) => t("{added} from the list.", { added }));
+        actions.addMany(rows.map(targetOf), (added) => t("{added} from the list.", { added }));
       },
       back() {
         dialog.replaceChildren(form);
@@ -51,7 +56,7 @@ export function askForList(actions) {
 /**
  * The form that takes the list.
  *
- * @param {{ showAnswer: (results: LookupResult[]) => void, signal: AbortSignal, close: () => void }} how
+ * @param {{ showAnswer: (results: LookupResult[], externalIds: Map<string, string>) => void, signal: AbortSignal, close: () => void }} how
  */
 function createForm({ showAnswer, signal, close }) {
   const words = h("textarea", {
@@ -73,7 +78,7 @@ function createForm({ showAnswer, signal, close }) {
   const go = h("button", { class: "button primary" }, t("Look them up"));
 
   async function ask() {
-    const refs = refsIn(words.value);
+    const { refs, externalIds } = listIn(words.value);
     if (!refs.length || refs.length > MOST_REFS) {
       wrong.textContent = refs.length
         ? t("At most {most} references at once; these are {count}.", { most: MOST_REFS, count: refs.length })
@@ -85,7 +90,7 @@ function createForm({ showAnswer, signal, close }) {
     go.setAttribute("aria-busy", "true");
     go.textContent = t("Looking…");
     try {
-      showAnswer(await lookUp(refs, kind.value ? [/** @type {AssetKind} */ (kind.value)] : [], signal));
+      showAnswer(await lookUp(refs, kind.value ? [/** @type {AssetKind} */ (kind.value)] : [], signal), externalIds);
     } catch (error) {
       if (error instanceof DOMException && error.name === "AbortError") return;
       wrong.textContent = error instanceof ApiError ? error.message : t("The list could not be looked up.");
@@ -104,7 +109,13 @@ function createForm({ showAnswer, signal, close }) {
       { class: "field" },
       h("label", { for: "paste-words" }, t("References, names or OSM ids")),
       words,
-      h("p", { class: "caption", id: "paste-hint" }, t("One a line, or parted by commas, semicolons or tabs.")),
+      h(
+        "p",
+        { class: "caption", id: "paste-hint" },
+        t("One a line, or parted by commas, semicolons or tabs."),
+        " ",
+        t("With a first line “ref;external_id” it is a table, and targets get these ids."),
+      ),
     ),
     h(
       "div",
@@ -162,15 +173,16 @@ const sentenceOf = (found, several, none) =>
  * What the references mean; of those with several meanings one is chosen.
  *
  * @param {LookupResult[]} results
- * @param {{ add: (rows: LookupResult["assets"]) => void, back: () => void }} acts
+ * @param {Map<string, string>} externalIds
+ * @param {{ add: (rows: Row[]) => void, back: () => void }} acts
  */
-function answer(results, { add, back }) {
+function answer(results, externalIds, { add, back }) {
   /** @type {Map<string, string>} */
   const choices = new Map();
   const several = results.filter(({ match }) => match === "several");
   const none = results.filter(({ match }) => match === "none");
   const addButton = h("button", { type: "button", class: "button primary" });
-  addButton.addEventListener("click", () => add(rowsToAdd(results, choices)));
+  addButton.addEventListener("click", () => add(rowsToAdd(results, choices, externalIds)));
   const refresh = () => {
     const count = rowsToAdd(results, choices).length;
     addButton.textContent = count ? tn(count, "Add {count} target", "Add {count} targets") : t("Nothing to add");

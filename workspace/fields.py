@@ -1,0 +1,21 @@
+"""Fields of every app's API: finite numbers."""
+
+import math
+from typing import Any
+
+from rest_framework import serializers
+
+
+class FiniteFloatField(serializers.FloatField):
+    """A JSON number; texts such as "inf" are not numbers."""
+
+    def to_internal_value(self, data: Any) -> float:
+        if not is_number(data):
+            self.fail("invalid")
+        return float(data)
+
+
+def is_number(value: Any) -> bool:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) < 1e300 and math.isfinite(value)
