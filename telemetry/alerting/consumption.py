@@ -77,24 +77,29 @@ class Drained:
     expected: float = 0.0
     lost: float = 0.0
     runs: int = 0  # of reports in a row, each of which begins and ends with a reading
-    steps: deque[tuple[float, float]] = field(default_factory=lambda: deque([(0.0, 0.0)], maxlen=STEPS_KEPT + 1))
+    steps: deque[tuple[float, float, int]] = field(default_factory=lambda: deque([(0.0, 0.0, 0)], maxlen=STEPS_KEPT + 1))
 
     def add(self, expected: float, lost: float) -> None:
         self.expected, self.lost = self.expected + expected, self.lost + lost
         if self.expected - self.steps[-1][0] >= STEP_PERCENT:
-            self.steps.append((self.expected, self.lost))
+            self.steps.append((self.expected, self.lost, self.runs))
 
     @property
     def ratio(self) -> float | None:
         """Return observed to expected drain: of late or of the whole flight, whichever is more; None before enough was observed."""
         found = [
-            (self.lost - lost - READ_WITHIN_PERCENT) / (self.expected - expected)
-            for expected, lost in self.steps
+            (self.lost - lost - _read_within(self.runs - runs)) / (self.expected - expected)
+            for expected, lost, runs in self.steps
             if self.lost - lost >= LEAST_LOST_PERCENT + READ_WITHIN_PERCENT and self.expected > expected
         ]
         if self.lost >= LEAST_LOST_PERCENT:
-            found.append(_beyond(self.lost, self.expected, READ_WITHIN_PERCENT * math.sqrt(max(self.runs, 1))) / self.expected)
+            found.append(_beyond(self.lost, self.expected, _read_within(self.runs - 1)) / self.expected)
         return min(max(*RATIOS[:1], *found), RATIOS[1]) if found else None
+
+
+def _read_within(more_runs: int) -> float:
+    """Error of reading [%] of what was lost in one run of reports and so many more."""
+    return READ_WITHIN_PERCENT * math.sqrt(1 + max(more_runs, 0))
 
 
 def _beyond(lost: float, expected: float, within: float) -> float:
