@@ -137,7 +137,10 @@ def test_starts_in_planned_order_go_on_without_the_page_and_are_stopped_from_ano
 ) -> None:
     mission, flyers = waiting
     page = opened(visitor.signs_in("opal"), f"/missions/{mission}/fly")
-    page.get_by_role("button", name="Start in planned order").click()
+    for flyer in flyers:
+        flyer.reports(0.0, is_in_air=False, is_armed=False)
+    page.get_by_role("checkbox", name=re.compile("Looked at on site")).check()
+    page.get_by_role("button", name="Start 2 UAVs").click()
     question = page.get_by_role("dialog", name="Start 2 UAVs in planned order?")
     expect(question).to_contain_text("in 10 s")
     question.get_by_role("button", name="Start in planned order").click()

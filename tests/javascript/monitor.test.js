@@ -3,6 +3,7 @@ import { test } from "node:test";
 import { certaintyOf, ESTIMATED, LOST, MEASURED, standsAt } from "../../static/js/domain/certainty.js";
 import { distance_m } from "../../static/js/domain/geodesy.js";
 import { flyingUavs, inAir } from "../../static/js/domain/in_air.js";
+import { alertsInOrder, inOrder, newAlerts } from "../../static/js/domain/order.js";
 import { boardRows } from "../../static/js/monitor/board.js";
 import { eventsOf } from "../../static/js/monitor/event_log.js";
 import { progressOf } from "../../static/js/monitor/live_strip.js";
@@ -10,18 +11,9 @@ import { ellipseRing, metresPerPixel } from "../../static/js/monitor/map/ellipse
 import { between } from "../../static/js/monitor/map/glide.js";
 import { addReport, flownParts } from "../../static/js/monitor/mission_details.js";
 import { causeWords, overWords, sentenceOf, targetLines, whyNotDecided } from "../../static/js/monitor/offer_words.js";
-import {
-  alarmOf,
-  alertsInOrder,
-  inOrder,
-  isUnanswered,
-  newAlerts,
-  pinnedAlerts,
-} from "../../static/js/monitor/order.js";
 import { ofPage, placed } from "../../static/js/monitor/placed.js";
 import { ageWords, batteryWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
 import { unheardLines } from "../../static/js/monitor/unheard.js";
-import { markedTitle } from "../../static/js/page/bell.js";
 
 const NOW_MS = Date.parse("2026-09-21T14:15:00Z");
 const ago = (seconds) => new Date(NOW_MS - seconds * 1000).toISOString();
@@ -394,49 +386,6 @@ test("who is in the air can be told something, also after its mission", () => {
     flyingUavs({ uavs, missions, now_ms: NOW_MS }).map(({ id }) => id),
     [1, 2, 4, 5],
   );
-});
-
-const anAlert = (change) => ({
-  id: 1,
-  uav: 1,
-  code: "converging",
-  subject: "2",
-  level: "critical",
-  opened_at: ago(60),
-  closed_at: null,
-  acknowledged_at: null,
-  ...change,
-});
-
-test("a critical alert that has ended stays until it is acknowledged; a warning does not", () => {
-  const ended = anAlert({ closed_at: ago(10) });
-  const warning = anAlert({ id: 2, level: "warning", closed_at: ago(10) });
-  const seen = anAlert({ id: 3, closed_at: ago(10), acknowledged_at: ago(5) });
-  assert.deepEqual(pinnedAlerts([ended, warning, seen]), [ended]);
-  assert.deepEqual([ended, warning, seen].map(isUnanswered), [true, false, false]);
-  const open = anAlert({ id: 4, code: "zone", level: "warning" });
-  assert.deepEqual(
-    alertsInOrder([open, ended, anAlert({ id: 5 })]).map(({ id }) => id),
-    [5, 1, 4],
-  );
-});
-
-test("of one cause the newest alert is shown", () => {
-  const [first, again] = [anAlert({ closed_at: ago(40) }), anAlert({ id: 2, opened_at: ago(30) })];
-  assert.deepEqual(pinnedAlerts([first, again]), [again]);
-  const other = anAlert({ id: 3, subject: "9" });
-  assert.equal(pinnedAlerts([first, again, other]).length, 2);
-});
-
-test("a UAV in alarm has the worst level of its open alerts", () => {
-  const alerts = [anAlert({ level: "warning" }), anAlert({ id: 2, closed_at: ago(1) }), anAlert({ id: 3, uav: 9 })];
-  assert.deepEqual([alarmOf(1, alerts), alarmOf(9, alerts), alarmOf(5, alerts)], ["warning", "critical", null]);
-});
-
-test("the tab's title counts alerts, and keeps its name", () => {
-  assert.equal(markedTitle("Live · Spanwise", "(2!) "), "(2!) Live · Spanwise");
-  assert.equal(markedTitle("(2!) Live · Spanwise", "(1) "), "(1) Live · Spanwise");
-  assert.equal(markedTitle("(1) Live · Spanwise", ""), "Live · Spanwise");
 });
 
 test("a UAV without a GPS fix is drawn as estimated, though it reports", () => {

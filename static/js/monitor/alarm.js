@@ -1,10 +1,10 @@
 /** Sound and the browser's notifications for alerts: only after somebody has asked for them, one sound for critical, another for warning. */
 
 import { byId, h, icon } from "../dom.js";
+import { newAlerts } from "../domain/order.js";
 import { toggleMenu } from "../page/chrome.js";
 import { toast } from "../page/toast.js";
 import { t } from "../text.js";
-import { newAlerts } from "./order.js";
 
 /** @import { Alert, AlertLevel } from "../api_types.d.ts" */
 /** @import { MonitorStore } from "./types.d.ts" */

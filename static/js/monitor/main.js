@@ -1,6 +1,7 @@
 /** What flies now: composes the page, listens to the feed, keeps the time. */
 
 import { ApiError, get } from "../api.js";
+import { inOrder } from "../domain/order.js";
 import { openFeed } from "../live/feed.js";
 import { KINDS } from "../live/shown.js";
 import { staleWords } from "../live/stale.js";
@@ -14,7 +15,6 @@ import { createCommanding } from "./commanding.js";
 import { mountMonitorMap } from "./map/monitor_map.js";
 import { createMissionDetails } from "./mission_details.js";
 import { mountNarrow } from "./narrow.js";
-import { inOrder } from "./order.js";
 import { mountAlerts } from "./panels/alerts.js";
 import { mountBoard } from "./panels/board.js";
 import { mountCards } from "./panels/cards.js";

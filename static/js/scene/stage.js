@@ -2,7 +2,7 @@
 
 import { get, signInAddress } from "../api.js";
 import { h, icon } from "../dom.js";
-import { alertsInOrder, isUnanswered, pinnedAlerts } from "../monitor/order.js";
+import { alertsInOrder, isUnanswered, pinnedAlerts } from "../domain/order.js";
 import { onTheme } from "../page/theme.js";
 import { createPlayer } from "../record/player.js";
 import { simulatedMark } from "../simulated.js";

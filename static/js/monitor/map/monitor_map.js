@@ -2,6 +2,7 @@
 
 import { byId } from "../../dom.js";
 import { certaintyOf, LOST, MEASURED, standsAt } from "../../domain/certainty.js";
+import { alarmOf } from "../../domain/order.js";
 import { routeLetter, routeNumber } from "../../domain/palette.js";
 import { mountControls } from "../../map/controls.js";
 import { createTip } from "../../map/furniture.js";
@@ -12,7 +13,6 @@ import { showTipsOnly } from "../../map/tips_only.js";
 import { t, tn } from "../../text.js";
 import { exactClockText } from "../../units.js";
 import { numbersOf, pillOf } from "../board.js";
-import { alarmOf } from "../order.js";
 import { mapFact } from "../uav_words.js";
 import { createCloseUp } from "./close_up.js";
 import * as flightLayers from "./flight_layers.js";

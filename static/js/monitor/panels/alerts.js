@@ -2,6 +2,7 @@
 
 import { ApiError, get, post } from "../../api.js";
 import { byId, h, icon, keyedList, setChildren } from "../../dom.js";
+import { alertsInOrder, isEndedUnseen, isOpenAlert, isUnanswered, pinnedAlerts } from "../../domain/order.js";
 import { feedBell, showAlertCount } from "../../page/bell.js";
 import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
@@ -9,7 +10,6 @@ import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";
 import { mountAlarm } from "../alarm.js";
-import { alertsInOrder, isEndedUnseen, isOpenAlert, isUnanswered, pinnedAlerts } from "../order.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { AlertLevel, AlertPage } from "../../api_types.d.ts" */

@@ -3,6 +3,7 @@
 import { byId, h, icon, keyedList, refill } from "../../dom.js";
 import { certaintyOf, MEASURED } from "../../domain/certainty.js";
 import { commandWords, isOpen, KINDS, timesOf } from "../../domain/flying.js";
+import { alertsInOrder, inOrder, isOpenAlert } from "../../domain/order.js";
 import { routeLetter, routeNumber } from "../../domain/palette.js";
 import { profileOf } from "../../domain/route_profile.js";
 import { simulatedMark } from "../../simulated.js";
@@ -11,7 +12,6 @@ import { exactClockText, lengthText, numberText } from "../../units.js";
 import { numbersOf, pillOf } from "../board.js";
 import { rateOf, rateWords } from "../clock_rate.js";
 import { liveStrip, progressOf } from "../live_strip.js";
-import { alertsInOrder, inOrder, isOpenAlert } from "../order.js";
 import { ageWords, batteryWords, estimateWords, figuresOf, nextOf, stateOf } from "../uav_words.js";
 
 /** @import { AlertLevel, Mission } from "../../api_types.d.ts" */

@@ -1,10 +1,10 @@
 /** On a phone: the most urgent alert, or else another plan that waits for a decision, over the map, with the way to it. */
 
 import { byId, h, icon } from "../../dom.js";
+import { alertsInOrder, isOpenAlert, isUnanswered, pinnedAlerts } from "../../domain/order.js";
 import { t } from "../../text.js";
 import { exactClockText } from "../../units.js";
 import { causeWords, isUndecided } from "../offer_words.js";
-import { alertsInOrder, isOpenAlert, isUnanswered, pinnedAlerts } from "../order.js";
 
 /** @import { MonitorStore } from "../types.d.ts" */
 

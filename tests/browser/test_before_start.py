@@ -1,0 +1,98 @@
+"""From approved to the start of all UAVs on the Fly page: one button that names the next act, with its checks, in four clicks."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from examples.companion.link import HttpLink
+from tests.browser.conftest import Site, Visitor
+from tests.browser.operator_map import asks, wait_for_map
+from tests.browser.pictures import Picture, in_both_themes
+from tests.browser.regions import region
+from tests.browser.test_accessibility import faults
+from tests.browser.test_batch_commands import ends
+from tests.browser.test_fleet import writes
+from tests.browser.uav_over_http import Flyer
+
+pytestmark = pytest.mark.browser
+
+
+Approved = tuple[str, list[tuple[Flyer, list[float]]]]
+
+
+@pytest.fixture
+def approved(visitor: Visitor, site: Site) -> Iterator[Approved]:
+    """A mission of two UAVs that nobody has sent, with where each one takes off; their companions were not heard yet."""
+    page = visitor.signs_in("ada")
+    towers = asks(page, f"/assets?kind=tower&bbox={region.towers}&limit=5")["features"]
+    places = [[region.east[0] + 0.012 * column, region.east[1]] for column in range(2)]
+    uavs = [
+        writes(page, "POST", "/uavs", {"name": name, "position": at, "is_simulated": True, "link": "http"})["id"]
+        for name, at in zip(("Tern", "Kite"), places, strict=True)
+    ]
+    tokens = [writes(page, "POST", f"/uavs/{uav}/credentials", {"kind": "link-token"})["secret"] for uav in uavs]
+    body: dict[str, Any] = {
+        "name": "South", "uavs": [{"id": uav, "most_targets": 2} for uav in uavs],
+        "targets": [{"asset": tower["id"]} for tower in towers[:3]], "objective": "makespan", "return_to_start": True, "plan": True,
+    }  # fmt: skip
+    mission = writes(page, "POST", "/missions", body)["id"]
+    writes(page, "POST", f"/missions/{mission}/approve")
+    page.context.close()
+    flyers = [Flyer(HttpLink(site.address, token)) for token in tokens]
+    yield mission, list(zip(flyers, places, strict=True))
+    ends(visitor, mission, flyers)
+
+
+def switched_on(standing: list[tuple[Flyer, list[float]]]) -> None:
+    for flyer, at in standing:
+        flyer.stands(at)
+
+
+def test_four_clicks_lead_from_approved_to_the_start_of_all(visitor: Visitor, approved: Approved, picture: Picture) -> None:
+    mission, standing = approved
+    page = visitor.signs_in("opal")
+    page.goto(f"/missions/{mission}/fly")
+    wait_for_map(page)
+    panel = page.get_by_role("region", name="Before start")
+    expect(panel.get_by_role("button", name="Connect 2 UAVs")).to_be_disabled()
+    expect(panel).to_contain_text("It was never heard.")
+
+    switched_on(standing)
+    panel.get_by_role("button", name="Upload to 2 UAVs").click()  # 1
+    expect(panel.get_by_role("button", name="Uploading")).to_be_disabled()
+    for flyer, _at in standing:
+        flyer.obeys()
+    switched_on(standing)
+    start = panel.get_by_role("button", name="Start 2 UAVs")
+    expect(start).to_be_disabled()
+    panel.locator("summary").first.click()
+    in_both_themes(page, picture, "fly-before-start")
+    assert faults(page) == []
+    panel.get_by_role("checkbox", name=re.compile("Looked at on site")).check()  # 2
+    start.click()  # 3
+    question = page.get_by_role("dialog", name="Start 2 UAVs in planned order?")
+    question.get_by_role("button", name="Start in planned order").click()  # 4
+    expect(page.locator("#planned-starts li").first).to_contain_text(re.compile(r"in 0:0\d"))
+    began = asks(page, f"/missions/{mission}/planned-starts")["starts"]
+    assert {start["state"] for start in began["uavs"]} == {"waiting"}
+
+
+def test_a_uav_in_another_place_blocks_the_start_with_its_reason(visitor: Visitor, approved: Approved) -> None:
+    mission, standing = approved
+    switched_on(standing)
+    page: Page = visitor.signs_in("opal")
+    page.goto(f"/missions/{mission}/fly")
+    wait_for_map(page)
+    panel = page.get_by_role("region", name="Before start")
+    panel.get_by_role("button", name="Upload to 2 UAVs").click()
+    for flyer, _at in standing:
+        flyer.obeys()
+    away, (lon, lat) = standing[0]
+    away.stands([lon + 0.01, lat])
+    panel.get_by_role("checkbox", name=re.compile("Looked at on site")).check()
+    expect(panel.locator("#preflight-why")).to_contain_text("Blocked:")
+    expect(panel.get_by_role("button", name="Start 2 UAVs")).to_be_disabled()
+    expect(panel).to_contain_text("from its planned take-off place. Carry it there")
