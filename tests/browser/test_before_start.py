@@ -88,6 +88,7 @@ def test_a_uav_in_another_place_blocks_the_start_with_its_reason(visitor: Visito
     wait_for_map(page)
     panel = page.get_by_role("region", name="Before start")
     panel.get_by_role("button", name="Upload to 2 UAVs").click()
+    expect(panel.get_by_role("button", name="Uploading")).to_be_disabled()
     for flyer, _at in standing:
         flyer.obeys()
     away, (lon, lat) = standing[0]
