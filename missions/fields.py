@@ -13,7 +13,7 @@ from workspace.fields import FiniteFloatField, is_number
 @extend_schema_field(
     {
         "type": "array",
-        "items": {"type": "number"},
+        "items": {"type": "number", "minimum": -180, "maximum": 180},
         "minItems": 2,
         "maxItems": 2,
         "description": "lon, lat [deg], WGS84",
@@ -42,6 +42,8 @@ class PositionField(serializers.Field):
 
 class AboveZeroField(FiniteFloatField):
     """A JSON number above 0."""
+
+    above = 0
 
     default_error_messages = {"above_zero": _("This must be above 0.")}
 

@@ -70,6 +70,15 @@ def asked_instant(request: Request, name: str) -> datetime | None:
     return at if at.tzinfo else at.replace(tzinfo=UTC)
 
 
+def asked_flag(request: Request, name: str) -> bool:
+    """Whether a query parameter is true. Raises ApiProblem 400 for what is neither true nor false."""
+    text = request.query_params.get(name, "")
+    if text not in {"", "true", "false"}:
+        fault = _("true or false is needed.")
+        raise ApiProblem(400, "invalid", f"{name}: {fault}", details={name: [fault]})
+    return text == "true"
+
+
 def _limit(request: Request, default_limit: int, max_limit: int) -> int:
     text = request.query_params.get("limit", "")
     if not text:

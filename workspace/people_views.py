@@ -282,7 +282,7 @@ class SignInList(APIView):
             OpenApiParameter("text", str, description="words of the person's name or e-mail address"),
             OpenApiParameter("outcome", str, enum=SignInOutcome.values),
             OpenApiParameter("address", str, description="beginning of the IP address"),
-            OpenApiParameter("days", int, description="only the last so many days"),
+            OpenApiParameter("days", {"type": "integer", "minimum": 1, "maximum": 99_999}, description="only the last so many days"),
             *PAGE_PARAMETERS,
         ],
         responses=SignInPageSerializer,

@@ -1,5 +1,7 @@
 """What the OpenAPI document says about every address: paging, headers, and the errors that any of them can answer."""
 
+import re
+from collections.abc import Iterable
 from typing import Any
 
 from drf_spectacular.openapi import AutoSchema
@@ -11,12 +13,24 @@ from workspace.errors import PROBLEM_JSON
 from workspace.idempotency import LONGEST_KEY, TAKES_KEY
 from workspace.serializers import ErrorSerializer
 
+WHOLE_NUMBER = {"type": "integer", "minimum": 1, "maximum": 999_999_999}
+TIME = {"type": "string", "format": "date-time"}
+DAY_OR_TIME = {"anyOf": [{"type": "string", "format": "date"}, TIME]}
+PRINTABLE_ASCII = "^[ -~]+$"
+
+
+def several_of(values: Iterable[str]) -> dict[str, Any]:
+    """The shape of a query parameter that takes some of these words with commas."""
+    one = "|".join(map(re.escape, values))
+    return {"type": "string", "pattern": f"^({one})?(,({one})?)*$"}
+
+
 PAGE_PARAMETERS = [
-    OpenApiParameter("limit", int, description="rows a page; 100 unless told, 1,000 at most"),
+    OpenApiParameter("limit", WHOLE_NUMBER, description="rows a page; 100 unless told, 1,000 at most"),
     OpenApiParameter("cursor", str, description="taken from `next` of the page before"),
 ]
 CHANGED_SINCE = OpenApiParameter(
-    "changed_since", str, description="only what was made or changed at this time or later: date or time with offset, ISO 8601"
+    "changed_since", DAY_OR_TIME, description="only what was made or changed at this time or later: date or time with offset, ISO 8601"
 )
 
 ERRORS = {
@@ -38,7 +52,7 @@ KEY_CONFLICT = "The Idempotency-Key was used for another request."
 IDEMPOTENCY_KEY: dict[str, Any] = {
     "in": "header",
     "name": "Idempotency-Key",
-    "schema": {"type": "string", "minLength": 1, "maxLength": LONGEST_KEY},
+    "schema": {"type": "string", "minLength": 1, "maxLength": LONGEST_KEY, "pattern": PRINTABLE_ASCII},
     "description": "a repeated request is answered as the first one was and changes nothing again; printable ASCII, a new one for each act",
 }
 
@@ -66,9 +80,26 @@ class SpanwiseSchema(AutoSchema):
             _name_headers(response, self._headers_of(status))
         return operation
 
+    def _map_basic_serializer(self, serializer: Any, direction: Any) -> dict[str, Any]:
+        """A body whose serializer refuses other fields has no others."""
+        schema: dict[str, Any] = super()._map_basic_serializer(serializer, direction)
+        if direction == "request" and getattr(serializer, "refuses_other_fields", False):
+            schema["additionalProperties"] = False
+        return schema
+
+    def _map_serializer_field(self, field: Any, direction: Any, bypass_extensions: bool = False) -> Any:
+        """Lists say how short they may be, which drf-spectacular passes over where their items are objects or may not be missing."""
+        schema = super()._map_serializer_field(field, direction, bypass_extensions)
+        least = max(int(getattr(field, "allow_empty", True) is False), getattr(field, "min_length", None) or 0)
+        if direction == "request" and least and schema and schema.get("type") == "array":
+            schema.setdefault("minItems", least)
+        return schema
+
     def _insert_field_validators(self, field: Any, schema: dict[str, Any]) -> None:
         """Keep a blank default beside the choice of drf-spectacular: inside its first branch, a blank would have to be an email address."""
         super()._insert_field_validators(field, schema)
+        if (above := getattr(field, "above", None)) is not None:
+            schema |= {"minimum": above, "exclusiveMinimum": True}
         for branch in schema.get("oneOf", []):
             if "default" in branch:
                 schema["default"] = branch.pop("default")

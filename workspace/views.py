@@ -10,7 +10,7 @@ from rest_framework.views import APIView
 from workspace import selectors, services
 from workspace.errors import ApiProblem
 from workspace.models import OPEN_STATES, Job, JobState, User
-from workspace.paging import page_of
+from workspace.paging import asked_flag, page_of
 from workspace.permissions import CURATORS, PLANNERS
 from workspace.schema import PAGE_PARAMETERS
 from workspace.serializers import JobPageSerializer, JobSerializer, ListedJobSerializer
@@ -43,9 +43,9 @@ class JobList(APIView):
                 message = f"Known states are {', '.join(JobState.values)}."
                 raise ApiProblem(400, "invalid", f"state: {message}", details={"state": [message]})
             jobs = jobs.filter(state=state)
-        if request.query_params.get("open") == "true":
+        if asked_flag(request, "open"):
             jobs = jobs.filter(state__in=OPEN_STATES)
-        if request.query_params.get("mine") == "true":
+        if asked_flag(request, "mine"):
             jobs = jobs.filter(created_by=request.user)
         page = page_of(request, jobs.defer("best", "result", "parameters"), order=("-created_at", "-pk"))
         return Response({"results": ListedJobSerializer(page.rows, many=True).data, "next": page.next})

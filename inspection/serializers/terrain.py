@@ -21,7 +21,7 @@ MOST_PLACES = 5_000
 class PositionField(serializers.ListField):
     """Longitude, latitude [deg]."""
 
-    child = serializers.FloatField()
+    child = serializers.FloatField(min_value=-180.0, max_value=180.0)
 
     def __init__(self, **options: Any) -> None:
         super().__init__(min_length=2, max_length=2, **options)

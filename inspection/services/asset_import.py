@@ -143,7 +143,7 @@ def import_assets(
             known = asset_set.data_import
             if known is not None and known.sha256 == sha256 and not found.changes_something:
                 _keep_source_of_edited()
-                give_ids(asset_set.pk, owner, imported_by and imported_by.pk)
+                give_ids(asset_set.pk, owner, imported_by.pk if imported_by else None)
                 known.counts = counts  # of this run, for the caller; the row keeps those of its own
                 return known
             data_import = DataImport.objects.create(
@@ -151,7 +151,7 @@ def import_assets(
                 counts=counts, **_origin(provenance, is_synthetic=is_synthetic),
             )  # fmt: skip
             _write(asset_set, data_import, imported_by)
-            give_ids(asset_set.pk, owner, imported_by and imported_by.pk)
+            give_ids(asset_set.pk, owner, imported_by.pk if imported_by else None)
         stored = {key: parameters[key] for key in MAPPING_PARAMETERS if parameters.get(key)}
         AssetSet.objects.filter(pk=asset_set.pk).update(data_import=data_import, mapping=stored)
         if number_supports() or found.changes_something:

@@ -26,10 +26,10 @@ from inspection.views.history import answer, asset_now
 from inspection.views.parameters import BOX, box_of, kinds_of, text_of
 from workspace.external_data import EXTERNAL_ID, asked_external_id
 from workspace.idempotency import idempotent
-from workspace.paging import changed_since, page_of
+from workspace.paging import asked_flag, changed_since, page_of
 from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
-from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
+from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS, several_of
 from workspace.signed_in import SignedInRequest
 
 EXTERNAL_ID_TAKEN = {409: OpenApiResponse(description="Another asset has the external id.")}
@@ -43,7 +43,9 @@ class AssetList(APIView):
         summary="Assets: towers, lines, railways, bridges",
         parameters=[
             BOX,
-            OpenApiParameter("kind", str, description=f"one or several of {', '.join(AssetKind.values)}, with commas"),
+            OpenApiParameter(
+                "kind", several_of(AssetKind.values), description=f"one or several of {', '.join(AssetKind.values)}, with commas"
+            ),
             OpenApiParameter("text", str, description='words in name, ref or operator; "138 kV"; an OSM id such as w123; best first'),
             OpenApiParameter("flyable", bool, description="true: only what may be flown to"),
             EXTERNAL_ID,
@@ -55,7 +57,7 @@ class AssetList(APIView):
     )
     def get(self, request: SignedInRequest) -> Response:
         text, external_id = text_of(request), asked_external_id(request)
-        flyable = True if request.query_params.get("flyable") == "true" else None
+        flyable = True if asked_flag(request, "flyable") else None
         found = selectors.assets_on_the_ground(box=box_of(request), kinds=kinds_of(request), text=text, flyable=flyable)
         found = changed_since(request, found)
         if external_id:
@@ -64,7 +66,7 @@ class AssetList(APIView):
         page = page_of(request, with_match_rank(assets, text=text), order=BEST_FIRST) if text else page_of(request, assets)
         references = selectors.references_of(request.user.organisation_id, [asset.pk for asset in page.rows])
         features = [asset_feature(asset, references.get(asset.pk)) for asset in page.rows]
-        total = {"total": found.count()} if request.query_params.get("total") == "true" else {}
+        total = {"total": found.count()} if asked_flag(request, "total") else {}
         return Response({"type": "FeatureCollection", "features": features, "next": page.next} | total)
 
     @extend_schema(

@@ -34,7 +34,7 @@ from inspection.views.parameters import BOX, box_of, invalid, text_of
 from workspace.errors import ApiProblem
 from workspace.paging import page_of
 from workspace.permissions import CURATORS
-from workspace.schema import PAGE_PARAMETERS
+from workspace.schema import PAGE_PARAMETERS, several_of
 from workspace.signed_in import SignedInRequest
 
 CANNOT = {409: OpenApiResponse(description="The ground has changed since, or somebody has decided already.")}
@@ -46,7 +46,7 @@ class GapList(APIView):
         summary="Where the data looks wrong, what cuts off most first",
         parameters=[
             BOX,
-            OpenApiParameter("kind", str, description=f"one or several of {', '.join(GapKind.values)}, with commas"),
+            OpenApiParameter("kind", several_of(GapKind.values), description=f"one or several of {', '.join(GapKind.values)}, with commas"),
             OpenApiParameter("state", str, enum=GapState.values),
             OpenApiParameter("text", str, description="words in name, ref or operator of the asset, as for assets"),
             *PAGE_PARAMETERS,

@@ -11,7 +11,10 @@ from inspection.selectors import Box
 from workspace.errors import ApiProblem
 
 LONGEST_TEXT = 100
-BOX = OpenApiParameter("bbox", str, description="west,south,east,north in degrees; west > east crosses the 180th meridian")
+_LON, _LAT = r"-?(180|(1[0-7][0-9]|[0-9]{1,2})(\.[0-9]+)?)", r"-?(90|[0-8]?[0-9](\.[0-9]+)?)"
+LON_LAT = {"type": "string", "pattern": f"^{_LON},{_LAT}$"}
+BOX_TEXT = {"type": "string", "pattern": f"^{_LON},{_LAT},{_LON},{_LAT}$"}
+BOX = OpenApiParameter("bbox", BOX_TEXT, description="west,south,east,north in degrees; west > east crosses the 180th meridian")
 
 
 def invalid(parameter: str, message: str) -> ApiProblem:

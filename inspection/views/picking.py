@@ -26,6 +26,7 @@ from inspection.serializers.picking import (
 from inspection.views.parameters import invalid
 from workspace.errors import ApiProblem
 from workspace.models import Role
+from workspace.paging import asked_flag
 
 MOST_CHOICES = 20
 FROM = OpenApiParameter("from", int, description="id of the support where it begins")
@@ -169,6 +170,6 @@ class RailwayBridges(APIView):
         found = picking.bridges_of_railway(
             railway,
             all_sections=request.query_params.get("sections") == "all",
-            also_over=request.query_params.get("over") == "true",
+            also_over=asked_flag(request, "over"),
         )
         return Response({"sections": len(found.sections), "bridges": picked_assets(found.bridges)})

@@ -14,7 +14,7 @@ from rest_framework.views import APIView
 from inspection.selectors import Box, ground_edition
 from inspection.selectors.scene import RECIPE, UnfitBox, check_box, scene_in
 from inspection.serializers.scene import SceneSerializer, scene_json
-from inspection.views.parameters import box_of, invalid
+from inspection.views.parameters import BOX_TEXT, box_of, invalid
 
 
 class SceneOfBox(APIView):
@@ -26,7 +26,7 @@ class SceneOfBox(APIView):
         description="Terrain, supports with arms, spans with sag, railways, bridges and zones with their limits, in WGS84 and metres. "
         "Sides of the box are between 50 m and 40 km; what goes beyond the limits of number is counted in left_out. "
         "The ETag changes with the ground.",
-        parameters=[OpenApiParameter("bbox", str, required=True, description="west,south,east,north in degrees, west < east")],
+        parameters=[OpenApiParameter("bbox", BOX_TEXT, required=True, description="west,south,east,north in degrees, west < east")],
         responses={200: SceneSerializer, 304: OpenApiResponse(description="The ground has not changed.")},
     )
     def get(self, request: Request) -> HttpResponse:

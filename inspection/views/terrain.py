@@ -30,7 +30,7 @@ from inspection.serializers.terrain import (
 from inspection.services.terrain_import import remove_terrain
 from inspection.terrain.heights import amsl_m, counted_from
 from inspection.terrain.profile import samples_along
-from inspection.views.parameters import invalid
+from inspection.views.parameters import LON_LAT, invalid
 from workspace.models import Role
 from workspace.permissions import CURATORS
 from workspace.signed_in import SignedInRequest
@@ -60,7 +60,7 @@ class GroundHeight(APIView):
     @extend_schema(
         operation_id="get_ground_height",
         summary="How high the ground is above sea level",
-        parameters=[OpenApiParameter("position", str, required=True, description="lon,lat in degrees")],
+        parameters=[OpenApiParameter("position", LON_LAT, required=True, description="lon,lat in degrees")],
         responses=GroundHeightSerializer,
     )
     def get(self, request: Request) -> Response:

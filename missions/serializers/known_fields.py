@@ -15,6 +15,8 @@ UNKNOWN_TOLD = "unknown_fields_told"
 class KnownFieldsSerializer(serializers.Serializer):
     """Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only."""
 
+    refuses_other_fields = True
+
     def to_internal_value(self, data: Any) -> Any:
         if isinstance(data, Mapping):
             unknown = [str(name)[:LONGEST_TOLD] for name in data if name not in self.fields]

@@ -120,6 +120,8 @@ class PointSerializer(serializers.Serializer):
 
 
 class UavFeatureSerializer(serializers.Serializer):
+    refuses_other_fields = True  # flat_uav does
+
     type = serializers.ChoiceField(choices=["Feature"])
     id = serializers.IntegerField(read_only=True)
     geometry = PointSerializer()

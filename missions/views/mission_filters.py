@@ -11,16 +11,17 @@ from missions.models import MissionState
 from workspace.errors import ApiProblem
 from workspace.external_data import EXTERNAL_ID, asked_external_id
 from workspace.paging import asked_instant
+from workspace.schema import DAY_OR_TIME, WHOLE_NUMBER, several_of
 
 ORDER_NAMES = [*ORDERS, *(f"-{name}" for name in ORDERS)]
 FILTER_PARAMETERS = [
     OpenApiParameter("text", str, description="part of the name, of the author's name or of a target's name"),
-    OpenApiParameter("state", str, description=f"one or several with commas: {', '.join(MissionState.values)}"),
+    OpenApiParameter("state", several_of(MissionState.values), description=f"one or several with commas: {', '.join(MissionState.values)}"),
     OpenApiParameter("author", str, description="user name"),
-    OpenApiParameter("uav", int, description="id of a UAV that the mission uses"),
+    OpenApiParameter("uav", WHOLE_NUMBER, description="id of a UAV that the mission uses"),
     OpenApiParameter("stale", bool, description="whether the ground or a UAV has changed since the mission was planned"),
-    OpenApiParameter("changed_from", str, description="date or time with offset, ISO 8601"),
-    OpenApiParameter("changed_before", str, description="date or time with offset, ISO 8601"),
+    OpenApiParameter("changed_from", DAY_OR_TIME, description="date or time with offset, ISO 8601"),
+    OpenApiParameter("changed_before", DAY_OR_TIME, description="date or time with offset, ISO 8601"),
     EXTERNAL_ID,
     OpenApiParameter("target_external_id", str, description="the external id of one of its targets"),
     OpenApiParameter("deleted", bool, description="true: the deleted ones"),

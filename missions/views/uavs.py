@@ -23,7 +23,7 @@ from workspace.models import User
 from workspace.paging import changed_since, page_of
 from workspace.permissions import ADMINISTRATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
-from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
+from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS, WHOLE_NUMBER
 from workspace.signed_in import SignedInRequest
 
 WAIVES_SAFETY = ("is_simulated", "allows_unsigned")
@@ -95,8 +95,8 @@ class UavList(APIView):
             OpenApiParameter(
                 "state", str, enum=[*UavState.values, fleet_selectors.EVERY_STATE], description="without it all but the retired ones"
             ),
-            OpenApiParameter("base", int),
-            OpenApiParameter("type", int),
+            OpenApiParameter("base", WHOLE_NUMBER),
+            OpenApiParameter("type", WHOLE_NUMBER),
             OpenApiParameter("sensor", str, description="part of the name of one of its sensors"),
             EXTERNAL_ID,
             CHANGED_SINCE,

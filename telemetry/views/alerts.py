@@ -1,5 +1,7 @@
 """Alerts: listed, looked at, acknowledged, noted."""
 
+from uuid import UUID
+
 from django.shortcuts import get_object_or_404
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
@@ -18,7 +20,7 @@ from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.paging import page_of
 from workspace.permissions import FLYING
-from workspace.schema import PAGE_PARAMETERS
+from workspace.schema import PAGE_PARAMETERS, TIME, WHOLE_NUMBER, several_of
 from workspace.signed_in import SignedInRequest
 
 STATES = ("open", "closed")
@@ -27,12 +29,12 @@ MOST_NOTES = 200
 FILTERS = [
     OpenApiParameter("state", str, enum=STATES, description="open or closed ones; both without it"),
     OpenApiParameter("acknowledged", bool),
-    OpenApiParameter("level", str, description=f"one or several with commas: {', '.join(AlertLevel.values)}"),
+    OpenApiParameter("level", several_of(AlertLevel.values), description=f"one or several with commas: {', '.join(AlertLevel.values)}"),
     OpenApiParameter("code", str, description="one or several with commas"),
-    OpenApiParameter("uav", int, description="id of a UAV"),
-    OpenApiParameter("mission", str, description="id of a mission"),
-    OpenApiParameter("opened_from", str, description="opened at or after this time, with its zone"),
-    OpenApiParameter("opened_before", str, description="opened before this time, with its zone"),
+    OpenApiParameter("uav", WHOLE_NUMBER, description="id of a UAV"),
+    OpenApiParameter("mission", UUID, description="id of a mission"),
+    OpenApiParameter("opened_from", TIME, description="opened at or after this time, with its zone"),
+    OpenApiParameter("opened_before", TIME, description="opened before this time, with its zone"),
 ]
 
 

@@ -14,13 +14,13 @@ from telemetry.serializers.estimates import EstimateCollectionSerializer, estima
 from telemetry.views.log_filters import THINNED, sampled, time_of, uav_of
 from workspace.paging import page_of
 from workspace.renderers import FastJSONRenderer
-from workspace.schema import PAGE_PARAMETERS
+from workspace.schema import PAGE_PARAMETERS, TIME, WHOLE_NUMBER
 from workspace.signed_in import SignedInRequest
 
 FILTERS = [
-    OpenApiParameter("from", str, description="of moments at or after this time, with its zone"),
-    OpenApiParameter("to", str, description="of moments before this time, with its zone"),
-    OpenApiParameter("uav", int, description="id of a UAV"),
+    OpenApiParameter("from", TIME, description="of moments at or after this time, with its zone"),
+    OpenApiParameter("to", TIME, description="of moments before this time, with its zone"),
+    OpenApiParameter("uav", WHOLE_NUMBER, description="id of a UAV"),
     OpenApiParameter("replaced", bool, description="true: those for whose second a measurement came later; false: the others"),
     *THINNED,
 ]

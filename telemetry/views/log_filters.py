@@ -16,12 +16,13 @@ from inspection.views.parameters import BOX, box_of, invalid
 from telemetry.decoding.companion_reports import instant
 from telemetry.selectors.log import LogFilter
 from telemetry.selectors.thinning import LONGEST_S, SHORTEST_S, one_each, spacing_for
+from workspace.schema import TIME, WHOLE_NUMBER
 
 USUAL_SPAN = timedelta(days=1)
 MOST_CHOSEN = 100_000
 TIMES = [
-    OpenApiParameter("from", str, description="measured at or after this time, with its zone"),
-    OpenApiParameter("to", str, description="measured before this time, with its zone"),
+    OpenApiParameter("from", TIME, description="measured at or after this time, with its zone"),
+    OpenApiParameter("to", TIME, description="measured before this time, with its zone"),
 ]
 THINNED = [
     OpenApiParameter("every_s", float, description="of each UAV the first record in so many seconds, and none from the future"),
@@ -29,8 +30,8 @@ THINNED = [
 ]
 FILTERS = [
     *TIMES,
-    OpenApiParameter("uav", int, description="id of a UAV"),
-    OpenApiParameter("mission", str, description="id of a mission"),
+    OpenApiParameter("uav", WHOLE_NUMBER, description="id of a UAV"),
+    OpenApiParameter("mission", UUID, description="id of a mission"),
     BOX,
     *THINNED,
 ]

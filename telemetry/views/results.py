@@ -1,5 +1,7 @@
 """What came of targets, over all missions."""
 
+from uuid import UUID
+
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -12,18 +14,18 @@ from telemetry.serializers.results import ResultPageSerializer, result_json
 from telemetry.views.log_filters import mission_of, time_of
 from workspace.external_data import asked_external_id
 from workspace.paging import asked_instant, page_of
-from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
+from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS, TIME
 from workspace.signed_in import SignedInRequest
 
 NEWEST_FIRST = ("-state_at", "-pk")
 FILTERS = [
     OpenApiParameter("asset", int, description="id of an asset"),
     OpenApiParameter("external_id", str, description="your organisation's id of the asset"),
-    OpenApiParameter("mission", str, description="id of a mission"),
-    OpenApiParameter("from", str, description="`state_at` at or after this time, with its zone"),
-    OpenApiParameter("to", str, description="`state_at` before this time, with its zone"),
-    OpenApiParameter("reached_from", str, description="`reached_at` at or after this time, with its zone"),
-    OpenApiParameter("reached_before", str, description="`reached_at` before this time, with its zone"),
+    OpenApiParameter("mission", UUID, description="id of a mission"),
+    OpenApiParameter("from", TIME, description="`state_at` at or after this time, with its zone"),
+    OpenApiParameter("to", TIME, description="`state_at` before this time, with its zone"),
+    OpenApiParameter("reached_from", TIME, description="`reached_at` at or after this time, with its zone"),
+    OpenApiParameter("reached_before", TIME, description="`reached_at` before this time, with its zone"),
 ]
 
 

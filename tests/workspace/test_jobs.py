@@ -13,7 +13,7 @@ from kombu.exceptions import OperationalError
 
 from tests.workspace.people import client_of, somebody
 from workspace import tasks
-from workspace.models import Job, JobState, Organisation, User
+from workspace.models import Job, JobState, Organisation, Role, User
 from workspace.services import (
     LEASE_S,
     MAX_ATTEMPTS,
@@ -332,3 +332,12 @@ def test_pages_of_jobs_follow_one_another_newest_first() -> None:
 )
 def test_a_page_that_cannot_be_is_refused(query: str) -> None:
     assert client_of(somebody()).get(f"/api/v1/jobs?{query}").status_code == 400
+
+
+@pytest.mark.parametrize("role", list(Role))
+def test_the_page_of_the_account_offers_to_cancel_jobs_to_whoever_may(role: Role) -> None:
+    user = somebody(role)
+    client, job = client_of(user), new_job(user)
+    offers = "data-may-cancel" in client.get("/account").content.decode()
+    assert offers == (client.post(f"/api/v1/jobs/{job.pk}/cancel").status_code == 200)
+    assert offers == (role != Role.VIEWER)

@@ -60,7 +60,9 @@ export function mountJobs({ tell, settle }) {
   /** @param {Job[]} jobs */
   function draw(jobs) {
     const focused = document.activeElement?.closest("[data-job]")?.getAttribute("data-job");
-    byId("jobs").replaceChildren(...jobs.map((job) => jobRow(job, () => cancel(job))));
+    const list = byId("jobs");
+    const mayCancel = "mayCancel" in list.dataset;
+    list.replaceChildren(...jobs.map((job) => jobRow(job, mayCancel ? () => cancel(job) : null)));
     byId("jobs-none").hidden = jobs.length > 0;
     /** @type {HTMLElement | null} */ (document.querySelector(`[data-job="${focused}"] button`))?.focus();
   }
@@ -80,20 +82,21 @@ export function mountJobs({ tell, settle }) {
   return { load };
 }
 
-/** @param {Job} job @param {() => void} cancel */
+/** Without `cancel` for whoever may not stop a job. @param {Job} job @param {(() => void) | null} cancel */
 export function jobRow(job, cancel) {
   const what = TASKS[job.task] ?? job.task;
   const at = job.finished_at ?? job.created_at;
   const words = job.error?.message ?? job.message;
   const share = job.state === "running" ? percentText(job.progress * 100) : "";
   const facts = [share, whenText(at), words].filter(Boolean).join(" · ");
-  const act = isOpen(job)
-    ? h(
-        "button",
-        { type: "button", class: "button", "aria-label": t("Cancel: {what}", { what }), onclick: cancel },
-        t("Cancel"),
-      )
-    : null;
+  const act =
+    isOpen(job) && cancel
+      ? h(
+          "button",
+          { type: "button", class: "button", "aria-label": t("Cancel: {what}", { what }), onclick: cancel },
+          t("Cancel"),
+        )
+      : null;
   return h(
     "li",
     { dataset: { job: job.id } },
