@@ -166,10 +166,13 @@ test("what meets less than a straight return at once is offered in its place", (
 test("several return in turn where they meet otherwise, and where that helps", () => {
   const one = check("clear", [], { uav: 1, met: [{ name: "Kite" }], wait_s: 0 });
   const other = { ...one, uav: 2, wait_s: 50 };
-  assert.deepEqual([...waitsInTurn([one, other])], [
-    [1, 0],
-    [2, 50],
-  ]);
+  assert.deepEqual(
+    [...waitsInTurn([one, other])],
+    [
+      [1, 0],
+      [2, 50],
+    ],
+  );
   assert.equal(waitsInTurn([one, { ...other, wait_s: null }]), null);
   assert.equal(waitsInTurn([{ ...one, met: [] }]), null);
 });
