@@ -36,8 +36,10 @@ def follow(here: Door, path: str, user: User) -> WebSocket:
 
 
 def hear(live: WebSocket, document: Any, name: str) -> Any:
-    """Return the next message, which has to be the one that the document names so."""
+    """Return the next message but for heartbeats, which has to be the one that the document names so."""
     message = json.loads(live.recv())
+    while message.get("type") == "still-there" and "still" not in name.lower():
+        message = json.loads(live.recv())
     validate(message, document["components"]["schemas"][name], openapi_document())
     return message
 
