@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { abortQuestion, questionOf } from "../../static/js/domain/command_questions.js";
+import { commandWords } from "../../static/js/domain/flying.js";
 import {
   holdLine,
   holdLinesOfAll,
@@ -13,7 +14,6 @@ import {
   togetherLine,
   waitsInTurn,
 } from "../../static/js/domain/own_return.js";
-import { commandWords } from "../../static/js/domain/flying.js";
 import { batteryWords } from "../../static/js/monitor/uav_words.js";
 
 const check = (state, warnings = [], more = {}) => ({
