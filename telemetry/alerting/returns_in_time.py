@@ -14,7 +14,7 @@ from missions.flight_plan.rules import SeparationRules
 from missions.flight_plan.separation import TimedRoute, conflicts
 
 CLIMB_MPS, DESCENT_MPS = 2.5, 1.0  # ArduCopter's WPNAV_SPEED_UP; between WPNAV_SPEED_DN and the slow end of a landing
-WAIT_STEP_S = 10.0
+WAITS_S = (*(10.0 * step for step in range(12)), *(120.0 + 30.0 * step for step in range(27)))  # that are tried, to 15 minutes
 
 
 @dataclass(frozen=True)
@@ -110,13 +110,16 @@ def _placed(
     placed: list[TimedRoute] = []
     seconds = [0.0] * len(returns)
     for number in order:
-        one, steps = returns[number], int(most_s[number] // WAIT_STEP_S) + 1
-        choices = (one.after(step * WAIT_STEP_S) for step in range(steps))
-        free = ((step, route) for step, route in enumerate(choices) if not conflicts([route], [*placed, *fixed], rules=rules))
-        step, route = next(free, (0, one.after(0.0)))
-        seconds[number] = step * WAIT_STEP_S
-        placed.append(route)
+        one = returns[number]
+        choices = [wait_s for wait_s in WAITS_S if wait_s <= most_s[number]]
+        free = (wait_s for wait_s in choices if not _meets(one.after(wait_s), [*placed, *fixed], rules))
+        seconds[number] = next(free, 0.0)
+        placed.append(one.after(seconds[number]))
     return Waits(tuple(seconds), not conflicts(placed, fixed, rules=rules))
+
+
+def _meets(route: TimedRoute, others: Sequence[TimedRoute], rules: SeparationRules) -> bool:
+    return any(conflicts([route], [other], rules=rules) for other in others)
 
 
 def _seconds(metres: float, mps: float) -> float:

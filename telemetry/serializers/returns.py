@@ -1,5 +1,6 @@
 """What UAVs meet if they return now, or land where they are, in the shapes of the API."""
 
+from dataclasses import asdict
 from datetime import datetime
 from typing import Any
 
@@ -105,7 +106,7 @@ def present_return_json(found: PresentReturn) -> dict[str, Any]:
         "distance_m": _rounded(found.distance_m),
         "duration_s": _rounded(found.duration_s),
         "level_m": _rounded(found.level_m),
-        "battery": {name: getattr(battery, name) for name in BatteryAtLandingSerializer().fields},
+        "battery": asdict(battery),
         "met": found.met,
         "wait_s": found.wait_s,
     }

@@ -103,7 +103,9 @@ def _zones(present: Present, agl_m: float | None, now: datetime) -> tuple[str, .
         return ()
     below = near.only(near.reaching(0.0, math.inf if agl_m is None else agl_m))
     reach_deg = present.uncertainty_m / METRES_PER_DEGREE_LAT
-    touched = shapely.dwithin(below.polygons, shapely.Point(*present.position), reach_deg) if len(below) else []
+    touched: list[bool] = []
+    if len(below):
+        touched = shapely.dwithin(below.polygons, shapely.Point(*present.position), reach_deg).tolist()
     return tuple(name for name, is_touched in zip(below.names, touched, strict=True) if is_touched)
 
 

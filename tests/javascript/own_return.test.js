@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 
 import { abortQuestion, questionOf } from "../../static/js/domain/command_questions.js";
+import { commandWords } from "../../static/js/domain/flying.js";
 import {
   holdLine,
   holdLinesOfAll,
@@ -175,4 +176,16 @@ test("several return in turn where they meet otherwise, and where that helps", (
   );
   assert.equal(waitsInTurn([one, { ...other, wait_s: null }]), null);
   assert.equal(waitsInTurn([{ ...one, met: [] }]), null);
+});
+
+test("a return that waits says until when its UAV holds", () => {
+  const command = {
+    kind: "return",
+    state: "queued",
+    created_at: "2027-05-04T09:00:00Z",
+    parameters: { wait_s: 40 },
+    outcome: "",
+  };
+  assert.match(commandWords(command).words, /^Return: holds until .*:00:40/);
+  assert.match(commandWords({ ...command, parameters: {} }).words, /^Return: waiting/);
 });

@@ -252,7 +252,7 @@ def test_a_return_in_turn_lets_the_others_hold_first(two: Any, person: User, cli
     south, (tern, kite), _north, _second = two
     waits_s = {str(kite.pk): 40.0}
     body = {"kind": "return", "uavs": [tern.pk, kite.pk], "waits_s": waits_s}
-    answer = post(client, f"/missions/{south.pk}/commands", body)
+    answer = post(client, f"missions/{south.pk}/commands", body)
     assert answer.status_code == 200, answer.content
     assert {one["name"]: one["command"]["kind"] for one in answer.json()["results"]} == {"Tern": "return", "Kite": "hold"}
     carry(tern, kite)
@@ -262,5 +262,5 @@ def test_a_return_in_turn_lets_the_others_hold_first(two: Any, person: User, cli
 @pytest.mark.parametrize(("kind", "waits_s"), [("pause", {"1": 40.0}), ("return", {"x": 40.0}), ("return", {"1": 1e6})])
 def test_waits_are_of_returns_and_of_uavs(kind: str, waits_s: dict[str, float], two: Any, client: Client) -> None:
     south = two[0]
-    answer = post(client, f"/missions/{south.pk}/commands", {"kind": kind, "waits_s": waits_s})
+    answer = post(client, f"missions/{south.pk}/commands", {"kind": kind, "waits_s": waits_s})
     assert answer.status_code in (400, 409)

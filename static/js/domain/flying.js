@@ -1,7 +1,7 @@
 /** A mission on its way: what its UAVs were told, what became of it, and what can be done next. Values in, values out. */
 
 import { t } from "../text.js";
-import { agoText, clockText } from "../units.js";
+import { agoText, clockText, exactClockText } from "../units.js";
 import { routeLetter } from "./palette.js";
 
 /** @import { Command, CommandKind, CommandState, Mission, MissionState, UavConnection } from "../api_types.d.ts" */
@@ -187,6 +187,11 @@ export function commandWords(command) {
       image: "loader-circle",
       level: null,
     };
+  }
+  const wait_s = command.parameters.wait_s ?? 0;
+  if (command.state === "queued" && command.kind === "return" && wait_s > 0) {
+    const due = new Date(Date.parse(command.created_at) + wait_s * 1000).toISOString();
+    return { words: t("Return: holds until {time}", { time: exactClockText(due) }), image: "timer", level: null };
   }
   const level = command.state === "failed" ? "critical" : command.state === "expired" ? "warning" : null;
   return {

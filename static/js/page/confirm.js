@@ -38,7 +38,9 @@ export function confirmAct(question) {
       keep,
     );
     const rank = isDanger ? "danger filled" : safer ? "" : "primary";
-    const go = h("button", { class: `button ${rank}`, value: "go" }, act);
+    // Enter takes the first button that submits: not the act where there is a safer one.
+    const straight = safer && { type: "button", onclick: () => dialog.close("go") };
+    const go = h("button", { class: `button ${rank}`, value: "go", ...straight }, act);
     const better = safer && h("button", { class: "button primary", value: "safer" }, safer.words);
     const form = h(
       "form",

@@ -104,6 +104,7 @@ export default {
   "Land {name} here?": "{name} hier landen?",
   "It comes straight down where it is now. Targets that it has not reached stay undone.":
     "Es kommt da, wo es jetzt ist, senkrecht herunter. Ziele, die es nicht erreicht hat, bleiben offen.",
+  "Return: holds until {time}": "Zurück: hält bis {time}",
   "Return straight now": "Jetzt geradeaus zurück",
   "Set return height": "Rückkehrhöhe setzen",
   "Battery at landing not known: {why}": "Akku bei der Landung nicht bekannt: {why}",
