@@ -34,7 +34,7 @@ def mission_results(whole: WholeRecord) -> MissionResults:
         [_row(number, target, external_ids) for number, target in enumerate(in_flown_order(whole.targets), start=1)],
         [_lines(route) for route in whole.routes],
         [
-            Happening(datetime.fromtimestamp(one.at_s, UTC), names.get(one.place, ""), reason_words(one.reason), one.position)
+            Happening(datetime.fromtimestamp(one.at_s, UTC), "" if one.place is None else names[one.place], reason_words(one.reason), one.position)
             for one in whole.incidents
         ],
     )
