@@ -10,6 +10,7 @@ from missions.in_air_hooks import uavs_in_the_air
 from missions.models import CommandKind, InspectionTarget, Mission, MissionState, TargetState, Uav
 from missions.selectors import approval_in_force
 from missions.services.approval import OVER, change_state, held_mission, uavs_that_may_hold
+from missions.services.dispatch import busy_elsewhere
 from missions.services.flying import ON_ITS_WAY, UNDECIDED
 from missions.services.missions import note
 from missions.services.outbox import queue_command
@@ -51,7 +52,9 @@ def close_mission(*, mission: Mission, actor: User, reasons: Mapping[int, str], 
 
 
 def _in_the_air(held: Mission) -> list[Reason]:
-    names = dict(held.mission_uavs.filter(uav__isnull=False, route__geometry__isnull=False).values_list("uav", "name"))
+    """UAVs with a route of the mission, as far as they do not fly another one by now."""
+    own = held.mission_uavs.filter(uav__isnull=False, route__geometry__isnull=False).exclude(uav__in=busy_elsewhere(held))
+    names = dict(own.values_list("uav", "name"))
     return [
         Reason("in_the_air", _("%(uav)s is in the air: the mission can be closed once it is down.") % {"uav": names[uav_id]})
         for uav_id in sorted(uavs_in_the_air(list(names)))

@@ -120,7 +120,7 @@ def abort_mission(*, mission: Mission, actor: User, why: str, expected_revision:
         in_use = {route["uav"] for route in approval.document["routes"]} - continued
         touched = Uav.objects.filter(Q(pk__in=uavs_that_may_hold(approval)) | Q(pk__in=in_use, commands__mission=held))
         if is_over:
-            touched = Uav.objects.filter(pk__in=uavs_that_may_hold(approval)).exclude(pk__in=_busy_elsewhere(held))
+            touched = Uav.objects.filter(pk__in=uavs_that_may_hold(approval)).exclude(pk__in=busy_elsewhere(held))
         uavs = list(touched.distinct().order_by("pk"))
         if is_over and not uavs:
             raise refuse("not_on_its_way", _("No UAV holds this mission any more."))
@@ -135,7 +135,7 @@ def abort_mission(*, mission: Mission, actor: User, why: str, expected_revision:
     return commands
 
 
-def _busy_elsewhere(mission: Mission) -> QuerySet[MissionUav, Any]:
+def busy_elsewhere(mission: Mission) -> QuerySet[MissionUav, Any]:
     """UAVs that fly a route of another mission."""
     others = MissionUav.objects.filter(mission__state__in=ON_ITS_WAY, mission__deleted_at=None, route__geometry__isnull=False)
     others = others.filter(route__continued_by=None)

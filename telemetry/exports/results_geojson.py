@@ -50,8 +50,9 @@ def _incidents(results: MissionResults) -> Iterator[dict[str, Any]]:
 
 def _lines(route: RouteLines) -> Iterator[dict[str, Any]]:
     if len(route.planned) > 1:
-        heights = [point.altitude_relative_m for point in route.planned]
-        yield _feature("planned", _line([point.position for point in route.planned]), {"uav": route.uav, "altitudes_relative_m": heights})
+        planned_heights = [point.altitude_relative_m for point in route.planned]
+        facts: dict[str, Any] = {"uav": route.uav, "altitudes_relative_m": planned_heights}
+        yield _feature("planned", _line([point.position for point in route.planned]), facts)
     for track in route.flown:
         times, heights = [time_text(point.at) for point in track], [point.altitude_relative_m for point in track]
         facts = {"uav": route.uav, "times": times, "altitudes_relative_m": heights}

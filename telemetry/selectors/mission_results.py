@@ -12,6 +12,7 @@ from telemetry.exports.results import Happening, MissionResults, PlannedPoint, R
 from telemetry.exports.thinning import EARLY, EVERY_S
 from telemetry.mission_report.fix import Fix
 from telemetry.mission_report.flown_route import LONGEST_GAP_S
+from telemetry.mission_report.outcomes import Incident
 from telemetry.selectors.mission_record import RouteOnRecord, TargetOnRecord, WholeRecord, at, in_flown_order
 from telemetry.selectors.report_words import reason_words
 
@@ -33,11 +34,13 @@ def mission_results(whole: WholeRecord) -> MissionResults:
         mission.name,
         [_row(number, target, external_ids) for number, target in enumerate(in_flown_order(whole.targets), start=1)],
         [_lines(route) for route in whole.routes],
-        [
-            Happening(datetime.fromtimestamp(one.at_s, UTC), names.get(one.place, ""), reason_words(one.reason), one.position)
-            for one in whole.incidents
-        ],
+        [_happening(one, names) for one in whole.incidents],
     )
+
+
+def _happening(incident: Incident, names: dict[int, str]) -> Happening:
+    name = "" if incident.place is None else names[incident.place]
+    return Happening(datetime.fromtimestamp(incident.at_s, UTC), name, reason_words(incident.reason), incident.position)
 
 
 def _row(number: int, target: TargetOnRecord, external_ids: dict[int, str]) -> ResultRow:

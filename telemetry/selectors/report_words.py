@@ -4,6 +4,7 @@ from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
 from telemetry.mission_report.outcomes import Reason
+from workspace.stored_words import in_words
 
 WORDS = {
     "crashed": gettext_noop("%(uav)s crashed"),
@@ -47,7 +48,7 @@ def reason_words(reason: Reason) -> str:
     """Return part of a sentence, without the time at which it happened."""
     values = dict(reason.values)
     if reason.code == "stated":
-        return str(values["words"])
+        return str(in_words(str(values["words"]))).rstrip(".")  # a planner's sentence, which becomes part of one
     if values.get("cause"):
         values["cause"] = _(CAUSES[values["cause"]])
     if values.get("outcome") in OUTCOMES:

@@ -168,7 +168,7 @@ def test_a_mission_with_open_targets_is_closed_and_followed_up(visitor: Visitor,
     dialog.get_by_label("Plan a follow-up").check()
     dialog.get_by_role("button", name="Close mission").click()
     page.wait_for_url(lambda address: key not in address and "/missions/" in address)
-    expect(page.get_by_text(f"West, {start} – follow-up").first).to_be_visible()
+    expect(page).to_have_title(re.compile(f"^West, {start} – follow-up"))
     opened(page, f"/missions/{key}/report")
     expect(page.get_by_role("heading", name="0 of 2 targets inspected")).to_be_visible()
     expect(page.locator("#report-reasons")).to_contain_text("not inspected: lightning over the valley.")

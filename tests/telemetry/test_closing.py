@@ -86,6 +86,13 @@ def test_a_uav_in_the_air_keeps_its_mission_open(client: Client, mission: Missio
     assert "Tern is in the air" in answer.json()["error"]["message"]
 
 
+def test_a_uav_that_flies_another_mission_by_now_does_not(client: Client, mission: Mission, tern: Uav, here: World, person: User) -> None:
+    abort_mission(mission=mission, actor=person, why="thunderstorm")
+    mark_started(mission_id=dispatched(person, [tern], [here.towers[2]], name="Afternoon").pk, uav_id=tern.pk)
+    UavLink.objects.update_or_create(uav=tern, defaults={"is_in_air": True, "heard_at": timezone.now()})
+    assert close(client, mission).status_code == 200
+
+
 def test_it_is_closed_after_an_abort_too_and_only_once(client: Client, mission: Mission, person: User) -> None:
     abort_mission(mission=mission, actor=person, why="thunderstorm")
     answer = close(client, mission)

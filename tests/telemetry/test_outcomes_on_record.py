@@ -149,6 +149,18 @@ def test_what_a_person_told_a_uav_is_why(client: Client, mission: Mission, appro
     assert [target["reason"]["message"] for target in told["targets"] if target["reason"]] == [words]
 
 
+def test_a_target_that_no_route_reaches_has_the_planners_reason(client: Client, mission: Mission, approval: Approval, tern: Uav) -> None:
+    left_out = mission.targets.get(sequence=2)
+    for route in approval.document["routes"]:
+        for waypoint in route["route"]["waypoints"]:
+            waypoint["target"] = None if waypoint["target"] == left_out.sequence else waypoint["target"]
+    approval.save(update_fields=["document"])
+    mission.targets.filter(pk=left_out.pk).update(unassigned_message="It stands inside Varneck Airfield.")
+    Mission.objects.filter(pk=mission.pk).update(state=MissionState.COMPLETED)
+    told = next(target for target in record_of(client, mission)["targets"] if target["place"] == left_out.sequence)
+    assert (told["result"], told["reason"]["message"]) == ("not-inspected", "It stands inside Varneck Airfield")
+
+
 def test_while_a_mission_is_under_way_its_targets_are_open(client: Client, mission: Mission, approval: Approval, tern: Uav) -> None:
     ends_after(mission, approval, tern, 0)
     told = record_of(client, mission)

@@ -6,7 +6,7 @@ import { readPage, startChrome } from "../page/chrome.js";
 import { labelsOf } from "../record/labels.js";
 import { loadMission } from "../record/load.js";
 import { createPlayer, SPEEDS } from "../record/player.js";
-import { isOver, isUnderWay } from "../record/sentence.js";
+import { capital, isOver, isUnderWay } from "../record/sentence.js";
 import { eventFrom, eventsOf, spanOf } from "../record/timeline.js";
 import { estimatesOf, silenceOf_ms, trackOf, tracksOf } from "../record/track.js";
 import { mountSceneOpener } from "../scene/opener.js";
@@ -23,6 +23,7 @@ import { drawHead, drawQuality, drawTargets } from "./side.js";
 const AGAIN_MS = 30_000;
 const KEY_STEPS = 100; // of the whole replay, by an arrow key
 const NEAR_EVENT_MS = 2_000;
+const ONE_FALL_MS = 60_000; // between the last report in the air and the words that it has crashed
 
 /** @import { ApiError } from "../api.js" */
 /** @import { Incident, MissionRecord, RecordTarget } from "../api_types.d.ts" */
@@ -30,6 +31,9 @@ const NEAR_EVENT_MS = 2_000;
 /** @import { LoadedMission } from "../record/load.js" */
 /** @import { ReplayEvent } from "../record/timeline.js" */
 /** @import { LookedLeg, ReplayRoute, ReportPage, StripTarget } from "./types.d.ts" */
+
+/** @type {readonly Incident["kind"][]} */
+const FALLS = ["crashed", "down"];
 
 /** @type {ReportPage} */
 const page = readPage();
@@ -192,6 +196,14 @@ function lookAtLeg(leg) {
 
 // replaying
 
+/** What is known of a flight that ended by a fall, in words. @param {ReplayEvent} event */
+function fallAt({ place, at_ms }) {
+  const fall = loaded?.record.incidents.find(
+    ({ kind, uav, at }) => uav === place && FALLS.includes(kind) && Math.abs(Date.parse(at) - at_ms) < ONE_FALL_MS,
+  );
+  return fall && capital(fall.message);
+}
+
 /** @param {ReplayEvent} event */
 function wordsOf(event) {
   const name = routes.find(({ place }) => place === event.place)?.name ?? "";
@@ -199,7 +211,7 @@ function wordsOf(event) {
     case "take-off":
       return t("{name} takes off", { name });
     case "landing":
-      return t("{name} lands", { name });
+      return fallAt(event) ?? t("{name} lands", { name });
     case "target":
       return t("{target} reached", { target: labels.get(event.target)?.label ?? event.target + 1 });
     default:

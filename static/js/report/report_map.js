@@ -118,7 +118,7 @@ function pinOf(map, { kind, message, at, position }, onPick) {
     { type: "button", class: `report-pin ${level}`, "aria-label": words, title: words, onclick: onPick },
     icon(image, "small"),
   );
-  return [new maplibre.Marker({ element, anchor: "bottom" }).setLngLat([longitude, latitude]).addTo(map)];
+  return [new maplibre.Marker({ element, anchor: "bottom-left" }).setLngLat([longitude, latitude]).addTo(map)];
 }
 
 /** @param {Shown} shown */

@@ -92,6 +92,7 @@ def test_motor_failure_in_the_air_is_a_crash_that_stays_one() -> None:
     uav.faults = Faults(motor_failed=2)
     events = step(uav, 10.0)
     assert [event for event in events if isinstance(event, Crashed)]
+    assert texts(events).startswith("Motor 3 has failed"), "the report names it as the cause"
     where = uav.state.true_position
     assert math.isfinite(where.lon + where.lat + uav.state.altitude_amsl_m)
     step(uav, 5.0)
