@@ -6,14 +6,15 @@ import { LATE } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
 import { holdLinesOfAll, togetherLine, waitsInTurn } from "../domain/own_return.js";
 import { confirmAct } from "../page/confirm.js";
-import { returnsNow } from "../page/present_returns.js";
+import { CHECKING_HOME, returnsNow } from "../page/present_returns.js";
 import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { durationText } from "../units.js";
 import { answerWords, batchRequest, batchScopes, leftLines, returnLinesOf, scopeChoices } from "./batch.js";
 import { unheardLines } from "./unheard.js";
 
-/** @import { BatchAnswers } from "../api_types.d.ts" */
+/** @import { BatchAnswers, PresentReturn } from "../api_types.d.ts" */
+/** @import { Question } from "../domain/command_questions.js" */
 /** @import { Answer } from "../api.js" */
 /** @import { BatchScope } from "./batch.js" */
 /** @import { Commanding, MonitorPage, MonitorStore } from "./types.d.ts" */
@@ -70,40 +71,50 @@ export function createBatch(store, page) {
     if (!scopes.length) return void toast(t("No UAV is in the air."));
     const { title, lines, act } = ALL[kind];
     const uavs = scopes.flatMap((scope) => scope.uavs);
-    const returns = kind === "return" ? await returnsNow(uavs.map(({ id }) => id)) : new Map();
-    const waits = waitsInTurn([...returns.values()]);
-    const longest_s = waits ? Math.max(...waits.values()) : 0;
     const silent = uavs.filter((uav) => certaintyOf(uav, store.state.now_ms) !== MEASURED);
-    const asked = await confirmAct({
-      title: page.mission === null ? t("{act}: of which mission?", { act }) : title(uavs.length),
+    /** @param {string[]} seen of what is looked at only now @param {Question["safer"]} safer */
+    const asking = (seen, safer = null) => ({
       lines: [
         page.mission !== null && `${uavs.map(({ name }) => name).join(", ")}.`,
         ...lines,
-        kind === "return" && togetherLine(uavs.map(({ id }) => returns.get(id))),
-        ...(kind === "pause"
-          ? holdLinesOfAll(uavs.map(({ name, estimated }) => ({ name, hold_s: estimated?.battery?.hold_s })))
-          : []),
-        ...(kind === "return" ? returnLinesOf(scopes, returns) : []),
-        longest_s > 0 &&
-          t("In turn they keep apart: the last one holds {time} first, those with the least battery hold least.", {
-            time: durationText(longest_s),
-          }),
+        ...seen,
         ...leftLines(scopes),
         ...unheardLines(silent, kind, store.state.now_ms),
         LATE,
       ],
-      choices: page.mission === null ? { name: "scope", legend: t("Whom it is for"), of: scopeChoices(scopes) } : null,
-      safer: longest_s > 0 ? { words: t("Return in turn"), kind: "return", parameters: {} } : null,
       act: page.mission === null ? act : `${KINDS[kind]}: ${uavs.length}`,
+      safer,
+    });
+    const holds = uavs.map(({ name, estimated }) => ({ name, hold_s: estimated?.battery?.hold_s }));
+    const asked = await confirmAct({
+      ...asking(kind === "return" ? [CHECKING_HOME] : holdLinesOfAll(holds)),
+      title: page.mission === null ? t("{act}: of which mission?", { act }) : title(uavs.length),
+      choices: page.mission === null ? { name: "scope", legend: t("Whom it is for"), of: scopeChoices(scopes) } : null,
       keep: t("Keep flying"),
       isBack: true,
       opener,
+      later:
+        kind === "return"
+          ? returnsNow(uavs.map(({ id }) => id)).then((returns) => asking(...found(returns)))
+          : undefined,
     });
+    /** @param {Map<number, PresentReturn>} returns @returns {[string[], Question["safer"]]} */
+    function found(returns) {
+      const waits = waitsInTurn([...returns.values()]);
+      const longest_s = waits ? Math.max(...waits.values()) : 0;
+      const together = togetherLine(uavs.map(({ id }) => returns.get(id)));
+      const inTurn = t(
+        "In turn they keep apart: the last one holds {time} first, those with the least battery hold least.",
+        { time: durationText(longest_s) },
+      );
+      const said = [together, ...returnLinesOf(scopes, returns), longest_s > 0 ? inTurn : ""];
+      return [said, longest_s > 0 ? { words: t("Return in turn"), kind: "return", parameters: { waits } } : null];
+    }
     if (asked)
       await tellBatch(
         kind,
         asked.scope && asked.scope !== "all" ? scopes.filter(({ id }) => id === asked.scope) : scopes,
-        asked.isSafer ? waits : null,
+        asked.safer?.parameters.waits,
       );
   };
 }

@@ -2,10 +2,9 @@
 
 import { ApiError, freshKey } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
-import { questionOf } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
 import { confirmAct } from "../page/confirm.js";
-import { presentOf } from "../page/present_returns.js";
+import { presentQuestion } from "../page/present_returns.js";
 import { tellUav } from "../page/tell_uav.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
@@ -103,16 +102,21 @@ export function createCommanding(store, page) {
     if (!uav) return;
     const mission = store.state.missions.find((entry) => entry.id === uav.mission);
     const planned = plannedOf(uav, store.state.details);
-    const isStop = kind === "hold" || kind === "pause"; // waits for no answer
-    const question = questionOf(kind, {
+    const isStop = kind === "hold" || kind === "pause"; // the feed tells what is asked of it
+    const flyer = {
       name: uav.name,
       speed_mps: planned?.cruise_speed_mps ?? uav.measured?.speed_mps ?? 5,
-      ...(isStop ? { hold_s: uav.estimated?.battery?.hold_s } : await presentOf(uav.id, kind)),
-    });
+      hold_s: uav.estimated?.battery?.hold_s,
+    };
     const late = certainty(uav) === MEASURED ? null : unheardLines([uav], kind, store.state.now_ms)[0];
-    const [first, ...rest] = question.lines;
-    const asked = await confirmAct({ ...question, lines: [first, figuresLine(uav, mission), late, ...rest], opener });
-    if (asked?.isSafer && question.safer) await told(uav, question.safer.kind, question.safer.parameters);
+    const question = presentQuestion(isStop ? null : uav.id, kind, flyer, ([first, ...rest]) => [
+      first,
+      figuresLine(uav, mission),
+      late,
+      ...rest,
+    ]);
+    const asked = await confirmAct({ ...question, opener });
+    if (asked?.safer) await told(uav, asked.safer.kind, asked.safer.parameters);
     else if (asked) await told(uav, kind, asked);
   }
 

@@ -9,58 +9,26 @@ import { open } from "./keyboard.js";
 const EDGE_PX = 12;
 
 /**
- * Asks, and resolves to what was filled in; null where the act is not to be done.
+ * Asks, and resolves to what was filled in; null where the act is not to be done. `safer` of the answer is what is done instead.
  *
  * @param {Question} question
  * @returns {Promise<Record<string, any> | null>}
  */
 export function confirmAct(question) {
-  const {
-    title,
-    lines,
-    act,
-    keep = t("Not yet"),
-    field = null,
-    choices = null,
-    checks = [],
-    safer = null,
-    isDanger,
-    isBack,
-    image,
-    opener,
-  } = question;
+  const { title, field = null, choices = null, checks = [], isBack, image, opener, later } = question;
   return new Promise((resolve) => {
     const input = field && fieldInput(field);
     const group = choices && choiceGroup(choices);
-    const out = h(
-      "button",
-      { class: "button", value: "out", type: "button", onclick: () => dialog.close("out") },
-      keep,
-    );
-    const rank = isDanger ? "danger filled" : safer ? "" : "primary";
-    // Enter takes the first button that submits: not the act where there is a safer one.
-    const straight = safer && { type: "button", onclick: () => dialog.close("go") };
-    const go = h("button", { class: `button ${rank}`, value: "go", ...straight }, act);
-    const better = safer && h("button", { class: "button primary", value: "safer" }, safer.words);
+    const lines = h("div", { id: "confirm-lines", class: "confirm-lines", "aria-live": "polite" });
+    const acts = createActs(question, (value) => dialog.close(value));
     const form = h(
       "form",
       { method: "dialog" },
-      h(
-        "div",
-        { id: "confirm-lines", class: "confirm-lines" },
-        lines.filter(Boolean).map((line) => h("p", {}, line)),
-      ),
+      lines,
       group,
       input && h("div", { class: "field" }, h("label", { for: "confirm-field" }, field.label), input),
-      checks.map(({ name, words }) =>
-        h(
-          "label",
-          { class: "confirm-check" },
-          h("input", { type: "checkbox", name, checked: true }),
-          h("span", {}, words),
-        ),
-      ),
-      h("div", { class: "acts" }, out, go, better),
+      checks.map(checkLine),
+      acts.element,
     );
     /** @type {HTMLDialogElement} */
     const dialog = h(
@@ -69,6 +37,12 @@ export function confirmAct(question) {
       h("h2", { id: "confirm-title" }, image && icon(image), title),
       form,
     );
+    /** @param {Pick<Question, "lines" | "act" | "safer">} shown */
+    function show(shown) {
+      lines.replaceChildren(...shown.lines.filter((line) => line).map((line) => h("p", {}, line)));
+      acts.show(shown);
+    }
+    show(question);
     dialog.addEventListener("close", () => {
       if (dialog.returnValue !== "go" && dialog.returnValue !== "safer") return resolve(null);
       const filled = input && { [field.name]: field.type === "number" ? input.valueAsNumber : input.value.trim() };
@@ -77,28 +51,75 @@ export function confirmAct(question) {
         ...filled,
         ...(choices && { [choices.name]: told.get(choices.name) }),
         ...Object.fromEntries(checks.map(({ name }) => [name, told.has(name)])),
-        ...(dialog.returnValue === "safer" && { isSafer: true }),
+        ...(dialog.returnValue === "safer" && { safer: acts.safer() }),
       });
     });
     open(dialog);
     if (opener) growFrom(dialog, opener);
     const first = group?.querySelector("input");
     if (first) {
-      const acts = [go, better].filter((button) => button !== null);
-      for (const button of acts) {
-        button.disabled = true;
-        button.title = t("Choose whom it is for first.");
-      }
-      group?.addEventListener("change", () => {
-        for (const button of acts) {
-          button.disabled = false;
-          button.removeAttribute("title");
-        }
-      });
+      acts.block(t("Choose whom it is for first."));
+      group?.addEventListener("change", () => acts.block(""));
     }
-    (first ?? (input && field.isNeeded ? input : isBack ? (better ?? go) : out)).focus();
+    (first ?? (input && field.isNeeded ? input : isBack ? acts.first() : acts.out)).focus();
+    later?.then((found) => dialog.open && show(found));
   });
 }
+
+/**
+ * The buttons: out of it, the act, and what is safer than that, which may be known later only.
+ *
+ * @param {Question} question
+ * @param {(value: string) => void} close
+ */
+function createActs({ keep = t("Not yet"), isDanger }, close) {
+  const out = h("button", { class: "button", value: "out", type: "button", onclick: () => close("out") }, keep);
+  /** @param {Event} event */
+  const goes = ({ currentTarget }) => /** @type {HTMLButtonElement} */ (currentTarget).type === "button" && close("go");
+  const go = h("button", { value: "go", onclick: goes });
+  const better = h("button", { class: "button primary", value: "safer" });
+  const element = h("div", { class: "acts" }, out, go);
+  /** @type {Question["safer"]} */
+  let safer = null;
+  let why = "";
+
+  function draw() {
+    for (const button of [go, better]) {
+      button.disabled = why !== "";
+      button.title = why;
+    }
+  }
+  return {
+    element,
+    out,
+    first: () => (safer ? better : go),
+    safer: () => safer,
+    /** @param {string} reason "" where they can be pressed */
+    block(reason) {
+      why = reason;
+      draw();
+    },
+    /** @param {Pick<Question, "act" | "safer">} shown */
+    show(shown) {
+      const hadFocus = document.activeElement === go;
+      safer = shown.safer ?? null;
+      go.textContent = shown.act;
+      go.className = `button ${isDanger ? "danger filled" : safer ? "" : "primary"}`;
+      go.type = safer ? "button" : "submit"; // Enter takes the first one that submits: not the act where there is a safer one
+      better.remove();
+      if (safer) {
+        better.textContent = safer.words;
+        element.append(better);
+        if (hadFocus) better.focus();
+      }
+      draw();
+    },
+  };
+}
+
+/** @param {{ name: string, words: string }} check */
+const checkLine = ({ name, words }) =>
+  h("label", { class: "confirm-check" }, h("input", { type: "checkbox", name, checked: true }), h("span", {}, words));
 
 /** @param {QuestionField} field */
 function fieldInput(field) {

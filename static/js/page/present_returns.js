@@ -1,11 +1,23 @@
-/** What UAVs meet if they return now or land where they are, asked for just before the question whether they shall. */
+/** What UAVs meet if they return now or land where they are, asked for while somebody is asked whether they shall. */
 
 import { ApiError, get } from "../api.js";
+import { LATE, questionOf } from "../domain/command_questions.js";
+import { t } from "../text.js";
 
+/** @import { AskedKind, AskedOf, Question } from "../domain/command_questions.js" */
 /** @import { LandingHere, PresentReturn, PresentReturns } from "../api_types.d.ts" */
 /** @import { Answer } from "../api.js" */
 
-const CHECK_TIMEOUT_MS = 4000; // the question waits no longer
+const CHECK_TIMEOUT_MS = 4000; // then it is said that nobody has looked
+export const CHECKING_HOME = t("The way home is being looked at …");
+/** @type {Partial<Record<AskedKind, string>>} */
+const LOOKED_AT = {
+  return: CHECKING_HOME,
+  abort: CHECKING_HOME,
+  land: t("What lies below is being looked at …"),
+  hold: t("How long it can hold is being looked at …"),
+  pause: t("How long it can hold is being looked at …"),
+};
 
 /**
  * What the server says of it now; null where that could not be read in time.
@@ -43,13 +55,35 @@ export const landingNow = (uav) => askedInTime(`/uavs/${uav}/landing`);
 /**
  * What a question before a command has to know of the present.
  *
- * @param {number | null} uav
- * @param {string} kind
+ * @param {number} uav
+ * @param {AskedKind} kind
  * @returns {Promise<{ returns?: PresentReturn, landing?: LandingHere | null, hold_s?: number | null }>}
  */
-export async function presentOf(uav, kind) {
-  if (uav === null) return {};
-  if (kind === "return" || kind === "abort") return { returns: (await returnsNow([uav])).get(uav) };
-  if (kind === "hold" || kind === "pause") return { hold_s: (await returnsNow([uav])).get(uav)?.battery.hold_s };
-  return kind === "land" ? { landing: await landingNow(uav) } : {};
+async function presentOf(uav, kind) {
+  if (kind === "land") return { landing: await landingNow(uav) };
+  const found = (await returnsNow([uav])).get(uav);
+  return kind === "return" || kind === "abort" ? { returns: found } : { hold_s: found?.battery.hold_s };
+}
+
+/**
+ * The question as it can be asked at once, and with what the server says of the present once that has come.
+ *
+ * @param {number | null} uav
+ * @param {AskedKind} kind
+ * @param {AskedOf} flyer
+ * @param {(lines: Question["lines"]) => Question["lines"]} [withMore] puts in what else is said
+ * @returns {Question}
+ */
+export function presentQuestion(uav, kind, flyer, withMore = (lines) => lines) {
+  const first = questionOf(kind, flyer);
+  const needs = uav !== null && LOOKED_AT[kind];
+  if (!needs) return { ...first, lines: withMore(first.lines) };
+  return {
+    ...first,
+    lines: withMore([first.lines[0], needs, LATE]),
+    later: presentOf(uav, kind).then((present) => {
+      const { lines, ...known } = questionOf(kind, { ...flyer, ...present });
+      return { ...known, lines: withMore(lines) };
+    }),
+  };
 }

@@ -1,6 +1,9 @@
 /** German: a mission that is approved, sent, flown. */
 
 export default {
+  "The way home is being looked at …": "Der Heimweg wird angesehen …",
+  "What lies below is being looked at …": "Was darunter liegt, wird angesehen …",
+  "How long it can hold is being looked at …": "Wie lange es halten kann, wird angesehen …",
   "Send the mission": "Mission senden",
   "Take the mission off": "Mission vom UAV nehmen",
   "Arm": "Scharf schalten",

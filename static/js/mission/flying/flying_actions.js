@@ -4,11 +4,11 @@
  */
 
 import { ApiError, freshKey, get, post, signInAddress } from "../../api.js";
-import { abortQuestion, questionOf } from "../../domain/command_questions.js";
+import { abortQuestion } from "../../domain/command_questions.js";
 import { flyersOf, isFrozen, isOnItsWay, KINDS } from "../../domain/flying.js";
 import { returnOf } from "../../domain/own_return.js";
 import { confirmAct } from "../../page/confirm.js";
-import { presentOf, returnsNow } from "../../page/present_returns.js";
+import { CHECKING_HOME, presentQuestion, returnsNow } from "../../page/present_returns.js";
 import { tellUav } from "../../page/tell_uav.js";
 import { say } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
@@ -16,6 +16,7 @@ import { heightText, lengthText } from "../../units.js";
 import { createFlightReading } from "./flight_reading.js";
 
 /** @import { Answer } from "../../api.js" */
+/** @import { AskedKind } from "../../domain/command_questions.js" */
 /** @import { CommandKind, Mission } from "../../api_types.d.ts" */
 /** @import { Flyer } from "../../domain/flying.js" */
 /** @import { MissionContext, MissionPageData, MissionPageState, MissionStore } from "../types.d.ts" */
@@ -49,7 +50,7 @@ export function createFlying(store, { failed, page }) {
      */
     send: (flyer = null, flight = 1) => send(acting, flyer, flight),
     abort: () => abort(acting),
-    /** @param {Flyer} flyer @param {Parameters<typeof questionOf>[0]} kind */
+    /** @param {Flyer} flyer @param {AskedKind} kind */
     command: (flyer, kind) => command(acting, flyer, kind),
     /** To a height at which nothing is in its way home. @param {Flyer} flyer @param {number} height_m */
     setReturnHeight: (flyer, height_m) => tell(acting, flyer, "set-return-height", { height_m }),
@@ -228,9 +229,12 @@ async function abort(acting) {
   const { mission } = acting.store.state;
   if (!mission) return;
   const flyers = flyersOf(mission);
-  const returns = await returnsNow(flyers.flatMap(({ uav }) => uav ?? []));
-  const uavs = flyers.map(({ name, uav }) => ({ name, check: returns.get(uav ?? 0) }));
-  const asked = await confirmAct(abortQuestion({ name: mission.name, isActive: mission.state === "active", uavs }));
+  const told = { name: mission.name, isActive: mission.state === "active" };
+  const first = abortQuestion({ ...told, uavs: flyers.map(({ name }) => ({ name, check: null })) });
+  const later = returnsNow(flyers.flatMap(({ uav }) => uav ?? [])).then((returns) =>
+    abortQuestion({ ...told, uavs: flyers.map(({ name, uav }) => ({ name, check: returns.get(uav ?? 0) })) }),
+  );
+  const asked = await confirmAct({ ...first, lines: [...first.lines.slice(0, 2), CHECKING_HOME], later });
   if (!asked) return;
   await tried(acting, t("Not aborted."), async () => {
     await post(`/missions/${mission.id}/abort`, { why: asked.why }, whateverChanged());
@@ -238,14 +242,12 @@ async function abort(acting) {
   });
 }
 
-/** @param {Acting} acting @param {Flyer} flyer @param {Parameters<typeof questionOf>[0]} kind */
+/** @param {Acting} acting @param {Flyer} flyer @param {AskedKind} kind */
 async function command(acting, flyer, kind) {
   const planned = returnOf(acting.store.state.returns, flyer.place);
-  const present = await presentOf(flyer.uav, kind);
-  const question = questionOf(kind, { ...flyer, planned, ...present });
-  const asked = await confirmAct(question);
+  const asked = await confirmAct(presentQuestion(flyer.uav, kind, { ...flyer, planned }));
   if (!asked) return;
-  if (asked.isSafer && question.safer) await tell(acting, flyer, question.safer.kind, question.safer.parameters);
+  if (asked.safer) await tell(acting, flyer, asked.safer.kind, asked.safer.parameters);
   else await tell(acting, flyer, kind, asked);
 }
 
