@@ -3864,6 +3864,11 @@ export interface components {
              */
             state: components["schemas"]["PreflightCheckStateEnum"];
             message: string;
+            /**
+             * Format: double
+             * @description above take-off, of a return with something in its way: a height for set-return-height; null: none
+             */
+            safe_height_m: number | null;
         };
         /**
          * @description * `ok` - ok

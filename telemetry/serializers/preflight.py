@@ -11,6 +11,9 @@ class PreflightCheckSerializer(serializers.Serializer):
     )
     state = serializers.ChoiceField(choices=[(state.value, state.value) for state in CheckState], help_text="failed: it is not started")
     message = serializers.CharField()
+    safe_height_m = serializers.FloatField(
+        allow_null=True, help_text="above take-off, of a return with something in its way: a height for set-return-height; null: none"
+    )
 
 
 class UavPreflightSerializer(serializers.Serializer):

@@ -48,11 +48,15 @@ class NextAct(StrEnum):
 
 @dataclass(frozen=True)
 class Check:
-    """`code` is short and stable; `message` a sentence, or a few words where all is well."""
+    """`code` is short and stable; `message` a sentence, or a few words where all is well.
+
+    safe_height_m: of a return with something in its way, the height above take-off at which there is nothing.
+    """
 
     code: str
     state: CheckState
     message: str
+    safe_height_m: float | None = None
 
 
 @dataclass(frozen=True)
@@ -204,7 +208,7 @@ def _returns(check: ReturnCheck | None) -> Iterator[Check]:
     if check.state == ReturnState.CLEAR and check.height_m is not None:
         words = _("Return at %(metres)s m is clear") % {"metres": f"{check.height_m:.0f}"}
     if words:
-        yield Check("return", states.get(check.state, CheckState.UNKNOWN), words)
+        yield Check("return", states.get(check.state, CheckState.UNKNOWN), words, check.safe_height_m)
 
 
 def _wind(mission: Mission, told: Told) -> Iterator[Check]:

@@ -2,9 +2,12 @@
 
 import { ApiError, freshKey, get, post } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
+import { KINDS } from "../../domain/flying.js";
 import { beginStarts } from "../../page/planned_starts.js";
+import { tellUav } from "../../page/tell_uav.js";
 import { toast } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
+import { heightText } from "../../units.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { Mission, MissionStarts, Preflight, PreflightCheck, Rehearsal, UavPreflight } from "../../api_types.d.ts" */
@@ -105,23 +108,44 @@ const namesOf = (rows) => rows.map(({ name }) => name).join(", ");
  * @returns {PreflightCheck}
  */
 export function rehearsalCheck(rehearsal) {
-  const code = "rehearsal";
-  if (!rehearsal || rehearsal.is_outdated) return { code, state: "warning", message: t("This plan was not rehearsed") };
-  if (rehearsal.level === "fail") return { code, state: "warning", message: t("Its rehearsal failed") };
-  if (rehearsal.level === "warnings") return { code, state: "warning", message: t("Rehearsed, with warnings") };
+  const [code, safe_height_m] = ["rehearsal", null];
+  if (!rehearsal || rehearsal.is_outdated)
+    return { code, safe_height_m, state: "warning", message: t("This plan was not rehearsed") };
+  if (rehearsal.level === "fail") return { code, safe_height_m, state: "warning", message: t("Its rehearsal failed") };
+  if (rehearsal.level === "warnings")
+    return { code, safe_height_m, state: "warning", message: t("Rehearsed, with warnings") };
   return rehearsal.level === "pass"
-    ? { code, state: "ok", message: t("Rehearsed: passed") }
-    : { code, state: "unknown", message: t("Its rehearsal has no result yet") };
+    ? { code, safe_height_m, state: "ok", message: t("Rehearsed: passed") }
+    : { code, safe_height_m, state: "unknown", message: t("Its rehearsal has no result yet") };
 }
 
-/** @param {PreflightCheck} check */
-const checkRow = ({ code, state, message }) =>
+/** @param {PreflightCheck} check @param {HTMLElement | null} [remedy] */
+const checkRow = ({ code, state, message }, remedy = null) =>
   h(
     "li",
     { class: `check ${state}`, "data-check": code },
     icon(STATES[state].image, "small"),
-    h("span", {}, h("span", { class: "unseen" }, `${STATES[state].words}: `), message),
+    h("span", {}, h("span", { class: "unseen" }, `${STATES[state].words}: `), message, remedy),
   );
+
+/** One click to a height at which nothing is in the way home. @param {UavPreflight} row @param {PreflightCheck} check */
+function heightButton({ uav, name }, { safe_height_m }) {
+  if (safe_height_m === null) return null;
+  /** @param {Event} event */
+  const set = async ({ currentTarget }) => {
+    const button = /** @type {HTMLButtonElement} */ (currentTarget);
+    button.disabled = true;
+    try {
+      await tellUav(uav, name, "set-return-height", { height_m: safe_height_m });
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      button.disabled = false;
+      toast(`${t("{name} was not told: {act}.", { name, act: KINDS["set-return-height"] })} ${error.message}`);
+    }
+  };
+  const words = t("Set return height to {height}", { height: heightText(safe_height_m) });
+  return h("button", { type: "button", class: "button small", onclick: set }, icon("rotate-ccw", "small"), words);
+}
 
 /**
  * The panel's elements. draw: what was read; drawStep: the button alone.
@@ -156,7 +180,14 @@ function createPanel(place, on) {
       const parts = /** @type {HTMLElement[]} */ ([...list.querySelectorAll("details[open]")]);
       const open = new Set(parts.map(({ dataset }) => dataset.uav));
       const rows = preflight.uavs.map((row) => uavPart(row, open.has(`${row.uav}`)));
-      list.replaceChildren(h("ul", { class: "checks" }, whole.map(checkRow)), ...rows);
+      list.replaceChildren(
+        h(
+          "ul",
+          { class: "checks" },
+          whole.map((check) => checkRow(check)),
+        ),
+        ...rows,
+      );
     },
     /** @param {NextStep} step @param {boolean} isActing */
     drawStep({ act, words, image, why: reason }, isActing) {
@@ -185,7 +216,11 @@ function uavPart(row, isOpen) {
       h("strong", {}, row.name),
       h("span", { class: "check-summary" }, summaryOf(row)),
     ),
-    h("ul", { class: "checks" }, row.checks.map(checkRow)),
+    h(
+      "ul",
+      { class: "checks" },
+      row.checks.map((check) => checkRow(check, heightButton(row, check))),
+    ),
   );
 }
 
