@@ -15,7 +15,7 @@ MAKERS = [
     *(ROOT / "gateway" / f"{name}.py" for name in ("carriage", "preparation", "reading", "vehicle_limits")),
     *(
         ROOT / "ground_station" / f"{name}.py"
-        for name in ("command", "command_keeper", "limits", "mission_keeper", "orders", "vehicle_class")
+        for name in ("command", "command_keeper", "limits", "mission_keeper", "orders", "parameters", "vehicle_class")
     ),
 ]
 # Of these a part that is put in makes another sentence; each is looked at below as it comes out.

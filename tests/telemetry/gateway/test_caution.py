@@ -133,7 +133,8 @@ def test_an_abort_is_claimed_however_many_uploads_there_are():
     desk._tasks = {upload.pk: SimpleNamespace(done=lambda: False) for upload in uploads}
     asyncio.run(desk.look())
     claims = [named for do, named in database.asked if do is claim_commands]
-    assert [claim["axes"] for claim in claims] == [[CommandAxis.FLIGHT], [CommandAxis.SPEED], [CommandAxis.PARAMETER]], "and no upload more than may begin"
+    others = [[CommandAxis.FLIGHT], [CommandAxis.SPEED], [CommandAxis.PARAMETER]]
+    assert [claim["axes"] for claim in claims] == others, "and no upload more than may begin"
 
     del desk._carriages[uploads[0].pk], desk._tasks[uploads[0].pk]
     database.asked.clear()
