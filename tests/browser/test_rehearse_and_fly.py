@@ -175,7 +175,7 @@ def reads_the_record(page: Page, picture: Picture) -> None:
     wait_for_map(page)
     expect(page.locator("#report-state")).to_have_text("Completed")
     expect(page.locator("#report-sentence")).to_contain_text("2", timeout=SOON_MS)
-    expect(page.locator("#report-said")).to_contain_text("Flown in simulation, by no real aircraft.")
+    expect(page.locator("#report-said")).to_contain_text("Simulated flight.")
     expect(page.get_by_role("row", name=re.compile(r"^Distance .*\d"))).to_be_visible()
     expect(page.get_by_role("img", name="Height above take-off by time")).to_be_visible()
     expect(page.locator("#replay-strips .replay-row")).to_have_count(1)
