@@ -82,7 +82,7 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     picture(page, "plan-light")
 
     page.get_by_role("link", name="Missions", exact=True).first.click()
-    row = page.get_by_role("row").filter(has_text="South belt, autumn")
+    row = page.get_by_role("row").filter(has_text="South belt, autumn").filter(has_text="opal")
     expect(row).to_contain_text("Planned")
     expect(row).to_contain_text("4 targets")
     picture(page, "missions-light")
@@ -108,7 +108,7 @@ def test_two_uavs_and_four_targets_are_picked_planned_saved_and_reopened(visitor
     with page.expect_response(lambda answer: answer.url.endswith("/account") and "system" in (answer.request.post_data or "")):
         page.get_by_role("button", name="Theme: dark").click()
 
-    row = page.get_by_role("row").filter(has_text="South belt, autumn")
+    row = page.get_by_role("row").filter(has_text="South belt, autumn").filter(has_text="opal")
     row.get_by_role("button", name="More for South belt, autumn").click()
     page.get_by_role("button", name="Delete", exact=True).click()
     expect(page.get_by_text("“South belt, autumn” is deleted.")).to_be_visible()

@@ -148,7 +148,7 @@ def test_what_one_uav_leaves_is_offered_taken_by_one_operator_and_seen_by_the_ot
 
     watcher.goto(f"/missions/{flight.mission}/report")
     wait_for_map(watcher)
-    expect(watcher.get_by_role("region", name=re.compile("^Not inspected"))).to_contain_text(f"Taken over by {NAME}, continued.")
+    expect(watcher.get_by_role("region", name=re.compile("^Not inspected"))).to_contain_text(f"Taken over by {NAME}, continued")
 
 
 @pytest.mark.long

@@ -166,8 +166,8 @@ def test_ones_own_jobs_are_listed_and_one_that_waits_is_cancelled(visitor: Visit
 
 def test_whoever_may_not_cancel_a_job_is_not_offered_it(visitor: Visitor) -> None:
     """An operator who has become a viewer: what they had started still runs."""
-    page = newcomer(visitor, "vera", role="viewer")
-    visitor.site.does(OWN_JOBS.replace("jana", "vera"))
+    page = newcomer(visitor, "vito", role="viewer")
+    visitor.site.does(OWN_JOBS.replace("jana", "vito"))
     jobs = account(page).get_by_role("list", name="Jobs")
     expect(jobs.get_by_role("listitem")).to_have_count(2)
     expect(jobs.get_by_role("button")).to_have_count(0)
