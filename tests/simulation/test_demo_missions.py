@@ -108,9 +108,3 @@ def test_once_removed_they_can_be_made_again_with_their_uavs(administrator: User
     assert client_of(administrator).get("/api/v1/demo-data").json()["can_be_made"] is True
     assert len(make(administrator)) == len(DEMO_MISSIONS)
     assert Uav.objects.filter(is_demo=True).count() == 4
-
-
-def test_without_the_demo_region_they_cannot_be_made(client: Client) -> None:
-    administrator = client_of(somebody(Role.ADMINISTRATOR))
-    assert administrator.get("/api/v1/demo-data").json() == {"can_be_made": False, "job": None, "missions": 0, "uavs": 0}
-    assert administrator.post("/api/v1/demo-data", "{}", content_type="application/json", HTTP_IDEMPOTENCY_KEY="1").status_code == 409

@@ -168,3 +168,9 @@ def test_viewers_see_and_others_organisations_do_not(client, person):
         assert error(patch(stranger, path, MOTOR), 404)
     assert stranger.delete(f"/api/v1/simulations/{simulation.pk}").status_code == 404
     assert Client().get("/api/v1/simulations").status_code == 401
+
+
+def test_without_the_demo_region_no_demo_missions_can_be_made() -> None:
+    administrator = client_of(somebody(role=Role.ADMINISTRATOR))
+    assert administrator.get("/api/v1/demo-data").json() == {"can_be_made": False, "job": None, "missions": 0, "uavs": 0}
+    assert administrator.post("/api/v1/demo-data", "{}", content_type="application/json", HTTP_IDEMPOTENCY_KEY="1").status_code == 409
