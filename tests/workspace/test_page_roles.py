@@ -12,7 +12,7 @@ from workspace.models import Role
 
 pytestmark = pytest.mark.django_db
 
-STAND_INS = {"uuid": "00000000-0000-4000-8000-000000000000", "int": "0", "str": "x", "path": "x", "file_kind": "csv"}
+STAND_INS = {"uuid": "00000000-0000-4000-8000-000000000000", "int": "0", "str": "x", "path": "x", "file_kind": "csv", "result_kind": "csv"}
 OPEN_TO_ALL = {
     "api/schema", "api/docs", "sign-in", "lost-password", "lost-password/sent", "new-password/x/x", "new-password/set",
     "invitation/x",
