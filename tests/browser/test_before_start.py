@@ -78,6 +78,8 @@ def test_four_clicks_lead_from_approved_to_the_start_of_all(visitor: Visitor, ap
     expect(page.locator("#planned-starts li").first).to_contain_text(re.compile(r"in 0:0\d"))
     began = asks(page, f"/missions/{mission}/planned-starts")["starts"]
     assert {start["state"] for start in began["uavs"]} == {"waiting"}
+    page.get_by_role("button", name="Stop starting").click()
+    expect(page.locator("#planned-starts")).to_contain_text("No further UAV is started")
 
 
 def test_a_uav_in_another_place_blocks_the_start_with_its_reason(visitor: Visitor, approved: Approved) -> None:
