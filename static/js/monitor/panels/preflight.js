@@ -123,7 +123,7 @@ export function rehearsalCheck(rehearsal) {
 const checkRow = ({ code, state, message }, remedy = null) =>
   h(
     "li",
-    { class: `check ${state}`, "data-check": code },
+    { class: `preflight-check ${state}`, "data-check": code },
     icon(STATES[state].image, "small"),
     h("span", {}, h("span", { class: "unseen" }, `${STATES[state].words}: `), message, remedy),
   );
@@ -160,7 +160,7 @@ function createPanel(place, on) {
   const ticked = ({ currentTarget }) => on.tick(/** @type {HTMLInputElement} */ (currentTarget).checked);
   const tick = h(
     "label",
-    { class: "check-line", hidden: true },
+    { class: "preflight-tick", hidden: true },
     h("input", { type: "checkbox", id: "pilot-checked", onchange: ticked }),
     h("span", {}, t("Looked at on site: propellers and battery, take-off place, airspace and weather, radio at hand")),
   );
@@ -183,7 +183,7 @@ function createPanel(place, on) {
       list.replaceChildren(
         h(
           "ul",
-          { class: "checks" },
+          { class: "preflight-list" },
           whole.map((check) => checkRow(check)),
         ),
         ...rows,
@@ -211,14 +211,14 @@ function uavPart(row, isOpen) {
     { "data-uav": `${row.uav}`, open: isOpen },
     h(
       "summary",
-      { class: `check ${worst}` },
+      { class: `preflight-check ${worst}` },
       icon(STATES[worst].image, "small"),
       h("strong", {}, row.name),
       h("span", { class: "check-summary" }, summaryOf(row)),
     ),
     h(
       "ul",
-      { class: "checks" },
+      { class: "preflight-list" },
       row.checks.map((check) => checkRow(check, heightButton(row, check))),
     ),
   );
