@@ -3,7 +3,7 @@
 from django.db.models import OuterRef, Q, QuerySet
 
 from missions.command_rules import HAND_OVER
-from missions.models import OPEN_COMMANDS, CommandKind, CommandState, Mission, Route, Uav, UavCommand
+from missions.models import OPEN_COMMANDS, Approval, CommandAxis, CommandKind, CommandState, Mission, Route, Uav, UavCommand
 from workspace.models import Organisation
 
 _REACHED = Q(state__in=OPEN_COMMANDS) | Q(state=CommandState.APPLIED) | Q(sent_at__isnull=False)
@@ -36,6 +36,12 @@ def commands_of_uav(uav: Uav) -> QuerySet[UavCommand]:
 def route_commands(uav: Uav | OuterRef) -> QuerySet[UavCommand]:
     """Those that decide of which mission a UAV has a route, the newest first: sent or about to be, or taken off."""
     return UavCommand.objects.filter(_SENDS_A_ROUTE | _TAKES_IT_OFF, uav=uav, mission__isnull=False).order_by("-sequence")
+
+
+def upload_of(approval: Approval, uav_id: int | None) -> UavCommand | None:
+    """Upload of this approval to a UAV, whatever its state; None where its last command about missions is another one."""
+    last = UavCommand.objects.filter(uav=uav_id, axis=CommandAxis.MISSION).order_by("-sequence").first()
+    return last if last is not None and last.kind == CommandKind.UPLOAD_MISSION and last.approval_id == approval.pk else None
 
 
 def places_in_flight(mission: Mission) -> dict[int, int]:

@@ -10,12 +10,12 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
+from missions.command_selectors import upload_of
 from missions.mavlink.content import FlightLoad, load_from_json
 from missions.mavlink.frozen import FrozenRoute, TakeOff, route_from_json
 from missions.models import (
     OPEN_COMMANDS,
     Approval,
-    CommandAxis,
     CommandKind,
     CommandState,
     LinkKind,
@@ -218,10 +218,8 @@ def _link_reasons(routes: list[dict[str, Any]]) -> list[Reason]:
 
 def _is_on_its_way(approval: Approval, uav_id: int) -> bool:
     """Whether the last word about the UAV's mission is an upload of this approval that has arrived or is under way."""
-    last = UavCommand.objects.filter(uav=uav_id, axis=CommandAxis.MISSION).order_by("-sequence").first()
-    if last is None or last.kind != CommandKind.UPLOAD_MISSION or last.approval_id != approval.pk:
-        return False
-    return last.state in OPEN_COMMANDS or last.state == CommandState.APPLIED
+    upload = upload_of(approval, uav_id)
+    return upload is not None and (upload.state in OPEN_COMMANDS or upload.state == CommandState.APPLIED)
 
 
 def _flight_reasons(mission: Mission, approval: Approval, route: dict[str, Any], flight: int) -> list[Reason]:

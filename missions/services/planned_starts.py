@@ -7,15 +7,15 @@ from enum import StrEnum
 from uuid import UUID
 
 from django.db import transaction
+from django.db.models import QuerySet
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from missions.command_rules import SAFETY_RANKS
-from missions.command_selectors import places_in_flight
+from missions.command_selectors import places_in_flight, upload_of
 from missions.models import (
     OPEN_COMMANDS,
     Approval,
-    CommandAxis,
     CommandKind,
     CommandState,
     Mission,
@@ -23,7 +23,6 @@ from missions.models import (
     Route,
     StartsEnd,
     Uav,
-    UavCommand,
 )
 from missions.selectors import approval_in_force
 from missions.services.approval import held_mission
@@ -177,22 +176,25 @@ def _end(starts: PlannedStarts, end: StartsEnd, actor: User | None = None) -> No
     starts.save(update_fields=["uavs", "looked_at", "end", "ended_at", "ended_by"])
 
 
-def _routes_to_start(mission: Mission, approval: Approval) -> list[Route]:
-    """Of UAVs whose first flight has not begun and is not about to, in the order of their departures."""
-    begun = set(approval.commands.filter(kind=CommandKind.START, state__in=BEGUN).values_list("uav", flat=True))
-    waiting = places_in_flight(mission).keys() - begun
+def routes_not_begun(mission: Mission, approval: Approval) -> QuerySet[Route]:
+    """Routes of fleet UAVs whose first flight has not begun and is not about to, in the order of their departures."""
+    begun = approval.commands.filter(kind=CommandKind.START, state__in=BEGUN).values("uav")
     routes = mission.routes.select_related("mission_uav").filter(
-        mission_uav__uav__in=waiting, geometry__isnull=False, begun_by=None, has_failed=False, flights_flown=0
+        mission_uav__uav__isnull=False, geometry__isnull=False, begun_by=None, continued_by=None, has_failed=False, flights_flown=0
     )
-    return list(routes.order_by("departs_s", "mission_uav__sequence"))
+    return routes.exclude(mission_uav__uav__in=begun).order_by("departs_s", "mission_uav__sequence")
+
+
+def _routes_to_start(mission: Mission, approval: Approval) -> list[Route]:
+    return list(routes_not_begun(mission, approval).filter(mission_uav__uav__in=places_in_flight(mission)))
 
 
 def _not_loaded(routes: Sequence[Route], approval: Approval) -> list[Reason]:
     found = []
     for route in routes:
         place = route.mission_uav
-        last = UavCommand.objects.filter(uav=place.uav_id, axis=CommandAxis.MISSION).order_by("-sequence").first()
-        if last is None or last.approval_id != approval.pk or last.state != CommandState.APPLIED:
+        upload = upload_of(approval, place.uav_id)
+        if upload is None or upload.state != CommandState.APPLIED:
             found.append(Reason("not_loaded", _("%(uav)s does not have its mission yet.") % {"uav": place.name}, place.sequence))
     return found
 

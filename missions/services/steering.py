@@ -9,12 +9,11 @@ from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from missions.command_rules import SETS_IN_MOTION, THEN_RETURN, WAIT_S
-from missions.command_selectors import route_commands
+from missions.command_selectors import route_commands, upload_of
 from missions.fleet_selectors import performance_of
 from missions.mavlink.own_return import own_return
 from missions.models import (
     Approval,
-    CommandAxis,
     CommandKind,
     CommandState,
     LinkKind,
@@ -151,10 +150,10 @@ def _to_move_for(uav: Uav, kind: CommandKind, mission: Mission | None, approval:
 def _flight_to_start(uav: Uav, mission: Mission, approval: Approval, look: Look | None, now: datetime, *, out_of_slot: bool) -> int:
     """That is on the UAV, seen there, and due. Raises Refused."""
     values = {"uav": uav.name}
-    last = UavCommand.objects.filter(uav=uav, axis=CommandAxis.MISSION).order_by("-sequence").first()
-    if last is None or last.approval_id != approval.pk or last.kind != CommandKind.UPLOAD_MISSION or last.state != CommandState.APPLIED:
+    upload = upload_of(approval, uav.pk)
+    if upload is None or upload.state != CommandState.APPLIED:
         raise refuse("not_loaded", _("%(uav)s does not have its mission yet.") % values)
-    flight = int(last.parameters.get("flight", 1))
+    flight = int(upload.parameters.get("flight", 1))
     route = MissionUav.objects.select_related("route__mission_uav", "route__mission").get(mission=mission, uav=uav).route
     if flight <= route.flights_flown:
         raise refuse("flown_already", _("%(uav)s has flown this flight.") % values)
