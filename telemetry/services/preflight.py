@@ -4,31 +4,40 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from enum import StrEnum
+from functools import lru_cache
 from typing import Any
+from uuid import UUID
 
 import numpy as np
 from django.conf import settings
+from django.utils import timezone
 from django.utils.dateparse import parse_datetime
+from django.utils.translation import get_language
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import distance_m
+from inspection.selectors import ground_revision
+from missions.command_selectors import upload_of
 from missions.fleet_selectors import performance_of
-from missions.models import OPEN_COMMANDS, Approval, CommandAxis, CommandKind, CommandState, Mission, Route, Uav, UavCommand
-from missions.selectors import approval_in_force
+from missions.models import OPEN_COMMANDS, Approval, CommandState, Mission, Route, Uav
+from missions.selectors import approval_in_force, mission_of_organisation
 from missions.services.approval_checks import look_at
 from missions.services.dispatch import TO_SEND
 from missions.services.own_return import ReturnCheck, ReturnState, return_checks
-from missions.services.planned_starts import BEGUN
+from missions.services.planned_starts import routes_not_begun
 from missions.services.refused import Reason
 from missions.services.start_slots import reasons_to_wait
-from telemetry.models import UavLink, UavWatch
+from missions.stored_outcomes import outcome_in_words
+from telemetry.models import UavLink
+from workspace.models import Organisation
 
 HEARD_WITHIN = timedelta(seconds=15)  # companions report every 10 s
 BATTERY_WITHIN = timedelta(seconds=60)
+MAP_CHECK_PERIOD_S = 15.0
 FIX_IN_SPACE = 3  # GPS_FIX_TYPE of MAVLink: 3D
 MORE_WIND_MPS = 3.0  # than planned, of which is warned
 AT_ITS_PLACE_M, AWAY_FROM_ITS_PLACE_M = 15.0, 50.0  # of the planned take-off: nothing is said, and it may not start
-Told = Mapping[str, Mapping[str, Any]]  # groups of values of the newest reports; see services/latest.py
+Reported = Mapping[str, Mapping[str, Any]]  # groups of values of the newest reports; see services/latest.py
 
 
 class CheckState(StrEnum):
@@ -82,33 +91,40 @@ class Preflight:
 
 
 def preflight_of(mission: Mission, *, now: datetime) -> Preflight:
-    """Of the UAVs whose first flight has not begun, of a mission as loaded by selectors.mission_of_organisation. Raises NoGraph."""
+    """Checks of the UAVs whose first flight has not begun. Raises NoGraph."""
     approval = approval_in_force(mission)
     if approval is None or approval.revoke_requested_at is not None or mission.state not in TO_SEND:
         return Preflight(None, (), ())
-    routes = _to_start(mission, approval)
+    related = ("mission", "mission_uav__uav__uav_type", "mission_uav__uav__connection", "mission_uav__uav__watch")
+    routes = list(routes_not_begun(mission, approval).select_related(*related))
     if not routes:
         return Preflight(None, (), ())
-    look = look_at(mission, now=now)
-    reasons = () if look is None else look.reasons
-    returns = {check.place: check for check in return_checks(mission)}
-    rows = tuple(
-        _uav_preflight(uav, route, approval, returns.get(route.mission_uav.sequence), reasons, now)
-        for route in routes
-        if (uav := route.mission_uav.uav) is not None
-    )
-    own = tuple(_against(reasons, None))
+    period = int(now.timestamp() // MAP_CHECK_PERIOD_S)
+    read_at = tuple(None if route.mission_uav.uav is None else route.mission_uav.uav.autopilot_return_read_at for route in routes)
+    found = _checked_on_the_map(mission.organisation_id, mission.pk, mission.revision, ground_revision(), read_at, get_language(), period)
+    rows = tuple(_uav_preflight(uav, route, approval, found, now) for route in routes if (uav := route.mission_uav.uav) is not None)
+    own = tuple(_against(found.reasons, None))
     clear = Check("ground", CheckState.OK, _("No zone in force and nothing on the ground is in the way"))
-    return Preflight(_next_act(rows), own if reasons else (clear,), rows)
+    return Preflight(_next_act(rows), own if found.reasons else (clear,), rows)
 
 
-def _to_start(mission: Mission, approval: Approval) -> list[Route]:
-    """In the order of their departures."""
-    begun = set(approval.commands.filter(kind=CommandKind.START, state__in=BEGUN).values_list("uav", flat=True))
-    routes = mission.routes.select_related("mission", "mission_uav__uav__uav_type").filter(
-        mission_uav__uav__isnull=False, geometry__isnull=False, begun_by=None, continued_by=None, has_failed=False, flights_flown=0
-    )
-    return list(routes.exclude(mission_uav__uav__in=begun).order_by("departs_s", "mission_uav__sequence"))
+@dataclass(frozen=True)
+class _OnTheMap:
+    """What zones, terrain and obstacles say of the routes and of the ways home, by place in the mission."""
+
+    reasons: tuple[Reason, ...]
+    returns: Mapping[int | None, ReturnCheck]
+
+
+@lru_cache(maxsize=64)
+def _checked_on_the_map(
+    organisation_id: int, mission_id: UUID, revision: int, ground: int, read_at: tuple[datetime | None, ...], language: str, period: int
+) -> _OnTheMap:
+    """Most of the cost of a preflight, so computed once a period; the arguments change with all that it depends on but time and other
+    missions. A start is decided by a check of its own."""
+    mission = mission_of_organisation(Organisation(pk=organisation_id), mission_id)
+    look = look_at(mission, now=timezone.now())
+    return _OnTheMap(() if look is None else look.reasons, {check.place: check for check in return_checks(mission)})
 
 
 def _next_act(rows: tuple[UavPreflight, ...]) -> NextAct:
@@ -127,24 +143,22 @@ def _against(reasons: Sequence[Reason], place: int | None) -> Iterator[Check]:
     return (Check(reason.code, CheckState.FAILED, reason.message) for reason in reasons if reason.uav == place)
 
 
-def _uav_preflight(
-    uav: Uav, route: Route, approval: Approval, returns: ReturnCheck | None, reasons: Sequence[Reason], now: datetime
-) -> UavPreflight:
+def _uav_preflight(uav: Uav, route: Route, approval: Approval, found: _OnTheMap, now: datetime) -> UavPreflight:
     place = route.mission_uav
-    link = UavLink.objects.filter(uav=uav).first() or UavLink(uav=uav)
-    watch = UavWatch.objects.filter(uav=uav).first()
-    told: Told = (watch.measured if watch is not None else None) or {}
-    on_board = _mission_on_board(uav, approval, link)
-    is_loaded = on_board.state in (CheckState.OK, CheckState.WARNING)
+    link, watch = getattr(uav, "connection", None) or UavLink(uav=uav), getattr(uav, "watch", None)
+    reported: Reported = (watch.measured if watch is not None else None) or {}
+    onboard = _onboard_mission(uav, approval, link)
+    is_loaded = onboard.state in (CheckState.OK, CheckState.WARNING)
     checks = (
-        _link(link, told, now), _position(route, told), _battery(uav, route, told, now), on_board, *_returns(returns),
-        *_wind(route.mission, told), *(_others(uav, route, now) if is_loaded else ()), *_against(reasons, place.sequence),
+        _link(link, reported, now), _position(route, reported), _battery(uav, route, reported, now), onboard,
+        *_returns(found.returns.get(place.sequence)), *_wind(route.mission, reported),
+        *(_others(uav, route, now) if is_loaded else ()), *_against(found.reasons, place.sequence),
     )  # fmt: skip
     return UavPreflight(uav.pk, place.name, place.sequence, is_loaded, checks)
 
 
-def _link(link: UavLink, told: Told, now: datetime) -> Check:
-    received = parse_datetime(told["report"]["received_at"]) if "report" in told else None
+def _link(link: UavLink, reported: Reported, now: datetime) -> Check:
+    received = parse_datetime(reported["report"]["received_at"]) if "report" in reported else None
     heard = max((moment for moment in (link.heard_at, received) if moment is not None), default=None)
     if heard is None:
         return Check("link", CheckState.FAILED, _("It was never heard. Switch it on, and check its connection."))
@@ -155,8 +169,8 @@ def _link(link: UavLink, told: Told, now: datetime) -> Check:
     return Check("link", CheckState.OK, _("Connected"))
 
 
-def _position(route: Route, told: Told) -> Check:
-    fix, place = told.get("gps", {}).get("gps_fix"), told.get("position", {}).get("position")
+def _position(route: Route, reported: Reported) -> Check:
+    fix, place = reported.get("gps", {}).get("gps_fix"), reported.get("position", {}).get("position")
     if fix is not None and fix < FIX_IN_SPACE:
         return Check("position", CheckState.FAILED, _("It has no position yet. Wait for its satellite receiver."))
     if place is None:
@@ -169,8 +183,8 @@ def _position(route: Route, told: Told) -> Check:
     return Check("position", state, _("%(metres)s m from its planned take-off place") % {"metres": f"{away_m:.0f}"})
 
 
-def _battery(uav: Uav, route: Route, told: Told, now: datetime) -> Check:
-    battery = told.get("battery", {})
+def _battery(uav: Uav, route: Route, reported: Reported, now: datetime) -> Check:
+    battery = reported.get("battery", {})
     percent = battery.get("battery_percent")
     measured = parse_datetime(battery["measured_at"]) if battery else None
     if percent is None or measured is None or now - measured > BATTERY_WITHIN:
@@ -185,14 +199,18 @@ def _battery(uav: Uav, route: Route, told: Told, now: datetime) -> Check:
     return Check("battery", CheckState.OK, _("%(percent)s %%, lands with %(lands)s %% (reserve %(reserve)s %%)") % values)
 
 
-def _mission_on_board(uav: Uav, approval: Approval, link: UavLink) -> Check:
-    last = UavCommand.objects.filter(uav=uav, axis=CommandAxis.MISSION).order_by("-sequence").first()
-    if last is None or last.approval_id != approval.pk or last.kind != CommandKind.UPLOAD_MISSION:
+def _onboard_mission(uav: Uav, approval: Approval, link: UavLink) -> Check:
+    upload = upload_of(approval, uav.pk)
+    if upload is None:
         return Check("mission", CheckState.UNKNOWN, _("Not uploaded"))
-    if last.state in OPEN_COMMANDS:
+    if upload.state in OPEN_COMMANDS:
         return Check("mission", CheckState.WAITING, _("Being uploaded"))
-    if last.state != CommandState.APPLIED:
-        return Check("mission", CheckState.FAILED, _("Not uploaded: %(why)s") % {"why": last.outcome or last.get_state_display()})
+    if upload.state != CommandState.APPLIED:
+        return Check(
+            "mission",
+            CheckState.FAILED,
+            _("Not uploaded: %(why)s") % {"why": outcome_in_words(upload.outcome) or upload.get_state_display()},
+        )
     if link.loaded_doubt:
         return Check("mission", CheckState.WARNING, _("Uploaded; it may hold something else by now, and is read back before it starts"))
     return Check("mission", CheckState.OK, _("Uploaded and read back: as approved"))
@@ -211,9 +229,9 @@ def _returns(check: ReturnCheck | None) -> Iterator[Check]:
         yield Check("return", states.get(check.state, CheckState.UNKNOWN), words, check.safe_height_m)
 
 
-def _wind(mission: Mission, told: Told) -> Iterator[Check]:
+def _wind(mission: Mission, reported: Reported) -> Iterator[Check]:
     """Most vehicles tell it in the air alone."""
-    measured_mps = told.get("wind", {}).get("wind_speed_mps")
+    measured_mps = reported.get("wind", {}).get("wind_speed_mps")
     if measured_mps is None:
         return
     layers = (mission.conditions or {}).get("wind") or []

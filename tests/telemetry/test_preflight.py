@@ -20,7 +20,7 @@ from tests.missions.outbox import claim, fence
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.records import START, record
 from tests.workspace.people import client_of, somebody
-from workspace.models import AuditEntry, Role, User
+from workspace.models import AuditEntry, Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
 
@@ -145,12 +145,23 @@ def test_of_a_mission_that_is_not_approved_nothing_is_checked(two: tuple[Mission
     assert checks(mission) == Preflight(None, (), ())
 
 
-def test_the_api_tells_viewers_and_nobody_of_another_organisation(two: tuple[Mission, Uav, Uav]) -> None:
+def test_viewers_read_it_and_nobody_of_another_organisation_does(two: tuple[Mission, Uav, Uav]) -> None:
     mission, _tern, _kite = two
     answer = client_of(somebody(role=Role.VIEWER)).get(f"/api/v1/missions/{mission.pk}/preflight")
     assert answer.status_code == 200
     assert answer.json()["next_act"] == "connect"
     assert answer.json()["uavs"][0]["checks"][0]["code"] == "link"
+    stranger = somebody(Role.ADMINISTRATOR, Organisation.objects.create(name="Elsewhere"))
+    assert client_of(stranger).get(f"/api/v1/missions/{mission.pk}/preflight").status_code == 404
+
+
+def test_polls_of_one_period_check_the_map_once(two: tuple[Mission, Uav, Uav], django_assert_max_num_queries: Any) -> None:
+    mission, tern, kite = two
+    heard(tern, kite)
+    checks(mission)
+    loaded = mission_of_organisation(mission.organisation, mission.pk)
+    with django_assert_max_num_queries(6):  # approval, routes with UAVs, ground, and an upload of each UAV
+        preflight_of(loaded, now=timezone.now())
 
 
 def test_the_pilots_own_check_is_kept_with_the_starts(two: tuple[Mission, Uav, Uav], person: User) -> None:
