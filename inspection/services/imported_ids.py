@@ -9,7 +9,7 @@ from django.db import connection
 from inspection.asset_files.rows import AssetFileError
 from inspection.zones.geometry_gate import GeometryFault
 
-MOST_TOLD = 50
+MAX_REPORTED = 50
 _OF_THE_SET = "a.asset_set_id = %(asset_set)s AND a.kind = s.kind AND a.source_key = s.source_key"
 _REFERENCE = "r.asset_id = a.id AND r.organisation_id = %(organisation)s"
 _TAKEN = """
@@ -55,7 +55,7 @@ _STATEMENTS = (
 
 def count_of_ids(asset_set: int | None, organisation: int) -> int:
     """How many ids the staged rows would give. Raises AssetFileError for those that an asset outside the set has."""
-    values = {"asset_set": asset_set, "organisation": organisation, "most": MOST_TOLD}
+    values = {"asset_set": asset_set, "organisation": organisation, "most": MAX_REPORTED}
     with connection.cursor() as cursor:
         cursor.execute(_TAKEN, values)
         taken = [GeometryFault("columns.external_id", f"the external id {key[:60]!r} is another asset's") for (key,) in cursor.fetchall()]

@@ -13,8 +13,8 @@ USUAL_ENDURANCE_S = 1_200.0  # where nothing is known of the battery: small mult
 J_PER_WH = 3_600.0
 STILL_BELOW_MPS = 1.0  # over ground
 CLIMBS_ABOVE_MPS = 0.7
-LONGEST_GAP_S = 30.0  # between two reports: over a longer one nobody knows what kind of flight it was
-LEAST_LOST_PERCENT = 5.0  # before an observed drain counts: reports come in whole percent
+MAX_GAP_S = 30.0  # between two reports: over a longer one nobody knows what kind of flight it was
+MIN_LOST_PERCENT = 5.0  # before an observed drain counts: reports come in whole percent
 READ_WITHIN_PERCENT = 1.0
 STEP_PERCENT = 1.0  # of expected drain, between two entries
 STEPS_KEPT = 12
@@ -90,9 +90,9 @@ class Drained:
         found = [
             (self.lost - lost - _read_within(self.runs - runs)) / (self.expected - expected)
             for expected, lost, runs in self.steps
-            if self.lost - lost >= LEAST_LOST_PERCENT + READ_WITHIN_PERCENT and self.expected > expected
+            if self.lost - lost >= MIN_LOST_PERCENT + READ_WITHIN_PERCENT and self.expected > expected
         ]
-        if self.lost >= LEAST_LOST_PERCENT:
+        if self.lost >= MIN_LOST_PERCENT:
             found.append(_beyond(self.lost, self.expected, _read_within(self.runs - 1)) / self.expected)
         return min(max(*RATIOS[:1], *found), RATIOS[1]) if found else None
 
@@ -124,7 +124,7 @@ class DrainMemory:
             self.last = before or self.last
             return
         seconds, lost = (measured_s - before[0]) * clock_rate, before[1] - left_percent
-        if lost < -2.0 * READ_WITHIN_PERCENT or seconds > LONGEST_GAP_S:
+        if lost < -2.0 * READ_WITHIN_PERCENT or seconds > MAX_GAP_S:
             self.still_lost = 0.0
             return
         self.still_lost = self.still_lost + lost if kind is FlightKind.STILL is was else 0.0

@@ -6,7 +6,7 @@ import { clockText, durationText, heightText, lengthText, percentText } from "..
 /** @import { Safer } from "./command_questions.js" */
 /** @import { LandingHere, PresentReturn, ReturnCheck } from "../api_types.d.ts" */
 
-export const LEAST_HOLD_S = 30; // a shorter hold is none
+export const MIN_HOLD_S = 30; // a shorter hold is none
 
 /**
  * Of answers of the API; undefined while they are not there.
@@ -64,7 +64,7 @@ export function landingLines(landing) {
  */
 export function holdLine(hold_s) {
   if (typeof hold_s !== "number") return t("How long it can hold is not known.");
-  if (hold_s < LEAST_HOLD_S)
+  if (hold_s < MIN_HOLD_S)
     return t("It cannot hold: the rest of its battery is needed for the way home and the reserve.");
   return t("It can hold for about {time}: the rest of its battery is for the way home and the reserve.", {
     time: durationText(hold_s),

@@ -2,7 +2,7 @@
 
 import { ESTIMATED, hasFix, isLate, isSilent, LOST, MEASURED, reportAge_s, withinOf_m } from "../domain/certainty.js";
 import { inAir } from "../domain/in_air.js";
-import { LEAST_HOLD_S } from "../domain/own_return.js";
+import { MIN_HOLD_S } from "../domain/own_return.js";
 import { t } from "../text.js";
 import {
   clockText,
@@ -78,7 +78,7 @@ export function batteryWords(uav) {
   const battery = uav.estimated?.battery;
   if (!battery || inAir(uav) === false) return "";
   if (isHeld(uav) && battery.hold_s !== null)
-    return battery.hold_s < LEAST_HOLD_S
+    return battery.hold_s < MIN_HOLD_S
       ? t("Battery: too low to hold longer")
       : t("Battery: can hold for {time}", { time: durationText(battery.hold_s) });
   const reserve = durationText(battery.reserve_in_s);

@@ -80,7 +80,7 @@ function pictureIn(holder, options) {
   }
 }
 
-const MOST_ALERTS = 3;
+const MAX_ALERTS = 3;
 
 /** @param {Alert} alert @param {string} address */
 const alertLine = ({ level, message, closed_at }, address) =>
@@ -102,7 +102,7 @@ function createNotices() {
     overlays: [notice, stale, alerts],
     /** Pinned over the picture, the worst first. @param {Alert[]} told of a live source @param {string} address where they are answered */
     showAlerts(told, address) {
-      const shown = alertsInOrder(pinnedAlerts(told).filter(isUnanswered)).slice(0, MOST_ALERTS);
+      const shown = alertsInOrder(pinnedAlerts(told).filter(isUnanswered)).slice(0, MAX_ALERTS);
       const key = JSON.stringify(shown.map(({ id, revision, message }) => [id, revision, message]));
       if (alerts.dataset.key === key) return;
       alerts.dataset.key = key;
