@@ -29,7 +29,7 @@ from missions.services.outbox import (
     release_claims_of_others,
     renew_claims,
 )
-from missions.services.returns_in_turn import return_after
+from missions.services.staggered_returns import return_after
 
 __all__ = [
     "CHANNEL",

@@ -30,7 +30,7 @@ from missions.services.approval_checks import Look, look_at, look_that_counts
 from missions.services.flying import ON_ITS_WAY
 from missions.services.outbox import queue_command
 from missions.services.refused import Reason, refuse, refuse_for
-from missions.services.returns_in_turn import hold_then_return
+from missions.services.staggered_returns import hold_then_return
 from missions.services.start_slots import OUT_OF_SLOT, hold_starts, reasons_to_wait
 from workspace.models import User
 

@@ -587,7 +587,7 @@ export interface components {
             unknown: string;
         };
         /** @description What a UAV's battery still allows, by its drain in the same kind of flight; seconds are the UAV's own. */
-        BatteryOutlook: {
+        BatteryForecast: {
             /**
              * @description of now; an alert keeps its worst
              *
@@ -595,7 +595,7 @@ export interface components {
              *     * `warning` - warning
              *     * `critical` - critical
              */
-            level: components["schemas"]["BatteryOutlookLevelEnum"] | components["schemas"]["BlankEnum"];
+            level: components["schemas"]["BatteryForecastLevelEnum"] | components["schemas"]["BlankEnum"];
             /** Format: double */
             left_percent: number;
             /** Format: double */
@@ -624,7 +624,7 @@ export interface components {
          *     * `critical` - critical
          * @enum {string}
          */
-        BatteryOutlookLevelEnum: "warning" | "critical";
+        BatteryForecastLevelEnum: "warning" | "critical";
         /**
          * @description * `go_on` - go_on
          *     * `hold` - hold
@@ -1200,7 +1200,7 @@ export interface components {
             contact_expected_at: string | null;
             /** Format: double */
             report_interval_s: number | null;
-            battery?: components["schemas"]["BatteryOutlook"] | null;
+            battery?: components["schemas"]["BatteryForecast"] | null;
         };
         /** @description How good the estimates between reports were, by what was measured of the same moments. */
         Estimates: {
@@ -7587,8 +7587,8 @@ export type BatchAnswers = components['schemas']['BatchAnswers'];
 export type BatchInputRequest = components['schemas']['BatchInputRequest'];
 export type BatchKind = components['schemas']['BatchKind'];
 export type BatteryAtLanding = components['schemas']['BatteryAtLanding'];
-export type BatteryOutlook = components['schemas']['BatteryOutlook'];
-export type BatteryOutlookLevelEnum = components['schemas']['BatteryOutlookLevelEnum'];
+export type BatteryForecast = components['schemas']['BatteryForecast'];
+export type BatteryForecastLevelEnum = components['schemas']['BatteryForecastLevelEnum'];
 export type BehaviourEnum = components['schemas']['BehaviourEnum'];
 export type BindsEnum = components['schemas']['BindsEnum'];
 export type BlankEnum = components['schemas']['BlankEnum'];

@@ -53,7 +53,7 @@ class Present:
 
 @dataclass(frozen=True)
 class Heard:
-    """A UAV with what is known of it now. `battery` is what the watch has made of it, `battery_age_s` old; see battery_outlook.py."""
+    """A UAV with what is known of it now. `battery` is what the watch has made of it, `battery_age_s` old; see battery_forecast.py."""
 
     uav: Uav
     present: Present | None = None

@@ -98,7 +98,7 @@ class EstimateArrivalSerializer(serializers.Serializer):
     latest = serializers.DateTimeField(allow_null=True)
 
 
-class BatteryOutlookSerializer(serializers.Serializer):
+class BatteryForecastSerializer(serializers.Serializer):
     """What a UAV's battery still allows, by its drain in the same kind of flight; seconds are the UAV's own."""
 
     level = serializers.ChoiceField(choices=["", "warning", "critical"], help_text="of now; an alert keeps its worst")
@@ -132,7 +132,7 @@ class EstimateShapeSerializer(serializers.Serializer):
     ends_at = serializers.DateTimeField(allow_null=True)
     contact_expected_at = serializers.DateTimeField(allow_null=True)
     report_interval_s = serializers.FloatField(allow_null=True)
-    battery = BatteryOutlookSerializer(allow_null=True, required=False)
+    battery = BatteryForecastSerializer(allow_null=True, required=False)
 
 
 @extend_schema_field(EstimateShapeSerializer(allow_null=True))

@@ -52,7 +52,7 @@ _OF_THIS_PROCESS = Memories()
 def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | None = None) -> dict[int, dict[str, Any] | None]:
     """Opens, raises and closes alerts of UAVs that this process watches. Called once a second; safe to call again.
 
-    Returns what the battery of each allows, as live pages show it (battery_outlook.py).
+    Returns what the battery of each allows, as live pages show it (battery_forecast.py).
     """
     memories = _OF_THIS_PROCESS if memories is None else memories
     memories.keep_only(uav.uav_id for uav in watched)

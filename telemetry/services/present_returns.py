@@ -140,19 +140,19 @@ def present_returns(*, uavs: Sequence[Uav], now: datetime) -> list[PresentReturn
 
 def battery_at_landing(heard: Heard) -> BatteryAtLanding:
     """By what the watch has made of its reports; with the reason where that is not known."""
-    values, outlook = {"uav": heard.uav.name}, heard.battery
+    values, forecast = {"uav": heard.uav.name}, heard.battery
     if heard.is_in_air is False:
         return BatteryAtLanding(left_percent=heard.battery_percent)
     if heard.battery_percent is None:
         return BatteryAtLanding(unknown=_("%(uav)s reports no battery percentage.") % values)
-    if outlook is None or heard.battery_age_s is None or heard.battery_age_s > MAX_BATTERY_AGE_S:
+    if forecast is None or heard.battery_age_s is None or heard.battery_age_s > MAX_BATTERY_AGE_S:
         words = _("What the way home takes of the battery of %(uav)s is only worked out while it flies a mission and reports.")
         return BatteryAtLanding(left_percent=heard.battery_percent, unknown=words % values)
-    left, home, reserve = outlook["left_percent"], outlook["home_percent"], outlook["reserve_percent"]
+    left, home, reserve = forecast["left_percent"], forecast["home_percent"], forecast["reserve_percent"]
     if home is None:
         words = _("What the way home takes of the battery of %(uav)s is not known: it has no position, or the wind leaves no headway.")
         return BatteryAtLanding(left, reserve_percent=reserve, unknown=words % values)
-    return BatteryAtLanding(left, home, round(left - home, 1), reserve, outlook.get("hold_s"))
+    return BatteryAtLanding(left, home, round(left - home, 1), reserve, forecast.get("hold_s"))
 
 
 def _battery_words(battery: BatteryAtLanding) -> list[str]:

@@ -48,7 +48,7 @@ test("the request of one mission names that mission and its UAVs alone", () => {
   });
 });
 
-test("a request in turn says how long each holds, of those that it names", () => {
+test("a staggered request says how long each holds, of those that it names", () => {
   const [south] = batchScopes([uav(1, "south", true, 0), uav(7, "south", true, 1)], missions);
   const waits = new Map([
     [1, 0],

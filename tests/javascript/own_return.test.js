@@ -11,8 +11,8 @@ import {
   returnOf,
   returnSaid,
   saferReturn,
+  staggeredWaits,
   togetherLine,
-  waitsInTurn,
 } from "../../static/js/domain/own_return.js";
 import { batteryWords } from "../../static/js/monitor/uav_words.js";
 
@@ -164,18 +164,18 @@ test("what meets less than a straight return at once is offered in its place", (
   assert.equal(questionOf("return", { name: "Tern", returns: check("clear") }).act, "Return Tern");
 });
 
-test("several return in turn where they meet otherwise, and where that helps", () => {
+test("several returns are staggered where they meet otherwise, and where that helps", () => {
   const one = check("clear", [], { uav: 1, met: [{ name: "Kite" }], wait_s: 0 });
   const other = { ...one, uav: 2, wait_s: 50 };
   assert.deepEqual(
-    [...waitsInTurn([one, other])],
+    [...staggeredWaits([one, other])],
     [
       [1, 0],
       [2, 50],
     ],
   );
-  assert.equal(waitsInTurn([one, { ...other, wait_s: null }]), null);
-  assert.equal(waitsInTurn([{ ...one, met: [] }]), null);
+  assert.equal(staggeredWaits([one, { ...other, wait_s: null }]), null);
+  assert.equal(staggeredWaits([{ ...one, met: [] }]), null);
 });
 
 test("a return that waits says until when its UAV holds", () => {

@@ -79,7 +79,7 @@ def told(user: User, *uavs: Uav) -> list[dict[str, Any]]:
     return list(response.json()["results"])
 
 
-def outlook(**values: Any) -> dict[str, Any]:
+def forecast(**values: Any) -> dict[str, Any]:
     return {
         "level": "",
         "left_percent": 60.0,
@@ -168,14 +168,14 @@ def test_of_a_lost_uav_its_whole_route_is_looked_at(user, uav):
 def test_the_battery_at_landing_is_told_against_the_reserve(user, uav):
     world()
     read(uav)
-    flies(uav, EAST, battery_percent=60.0, estimated=estimated(EAST, battery=outlook()))
+    flies(uav, EAST, battery_percent=60.0, estimated=estimated(EAST, battery=forecast()))
     (found,) = told(user, uav)
     assert found["battery"]["landing_percent"] == 50.0 and found["battery"]["unknown"] == "" and found["is_clear"]
-    flies(uav, EAST, battery_percent=25.0, estimated=estimated(EAST, battery=outlook(left_percent=25.0, hold_s=0)))
+    flies(uav, EAST, battery_percent=25.0, estimated=estimated(EAST, battery=forecast(left_percent=25.0, hold_s=0)))
     (found,) = told(user, uav)
     assert found["warnings"] == ["It would land with about 15 % of its battery, below the reserve of 20 %."]
     assert not found["is_clear"]
-    flies(uav, EAST, battery_percent=8.0, estimated=estimated(EAST, battery=outlook(left_percent=8.0, hold_s=0)))
+    flies(uav, EAST, battery_percent=8.0, estimated=estimated(EAST, battery=forecast(left_percent=8.0, hold_s=0)))
     assert "is not enough for the way home, which takes about 10 %" in told(user, uav)[0]["warnings"][0]
 
 
@@ -208,7 +208,7 @@ def test_the_one_with_the_least_battery_to_spare_goes_first(user):
     tern, kite = fleet("Tern", "Kite")
     for one, position, left in ((tern, EAST, 60.0), (kite, (10.013, 55.9965), 40.0)):
         read(one)
-        flies(one, position, battery_percent=left, estimated=estimated(position, battery=outlook(left_percent=left)))
+        flies(one, position, battery_percent=left, estimated=estimated(position, battery=forecast(left_percent=left)))
     waits = {found["name"]: found["wait_s"] for found in told(user, tern, kite)}
     assert waits["Kite"] == 0.0 < waits["Tern"]
 

@@ -138,7 +138,7 @@ export function saferReturn({ state, safe_height_m, met, wait_s }) {
  * @param {PresentReturn[]} checks
  * @returns {Map<number, number> | null} seconds by UAV
  */
-export function waitsInTurn(checks) {
+export function staggeredWaits(checks) {
   if (!checks.some(({ met }) => met.length) || checks.some(({ wait_s }) => wait_s === null)) return null;
   return new Map(checks.map(({ uav, wait_s }) => [uav ?? 0, wait_s ?? 0]));
 }

@@ -87,12 +87,12 @@ export const leftLines = (scopes) => scopes.flatMap(({ left }) => left.map(({ wh
 export function batchRequest(kind, scopes, waits = null) {
   const missions = scopes.map(({ id, uavs }) => ({ mission: id, uavs: uavs.map((uav) => uav.id) }));
   const told = new Set(missions.flatMap(({ uavs }) => uavs));
-  const in_turn = waits && {
+  const staggered = waits && {
     waits_s: Object.fromEntries([...waits].filter(([uav, wait_s]) => wait_s > 0 && told.has(uav))),
   };
-  if (missions.length > 1) return { path: "/missions/commands", body: { kind, missions, ...in_turn } };
+  if (missions.length > 1) return { path: "/missions/commands", body: { kind, missions, ...staggered } };
   const [{ mission, uavs }] = missions;
-  return { path: `/missions/${mission}/commands`, body: { kind, uavs, ...in_turn } };
+  return { path: `/missions/${mission}/commands`, body: { kind, uavs, ...staggered } };
 }
 
 /** What became of it, in words. @param {BatchAnswer[]} results */

@@ -4,7 +4,7 @@ import { ApiError, freshKey, post } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
 import { LATE } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
-import { holdLinesOfAll, togetherLine, waitsInTurn } from "../domain/own_return.js";
+import { holdLinesOfAll, staggeredWaits, togetherLine } from "../domain/own_return.js";
 import { confirmAct } from "../page/confirm.js";
 import { CHECKING_HOME, returnsNow } from "../page/present_returns.js";
 import { toast } from "../page/toast.js";
@@ -100,15 +100,18 @@ export function createBatch(store, page) {
     });
     /** @param {Map<number, PresentReturn>} returns @returns {[string[], Question["safer"]]} */
     function found(returns) {
-      const waits = waitsInTurn([...returns.values()]);
+      const waits = staggeredWaits([...returns.values()]);
       const longest_s = waits ? Math.max(...waits.values()) : 0;
       const together = togetherLine(uavs.map(({ id }) => returns.get(id)));
-      const inTurn = t(
-        "In turn they keep apart: the last one holds {time} first, those with the least battery hold least.",
+      const staggeredLine = t(
+        "One after another they keep apart: the last one holds {time} first, those with the least battery hold least.",
         { time: durationText(longest_s) },
       );
-      const said = [together, ...returnLinesOf(scopes, returns), longest_s > 0 ? inTurn : ""];
-      return [said, longest_s > 0 ? { words: t("Return in turn"), kind: "return", parameters: { waits } } : null];
+      const said = [together, ...returnLinesOf(scopes, returns), longest_s > 0 ? staggeredLine : ""];
+      return [
+        said,
+        longest_s > 0 ? { words: t("Return one after another"), kind: "return", parameters: { waits } } : null,
+      ];
     }
     if (asked)
       await tellBatch(

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from telemetry.alerting.acts import ACTS, LAND, RETURN, acts
-from telemetry.alerting.battery_outlook import BatteryOutlook, battery_outlook
+from telemetry.alerting.battery_forecast import BatteryForecast, battery_forecast
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, RANK, WARNING, Finding
 from telemetry.alerting.modes import ModeKind
@@ -39,21 +39,21 @@ class _Judged:
 
 def detect(situation: Situation) -> list[Finding] | None:
     """By the vehicle's own word, which may go by voltage while its percentage stays high, and by what is left; the worse of both."""
-    outlook = _outlook(situation)
-    expected = None if outlook is None else _expected(situation, outlook)
+    forecast = _forecast(situation)
+    expected = None if forecast is None else _expected(situation, forecast)
     stated = _stated(situation)
-    situation.memory.battery = None if outlook is None else outlook.as_json(expected[0].level if expected else "")
+    situation.memory.battery = None if forecast is None else forecast.as_json(expected[0].level if expected else "")
     if stated is None or (expected and RANK[expected[0].level] >= RANK[stated.level]):
         return expected
-    return [Finding(CODE, stated.level, stated.message, stated.values, details=stated.details | {ACTS: _acts(situation, outlook)})]
+    return [Finding(CODE, stated.level, stated.message, stated.values, details=stated.details | {ACTS: _acts(situation, forecast)})]
 
 
-def _outlook(situation: Situation) -> BatteryOutlook | None:
+def _forecast(situation: Situation) -> BatteryForecast | None:
     fresh = situation.fresh
     left_percent = None if fresh is None else fresh.measurement.battery_percent
     if fresh is None or left_percent is None or situation.has_just_jumped:
         return None
-    return battery_outlook(situation, fresh, left_percent)
+    return battery_forecast(situation, fresh, left_percent)
 
 
 def _stated(situation: Situation) -> Finding | None:
@@ -71,56 +71,56 @@ def _stated(situation: Situation) -> Finding | None:
     return Finding(CODE, level, SAID, values | {"words": word.text}, details=details)
 
 
-def _expected(situation: Situation, outlook: BatteryOutlook) -> list[Finding]:
-    judged = _judged(situation, outlook)
+def _expected(situation: Situation, forecast: BatteryForecast) -> list[Finding]:
+    judged = _judged(situation, forecast)
     if judged is None:
         return []
     values: dict[str, object] = {"uav": situation.uav.name}
     if judged.message is not EMPTY:
-        values["percent"] = str(round(judged.percent if judged.message is EXPECTED else outlook.left_percent))
+        values["percent"] = str(round(judged.percent if judged.message is EXPECTED else forecast.left_percent))
     if judged.message not in (EMPTY, NO_WAY_HOME, NO_WAY_BUT_LANDING):
-        values["reserve"] = str(round(outlook.reserve_percent))
+        values["reserve"] = str(round(forecast.reserve_percent))
     if judged.message in (TURN_BACK, NO_WAY_HOME, NO_WAY_BUT_LANDING):
-        values["home"] = _share(outlook.home_percent)
+        values["home"] = _share(forecast.home_percent)
     if judged.message is NO_WAY_BUT_LANDING:
-        values["metres"] = round(outlook.landing_m or 0.0)
+        values["metres"] = round(forecast.landing_m or 0.0)
     details = {
-        **outlook.as_json(judged.level),
-        ACTS: _acts(situation, outlook),
+        **forecast.as_json(judged.level),
+        ACTS: _acts(situation, forecast),
         "expected_percent": round(judged.percent, 1),
         "rate": round(situation.memory.drain.ratio(situation.memory.drain.kind), 2),
         "route_short": judged.is_route_short,
     }
-    return [Finding(CODE, judged.level, judged.message, values, details=details, severity=-outlook.left_percent)]
+    return [Finding(CODE, judged.level, judged.message, values, details=details, severity=-forecast.left_percent)]
 
 
-def _judged(situation: Situation, outlook: BatteryOutlook) -> _Judged | None:
+def _judged(situation: Situation, forecast: BatteryForecast) -> _Judged | None:
     """The worst that the figures say. An open alert is kept until all is CLEARS_ABOVE_PERCENT better than what raises it."""
-    worst = _worst(situation, outlook, 0.0)
+    worst = _worst(situation, forecast, 0.0)
     if worst is not None or not situation.is_open(CODE):
         return worst
-    nearly = _worst(situation, outlook, CLEARS_ABOVE_PERCENT)
+    nearly = _worst(situation, forecast, CLEARS_ABOVE_PERCENT)
     if nearly is None or nearly.message in (TURN_BACK, EXPECTED):
         return nearly
-    return _Judged(WARNING, EXPECTED, max(_ends(outlook), default=outlook.left_percent))
+    return _Judged(WARNING, EXPECTED, max(_ends(forecast), default=forecast.left_percent))
 
 
-def _ends(outlook: BatteryOutlook) -> list[float]:
+def _ends(forecast: BatteryForecast) -> list[float]:
     """What is left after landing at home, and after the rest of the route."""
-    return [outlook.left_percent - need for need in (outlook.home_percent, outlook.rest_percent) if need is not None]
+    return [forecast.left_percent - need for need in (forecast.home_percent, forecast.rest_percent) if need is not None]
 
 
-def _worst(situation: Situation, outlook: BatteryOutlook, more: float) -> _Judged | None:
+def _worst(situation: Situation, forecast: BatteryForecast, more: float) -> _Judged | None:
     """more: percent by which all limits are raised."""
-    limits, left, reserve, rest = situation.limits, outlook.left_percent, outlook.reserve_percent + more, outlook.rest_percent
-    floor, at_home = limits.battery_critical_percent + more, None if outlook.home_percent is None else left - outlook.home_percent
-    best = max(_ends(outlook), default=left)
+    limits, left, reserve, rest = situation.limits, forecast.left_percent, forecast.reserve_percent + more, forecast.rest_percent
+    floor, at_home = limits.battery_critical_percent + more, None if forecast.home_percent is None else left - forecast.home_percent
+    best = max(_ends(forecast), default=left)
     if left < reserve:
         return _Judged(CRITICAL, BELOW, left)
-    if _falls_soon(situation, outlook, reserve):
+    if _falls_soon(situation, forecast, reserve):
         return _Judged(CRITICAL, SOON, left)
     if best < floor:
-        is_reachable = outlook.landing_percent is not None and left - outlook.landing_percent >= floor
+        is_reachable = forecast.landing_percent is not None and left - forecast.landing_percent >= floor
         return _Judged(CRITICAL, NO_WAY_BUT_LANDING if is_reachable else NO_WAY_HOME, best, is_route_short=True)
     margin, is_short = limits.battery_margin_percent, rest is not None and left - rest < floor
     if rest is not None and left - rest < max(reserve - margin, floor):
@@ -133,21 +133,21 @@ def _worst(situation: Situation, outlook: BatteryOutlook, more: float) -> _Judge
     return None
 
 
-def _falls_soon(situation: Situation, outlook: BatteryOutlook, below_percent: float) -> bool:
+def _falls_soon(situation: Situation, forecast: BatteryForecast, below_percent: float) -> bool:
     """Within AHEAD_S, or before it lands, where it is on its way down by its route, home or here; one that is held stays in the air."""
-    down = {ModeKind.RETURN: outlook.home_percent, ModeKind.LAND: outlook.down_percent}
-    need = outlook.rest_percent if outlook.rest_percent is not None or situation.mode is None else down.get(situation.mode)
-    drained = outlook.drain_per_s * AHEAD_S
-    return outlook.left_percent - (drained if need is None else min(drained, need)) < below_percent
+    down = {ModeKind.RETURN: forecast.home_percent, ModeKind.LAND: forecast.down_percent}
+    need = forecast.rest_percent if forecast.rest_percent is not None or situation.mode is None else down.get(situation.mode)
+    drained = forecast.drain_per_s * AHEAD_S
+    return forecast.left_percent - (drained if need is None else min(drained, need)) < below_percent
 
 
-def _acts(situation: Situation, outlook: BatteryOutlook | None) -> list[dict[str, Any]]:
+def _acts(situation: Situation, forecast: BatteryForecast | None) -> list[dict[str, Any]]:
     """What can still be reached: home, the nearest landing place (to which a return leads as well), or the ground below.
 
     Nothing is proposed for a UAV that comes down already, by its own failsafe or as it was told.
     """
-    ways = [] if outlook is None else [way for way in (outlook.home_percent, outlook.landing_percent) if way is not None]
-    is_reachable = outlook is None or not ways or outlook.left_percent - min(ways) >= situation.limits.battery_critical_percent
+    ways = [] if forecast is None else [way for way in (forecast.home_percent, forecast.landing_percent) if way is not None]
+    is_reachable = forecast is None or not ways or forecast.left_percent - min(ways) >= situation.limits.battery_critical_percent
     if situation.mode is ModeKind.LAND or (situation.mode is ModeKind.RETURN and is_reachable):
         return []
     return acts(RETURN if is_reachable else LAND, uav_id=situation.uav.uav_id)

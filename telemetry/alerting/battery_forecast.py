@@ -17,7 +17,7 @@ USUAL_CRUISE_MPS = 8.0
 
 
 @dataclass(frozen=True, slots=True)
-class BatteryOutlook:
+class BatteryForecast:
     """Percentages are of the full battery. None: not known.
 
     home_percent      takes the straight way home and the landing there; home_s its time
@@ -55,7 +55,7 @@ class BatteryOutlook:
         }
 
 
-def battery_outlook(situation: Situation, fresh: Report, left_percent: float) -> BatteryOutlook:
+def battery_forecast(situation: Situation, fresh: Report, left_percent: float) -> BatteryForecast:
     """Of a UAV in flight with a fresh report. The situation's memory is written to."""
     told, model, memory = fresh.measurement, situation.model, situation.memory
     consumption = None if model is None else model.consumption
@@ -73,7 +73,7 @@ def battery_outlook(situation: Situation, fresh: Report, left_percent: float) ->
         rest_percent = min(rest_percent, ways.down_percent)
     spare_percent = None if ways.home_percent is None else max(left_percent - reserve_percent - ways.home_percent, 0.0)
     still_per_s = consumption.percent_per_s(math.hypot(*wind_mps)) * memory.drain.ratio(FlightKind.STILL)
-    return BatteryOutlook(
+    return BatteryForecast(
         left_percent=left_percent,
         reserve_percent=reserve_percent,
         drain_per_s=per_s * memory.drain.ratio(kind),
@@ -97,7 +97,7 @@ def _lands_at_end(situation: Situation) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class _Ways:
-    """As BatteryOutlook has them; moving_per_s: drain on the way home [% a second]."""
+    """As BatteryForecast has them; moving_per_s: drain on the way home [% a second]."""
 
     home_percent: float | None = None
     home_s: float | None = None
