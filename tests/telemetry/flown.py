@@ -3,11 +3,14 @@
 import math
 from collections.abc import Iterator
 from datetime import datetime, timedelta
+from typing import Any
+
+from django.test import Client
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from missions.mavlink.frozen import FrozenRoute, FrozenWaypoint, route_from_json
-from missions.models import Approval, LinkKind, Uav
+from missions.models import Approval, LinkKind, Mission, Uav
 from telemetry.decoding.measurement import Measurement
 from telemetry.services import NewRecord, store_records
 
@@ -70,3 +73,10 @@ def _metres(frame: LocalFrame, place: LonLat) -> tuple[float, float]:
 
 def _degrees(frame: LocalFrame, east_m: float, north_m: float) -> tuple[float, float]:
     return frame.origin.lon + east_m / frame.metres_per_degree_east, frame.origin.lat + north_m / frame.metres_per_degree_north
+
+
+def record_of(client: Client, mission: Mission) -> dict[str, Any]:
+    answer = client.get(f"/api/v1/missions/{mission.pk}/record")
+    assert answer.status_code == 200, answer.content
+    found: dict[str, Any] = answer.json()
+    return found

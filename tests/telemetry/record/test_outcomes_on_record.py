@@ -9,57 +9,15 @@ from django.utils import timezone
 
 from missions.models import Approval, CommandKind, Mission, MissionState, TargetState, Uav
 from missions.services.dispatch import abort_mission
-from missions.services.flying import mark_started, mark_waypoint_reached
+from missions.services.flying import mark_waypoint_reached
 from missions.services.outbox import queue_command
 from telemetry.models import AlertLevel, TelemetryRecord, VehicleText
 from telemetry.services.alerts import open_alert
-from tests.missions.flights import an_operator, dispatched, fleet
-from tests.missions.worlds import World, world
-from tests.telemetry.flown import fly, route_of
-from tests.workspace.people import client_of, somebody
-from workspace.models import Role, User
+from tests.telemetry.flown import fly, record_of, route_of
+from workspace.models import User
 
 pytestmark = pytest.mark.django_db
 EARLIER = timedelta(minutes=30)
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
-
-
-@pytest.fixture
-def person() -> User:
-    return an_operator()
-
-
-@pytest.fixture
-def tern() -> Uav:
-    return fleet("Tern")[0]
-
-
-@pytest.fixture
-def mission(here: World, person: User, tern: Uav) -> Mission:
-    mission = dispatched(person, [tern], [here.towers[1], here.towers[3], here.bridge])
-    mark_started(mission_id=mission.pk, uav_id=tern.pk)
-    return mission
-
-
-@pytest.fixture
-def approval(mission: Mission) -> Approval:
-    return Approval.objects.get(mission=mission)
-
-
-@pytest.fixture
-def client() -> Client:
-    return client_of(somebody(Role.VIEWER))
-
-
-def record_of(client: Client, mission: Mission) -> dict[str, Any]:
-    answer = client.get(f"/api/v1/missions/{mission.pk}/record")
-    assert answer.status_code == 200, answer.content
-    found: dict[str, Any] = answer.json()
-    return found
 
 
 def in_order_of_the_route(told: dict[str, Any]) -> list[dict[str, Any]]:

@@ -11,8 +11,8 @@ from missions.services.dispatch import abort_mission
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_started
 from telemetry.models import UavLink
 from tests.missions.api import post
-from tests.missions.flights import an_operator, dispatched, fleet
-from tests.missions.worlds import World, world
+from tests.missions.flights import dispatched, fleet
+from tests.missions.worlds import World
 from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Role, User
 
@@ -20,24 +20,7 @@ pytestmark = pytest.mark.django_db
 
 
 @pytest.fixture
-def here() -> World:
-    return world()
-
-
-@pytest.fixture
-def person() -> User:
-    return an_operator()
-
-
-@pytest.fixture
-def tern() -> Uav:
-    return fleet("Tern")[0]
-
-
-@pytest.fixture
-def mission(here: World, person: User, tern: Uav) -> Mission:
-    mission = dispatched(person, [tern], [here.towers[1], here.towers[3], here.bridge])
-    mark_started(mission_id=mission.pk, uav_id=tern.pk)
+def mission(mission: Mission) -> Mission:
     mission.targets.filter(sequence=0).update(state=TargetState.COMPLETE, state_at=timezone.now())
     mission.targets.filter(sequence=1).update(state=TargetState.IN_PROGRESS, state_at=timezone.now())
     return mission

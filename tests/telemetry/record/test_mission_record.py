@@ -12,51 +12,17 @@ from django.test import Client
 from django.utils import timezone
 
 from missions.models import Approval, InspectionTarget, Mission, MissionState, OfferState, ReplanOffer, TargetState, Uav
-from missions.services.flying import FlightEnd, mark_flight_ended, mark_started, mark_waypoint_reached
+from missions.services.flying import FlightEnd, mark_flight_ended, mark_waypoint_reached
 from missions.services.mission_copies import duplicate_mission
 from telemetry.models import AlertLevel, InspectionResult, PositionEstimate, TelemetryRecord, TelemetryStream
 from telemetry.services.alerts import open_alert
 from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks, store_missing_visits
-from tests.missions.flights import an_operator, dispatched, fleet
-from tests.missions.worlds import World, world
-from tests.telemetry.flown import fly, route_of
+from tests.telemetry.flown import fly, record_of, route_of
 from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
 EARLIER = timedelta(minutes=30)
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
-
-
-@pytest.fixture
-def person() -> User:
-    return an_operator()
-
-
-@pytest.fixture
-def tern() -> Uav:
-    return fleet("Tern")[0]
-
-
-@pytest.fixture
-def mission(here: World, person: User, tern: Uav) -> Mission:
-    mission = dispatched(person, [tern], [here.towers[1], here.towers[3], here.bridge])
-    mark_started(mission_id=mission.pk, uav_id=tern.pk)
-    return mission
-
-
-@pytest.fixture
-def approval(mission: Mission) -> Approval:
-    return Approval.objects.get(mission=mission)
-
-
-@pytest.fixture
-def client() -> Client:
-    return client_of(somebody(Role.VIEWER))
 
 
 def began() -> datetime:
@@ -73,13 +39,6 @@ def age_states(mission: Mission) -> None:
 
 def states(mission: Mission) -> list[tuple[str, str]]:
     return list(mission.targets.order_by("sequence").values_list("state", "state_reason"))
-
-
-def record_of(client: Client, mission: Mission) -> dict[str, Any]:
-    answer = client.get(f"/api/v1/missions/{mission.pk}/record")
-    assert answer.status_code == 200, answer.content
-    found: dict[str, Any] = answer.json()
-    return found
 
 
 def test_a_flown_mission_is_told_by_leg_and_target(client: Client, mission: Mission, approval: Approval, tern: Uav) -> None:

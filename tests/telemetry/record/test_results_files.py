@@ -17,25 +17,14 @@ from missions.models import Approval, Mission, Uav
 from missions.services.dispatch import abort_mission
 from missions.services.flying import mark_started, mark_waypoint_reached
 from telemetry.models import TelemetryRecord
-from tests.missions.flights import an_operator, dispatched, fleet
-from tests.missions.worlds import World, world
+from tests.missions.flights import dispatched, fleet
+from tests.missions.worlds import World
 from tests.telemetry.flown import fly, route_of
-from tests.workspace.people import client_of, somebody
-from workspace.models import Role, User
+from workspace.models import User
 
 pytestmark = pytest.mark.django_db
 KML = "{http://www.opengis.net/kml/2.2}"
 GX = "{http://www.google.com/kml/ext/2.2}"
-
-
-@pytest.fixture
-def here() -> World:
-    return world()
-
-
-@pytest.fixture
-def person() -> User:
-    return an_operator()
 
 
 @pytest.fixture
@@ -52,11 +41,6 @@ def flown(here: World, person: User) -> Mission:
     mark_waypoint_reached(mission_id=mission.pk, uav_id=tern.pk, waypoint=visited[1].sequence + 1)
     abort_mission(mission=mission, actor=person, why="thunderstorm")
     return mission
-
-
-@pytest.fixture
-def client() -> Client:
-    return client_of(somebody(Role.VIEWER))
 
 
 def body_of(client: Client, mission: Mission, kind: str) -> bytes:
