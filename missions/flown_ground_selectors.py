@@ -8,10 +8,9 @@ from django.db.models.functions import Now
 from inspection.auto_apply_hooks import HeldBack, WrittenGround
 from missions.flight_selectors import STILL_FLOWN
 from missions.in_air_hooks import uavs_in_the_air
-from missions.models import InspectionTarget, MissionState, Route, Waypoint
+from missions.models import ENDED_STATES, InspectionTarget, MissionState, Route, Waypoint
 
 ON_UAVS = (MissionState.DISPATCHED, MissionState.ACTIVE)
-OVER = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
 TOUCHES_WITHIN_M = 200.0  # of a route: more than any margin that planning keeps from zones and from what stands tall
 
 
@@ -32,7 +31,7 @@ def flown_missions_touched(written: WrittenGround) -> list[HeldBack]:
 def _routes() -> list[Route]:
     routes = Route.objects.filter(mission__deleted_at=None, **STILL_FLOWN).select_related("mission_uav")
     longest = timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s)
-    ended = list(routes.filter(mission__state__in=OVER, mission__ended_at__gt=Now() - longest))
+    ended = list(routes.filter(mission__state__in=ENDED_STATES, mission__ended_at__gt=Now() - longest))
     in_the_air = uavs_in_the_air({route.mission_uav.uav_id for route in ended if route.mission_uav.uav_id is not None})
     return [*routes.filter(mission__state__in=ON_UAVS), *(route for route in ended if route.mission_uav.uav_id in in_the_air)]
 

@@ -12,6 +12,7 @@ from missions.models.commands import (
 )
 from missions.models.fleet import Base, CredentialKind, EndAction, LinkKind, Uav, UavCredential, UavState, UavType
 from missions.models.missions import (
+    ENDED_STATES,
     InspectionTarget,
     Mission,
     MissionState,
@@ -28,6 +29,7 @@ from missions.models.offers import OfferState, ReplanOffer
 from missions.models.starts import PlannedStarts, StartsEnd
 
 __all__ = [
+    "ENDED_STATES",
     "OPEN_COMMANDS",
     "Approval",
     "Base",

@@ -28,6 +28,9 @@ class MissionState(models.TextChoices):
     FAILED = "failed", "Failed"
 
 
+ENDED_STATES = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
+
+
 class Objective(models.TextChoices):
     TOTAL = "total", "Fly least"
     MAKESPAN = "makespan", "Even routes"

@@ -18,6 +18,7 @@ from inspection.selectors.ground import held_ground_revision
 from missions.approval_hooks import further_reasons
 from missions.command_rules import SETS_IN_MOTION
 from missions.models import (
+    ENDED_STATES,
     OPEN_COMMANDS,
     Approval,
     CommandKind,
@@ -38,7 +39,6 @@ from workspace.live import publish_live
 from workspace.models import User
 
 REVOKED = "revoked"
-OVER = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
 
 
 def approve_mission(
@@ -148,7 +148,7 @@ def change_state(held: Mission, state: MissionState, actor: User | None, action:
     before = {"state": str(held.state), "revision": held.revision}
     if state == MissionState.ACTIVE and held.started_at is None:
         held.started_at = timezone.now()
-    if state in OVER and held.state not in OVER:
+    if state in ENDED_STATES and held.state not in ENDED_STATES:
         held.ended_at = timezone.now()
         held.targets.filter(state=TargetState.IN_PROGRESS).update(state=TargetState.PENDING, state_at=Now())  # nothing is after the end
     held.state, held.revision = state, held.revision + 1

@@ -3,13 +3,13 @@
 from collections.abc import Mapping
 
 from django.db import transaction
-from django.db.models.functions import Now
+from django.utils import timezone
 from django.utils.translation import gettext as _
 
 from missions.in_air_hooks import uavs_in_the_air
-from missions.models import CommandKind, InspectionTarget, Mission, MissionState, TargetState, Uav
+from missions.models import ENDED_STATES, CommandKind, InspectionTarget, Mission, MissionState, TargetState, Uav
 from missions.selectors import approval_in_force
-from missions.services.approval import OVER, change_state, held_mission, uavs_that_may_hold
+from missions.services.approval import change_state, held_mission, uavs_that_may_hold
 from missions.services.dispatch import busy_elsewhere
 from missions.services.flying import ON_ITS_WAY, UNDECIDED
 from missions.services.missions import note
@@ -29,21 +29,21 @@ def close_mission(*, mission: Mission, actor: User, reasons: Mapping[int, str], 
     """
     with transaction.atomic():
         held = held_mission(mission.pk, expected_revision)
-        if held.state not in (*ON_ITS_WAY, *OVER):
+        if held.state not in (*ON_ITS_WAY, *ENDED_STATES):
             raise refuse("not_sent", _("Only a mission that was sent to UAVs can be closed."))
         refuse_for(_in_the_air(held))
         still_open = {target.sequence: target for target in held.targets.filter(state__in=UNDECIDED)}
-        if held.state in OVER and not still_open:
+        if held.state in ENDED_STATES and not still_open:
             raise refuse("nothing_open", _("This mission is closed: no target is open."))
         said = {place: reasons.get(place, "").strip() or target.unassigned_message for place, target in still_open.items()}
         missing = [target.label for place, target in still_open.items() if not said[place]]
         if missing:
             raise refuse("reason_missing", _("Say why each open target is left: %(targets)s.") % {"targets": ", ".join(missing)})
         for place, target in still_open.items():
-            target.state, target.state_reason = TargetState.SKIPPED, said[place][:MAX_REASON_LENGTH]
+            target.state, target.state_reason, target.state_at = TargetState.SKIPPED, said[place][:MAX_REASON_LENGTH], timezone.now()
         facts = {"targets": {str(place): target.state_reason for place, target in still_open.items()}}
-        _store(held, still_open)
-        if held.state in OVER:
+        InspectionTarget.objects.bulk_update(still_open.values(), ["state", "state_reason", "state_at"])
+        if held.state in ENDED_STATES:
             note(held, actor, "close", before={"state": str(held.state)}, after={"state": str(held.state), **facts})
         else:
             _drop_from_uavs(held, actor)
@@ -59,11 +59,6 @@ def _in_the_air(held: Mission) -> list[Reason]:
         Reason("in_the_air", _("%(uav)s is in the air: the mission can be closed once it is down.") % {"uav": names[uav_id]})
         for uav_id in sorted(uavs_in_the_air(list(names)))
     ]
-
-
-def _store(held: Mission, targets: Mapping[int, InspectionTarget]) -> None:
-    for target in targets.values():
-        InspectionTarget.objects.filter(pk=target.pk).update(state=target.state, state_reason=target.state_reason, state_at=Now())
 
 
 def _end_state(held: Mission, had_open_targets: bool) -> MissionState:

@@ -5,13 +5,11 @@ from typing import Any
 
 from django.utils.translation import gettext as _
 
-from missions.models import InspectionTarget, Mission, MissionState, TargetState
+from missions.models import ENDED_STATES, InspectionTarget, Mission, TargetState
 from missions.models.missions import LONGEST_NAME
 from missions.services.missions import create_mission, request_of_mission
 from missions.services.refused import refuse
 from workspace.models import User
-
-OVER = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
 
 
 def draft_follow_up(*, mission: Mission, author: User, name: str = "") -> Mission:
@@ -20,7 +18,7 @@ def draft_follow_up(*, mission: Mission, author: User, name: str = "") -> Missio
     UAVs begin where they return to. Raises Refused where the mission is not over, or nothing was missed, and InvalidRequest where its
     targets cannot be asked for any more.
     """
-    if mission.state not in OVER:
+    if mission.state not in ENDED_STATES:
         raise refuse("not_over", _("A follow-up is planned once the mission is over."))
     asked = request_of_mission(mission=mission)
     taken_over = {_what(target) for target in InspectionTarget.objects.filter(mission__continues=mission, mission__deleted_at=None)}

@@ -59,7 +59,7 @@ class RouteLines:
 
 
 @dataclass(frozen=True, slots=True)
-class Happening:
+class IncidentRow:
     at: datetime
     uav: str
     words: str
@@ -71,4 +71,4 @@ class MissionResults:
     name: str
     rows: Sequence[ResultRow]
     routes: Sequence[RouteLines]
-    happenings: Sequence[Happening]
+    incidents: Sequence[IncidentRow]

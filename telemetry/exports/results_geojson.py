@@ -44,7 +44,7 @@ def _targets(results: MissionResults) -> Iterator[dict[str, Any]]:
 
 
 def _incidents(results: MissionResults) -> Iterator[dict[str, Any]]:
-    for one in results.happenings:
+    for one in results.incidents:
         yield _feature("incident", _point(one.position), {"at": time_text(one.at), "uav": one.uav, "words": one.words})
 
 

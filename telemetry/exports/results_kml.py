@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from inspection.geodesy import LonLat
 from telemetry.exports.kml_file import GX_NAMESPACE, NAMESPACE
 from telemetry.exports.logged_record import time_text
-from telemetry.exports.results import Happening, MissionResults, PlannedPoint, ResultRow, RouteLines, TrackPoint
+from telemetry.exports.results import IncidentRow, MissionResults, PlannedPoint, ResultRow, RouteLines, TrackPoint
 from telemetry.exports.xml_text import xml_text
 
 STYLES = {"inspected": "ff665d0b", "not-confirmed": "ff0077c7", "not-inspected": "ff1e26b3", "open": "ff827a85"}  # aabbggrr
@@ -20,7 +20,7 @@ def results_kml(results: MissionResults, folders: Sequence[str]) -> bytes:
         f'<kml xmlns="{NAMESPACE}" xmlns:gx="{GX_NAMESPACE}"><Document><name>{xml_text(results.name)}</name>\n',
         *styles,
         _folder(targets, [_target(row) for row in results.rows if row.position is not None]),
-        _folder(incidents, [_happening(one, one.position) for one in results.happenings if one.position is not None]),
+        _folder(incidents, [_incident(one, one.position) for one in results.incidents if one.position is not None]),
         _folder(planned, [_planned(route.uav, route.planned) for route in results.routes if len(route.planned) > 1]),
         _folder(flown, [mark for route in results.routes for mark in _flown(route)]),
         "</Document></kml>\n",
@@ -41,7 +41,7 @@ def _mark(name: str, coordinates: str, description: str, when: str = "", style: 
     )
 
 
-def _happening(one: Happening, position: LonLat) -> str:
+def _incident(one: IncidentRow, position: LonLat) -> str:
     return _mark(one.words, f"{position.lon:.7f},{position.lat:.7f}", one.uav, time_text(one.at))
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from inspection.geodesy import LonLat
 from missions.models import CommandKind, CommandState, Mission, UavCommand
+from telemetry.alerting.modes import ModeKind, mode_kind
 from telemetry.mission_report.fix import Fix
 from telemetry.mission_report.outcomes import Incident, IncidentKind, Reason, cause_in
 from telemetry.models import Alert, AlertLevel, VehicleText
@@ -17,7 +18,6 @@ from workspace.models import AuditEntry, User
 NEAR_S = 60.0  # of an incident: a report that tells where the UAV was
 ABOUT = timedelta(minutes=2)  # before its first and after its last report, in which a UAV may speak of the flight
 ONE_FALL_S = 180.0  # between the words of a crash and the alert that the UAV is down: the same one
-LANDS = {"land", "qland"}
 _CRASH = re.compile(r"\bcrash", re.IGNORECASE)
 _TOLD = {CommandKind.RETURN: IncidentKind.TOLD_RETURN, CommandKind.LAND: IncidentKind.TOLD_LAND}
 _REACHED_UAV = (CommandState.SENT, CommandState.ACKNOWLEDGED, CommandState.APPLIED)
@@ -59,8 +59,8 @@ def _kind_of(alert: Alert, name: str, at_s: float, texts: list[tuple[float, str]
     if alert.code == "down-off-plan":
         return IncidentKind.DOWN, Reason("down", {"uav": name, "metres": round(alert.details.get("away_m", 0.0))}, at_s)
     if alert.code == "mode-changed":
-        mode = str(alert.details.get("mode", "")).casefold()
-        kind = IncidentKind.FAILSAFE_LAND if mode in LANDS or mode.startswith("land") else IncidentKind.FAILSAFE_RETURN
+        lands = mode_kind(str(alert.details.get("mode", ""))) is ModeKind.LAND
+        kind = IncidentKind.FAILSAFE_LAND if lands else IncidentKind.FAILSAFE_RETURN
         return kind, _with_cause(kind, name, cause, at_s)
     if alert.code == "battery-short":
         return IncidentKind.BATTERY, Reason("battery", {"uav": name}, at_s)

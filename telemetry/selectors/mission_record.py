@@ -11,7 +11,7 @@ from django.db.models import Count, F
 
 from inspection.geodesy import LonLat
 from missions.mavlink.frozen import FrozenRoute, route_from_json
-from missions.models import Approval, InspectionTarget, LinkKind, Mission, MissionState, OfferState, TargetState, Uav
+from missions.models import ENDED_STATES, Approval, InspectionTarget, LinkKind, Mission, OfferState, TargetState, Uav
 from telemetry.mission_report.fix import Fix, airborne, in_order, own_after_s, own_span_s
 from telemetry.mission_report.flown_route import FlownRoute, flown_route
 from telemetry.mission_report.outcomes import FlightFacts, Incident, Outcome, Reason, Result, TargetFacts, outcome_of
@@ -24,7 +24,6 @@ from telemetry.selectors.report_words import reason_words
 from workspace.models import Organisation
 
 _FIX_COLUMNS = ("altitude_relative_m", "battery_percent", "waypoint_sequence", "is_in_air")
-OVER = (MissionState.COMPLETED, MissionState.ABORTED, MissionState.FAILED)
 HASTE = 1.5  # so much faster than it was told may a UAV be: down the wind, or flown by hand
 
 
@@ -324,7 +323,7 @@ def _targets_on_record(mission: Mission, routes: Sequence[RouteOnRecord], incide
             target.state, target.state_reason, target.unassigned_message,
             None if target.reached_at is None else target.reached_at.timestamp(), reported.get(target.sequence),
         )  # fmt: skip
-        outcome = outcome_of(facts, flight, incidents, is_over=mission.state in OVER)
+        outcome = outcome_of(facts, flight, incidents, is_over=mission.state in ENDED_STATES)
         arrival_s = None if waypoint is None else waypoint.arrival_s
         reached_s = None if visit is None else visit.reached_s
         found.append(

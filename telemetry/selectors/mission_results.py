@@ -8,7 +8,7 @@ from django.utils.translation import gettext_noop
 
 from inspection.geodesy import LonLat
 from inspection.selectors import asset_label, references_of
-from telemetry.exports.results import Happening, MissionResults, PlannedPoint, ResultRow, RouteLines, TrackPoint
+from telemetry.exports.results import IncidentRow, MissionResults, PlannedPoint, ResultRow, RouteLines, TrackPoint
 from telemetry.exports.thinning import EARLY, EVERY_S
 from telemetry.mission_report.fix import Fix
 from telemetry.mission_report.flown_route import LONGEST_GAP_S
@@ -34,13 +34,13 @@ def mission_results(whole: WholeRecord) -> MissionResults:
         mission.name,
         [_row(number, target, external_ids) for number, target in enumerate(in_flown_order(whole.targets), start=1)],
         [_lines(route) for route in whole.routes],
-        [_happening(one, names) for one in whole.incidents],
+        [_incident(one, names) for one in whole.incidents],
     )
 
 
-def _happening(incident: Incident, names: dict[int, str]) -> Happening:
+def _incident(incident: Incident, names: dict[int, str]) -> IncidentRow:
     name = "" if incident.place is None else names[incident.place]
-    return Happening(datetime.fromtimestamp(incident.at_s, UTC), name, reason_words(incident.reason), incident.position)
+    return IncidentRow(datetime.fromtimestamp(incident.at_s, UTC), name, reason_words(incident.reason), incident.position)
 
 
 def _row(number: int, target: TargetOnRecord, external_ids: dict[int, str]) -> ResultRow:

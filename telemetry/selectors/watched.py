@@ -10,13 +10,12 @@ from django.db import connection
 
 from inspection.geodesy import LonLat
 from missions.command_selectors import SENT_LAST
-from missions.models import MissionState
+from missions.models import ENDED_STATES, MissionState
 from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.contact import PROMPT_S
 from telemetry.estimation.report import Boot, Report
 from telemetry.exports.logged_record import REPORTED
 
-OVER = (MissionState.ABORTED, MissionState.FAILED, MissionState.COMPLETED)
 ON_ITS_WAY = (MissionState.ACTIVE, MissionState.DISPATCHED)  # the first goes before the second
 STILL_IN_THE_AIR_S = 4 * 3_600.0  # after its mission ended; and no word of a UAV for so long is no word
 
@@ -99,7 +98,7 @@ class StoredReport:
 def watched_flights() -> list[WatchedFlight]:
     """UAVs of missions on their way, and those still in the air after theirs ended; each once."""
     with connection.cursor() as cursor:
-        cursor.execute(_FLYING, {"on_its_way": list(ON_ITS_WAY), "over": list(OVER), "longest_s": STILL_IN_THE_AIR_S})
+        cursor.execute(_FLYING, {"on_its_way": list(ON_ITS_WAY), "over": list(ENDED_STATES), "longest_s": STILL_IN_THE_AIR_S})
         rows = cursor.fetchall()
     return [_flight(*row) for row in rows]
 
