@@ -12,7 +12,7 @@ from inspection.serializers.features import GeometrySerializer
 from inspection.services.proposals.bounds import KINDS
 from inspection.services.uploads import PART_BYTES
 from workspace.fields import FiniteFloatField
-from workspace.models import JobState, User
+from workspace.models import DEFAULT_ORGANISATION_ID, JobState, User
 from workspace.serializers import Declared
 from workspace.stored_words import in_words
 
@@ -145,10 +145,12 @@ def upload_json(upload: Upload) -> dict[str, Any]:
     }
 
 
-def proposal_json(proposal: ImportProposal, *, is_brief: bool = False) -> dict[str, Any]:
+def proposal_json(proposal: ImportProposal, reader: User, *, is_brief: bool = False) -> dict[str, Any]:
     """In a list without what only the open one needs, such as the samples and the preview of an asset file."""
     job = proposal.job
-    summary = {name: value for name, value in proposal.summary.items() if not (is_brief and isinstance(value, dict | list))}
+    is_own = reader.organisation_id == (proposal.created_by.organisation_id if proposal.created_by else DEFAULT_ORGANISATION_ID)
+    whole = proposal.summary if is_own else _without_external_ids(proposal.summary)
+    summary = {name: value for name, value in whole.items() if not (is_brief and isinstance(value, dict | list))}
     if "notes" in summary:
         summary["notes"] = [in_words(note) for note in summary["notes"]]
     if "not_read" in summary:
@@ -175,6 +177,23 @@ def proposal_json(proposal: ImportProposal, *, is_brief: bool = False) -> dict[s
         "decided_at": proposal.decided_at,
         "data_import": proposal.data_import_id,
     }
+
+
+def _without_external_ids(summary: dict[str, Any]) -> dict[str, Any]:
+    """Of an asset file, for other organisations: the values of the column that has, or seems to have, the owner's ids are left out."""
+    if "columns" not in summary:
+        return summary
+    mappings = (summary.get("mapping", {}), summary.get("suggested_mapping", {}))
+    private = {mapping.get("columns", {}).get("external_id") for mapping in mappings}
+    columns = [
+        column | {"samples": [], "values": None, "is_withheld": True} if column["name"] in private else column
+        for column in summary["columns"]
+    ]
+    features = [
+        feature | {"properties": {name: value for name, value in feature["properties"].items() if name not in private}}
+        for feature in summary["preview"]["features"]
+    ]
+    return summary | {"columns": columns, "preview": summary["preview"] | {"features": features}}
 
 
 def change_feature(change: DrawnChange) -> dict[str, Any]:

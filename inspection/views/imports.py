@@ -55,8 +55,8 @@ def _one_of(request: Request, name: str, known: list[str]) -> str:
     return value
 
 
-def _answer(proposal_id: UUID, status: int = 200) -> Response:
-    return Response(proposal_json(_proposal(proposal_id)), status=status)
+def _answer(request: SignedInRequest, proposal_id: UUID, status: int = 200) -> Response:
+    return Response(proposal_json(_proposal(proposal_id), request.user), status=status)
 
 
 def _too_late(error: pipeline.WrongState) -> ApiProblem:
@@ -79,10 +79,10 @@ class ImportList(APIView):
         ],
         responses=ProposalPageSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         kind, state = _one_of(request, "kind", ImportKind.values), _one_of(request, "state", ProposalState.values)
         page = page_of(request, proposals(kind=kind, states=[state] if state else None), order=NEWEST_FIRST, default_limit=50)
-        return Response({"results": [proposal_json(proposal, is_brief=True) for proposal in page.rows], "next": page.next})
+        return Response({"results": [proposal_json(proposal, request.user, is_brief=True) for proposal in page.rows], "next": page.next})
 
     @extend_schema(
         operation_id="propose_import",
@@ -105,7 +105,7 @@ class ImportList(APIView):
                 max_removed_percent=values["max_removed_percent"], **self._where_from(values),
             )  # fmt: skip
             send_job_of(proposal)
-        response = _answer(proposal.pk, 202)
+        response = _answer(request, proposal.pk, 202)
         response["Location"] = reverse("api-import", args=[proposal.pk])
         return response
 
@@ -141,8 +141,8 @@ class ImportDetail(APIView):
     permission_classes = [CuratorsAlone]
 
     @extend_schema(operation_id="get_import", summary="One proposal", responses=ProposalSerializer)
-    def get(self, request: Request, proposal_id: UUID) -> Response:
-        return _answer(proposal_id)
+    def get(self, request: SignedInRequest, proposal_id: UUID) -> Response:
+        return _answer(request, proposal_id)
 
     @extend_schema(
         operation_id="read_import_again",
@@ -157,7 +157,7 @@ class ImportDetail(APIView):
                 send_job_of(pipeline.read_again(proposal=_proposal(proposal_id), parameters=parameters, actor=request.user))
         except pipeline.WrongState as error:
             raise _too_late(error) from error
-        return _answer(proposal_id, 202)
+        return _answer(request, proposal_id, 202)
 
 
 class ImportChanges(APIView):
@@ -202,7 +202,7 @@ class ImportApply(APIView):
                 len(error.places),
             )
             raise ApiProblem(409, "not_seen", words % {"count": len(error.places)}, details={"places": error.places}) from error
-        return _answer(proposal_id, 202)
+        return _answer(request, proposal_id, 202)
 
 
 class ImportDiscard(APIView):
@@ -216,7 +216,7 @@ class ImportDiscard(APIView):
             pipeline.discard_proposal(proposal=_proposal(proposal_id), actor=request.user)
         except pipeline.WrongState as error:
             raise _too_late(error) from error
-        return _answer(proposal_id)
+        return _answer(request, proposal_id)
 
 
 def _parameters(request: Request) -> dict[str, Any]:

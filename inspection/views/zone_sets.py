@@ -124,7 +124,7 @@ class ZoneSetRollBack(APIView):
                 created_by=request.user,
             )  # fmt: skip
             send_job_of(proposal)
-        answer = Response(proposal_json(proposal_of_id(proposal.pk)), status=202)
+        answer = Response(proposal_json(proposal_of_id(proposal.pk), request.user), status=202)
         answer["Location"] = reverse("api-import", args=[proposal.pk])
         return answer
 

@@ -123,3 +123,18 @@ def test_by_the_api_they_are_those_of_whoever_sent_the_file(tmp_path: Path, cura
     applying = client.post(f"/api/v1/imports/{proposal['id']}/apply", {}, content_type="application/json").json()
     apply_proposal(applying["job"]["id"])
     assert (ids_of(), ids_of(sender.organisation_id)) == ({}, {"a": "SAP-1"})
+
+
+def test_other_organisations_see_the_column_without_its_ids(tmp_path: Path, curator: User) -> None:
+    file = geojson(tmp_path / "masts.geojson", ({"id": "a", "sap": "SAP-1"}, point(8.0, 47.0)))
+    upload = store_upload(file_name="masts.geojson", chunks=[file.read_bytes()], created_by=None)
+    body = {"kind": "assets", "upload": str(upload.pk), "parameters": COLUMNS}
+    made = client_of(curator).post("/api/v1/imports", body, content_type="application/json").json()
+    read_proposal(made["job"]["id"])
+    stranger = client_of(somebody(Role.CURATOR, organisation=Organisation.objects.create(name="Other")))
+    own, foreign = (reader.get(f"/api/v1/imports/{made['id']}") for reader in (client_of(curator), stranger))
+    assert b"SAP-1" in own.content
+    assert foreign.status_code == 200
+    assert b"SAP-1" not in foreign.content
+    columns = {column["name"]: column for column in foreign.json()["summary"]["columns"]}
+    assert (columns["sap"]["samples"], columns["sap"]["is_withheld"], columns["id"]["samples"]) == ([], True, ["a"])

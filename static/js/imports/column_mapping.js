@@ -234,7 +234,8 @@ class ColumnMapping {
       if (choice.value === "kind") this.#kind.value = BY_COLUMN;
       this.#show();
     });
-    const samples = (column.samples ?? []).map(String).join(" · ") || t("always empty");
+    const none = column.is_withheld ? t("ids of another organisation") : t("always empty");
+    const samples = (column.samples ?? []).map(String).join(" · ") || none;
     const caption = h("span", { class: "caption", id: `${id}-samples`, title: samples }, samples);
     return columnRow(column.name, caption, choice);
   }

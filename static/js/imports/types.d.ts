@@ -17,6 +17,7 @@ export type Parameters = Record<string, unknown>;
 export interface Column {
   name: string;
   samples?: unknown[];
+  is_withheld?: boolean;
   /** how many rows have each value, where they are few */
   values?: Record<string, number>;
 }

@@ -14,6 +14,7 @@ export default {
   "Also what another file brought in vanishes where this one covers the ground and does not have it":
     "Auch was eine andere Datei gebracht hat, verschwindet, wo diese das Gebiet abdeckt und es nicht enthält",
   "always empty": "immer leer",
+  "ids of another organisation": "IDs einer anderen Organisation",
   "It was to be applied once it was read, and waits for you:":
     "Dies sollte übernommen werden, sobald es gelesen ist, und wartet auf Sie:",
   "External id: your own, of each asset": "Externe Kennung: Ihre eigene, je Objekt",
