@@ -48,7 +48,7 @@ def report_presence(*, mission_id: UUID, user: User, editor: str, is_here: bool,
         own = sorted((row["at_s"], page) for page, row in present.items() if row["user"] == user.pk)
         for _, page in own[: -(MOST_PAGES - 1)]:
             del present[page]
-        present[mine] = {"user": user.pk, "name": user.get_full_name() or user.username, "at_s": now_s, "is_planning": is_planning}
+        present[mine] = {"user": user.pk, "name": user.display_name, "at_s": now_s, "is_planning": is_planning}
     with contextlib.suppress(*CACHE_AWAY):
         cache.set(_key(mission_id), present, FORGOTTEN_AFTER_S)
     return sorted(others.values(), key=lambda other: (other.user == user.pk, other.name.casefold()))

@@ -109,6 +109,11 @@ class User(AbstractUser):
         return salted_hmac("workspace.session", text, secret=secret, algorithm="sha256").hexdigest()
 
     @property
+    def display_name(self) -> str:
+        """The full name, or the user name where there is none."""
+        return self.get_full_name() or self.username
+
+    @property
     def is_staff(self) -> bool:  # type: ignore[override]
         """May enter the admin."""
         return self.can_curate

@@ -76,7 +76,7 @@ def stale_sentence(subject: str, key: int | None) -> str:
     last = AuditEntry.objects.select_related("actor").filter(subject_type=subject, subject_id=str(key)).order_by("-pk").first()
     if last is None:
         return "This has changed in the meantime, and nothing was saved. Open it again to see it as it is now."
-    who = (last.actor.get_full_name() or last.actor.username) if last.actor else "An import"
+    who = last.actor.display_name if last.actor else "An import"
     return (
         f"{who} has changed this in the meantime ({last.action}, {last.recorded_at:%H:%M} UTC), and nothing was saved. "
         "What you entered is still below; open the page again to see it as it is now."

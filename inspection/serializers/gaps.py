@@ -95,7 +95,7 @@ def gap_feature(gap: DrawnGap, repairs: list[dict[str, Any]]) -> dict[str, Any]:
         "cut_off_m": gap.cut_off_m,
         "repairs": repairs,
         "note": gap.note,
-        "decided_by": (gap.decided_by.get_full_name() or gap.decided_by.username) if gap.decided_by else None,
+        "decided_by": gap.decided_by.display_name if gap.decided_by else None,
         "decided_at": gap.decided_at,
         "found_at": gap.found_at,
     }

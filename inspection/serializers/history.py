@@ -51,4 +51,4 @@ def _for_people(facts: dict[str, Any] | None) -> dict[str, Any] | None:
 
 
 def _name_of(entry: AuditEntry) -> str | None:
-    return (entry.actor.get_full_name() or entry.actor.username) if entry.actor else None
+    return entry.actor.display_name if entry.actor else None

@@ -213,4 +213,4 @@ def change_feature(change: DrawnChange) -> dict[str, Any]:
 
 
 def _name(user: User | None) -> str | None:
-    return (user.get_full_name() or user.username) if user else None
+    return user.display_name if user else None

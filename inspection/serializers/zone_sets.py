@@ -155,4 +155,4 @@ def _source_json(data_import: DataImport | None) -> dict[str, Any] | None:
 
 
 def _name(user: User | None) -> str | None:
-    return (user.get_full_name() or user.username) if user else None
+    return user.display_name if user else None

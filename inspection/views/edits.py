@@ -20,7 +20,7 @@ def edits(current: Callable[[], dict[str, Any] | None]) -> Iterator[None]:
         yield
     except StaleRevision as error:
         last = changes_of(error.subject, error.key or 0).order_by(*NEWEST_FIRST).first()
-        who = (last.actor.get_full_name() or last.actor.username) if last and last.actor else "an import"
+        who = last.actor.display_name if last and last.actor else "an import"
         details = {"current": current(), "changed_by": who, "changed_at": last and last.recorded_at}
         raise ApiProblem(
             412, "changed", _("Changed by %(who)s in the meantime; nothing of yours was stored.") % {"who": who}, details=details

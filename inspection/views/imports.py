@@ -61,7 +61,7 @@ def _answer(request: SignedInRequest, proposal_id: UUID, status: int = 200) -> R
 
 def _too_late(error: pipeline.WrongState) -> ApiProblem:
     proposal = error.proposal
-    who = proposal.decided_by and (proposal.decided_by.get_full_name() or proposal.decided_by.username)
+    who = proposal.decided_by and proposal.decided_by.display_name
     words = f"{error} {who} decided it." if who else str(error)
     return ApiProblem(409, "wrong_state", words, details={"state": proposal.state, "decided_by": who, "decided_at": proposal.decided_at})
 

@@ -62,6 +62,6 @@ def _in_use(error: FleetRowInUse) -> str:
 
 def _changed(error: FleetChanged, current: Any) -> ApiProblem:
     last = last_change(error.subject, error.key)
-    who = (last.actor.get_full_name() or last.actor.username) if last and last.actor else _("a program")
+    who = last.actor.display_name if last and last.actor else _("a program")
     message = _("Changed by %(who)s in the meantime; nothing of yours was stored.") % {"who": who}
     return ApiProblem(412, "changed", message, details={"current": current, "changed_by": who, "changed_at": last and last.recorded_at})

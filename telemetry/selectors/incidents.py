@@ -109,7 +109,7 @@ def _of_aborts(mission: Mission) -> list[Incident]:
 
 
 def _name(user: User | None) -> str:
-    return "" if user is None else user.get_full_name() or user.username
+    return user.display_name if user else ""
 
 
 def _position(fixes: Sequence[Fix], at_s: float) -> LonLat | None:

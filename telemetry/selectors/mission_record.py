@@ -190,7 +190,7 @@ def _approval(approval: Approval) -> dict[str, Any]:
         "id": approval.pk,
         "content_sha256": approval.content_sha256,
         "approved_at": approval.approved_at,
-        "approved_by": by.get_full_name() or by.username if by else None,
+        "approved_by": by.display_name if by else None,
         "revoked_at": approval.revoked_at,
     }
 

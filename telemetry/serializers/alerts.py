@@ -132,4 +132,4 @@ def note_json(note: AlertNote) -> dict[str, Any]:
 
 
 def _name(user: User | None) -> str | None:
-    return None if user is None else user.get_full_name() or user.username
+    return user.display_name if user else None

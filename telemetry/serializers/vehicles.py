@@ -62,7 +62,7 @@ def vehicle_json(vehicle: UnknownVehicle) -> dict[str, Any]:
         "state": vehicle.state,
         "first_heard_at": vehicle.first_heard_at,
         "heard_at": vehicle.heard_at,
-        "settled_by": (by.get_full_name() or by.username) if by else None,
+        "settled_by": by.display_name if by else None,
         "settled_at": vehicle.settled_at,
         "uav": vehicle.uav_id,
     }

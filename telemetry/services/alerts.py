@@ -103,7 +103,7 @@ def acknowledge_alert(*, alert: Alert, actor: User, note: str = "") -> Alert:
 
 def _acknowledge(alert: Alert, actor: User, now: datetime) -> None:
     alert.acknowledged_at, alert.acknowledged_by = now, actor
-    alert.course = [*alert.course, step(ACKNOWLEDGED, now, by=actor.get_full_name() or actor.username)]
+    alert.course = [*alert.course, step(ACKNOWLEDGED, now, by=actor.display_name)]
     alert.revision += 1
     alert.save(update_fields=["acknowledged_at", "acknowledged_by", "course", "revision"])
 

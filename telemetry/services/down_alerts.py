@@ -42,7 +42,7 @@ def close_down_alert(*, alert: Alert, actor: User, reason: str) -> AlertNote | N
         if held.closed_at is not None:
             return None
         held.closed_at, held.close_reason, held.revision = now, BY_PERSON, held.revision + 1
-        held.course = [*held.course, step(CLOSED, now, reason=BY_PERSON, by=actor.get_full_name() or actor.username)]
+        held.course = [*held.course, step(CLOSED, now, reason=BY_PERSON, by=actor.display_name)]
         if held.acknowledged_at is None:
             held.acknowledged_at, held.acknowledged_by = now, actor
         held.save(update_fields=["closed_at", "close_reason", "revision", "course", "acknowledged_at", "acknowledged_by"])
