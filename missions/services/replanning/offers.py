@@ -21,6 +21,7 @@ REPLAN = "missions.tasks.replan_mission"
 ASKED_FOR = "asked-for"
 UNDECIDED = (OfferState.COMPUTING, OfferState.OPEN)
 WORKED_OUT_WITHIN = timedelta(seconds=120)  # else whoever worked on it is lost
+MAX_OFFERS_OF_CAUSE = 40  # of one flight: as long as nobody decides, the last one that is outdated is followed by another
 
 
 def ask_for_offer(*, mission: Mission, actor: User) -> tuple[ReplanOffer, Job]:
@@ -65,7 +66,10 @@ def decline_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:
 
 
 def settle_offers(*, now: datetime | None = None) -> int:
-    """Marks those outdated from which the mission has moved on, or that nobody works out any more; returns how many."""
+    """Marks those outdated from which the mission has moved on, or that nobody works out any more; returns how many.
+
+    While the mission flies, each is worked out again for the same cause.
+    """
     moment = now or timezone.now()
     found = 0
     for key in list(ReplanOffer.objects.filter(state__in=UNDECIDED).values_list("pk", flat=True)):
@@ -80,8 +84,18 @@ def settle_offers(*, now: datetime | None = None) -> int:
                 continue
             if words:
                 end_offer(held, OfferState.OUTDATED, words)
+                _follow(held)
                 found += 1
     return found
+
+
+def _follow(offer: ReplanOffer) -> None:
+    """Work an outdated offer out again. The caller holds the rows."""
+    mission = offer.mission
+    if mission.state != MissionState.ACTIVE or mission.deleted_at is not None:
+        return
+    if mission.replan_offers.filter(code=offer.code, cause=offer.cause).count() < MAX_OFFERS_OF_CAUSE:
+        _begin(mission, offer.code, offer.cause, None)
 
 
 def held_offer(offer: ReplanOffer) -> ReplanOffer:

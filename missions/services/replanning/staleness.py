@@ -1,7 +1,7 @@
 """Whether things have moved on since an offer was worked out, so that it can no longer be taken."""
 
 from collections.abc import Iterable, Mapping
-from datetime import datetime
+from datetime import datetime, timedelta
 from typing import Any
 
 from django.utils.dateparse import parse_datetime
@@ -13,7 +13,8 @@ from missions.flight_plan.rest_of_route import NEAR_M, PassedPoint, place_on_rou
 from missions.models import CommandAxis, CommandState, Mission, MissionState, ReplanOffer, Route, TargetState, UavCommand, Waypoint
 from missions.services.replanning.rest import HOLDING, LEFT, distance_apart_m
 
-LEAST_LEFT_S = 15.0  # until a UAV is where it is to leave its route: it has to be held before
+VALID_FOR = timedelta(seconds=120)
+MIN_LEFT_S = 15.0  # until a UAV is where it is to leave its route: it has to be held before
 
 
 def basis_of(uavs: Iterable[int]) -> dict[str, Any]:
@@ -30,6 +31,12 @@ def is_held(uav_id: int) -> bool:
     """Whether the last thing that it has done about its flight is to stay where it is."""
     done = UavCommand.objects.filter(uav=uav_id, axis=CommandAxis.FLIGHT, state=CommandState.APPLIED)
     return done.order_by("-sequence").values_list("kind", flat=True).first() in HOLDING
+
+
+def valid_until(continuation: Mission, now: datetime) -> datetime:
+    """When the first UAV comes too near to where it leaves its route, if all fly on as they do; VALID_FOR from now at the latest."""
+    left_s = [left for route in _routes(continuation) if (left := _left_s(route, now)) is not None]
+    return min(now + VALID_FOR, *(now + timedelta(seconds=left) for left in left_s))
 
 
 def why_outdated(offer: ReplanOffer, now: datetime) -> str:
@@ -91,17 +98,28 @@ def _elsewhere(route: Route, now: datetime) -> str:
     uav, values = route.mission_uav.uav, {"uav": route.mission_uav.name}
     if uav is None or uav.located_at is None or (now - uav.located_at).total_seconds() > HEARD_WITHIN_S:
         return _("%(uav)s was not heard of lately: nobody knows where it is.") % values
-    at = LonLat(*uav.location.coords[:2])
-    rows = [row for row in route.waypoints.all() if row.sequence <= (route.begun_by or 0)]
-    points = [_point(row) for row in rows]
-    if len(points) == 1:
-        return "" if distance_apart_m(points[0].position, at) <= NEAR_M else _moved(values)
-    here = place_on_route(points, at)
-    if here.away_m > NEAR_M:
+    at, points = LonLat(*uav.location.coords[:2]), _kept_points(route)
+    away_m = distance_apart_m(points[0].position, at) if len(points) == 1 else place_on_route(points, at).away_m
+    if away_m > NEAR_M:
         return _moved(values)
-    if points[-1].arrival_s - here.at_s(points) < LEAST_LEFT_S and not is_held(uav.pk):
+    left_s = _left_s(route, uav.located_at)
+    if left_s is not None and left_s < 0:
         return _("%(uav)s has come too near to where it was to leave its route.") % values
     return ""
+
+
+def _kept_points(route: Route) -> list[PassedPoint]:
+    """The part of the route that the UAV flies already, to where it leaves it."""
+    return [_point(row) for row in route.waypoints.all() if row.sequence <= (route.begun_by or 0)]
+
+
+def _left_s(route: Route, now: datetime) -> float | None:
+    """Until MIN_LEFT_S before the UAV leaves its route; None where it does not move or its place is unknown."""
+    uav, points = route.mission_uav.uav, _kept_points(route)
+    if uav is None or uav.location is None or uav.located_at is None or len(points) == 1 or is_held(uav.pk):
+        return None
+    here = place_on_route(points, LonLat(*uav.location.coords[:2]))
+    return points[-1].arrival_s - here.at_s(points) - MIN_LEFT_S - (now - uav.located_at).total_seconds()
 
 
 def _point(row: Waypoint) -> PassedPoint:

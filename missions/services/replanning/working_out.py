@@ -2,7 +2,6 @@
 
 from collections.abc import Callable
 from dataclasses import replace
-from datetime import timedelta
 from functools import partial
 
 from django.db import transaction
@@ -17,13 +16,11 @@ from missions.services.replanning.difference import difference_of
 from missions.services.replanning.offers import end_offer, held_offer
 from missions.services.replanning.proposals import Field, Proposal, field_of, proposals
 from missions.services.replanning.rest import Cause, rests_of
-from missions.services.replanning.staleness import basis_of
+from missions.services.replanning.staleness import basis_of, valid_until
 from missions.services.replanning.storing import stored
 from workspace.live import publish_live
 from workspace.models import Job
 from workspace.services import JobCancelled, finish_job
-
-VALID_FOR = timedelta(seconds=120)
 
 
 def work_out_for_job(*, job: Job, stop: Stop, search_s: float, note: Callable[[float, str], None]) -> None:
@@ -86,7 +83,7 @@ def _open(offer: ReplanOffer, proposal: Proposal) -> list[Reason]:
         if continuation is None:
             return reasons
         uavs = [rest.uav.pk for rest in proposal.field.rests if rest.uav is not None]
-        held.difference = difference_of(proposal, now=now, valid_until=now + VALID_FOR) | {"basis": basis_of(uavs)}
+        held.difference = difference_of(proposal, now=now, valid_until=valid_until(continuation, now)) | {"basis": basis_of(uavs)}
         held.continuation, held.state = continuation, OfferState.OPEN
         held.save(update_fields=["difference", "continuation", "state"])
         transaction.on_commit(partial(publish_live, held.mission.organisation_id))

@@ -1,13 +1,17 @@
 """What is left of a mission that flies is planned anew, offered, and changes nothing until somebody takes it."""
 
-import pytest
+from datetime import timedelta
 
-from missions.models import CommandKind, Mission, MissionState, OfferState, ReplanOffer, TargetState
+import pytest
+from django.utils.dateparse import parse_datetime
+
+from missions.models import CommandKind, Mission, MissionState, OfferState, ReplanOffer, TargetState, Uav
 from missions.services.commands import note_applied, note_failed, note_sent
 from missions.services.flying import FlightEnd, mark_flight_ended
 from missions.services.handover import stuck_hand_overs
 from missions.services.refused import Refused
-from missions.services.replanning import accept_offer, decline_offer, settle_offers, suggest
+from missions.services.replanning import accept_offer, decline_offer, offers, settle_offers, suggest
+from missions.services.replanning.staleness import MIN_LEFT_S, VALID_FOR
 from missions.services.steering import mission_in_hand
 from tests.missions.flights import carry, ground
 from tests.missions.outbox import claim, fence, give
@@ -124,8 +128,37 @@ def test_an_offer_from_which_things_have_moved_on_cannot_be_taken(flight, what):
     assert settle_offers() == 1
     offer.refresh_from_db()
     assert (offer.state, bool(offer.outcome)) == (OfferState.OUTDATED, True)
+    again = flight.mission.replan_offers.get(state=OfferState.COMPUTING)
+    assert (again.code, again.cause) == (offer.code, offer.cause), "it is worked out again for the same cause"
     assert not flight.uavs[1].commands.filter(kind=CommandKind.HOLD).exists()
     assert not flight.mission.routes.filter(continued_by__isnull=False).exists()
+
+
+def test_an_offer_ends_when_a_uav_comes_too_near_to_where_it_leaves_its_route(flight):
+    offer = failed_tern(flight)
+    until = parse_datetime(offer.difference["valid_until"])
+    assert until is not None
+    route = offer.continuation.routes.get()
+    points = list(route.waypoints.order_by("sequence")[: route.begun_by + 1])
+    kite = Uav.objects.get(pk=flight.uavs[1].pk)
+    left_s = points[-1].arrival_s - points[0].arrival_s - MIN_LEFT_S
+    expected = min(kite.located_at + timedelta(seconds=left_s), offer.created_at + VALID_FOR)
+    assert abs((until - expected).total_seconds()) < 2.0
+    Uav.objects.filter(pk=kite.pk).update(located_at=until)
+    assert settle_offers(now=until - timedelta(seconds=1)) == 0
+    assert settle_offers(now=until + timedelta(seconds=1)) == 1
+
+
+def test_an_offer_is_not_worked_out_again_once_the_mission_has_ended_or_was_offered_too_often(flight, monkeypatch):
+    offer = failed_tern(flight)
+    monkeypatch.setattr(offers, "MAX_OFFERS_OF_CAUSE", 1)
+    assert settle_offers(now=offer.created_at + timedelta(hours=1)) == 1
+    assert not flight.mission.replan_offers.filter(state=OfferState.COMPUTING).exists()
+    monkeypatch.undo()
+    offer = flight.offer()
+    Mission.objects.filter(pk=flight.mission.pk).update(state=MissionState.ABORTED)
+    assert settle_offers() == 1
+    assert not flight.mission.replan_offers.filter(state=OfferState.COMPUTING).exists()
 
 
 def test_a_step_that_fails_is_the_last(flight):
