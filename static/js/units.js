@@ -83,6 +83,12 @@ export function durationText(duration_s) {
   return `${withUnit(grouped(Math.floor(minutes / 60)), "h")}${rest ? ` ${withUnit(`${rest}`, "min")}` : ""}`;
 }
 
+/** What is left until then: "0:07". @param {number} ms */
+export function countdownText(ms) {
+  const seconds = Math.max(0, Math.ceil(ms / 1000));
+  return `${Math.floor(seconds / 60)}:${`${seconds % 60}`.padStart(2, "0")}`;
+}
+
 /** @param {number} height_m */
 export function heightText(height_m) {
   return isImperial

@@ -10,7 +10,14 @@ import { progressOf } from "../../static/js/monitor/live_strip.js";
 import { ellipseRing, metresPerPixel } from "../../static/js/monitor/map/ellipse.js";
 import { between } from "../../static/js/monitor/map/glide.js";
 import { addReport, flownParts } from "../../static/js/monitor/mission_details.js";
-import { causeWords, overWords, sentenceOf, targetLines, whyNotDecided } from "../../static/js/monitor/offer_words.js";
+import {
+  causeWords,
+  overWords,
+  sentenceOf,
+  targetLines,
+  validWords,
+  whyNotDecided,
+} from "../../static/js/monitor/offer_words.js";
 import { ofPage, placed } from "../../static/js/monitor/placed.js";
 import { ageWords, batteryWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
 import { unheardLines } from "../../static/js/monitor/unheard.js";
@@ -343,8 +350,13 @@ test("of an offer that is over it is said what became of it, and by whom or why"
   assert.match(`${strong} ${rest}`, /^The other plan is flown\. Decided by opal, /);
   assert.equal(
     overWords({ state: "impossible", outcome: "Kite has no range left.", decided_by: null, decided_at: null }).rest,
-    "Kite has no range left.",
+    "Kite has no range left. What is left stays open: plan a follow-up when the mission is closed.",
   );
+});
+
+test("the time that is left to take an offer counts down to zero", () => {
+  assert.equal(validWords(ago(-42.5), NOW_MS), "Can be taken for 0:43. Dashed on the map.");
+  assert.equal(validWords(ago(5), NOW_MS), "Can be taken for 0:00. Dashed on the map.");
 });
 
 test("of UAVs that are not heard it is said who is told all the same", () => {

@@ -3,7 +3,7 @@
 import { routeLetter } from "../domain/palette.js";
 import { BLIND_MS } from "../live/feed.js";
 import { t, tn } from "../text.js";
-import { clockText, lengthText, percentText } from "../units.js";
+import { clockText, countdownText, lengthText, percentText } from "../units.js";
 
 /** @import { LiveOffer, OfferState } from "../api_types.d.ts" */
 /** @import { OfferCause, OfferDifference, OfferFigures } from "./types.d.ts" */
@@ -46,7 +46,9 @@ export const overWords = ({ state, outcome, decided_by, decided_at }) => ({
   strong: OUTCOMES[state] ?? "",
   rest: decided_by
     ? t("Decided by {who}, {time}.", { who: decided_by, time: decided_at ? clockText(decided_at) : "" })
-    : (outcome ?? ""),
+    : [outcome, state === "impossible" && t("What is left stays open: plan a follow-up when the mission is closed.")]
+        .filter(Boolean)
+        .join(" "),
 });
 
 /** @param {Pick<LiveOffer, "state">} offer */
@@ -127,6 +129,12 @@ export const targetLines = (offer) =>
     ({ label, from, to, message }) =>
       `${label}: ${from === null ? "—" : routeLetter(from)} → ${to === null ? message || t("not reached") : routeLetter(to)}`,
   );
+
+/** How long it can still be taken. @param {string} until @param {number} now_ms */
+export const validWords = (until, now_ms) =>
+  t("Can be taken for {time}. Dashed on the map.", {
+    time: countdownText(Date.parse(until) - now_ms),
+  });
 
 /**
  * Why an offer cannot be decided any more, though the server has not said so yet; empty.

@@ -3,6 +3,7 @@
 import { ApiError, freshKey, get, post, remove } from "../api.js";
 import { byId, h, icon } from "../dom.js";
 import { t, tn } from "../text.js";
+import { countdownText } from "../units.js";
 import { confirmAct } from "./confirm.js";
 import { toast } from "./toast.js";
 
@@ -32,19 +33,13 @@ const ENDS = {
 /** Those that go on, or ended a moment ago. @param {PlannedStarts} starts @param {number} now_ms */
 const isShown = ({ ended_at }, now_ms) => !ended_at || now_ms - Date.parse(ended_at) < SHOWN_AFTER_MS;
 
-/** "0:07" @param {number} ms */
-const countdown = (ms) => {
-  const seconds = Math.max(0, Math.ceil(ms / 1000));
-  return `${Math.floor(seconds / 60)}:${`${seconds % 60}`.padStart(2, "0")}`;
-};
-
 /** What is said of one UAV's start. @param {PlannedStart} start @param {boolean} goesOn @param {number} now_ms */
 export function startWords({ state, due_at, why }, goesOn, now_ms) {
   if (state === "started") return t("Start given");
   if (state === "refused") return t("Not started: {why}", { why });
   if (!goesOn) return t("Not started");
   const left_ms = Date.parse(due_at) - now_ms;
-  if (left_ms > 0) return t("in {time}", { time: countdown(left_ms) });
+  if (left_ms > 0) return t("in {time}", { time: countdownText(left_ms) });
   return why ? t("Waits: {why}", { why }) : t("now");
 }
 
@@ -53,7 +48,7 @@ export const orderLines = (waiting) =>
   waiting.map(({ name, after_s }, place) =>
     place === 0
       ? t("{name}: in 10 s", { name })
-      : t("{name}: {time} after the first", { name, time: countdown(after_s * 1000) }),
+      : t("{name}: {time} after the first", { name, time: countdownText(after_s * 1000) }),
   );
 
 /** @param {() => Promise<unknown>} act @param {string} failed */

@@ -180,7 +180,11 @@ export default {
   "The other plan is flown.": "Der andere Plan wird geflogen.",
   "Another plan is being worked out": "Ein anderer Plan wird ausgearbeitet",
   "Another plan is offered": "Ein anderer Plan wird angeboten",
-  "Holds until {time}. Dashed on the map.": "Gilt bis {time}. Auf der Karte gestrichelt.",
+  "Can be taken for {time}. Dashed on the map.": "Noch {time} annehmbar. Auf der Karte gestrichelt.",
+  "Nothing was sent. Look at the plan that is offered now.":
+    "Es wurde nichts gesendet. Sehen Sie sich den Plan an, der jetzt angeboten wird.",
+  "What is left stays open: plan a follow-up when the mission is closed.":
+    "Was übrig ist, bleibt offen: Planen Sie beim Abschließen der Mission einen Folgeauftrag.",
   "Accept": "Annehmen",
   "Declined: the plan stays as it is.": "Abgelehnt: Der Plan bleibt, wie er ist.",
   "Decline": "Ablehnen",

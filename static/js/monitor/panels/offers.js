@@ -6,7 +6,6 @@ import { routeNumber } from "../../domain/palette.js";
 import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
-import { clockText } from "../../units.js";
 import {
   causeWords,
   differenceOf,
@@ -15,6 +14,7 @@ import {
   sentenceOf,
   targetLines,
   uavLines,
+  validWords,
   whyNotDecided,
 } from "../offer_words.js";
 
@@ -39,8 +39,8 @@ async function decide(offer, act, words) {
   }
 }
 
-/** @param {LiveOffer} offer @param {HTMLElement} opener */
-async function accept(offer, opener) {
+/** While the question stands the UAVs fly on: what has expired meanwhile is not sent. @param {MonitorStore} store @param {LiveOffer} offer @param {HTMLElement} opener */
+async function accept(store, offer, opener) {
   const { uavs = [] } = differenceOf(offer);
   const held = uavs.flatMap(({ change, name }) => (change === "changed" ? name : [])).join(", ");
   const asked = await confirmAct({
@@ -60,7 +60,11 @@ async function accept(offer, opener) {
     keep: t("Keep the plan"),
     act: t("Fly the other plan"),
   });
-  if (asked) await decide(offer, "accept", t("The other plan is flown."));
+  if (!asked) return;
+  const current = store.state.offers.find(({ id }) => id === offer.id);
+  const whyNot = current?.state === "open" ? whyNotDecided(current, store.state) : overWords(current ?? offer).rest;
+  if (current?.state === "open" && !whyNot) await decide(current, "accept", t("The other plan is flown."));
+  else toast([whyNot, t("Nothing was sent. Look at the plan that is offered now.")].filter(Boolean).join(" "));
 }
 
 /** @param {LiveOffer} offer */
@@ -90,10 +94,10 @@ function targetList(offer) {
   return lines.length > 0 && h("details", {}, h("summary", {}, t("Targets")), h("ul", {}, lines));
 }
 
-/** @param {LiveOffer} offer @param {string} whyNot */
-function buttons(offer, whyNot) {
+/** @param {MonitorStore} store @param {LiveOffer} offer @param {string} whyNot */
+function buttons(store, offer, whyNot) {
   /** @param {Event} event */
-  const onAccept = ({ currentTarget }) => void accept(offer, /** @type {HTMLElement} */ (currentTarget));
+  const onAccept = ({ currentTarget }) => void accept(store, offer, /** @type {HTMLElement} */ (currentTarget));
   const onDecline = () => void decide(offer, "decline", t("Declined: the plan stays as it is."));
   const isDeciding = deciding.has(offer.id);
   const how = { type: "button", disabled: isDeciding || whyNot !== "", title: whyNot || null };
@@ -105,13 +109,11 @@ function buttons(offer, whyNot) {
   );
 }
 
-/** @param {LiveOffer} offer @param {boolean} canFly @param {string} whyNot */
-function card(offer, canFly, whyNot) {
+/** @param {MonitorStore} store @param {LiveOffer} offer @param {boolean} canFly @param {string} whyNot */
+function card(store, offer, canFly, whyNot) {
   if (offer.state === "computing") return computingCard(offer);
   const { valid_until } = differenceOf(offer);
-  const until =
-    valid_until &&
-    h("p", { class: "caption" }, t("Holds until {time}. Dashed on the map.", { time: clockText(valid_until) }));
+  const until = h("p", { class: "caption countdown", "data-until": valid_until });
   return h(
     "article",
     { class: "offer" },
@@ -119,9 +121,15 @@ function card(offer, canFly, whyNot) {
     h("p", {}, h("strong", {}, `${causeWords(offer)}.`), ` ${sentenceOf(offer)}.`),
     uavList(offer),
     targetList(offer),
-    whyNot ? h("p", { class: "caption" }, whyNot) : until,
-    canFly && buttons(offer, whyNot),
+    whyNot ? h("p", { class: "caption" }, whyNot) : valid_until && until,
+    canFly && buttons(store, offer, whyNot),
   );
+}
+
+/** The time left, without a new card each second: a button keeps its focus. @param {number} now_ms */
+function count(now_ms) {
+  for (const line of /** @type {NodeListOf<HTMLElement>} */ (byId("offer-list").querySelectorAll(".countdown")))
+    line.textContent = validWords(line.dataset.until ?? "", now_ms);
 }
 
 /** What became of an offer, and where the flight goes on. @param {LiveOffer} offer @param {string | null} goesOn address @param {() => void} onPutAway */
@@ -188,13 +196,14 @@ export function mountOffers(store, page) {
     const last = undecided.length === 0 && newest && !putAway.has(newest.id) ? newest : null;
     const whyNot = new Map(undecided.map((offer) => [offer.id, whyNotDecided(offer, state)]));
     const key = JSON.stringify([undecided, last, [...whyNot], [...deciding]]);
-    if (key === drawn) return;
+    if (key === drawn) return count(state.now_ms);
     drawn = key;
     byId("offers").hidden = undecided.length === 0 && last === null;
     setChildren(
       byId("offer-list"),
-      last ? over(last) : undecided.map((offer) => card(offer, page.canFly, whyNot.get(offer.id) ?? "")),
+      last ? over(last) : undecided.map((offer) => card(store, offer, page.canFly, whyNot.get(offer.id) ?? "")),
     );
+    count(state.now_ms);
     void drawRoutes(undecided.find(({ state }) => state === "open"));
   }
 
