@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from django.conf import settings
+from django.utils import timezone
 
 from missions.mavlink.content import FlightLoad, MissionType
 from missions.mavlink.own_return import return_height_parameter
@@ -30,7 +31,15 @@ from missions.services.commands import (
 from telemetry.gateway.blind import send_blind
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.preparation import CannotCarry, Task, as_begun, reason_not_to, reason_not_to_start, task_of
+from telemetry.gateway.preparation import (
+    CannotCarry,
+    Task,
+    as_begun,
+    reason_not_to,
+    reason_not_to_start,
+    return_by_list,
+    task_of,
+)
 from telemetry.gateway.reading import OTHER_LIST_READ, ask_for_the_present, read_aboard
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
 from telemetry.gateway.vehicle_limits import reason_not_to_load, warnings_of
@@ -143,6 +152,13 @@ class Carriage:
         if too_near is not None:  # while the list was read, somebody else has taken off
             await self._refuse(too_near)
             return
+        if task.along is not None:
+            found = await self._surely(return_by_list, task.along, self.session.state, time.monotonic(), timezone.now())
+            if isinstance(found, CannotCarry):
+                await self._refuse(found)
+                return
+            task = replace(task, parameters=found)
+            assert task.order is not None  # noqa: S101
         if not await self._surely(note_sent, self.command.pk, **self._fence):
             await self._end(note_released)
             return

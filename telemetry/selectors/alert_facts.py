@@ -11,7 +11,9 @@ from uuid import UUID
 from django.db import connection
 from django.db.models import Exists, OuterRef
 
+from missions.command_rules import ALONG_ROUTE
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandState, Mission, Uav, UavCommand
+from telemetry.alerting.modes import RETURN_ALONG
 from telemetry.alerting.said import KEPT_S, Said
 from telemetry.alerting.surroundings import LinkFacts, Order
 from telemetry.estimation.own_time import believed_rate
@@ -70,11 +72,12 @@ def closed_by_people(pairs: Collection[tuple[int, UUID]], code: str) -> set[tupl
 
 
 _ORDERS = """
-SELECT wanted.uav, command.kind, command.created_at, command.finished_at, command.state,
+SELECT wanted.uav, CASE WHEN command.parameters ? %(along)s THEN %(return_along)s ELSE command.kind END,
+    command.created_at, command.finished_at, command.state,
     EXISTS (SELECT 1 FROM missions_uavcommand open WHERE open.uav_id = wanted.uav
         AND (open.axis = %(mission_axis)s OR open.parameters ? 'hand_over') AND open.state = ANY(%(open)s))
 FROM unnest(%(uavs)s::bigint[], %(missions)s::uuid[]) AS wanted(uav, mission) LEFT JOIN LATERAL (
-    SELECT kind, created_at, finished_at, state FROM missions_uavcommand command
+    SELECT kind, parameters, created_at, finished_at, state FROM missions_uavcommand command
     WHERE uav_id = wanted.uav AND axis = %(flight_axis)s AND state = ANY(%(counting)s)
         AND (mission_id = wanted.mission OR (mission_id IS NULL AND created_at > now() - interval '4 hours'))
     ORDER BY sequence DESC LIMIT 1
@@ -88,6 +91,7 @@ def orders_to(flying: Sequence[tuple[int, UUID]]) -> dict[int, tuple[Order | Non
     It is also while a UAV is held to be given another one.
     """
     values: dict[str, str | list[int] | list[UUID] | list[CommandState]] = {
+        "along": ALONG_ROUTE, "return_along": RETURN_ALONG,
         "uavs": [uav for uav, _ in flying], "missions": [mission for _, mission in flying],
         "mission_axis": CommandAxis.MISSION, "flight_axis": CommandAxis.FLIGHT,
         "open": list(OPEN_COMMANDS), "counting": [*OPEN_COMMANDS, CommandState.APPLIED],
