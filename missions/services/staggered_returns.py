@@ -49,16 +49,17 @@ def return_after(command: UavCommand) -> UavCommand | None:
 
 
 def stuck_returns() -> list[UavCommand]:
-    """Steps of returns that failed or expired, so that no return followed, and returns along a route that were not begun.
+    """Steps of returns that failed or expired, so that no return followed, and returns that failed.
 
     One to whose UAV somebody has given another command about its flight since is in their hands.
     """
     since = timezone.now() - timedelta(seconds=STUCK_FOR_S)
-    asked = Q(**{f"parameters__{THEN_RETURN}": True}) | Q(**{f"parameters__{ALONG_ROUTE}": True})
+    steps = Q(**{f"parameters__{THEN_RETURN}": True}) | Q(**{f"parameters__{ALONG_ROUTE}": True})
+    asked = steps | Q(kind=CommandKind.RETURN, state=CommandState.FAILED)
     ended = UavCommand.objects.filter(asked, created_at__gte=since).exclude(state=CommandState.APPLIED).exclude(state__in=OPEN_COMMANDS)
     found: dict[int, UavCommand] = {}
     for command in ended.exclude(outcome_code__in=[SUPERSEDED, WITHDRAWN]).select_related("uav", "mission").order_by("sequence"):
         later = UavCommand.objects.filter(uav=command.uav_id, sequence__gt=command.sequence)
-        if not later.filter(Q(axis=CommandAxis.FLIGHT) | asked).exists():
+        if not later.filter(Q(axis=CommandAxis.FLIGHT) | steps).exists():
             found[command.uav_id] = command
     return list(found.values())

@@ -12,6 +12,7 @@ from django.db import connection
 from django.db.models import Exists, OuterRef
 
 from missions.command_rules import ALONG_ROUTE
+from missions.mavlink.own_return import OwnReturn, own_return
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandState, Mission, Uav, UavCommand
 from telemetry.alerting.modes import RETURN_ALONG
 from telemetry.alerting.said import KEPT_S, Said
@@ -39,14 +40,20 @@ def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
     rows = UavLink.objects.filter(uav__in=uav_ids).values_list(
         "uav_id", "heard_at", "mode", "is_armed", "is_in_air", "uav__is_simulated", "clock_rate",
         "loaded_sha256", "loaded_approval", "loaded_flight", "loaded_doubt", "autopilot", "battery_state",
+        "uav__autopilot_return",
     )  # fmt: skip
     found = {}
-    for uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate, sha256, approval, flight, doubt, autopilot, battery in rows:
+    for row in rows:
+        uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate, *held, autopilot, battery, told = row
         rate = believed_rate(clock_rate if is_simulated else None)
         heard_s = None if heard_at is None else heard_at.timestamp()
-        facts = LinkFacts(heard_s, mode, is_armed, is_in_air, rate, battery, autopilot)
-        found[uav_id] = (facts, Loaded(sha256, approval, flight, doubt, autopilot))
+        facts = LinkFacts(heard_s, mode, is_armed, is_in_air, rate, battery, autopilot, _own_return(told))
+        found[uav_id] = (facts, Loaded(*held, autopilot))
     return found
+
+
+def _own_return(told: Mapping[str, Any]) -> OwnReturn | None:
+    return own_return(told.get("autopilot", ""), told.get("parameters", {}))
 
 
 def said_by(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[Said, ...]]:

@@ -11,7 +11,6 @@ from inspection.geodesy import LonLat
 from inspection.graph.spans import spans_of
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import planning_read
-from telemetry.alerting.way_along import Here, WayAlong, way_along, way_along_points
 from missions.mavlink.frozen import Flight
 from missions.models import Approval, LinkKind, Uav
 from missions.selectors import approval_in_force
@@ -19,6 +18,7 @@ from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_l
 from missions.services.own_return import zones_applying
 from missions.services.steering import mission_in_hand
 from missions.zone_selectors import zone_margins
+from telemetry.alerting.way_along import Here, WayAlong, way_along, way_along_points
 from telemetry.services.loads import Loaded, loaded_on
 
 FURTHER = timedelta(minutes=5)  # after the expected landing, in which zones count

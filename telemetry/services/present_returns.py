@@ -15,9 +15,10 @@ from inspection.selectors import ground_heights_m
 from missions.flight_plan.rules import SeparationRules
 from missions.flight_plan.separation import TimedRoute, conflicts
 from missions.flight_plan.ways_home import Places
-from missions.models import EndAction, Route, Uav
+from missions.models import CommandKind, EndAction, Route, Uav
 from missions.services.approved_fence import rally_points
 from missions.services.own_return import ReturnCheck, ReturnState, reported_return, return_checks, ways_now
+from missions.services.staggered_returns import stuck_returns
 from missions.services.start_slots import KEPT_SHARE
 from missions.services.steering import mission_in_hand
 from telemetry.alerting.modes import ModeKind, mode_kind
@@ -79,7 +80,8 @@ class _Air:
 
 def present_returns(*, uavs: Sequence[Uav], now: datetime) -> list[PresentReturn]:
     """For each of these UAVs of one organisation, as if all of them were told to return at this moment. Raises NoGraph."""
-    flown = [_checked(_flown(heard), now) for heard in heard_of(uavs, now)]
+    refused = {command.uav_id for command in stuck_returns() if command.kind == CommandKind.SET_RETURN_HEIGHT}
+    flown = [_checked(replace(_flown(heard), keeps_height=heard.uav.pk in refused), now) for heard in heard_of(uavs, now)]
     air = _Air([one for one in flown if one.straight is not None])
     air.others = _others(uavs, now)
     met, safest = _met(air), safest_returns(air.returning, [way for _other, way in air.others])

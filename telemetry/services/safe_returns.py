@@ -68,6 +68,7 @@ class Flown:
     home: LonLat | None = None
     straight: StraightReturn | None = None
     ways: WaysNow | None = None
+    keeps_height: bool = False  # it did not take another return height just now
     along: AlongRoute | None = None
     base_m: float = math.nan  # of its heights, above the sea
     goal_m: float = 0.0  # how high above its take-off it is to come to where it lands
@@ -146,7 +147,7 @@ def _choices(one: Flown, battery: BatteryAtLanding) -> list[tuple[SafeReturn, Ti
 def _heights(one: Flown) -> list[tuple[float, StraightReturn]]:
     """Return heights that can be set on it, at which nothing is in the way, with the return: at least the separation apart."""
     own, present, straight = one.own, one.heard.present, one.straight
-    if own is None or one.ways is None or straight is None or present is None or present.altitude_relative_m is None:
+    if one.keeps_height or own is None or one.ways is None or straight is None or present is None or present.altitude_relative_m is None:
         return []
     step_m = float(math.ceil(settings.SEPARATION_RULES.vertical_m)) + 1.0
     lowest_m = own.height_m + step_m if one.check.state == ReturnState.CLEAR else one.check.safe_height_m
