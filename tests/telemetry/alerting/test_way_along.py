@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.graph.spans import Spans
+from inspection.graph.spans import Spans, spans_between
 from missions.flight_plan.clearance import Margins, ZoneFacts
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.waypoints import WaypointKind
@@ -50,7 +50,7 @@ def wires(*lines: tuple[tuple[float, float], tuple[float, float], float]) -> Spa
     """From place to place, so high."""
     start, end = (np.array([lon_lat(*line[side]) for line in lines]).reshape(-1, 2) for side in (0, 1))
     top_m = np.array([line[2] for line in lines], dtype=np.float64)
-    return Spans(start, end, top_m, top_m, np.arange(len(lines), dtype=np.int64))
+    return spans_between(start, end, top_m, top_m)
 
 
 def flat(positions: np.ndarray) -> np.ndarray:

@@ -56,7 +56,7 @@ def fly(vehicle, flying, gateway, uav: Uav, mission: Mission, flavour: Flavour):
     items = load_of(upload).load.mission
     item, place, height_m = half_way(mission, items)
     offset = 1 if flavour is Flavour.ARDUPILOT else 0
-    vehicle.current_item, flying.at, flying.altitude_amsl_m = item + offset, tuple(place), 100.0 + height_m
+    vehicle.current_item, flying.at, flying.height_m = item + offset, tuple(place), height_m
     state = gateway.sessions[uav.mavlink_system_id].state
     wait_for(lambda: state.mission_item == item + offset, "its item")
     wait_for(lambda: state.position is not None and abs(state.position.lon - place.lon) < 1e-6, "its place")
@@ -100,7 +100,7 @@ def test_a_zone_on_the_rest_of_its_way_is_said_and_nothing_is_sent(flavour, uav,
     settle_return_alerts()
     alert = Alert.objects.get(code="return-not-begun", closed_at=None)
     assert alert.level == "critical" and alert.details["acts"] == [{"kind": "return", "uav": uav.pk}]
-    assert "does not return along its route" in alert_words(alert)
+    assert "does not return along its route" in alert_words(alert.message, alert.values)
 
 
 @pytest.mark.parametrize("flavour", FLAVOURS)
@@ -118,7 +118,7 @@ def test_a_height_that_cannot_be_set_is_told_at_once_and_the_return_as_it_is_end
         assert not Uav.objects.get(pk=uav.pk).commands.filter(kind=CommandKind.RETURN).exists()
         settle_return_alerts()
         alert = Alert.objects.get(code="return-not-begun", closed_at=None)
-        assert "its return height is not set" in alert_words(alert) and "stays" in alert_words(alert)
+        assert "its return height is not set" in alert_words(alert.message, alert.values) and "stays" in alert_words(alert.message, alert.values)
         assert [stuck.pk for stuck in stuck_returns()] == [command.pk]
         home = command_uav(uav=Uav.objects.get(pk=uav.pk), kind=CommandKind.RETURN, actor=mission.author)
         settle_return_alerts()
