@@ -69,7 +69,8 @@ def is_flown(page: Page, name: str, towers: list[dict[str, Any]]) -> Flown:
 def day(visitor: Visitor) -> Iterator[dict[str, Flown]]:
     page = visitor.signs_in("ada")
     found = asks(page, f"/assets?kind=tower&bbox={region.spread_towers}&limit=200")["features"]
-    found.sort(key=lambda tower: away_m(tower["geometry"]["coordinates"], found[0]["geometry"]["coordinates"]))
+    origin = found[0]["geometry"]["coordinates"]
+    found.sort(key=lambda tower: away_m(tower["geometry"]["coordinates"], origin))
     groups = {"South": found[:6], "North": found[-6:]}
     flown = {name: is_flown(page, name, towers) for name, towers in groups.items()}
     for one in flown.values():
@@ -147,7 +148,7 @@ def faults_are_told(page: Page, south: Flown, north: Flown) -> None:
     assert re.search("late|lost", link["message"])
     battery = open_alert(page, gull, "battery-short", level="critical")
     assert battery["acts"] and battery["acts"][0]["kind"] in {"return", "land"}, battery
-    down = open_alert(page, north.uavs["Crow"], "down", level="critical")
+    down = open_alert(page, north.uavs["Crow"], "down-off-plan", level="critical")
     assert "crashed" in down["message"]
     writes(page, "PATCH", f"/simulated-vehicles/{south.vehicles['Gull']}", {"conditions": "strong-wind"})
     expect(page.locator("#alerts")).to_contain_text("battery", timeout=60_000)
