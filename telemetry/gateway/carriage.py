@@ -146,6 +146,7 @@ class Carriage:
 
     async def _order(self, task: Task) -> None:
         assert task.order is not None  # noqa: S101 - of two only one is None
+        order, parameters = task.order, task.parameters
         if task.aboard is not None and not await self._is_aboard(task.aboard, task.before):
             return
         too_near = await self._surely(reason_not_to_start, self.command) if self.command.kind == CommandKind.START else None
@@ -157,14 +158,13 @@ class Carriage:
             if isinstance(found, CannotCarry):
                 await self._refuse(found)
                 return
-            task = replace(task, parameters=found)
-            assert task.order is not None  # noqa: S101
+            parameters = found
         if not await self._surely(note_sent, self.command.pk, **self._fence):
             await self._end(note_released)
             return
         keeper = CommandKeeper(
-            task.order, self.session.state, Ends(self.session.uav.system), settings.VEHICLE_COMMAND_RULES,
-            parameters=task.parameters, unsettled_until_s=self.session.unsettled_until_s(UNSETTLED_S),
+            order, self.session.state, Ends(self.session.uav.system), settings.VEHICLE_COMMAND_RULES,
+            parameters=parameters, unsettled_until_s=self.session.unsettled_until_s(UNSETTLED_S),
         )  # fmt: skip
         told = False
 

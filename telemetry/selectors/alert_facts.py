@@ -44,11 +44,12 @@ def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
     )  # fmt: skip
     found = {}
     for row in rows:
-        uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate, *held, autopilot, battery, told = row
+        uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate = row[:7]
+        sha256, approval, flight, doubt, autopilot, battery, told = row[7:]
         rate = believed_rate(clock_rate if is_simulated else None)
         heard_s = None if heard_at is None else heard_at.timestamp()
         facts = LinkFacts(heard_s, mode, is_armed, is_in_air, rate, battery, autopilot, _own_return(told))
-        found[uav_id] = (facts, Loaded(*held, autopilot))
+        found[uav_id] = (facts, Loaded(sha256, approval, flight, doubt, autopilot))
     return found
 
 

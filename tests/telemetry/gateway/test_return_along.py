@@ -118,7 +118,8 @@ def test_a_height_that_cannot_be_set_is_told_at_once_and_the_return_as_it_is_end
         assert not Uav.objects.get(pk=uav.pk).commands.filter(kind=CommandKind.RETURN).exists()
         settle_return_alerts()
         alert = Alert.objects.get(code="return-not-begun", closed_at=None)
-        assert "its return height is not set" in alert_words(alert.message, alert.values) and "stays" in alert_words(alert.message, alert.values)
+        words = alert_words(alert.message, alert.values)
+        assert "its return height is not set" in words and "stays" in words
         assert [stuck.pk for stuck in stuck_returns()] == [command.pk]
         home = command_uav(uav=Uav.objects.get(pk=uav.pk), kind=CommandKind.RETURN, actor=mission.author)
         settle_return_alerts()
