@@ -40,6 +40,8 @@ AXES = {
 SAFETY_RANKS = {"hold": 1, "return": 2, "land": 3, "abort": 4}
 THEN_RETURN = "then_return"  # a command's parameter: once it is done its UAV is told to return
 WAIT_S = "wait_s"  # a return's parameter: after so many seconds of holding
+HEIGHT_M = "height_m"  # of a return: above the take-off, set on the UAV before it
+ALONG_ROUTE = "along_route"  # a return's parameter: by the rest of its approved route, not straight
 HAND_OVER = "hand_over"  # a command's parameter: a step of giving its UAV another route
 SETS_IN_MOTION = frozenset({"arm", "take-off", "start", "resume"})
 

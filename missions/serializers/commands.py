@@ -89,9 +89,15 @@ class DispatchInputSerializer(WhyInputSerializer):
 
 class CommandParametersSerializer(KnownFieldsSerializer):
     speed_mps = serializers.FloatField(required=False, help_text="over ground; of change-speed")
-    height_m = serializers.FloatField(required=False, help_text="above the take-off; of set-return-height")
+    height_m = serializers.FloatField(
+        required=False, help_text="above the take-off; of set-return-height, and of a return that is to set it before"
+    )
     then_return = serializers.BooleanField(required=False, help_text="of set-return-height: the UAV returns once it is set")
     wait_s = serializers.FloatField(required=False, help_text="of return: it holds for so long, and returns then")
+    along_route = serializers.BooleanField(
+        required=False,
+        help_text="of return: not straight, but by the rest of its approved route, from the waypoint on from which that is clear",
+    )
     altitude_relative_m = serializers.FloatField(required=False, help_text="above the place of take-off; of take-off")
     out_of_slot = serializers.BooleanField(
         required=False, help_text="of start, after 409 `start_slot`: take off although others in the air come near its route"
@@ -112,6 +118,7 @@ class GivenParametersSerializer(serializers.Serializer):
     wait_s = serializers.FloatField(
         required=False, help_text="of a hold: the return follows so long after it was given; of a return: it waits"
     )
+    along_route = serializers.BooleanField(required=False, help_text="of a return: by the rest of its approved route")
     altitude_relative_m = serializers.FloatField(required=False)
     flight = serializers.IntegerField(required=False, help_text="number of the flight whose mission is sent, from 1")
     out_of_slot = serializers.BooleanField(required=False, help_text="it was asked for although others in the air come near its route")
@@ -174,18 +181,26 @@ class CommandPageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
+class ReturnWaySerializer(KnownFieldsSerializer):
+    """How a UAV returns: after a hold, at a height that is set before, both in this order, or along its route. Empty: straight, at once."""
+
+    height_m = serializers.FloatField(required=False, help_text="above the take-off: set on the UAV and read back before it returns")
+    wait_s = serializers.FloatField(required=False, min_value=0.0, max_value=MAX_WAIT_S, help_text="for which it holds before")
+    along_route = serializers.BooleanField(required=False, help_text="by the rest of its approved route; with nothing else")
+
+
 class _BatchSerializer(WhyInputSerializer):
     kind = serializers.ChoiceField(choices=sorted(BATCH_KINDS))
-    waits_s = serializers.DictField(
-        child=serializers.FloatField(min_value=0.0, max_value=MAX_WAIT_S),
+    ways = serializers.DictField(
+        child=ReturnWaySerializer(),
         required=False,
-        help_text="of return: how long UAVs, by their ids, hold before they return, so that they keep apart",
+        help_text="of return: how UAVs, by their ids, return, so that they keep apart; the others straight and at once",
     )
 
-    def validate_waits_s(self, waits_s: dict[str, float]) -> dict[int, float]:
-        if not all(uav.isascii() and uav.isdigit() and len(uav) < 19 for uav in waits_s):
+    def validate_ways(self, ways: dict[str, dict[str, Any]]) -> dict[int, dict[str, Any]]:
+        if not all(uav.isascii() and uav.isdigit() and len(uav) < 19 for uav in ways):
             raise serializers.ValidationError("The names are ids of UAVs.")
-        return {int(uav): wait_s for uav, wait_s in waits_s.items()}
+        return {int(uav): dict(way) for uav, way in ways.items()}
 
 
 class BatchInputSerializer(_BatchSerializer):

@@ -8,7 +8,7 @@ from uuid import UUID
 from django.db import transaction
 from django.utils.translation import gettext as _
 
-from missions.command_rules import SETS_IN_MOTION, WAIT_S
+from missions.command_rules import SETS_IN_MOTION
 from missions.command_selectors import places_in_flight
 from missions.in_air_hooks import uavs_never_heard, uavs_on_the_ground
 from missions.models import CommandKind, Mission, MissionState, Uav, UavCommand
@@ -49,21 +49,21 @@ class UavAnswer:
 
 
 def command_missions(
-    *, scopes: Sequence[Scope], kind: CommandKind, actor: User, why: str = "", waits_s: Mapping[int, float] | None = None
+    *, scopes: Sequence[Scope], kind: CommandKind, actor: User, why: str = "", ways: Mapping[int, dict[str, Any]] | None = None
 ) -> list[UavAnswer]:
     """Give UAVs of these missions a command, all in one transaction: a refusal of one is none of the others.
 
-    Reached are UAVs with a route sent or in flight in the mission that is named, and no others. waits_s: for how long UAVs, by their ids,
-    hold before they return. Raises Refused for a kind that is not in
-    BATCH_KINDS, for waits of another kind than a return, and where nobody is named and no mission has a UAV to reach.
+    Reached are UAVs with a route sent or in flight in the mission that is named, and no others. ways: how UAVs, by their ids, return, as
+    parameters of a return have it. Raises Refused for a kind that is not in BATCH_KINDS, for ways of another kind than a return, and
+    where nobody is named and no mission has a UAV to reach.
     """
     if kind not in BATCH_KINDS:
         raise refuse("no_batch", _("This command is given to one UAV at a time."))
-    if waits_s and kind != CommandKind.RETURN:
+    if ways and kind != CommandKind.RETURN:
         raise refuse("no_parameters", _("This command has no parameters."))
     with transaction.atomic():
         _hold(scopes, kind)
-        answers = [answer for scope in scopes for answer in _command_mission(scope, kind, actor, why, waits_s or {})]
+        answers = [answer for scope in scopes for answer in _command_mission(scope, kind, actor, why, ways or {})]
     if not answers:
         raise refuse("nobody_in_mission", _("No UAV has a route of this mission sent or in flight."))
     return answers
@@ -78,7 +78,7 @@ def _hold(scopes: Sequence[Scope], kind: CommandKind) -> None:
     list(Uav.objects.select_for_update(no_key=True).filter(pk__in=flown_by).order_by("pk").values_list("pk"))
 
 
-def _command_mission(scope: Scope, kind: CommandKind, actor: User, why: str, waits_s: Mapping[int, float]) -> list[UavAnswer]:
+def _command_mission(scope: Scope, kind: CommandKind, actor: User, why: str, ways: Mapping[int, dict[str, Any]]) -> list[UavAnswer]:
     mission = scope.mission
     places = places_in_flight(mission) if mission.state in REACHABLE else {}
     on_the_ground, never_heard = uavs_on_the_ground(places), uavs_never_heard(places)
@@ -100,8 +100,7 @@ def _command_mission(scope: Scope, kind: CommandKind, actor: User, why: str, wai
             reason = Reason("on_the_ground", _("%(uav)s is on the ground.") % {"uav": uav.name}, place)
             answers.append(UavAnswer(mission.pk, uav_id, uav.name, place, reasons=(reason,)))
         else:
-            parameters = {WAIT_S: waits_s[uav_id]} if waits_s.get(uav_id) else {}
-            answers.append(_command(mission, uav, place, kind, actor, why, parameters))
+            answers.append(_command(mission, uav, place, kind, actor, why, dict(ways.get(uav_id, {}))))
     return answers
 
 

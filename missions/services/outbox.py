@@ -16,7 +16,7 @@ from django.db.models import F, Max, Q, QuerySet
 from django.db.models.functions import Coalesce, Greatest, Least, Now
 from django.utils.translation import gettext as _
 
-from missions.command_rules import HAND_OVER, WAIT_S, axes_overtaken_by, axis_of, may_overtake, priority_of
+from missions.command_rules import ALONG_ROUTE, HAND_OVER, WAIT_S, axes_overtaken_by, axis_of, may_overtake, priority_of
 from missions.models import (
     OPEN_COMMANDS,
     Approval,
@@ -46,7 +46,7 @@ _CLAIM = """
             AND (%s::text IS NULL OR (link = %s::text
                 AND EXISTS (SELECT FROM missions_uav AS uav WHERE uav.id = uav_id AND uav.link = %s::text)))
             AND (%s::text[] IS NULL OR axis = ANY(%s::text[]))
-            AND (NOT %s OR (priority = %s AND NOT parameters ? %s))
+            AND (NOT %s OR (priority = %s AND NOT parameters ?| %s::text[]))
             AND (lease_expires_at IS NULL OR lease_expires_at < statement_timestamp())
             AND (expires_at IS NULL OR expires_at > statement_timestamp())
         ORDER BY priority, created_at, sequence LIMIT %s FOR UPDATE SKIP LOCKED
@@ -130,14 +130,15 @@ def claim_commands(
     """Take up to so many commands to these UAVs: the most urgent first, then the oldest; what others hold is left alone.
 
     With `link` only those that go by this door, to UAVs that are reached by it now; with `axes` only those about these; `to_unheard` only
-    those that are right for a UAV of which nothing is heard: what makes it safe, and is no step that others are to follow.
+    those that are right for a UAV of which nothing is heard: what makes it safe, and is neither a step that others are to follow nor a
+    return that depends on where it is.
 
     Taken are those that nobody holds and those whose lease has run out; each counts one attempt more. `holder` names one run of one
     program: a gateway that starts anew has another name.
     """
     about = None if axes is None else [str(axis) for axis in axes]
     with transaction.atomic():
-        unheard = [to_unheard, CommandPriority.SAFETY, HAND_OVER]
+        unheard = [to_unheard, CommandPriority.SAFETY, [HAND_OVER, ALONG_ROUTE]]
         values = [list(uav_ids), link, link, link, about, about, *unheard, limit, holder, lease_s]
         found = list(UavCommand.objects.raw(_CLAIM, values))
     return sorted(found, key=lambda command: (command.priority, command.created_at, command.sequence))

@@ -151,10 +151,34 @@ def checked_ways(checked: ReturnCheck, own: OwnReturn, ways: Sequence[WaysHome],
     return replace(checked, state=ReturnState.IN_THE_WAY, warnings=tuple(warnings), safe_height_m=safe_m)
 
 
-def return_from(
-    checked: ReturnCheck, own: OwnReturn, places: Places, home: LonLat, rally: Sequence[tuple[LonLat, float]], window: tuple[float, float]
-) -> ReturnCheck:
-    """The check of the way home from places at which a UAV may be now, and of that to the rally point that it would take instead.
+@dataclass(frozen=True, eq=False)
+class WaysNow:
+    """Ways home from where a UAV may be now, and the zones that apply meanwhile."""
+
+    ways: tuple[WaysHome, ...]
+    table: ZoneTable
+
+    def checked(self, check: ReturnCheck, own: OwnReturn) -> ReturnCheck:
+        """Return the check with what is in these ways."""
+        return checked_ways(check, own, self.ways, self.table, where=_("From where it is now"))
+
+    def clear_heights_m(self, own: OwnReturn, lowest_m: float, step_m: float) -> list[float]:
+        """Return heights from `lowest_m` on, so many metres apart, at which nothing is in the way and which flights may have."""
+        most_m = settings.FLIGHT_RULES.max_agl_m
+        found, height_m = [], float(math.ceil(lowest_m))
+        while height_m <= most_m:
+            levels = [_levels(way, own.at_height(height_m)) for way in self.ways]
+            pairs = list(zip(self.ways, levels, strict=True))
+            if all(way.most_agl_m(levels_m) <= most_m and not way.troubles(levels_m) for way, levels_m in pairs):
+                found.append(height_m)
+            height_m += step_m
+        return found
+
+
+def ways_now(
+    own: OwnReturn, places: Places, home: LonLat, rally: Sequence[tuple[LonLat, float]], window: tuple[float, float]
+) -> WaysNow:  # fmt: skip
+    """The way home from places at which a UAV may be now, and that to the rally point that it would take instead.
 
     window: from when to when it flies home, in seconds since the epoch. Raises NoGraph.
     """
@@ -170,7 +194,7 @@ def return_from(
         )
         for haven, own_places in _places_by_haven(places, Haven(home), havens, shuns_home=own.shuns_home)
     ]  # fmt: skip
-    return checked_ways(checked, own, ways, near, where=_("From where it is now"))
+    return WaysNow(tuple(ways), near)
 
 
 def zones_applying(table: ZoneTable, positions: NDArray[np.float64], window: tuple[float, float]) -> tuple[ZoneTable, ZoneFacts]:

@@ -8,7 +8,7 @@ from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
-from missions.command_rules import SETS_IN_MOTION, THEN_RETURN, WAIT_S
+from missions.command_rules import ALONG_ROUTE, HEIGHT_M, SETS_IN_MOTION, THEN_RETURN, WAIT_S
 from missions.command_selectors import route_commands, upload_of
 from missions.fleet_selectors import performance_of
 from missions.mavlink.own_return import own_return
@@ -30,14 +30,13 @@ from missions.services.approval_checks import Look, look_at, look_that_counts
 from missions.services.flying import ON_ITS_WAY
 from missions.services.outbox import queue_command
 from missions.services.refused import Reason, refuse, refuse_for
-from missions.services.staggered_returns import hold_then_return
+from missions.services.staggered_returns import return_in_steps
 from missions.services.start_slots import OUT_OF_SLOT, hold_starts, reasons_to_wait
 from workspace.models import User
 
 SLOWEST_MPS = 0.5
 LOWEST_TAKE_OFF_M = 1.0
 MAX_WAIT_S = 900.0  # before a return
-IN_FLIGHT_S = 60.0  # for which a return height is wanted that a return waits for
 BY_HAND = tuple(kind for kind in CommandKind if kind not in {CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION})
 
 
@@ -46,7 +45,7 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
 
     parameters: `speed_mps` over ground for a change of speed, `altitude_relative_m` above the take-off place for a take-off, `out_of_slot`
     for a start although others in the air are near its route, `height_m` above the take-off for a return height, with `then_return` where
-    it is to return at that, `wait_s` for a return before which it is to hold so long.
+    it is to return at that; of a return `wait_s`, which it holds before, `height_m`, which is set before, or `along_route`.
     Raises Refused.
     """
     if kind not in BY_HAND:
@@ -65,12 +64,11 @@ def command_uav(*, uav: Uav, kind: CommandKind, actor: User, why: str = "", para
             if kind == CommandKind.START:
                 checked["flight"] = _flight_to_start(uav, mission, approval, look, timezone.now(), out_of_slot=OUT_OF_SLOT in checked)
         about = {"mission": mission, "approval": approval}
-        if WAIT_S in checked:
-            return hold_then_return(uav=uav, wait_s=checked[WAIT_S], actor=actor, why=why, **about)
-        expires_in_s = IN_FLIGHT_S if THEN_RETURN in checked else None
-        return queue_command(
-            uav=uav, kind=kind, actor=actor, why=why, parameters=checked, mission=mission, approval=approval, expires_in_s=expires_in_s
-        )
+        if THEN_RETURN in checked or (kind == CommandKind.RETURN and checked.keys() & {WAIT_S, HEIGHT_M}):
+            return return_in_steps(uav=uav, parameters=checked, actor=actor, why=why, **about)
+        if ALONG_ROUTE in checked and approval is None:
+            raise refuse("no_mission", _("%(uav)s has no mission.") % {"uav": uav.name})
+        return queue_command(uav=uav, kind=kind, actor=actor, why=why, parameters=checked, mission=mission, approval=approval)
 
 
 def mission_in_hand(uav: Uav) -> Mission | None:
@@ -102,13 +100,27 @@ def _parameters(uav: Uav, kind: CommandKind, given: dict[str, Any]) -> dict[str,
     if kind == CommandKind.SET_RETURN_HEIGHT:
         return _return_height(uav, given)
     if kind == CommandKind.RETURN and given:
-        wait_s = _within(WAIT_S, given, 0.0, MAX_WAIT_S, "s")
-        return {WAIT_S: wait_s} if wait_s > 0.0 else {}
+        return _of_return(uav, given)
     if kind == CommandKind.START and set(given) == {OUT_OF_SLOT}:
         return dict(given) if given[OUT_OF_SLOT] else {}
     if given:
         raise refuse("no_parameters", _("This command has no parameters."))
     return {}
+
+
+def _of_return(uav: Uav, given: dict[str, Any]) -> dict[str, Any]:
+    """Along its route, or after a wait, at a height that is set before, or both. Raises Refused."""
+    if set(given) == {ALONG_ROUTE}:
+        if given[ALONG_ROUTE] and uav.link == LinkKind.HTTP:
+            raise refuse(
+                "not_by_companion", _("%(uav)s flies by its companion: it is not sent along its route from here.") % {"uav": uav.name}
+            )
+        return {ALONG_ROUTE: True} if given[ALONG_ROUTE] else {}
+    if not set(given) <= {WAIT_S, HEIGHT_M}:
+        raise refuse("no_parameters", _("A return has a wait and a height, or goes along the route."))
+    wait_s = _within(WAIT_S, {WAIT_S: given[WAIT_S]}, 0.0, MAX_WAIT_S, "s") if WAIT_S in given else 0.0
+    height = _return_height(uav, {HEIGHT_M: given[HEIGHT_M]}) if HEIGHT_M in given else {}
+    return height | ({WAIT_S: wait_s} if wait_s > 0.0 else {})
 
 
 def _return_height(uav: Uav, given: dict[str, Any]) -> dict[str, Any]:

@@ -37,7 +37,7 @@ def _detail(command: UavCommand) -> dict[str, object]:
 def _batch(request: SignedInRequest, scopes: list[Scope], values: dict[str, Any]) -> Response:
     with refusals():
         answers = command_missions(
-            scopes=scopes, kind=CommandKind(values["kind"]), actor=request.user, why=values["why"], waits_s=values.get("waits_s")
+            scopes=scopes, kind=CommandKind(values["kind"]), actor=request.user, why=values["why"], ways=values.get("ways")
         )
     return Response({"results": [shapes.batch_answer_json(answer) for answer in answers]})
 

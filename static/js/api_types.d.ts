@@ -290,6 +290,24 @@ export interface components {
             /** Format: date-time */
             at: string;
         };
+        AlongRoute: {
+            /** @description of the approved route, to which it flies straight; the rest is flown as approved */
+            waypoint: number;
+            /** Format: double */
+            length_m: number;
+            /**
+             * Format: double
+             * @description to the landing, with what is done at targets on the way
+             */
+            duration_s: number;
+            /** @description number of targets that are still visited */
+            targets: number;
+            /**
+             * Format: double
+             * @description of its battery, left at the landing; null: not known
+             */
+            landing_percent: number | null;
+        };
         /** @description The nearest thing to another assignment: one target of this route on the route of another UAV. */
         Alternative: {
             target: number;
@@ -546,9 +564,9 @@ export interface components {
             /** @default  */
             why: string;
             kind: components["schemas"]["BatchKind"];
-            /** @description of return: how long UAVs, by their ids, hold before they return, so that they keep apart */
-            waits_s?: {
-                [key: string]: number;
+            /** @description of return: how UAVs, by their ids, return, so that they keep apart; the others straight and at once */
+            ways?: {
+                [key: string]: components["schemas"]["ReturnWayRequest"];
             };
             /** @description ids; without it: all with a route of the mission sent or in flight */
             uavs?: number[];
@@ -854,7 +872,7 @@ export interface components {
             speed_mps?: number;
             /**
              * Format: double
-             * @description above the take-off; of set-return-height
+             * @description above the take-off; of set-return-height, and of a return that is to set it before
              */
             height_m?: number;
             /** @description of set-return-height: the UAV returns once it is set */
@@ -864,6 +882,8 @@ export interface components {
              * @description of return: it holds for so long, and returns then
              */
             wait_s?: number;
+            /** @description of return: not straight, but by the rest of its approved route, from the waypoint on from which that is clear */
+            along_route?: boolean;
             /**
              * Format: double
              * @description above the place of take-off; of take-off
@@ -1657,6 +1677,8 @@ export interface components {
              * @description of a hold: the return follows so long after it was given; of a return: it waits
              */
             wait_s?: number;
+            /** @description of a return: by the rest of its approved route */
+            along_route?: boolean;
             /** Format: double */
             altitude_relative_m?: number;
             /** @description number of the flight whose mission is sent, from 1 */
@@ -2986,9 +3008,9 @@ export interface components {
             /** @default  */
             why: string;
             kind: components["schemas"]["BatchKind"];
-            /** @description of return: how long UAVs, by their ids, hold before they return, so that they keep apart */
-            waits_s?: {
-                [key: string]: number;
+            /** @description of return: how UAVs, by their ids, return, so that they keep apart; the others straight and at once */
+            ways?: {
+                [key: string]: components["schemas"]["ReturnWayRequest"];
             };
             missions: components["schemas"]["ScopeRequest"][];
         };
@@ -3982,11 +4004,10 @@ export interface components {
             battery: components["schemas"]["BatteryAtLanding"];
             /** @description UAVs that it comes near on its way home, the first one first */
             met: components["schemas"]["MetOnReturn"][];
-            /**
-             * Format: double
-             * @description by which returns are kept apart; null: no wait does, or not known
-             */
-            wait_s: number | null;
+            /** @description home by the rest of its approved route; null: not clear, or not known */
+            along: components["schemas"]["AlongRoute"] | null;
+            /** @description parameters of a return in which nothing is in the way and none comes near another; null: there is none */
+            safest: components["schemas"]["SafeReturn"] | null;
         };
         PresentReturns: {
             /** Format: date-time */
@@ -5185,6 +5206,21 @@ export interface components {
          * @enum {string}
          */
         ReturnState: "clear" | "in_the_way" | "unknown" | "not_checked";
+        /** @description How a UAV returns: after a hold, at a height that is set before, both in this order, or along its route. Empty: straight, at once. */
+        ReturnWayRequest: {
+            /**
+             * Format: double
+             * @description above the take-off: set on the UAV and read back before it returns
+             */
+            height_m?: number;
+            /**
+             * Format: double
+             * @description for which it holds before
+             */
+            wait_s?: number;
+            /** @description by the rest of its approved route; with nothing else */
+            along_route?: boolean;
+        };
         RevertRequest: {
             /** @description the state before this entry comes back */
             entry: number;
@@ -5407,6 +5443,19 @@ export interface components {
             task: components["schemas"]["RouteTask"] | null;
             /** @description the target's place */
             target: number | null;
+        };
+        SafeReturn: {
+            /**
+             * Format: double
+             * @description set before it returns; null: as it is
+             */
+            height_m: number | null;
+            /**
+             * Format: double
+             * @description for which it holds before
+             */
+            wait_s: number;
+            along_route: boolean;
         };
         SaidFigure: {
             name: components["schemas"]["UavFigure"];
@@ -7568,6 +7617,7 @@ export type AlertPage = components['schemas']['AlertPage'];
 export type AlertStep = components['schemas']['AlertStep'];
 export type AlertStepWhatEnum = components['schemas']['AlertStepWhatEnum'];
 export type AlertWorst = components['schemas']['AlertWorst'];
+export type AlongRoute = components['schemas']['AlongRoute'];
 export type Alternative = components['schemas']['Alternative'];
 export type Approach = components['schemas']['Approach'];
 export type ApprovalDocument = components['schemas']['ApprovalDocument'];
@@ -7915,6 +7965,7 @@ export type ResultsRequest = components['schemas']['ResultsRequest'];
 export type ReturnCheck = components['schemas']['ReturnCheck'];
 export type ReturnChecks = components['schemas']['ReturnChecks'];
 export type ReturnState = components['schemas']['ReturnState'];
+export type ReturnWayRequest = components['schemas']['ReturnWayRequest'];
 export type RevertRequest = components['schemas']['RevertRequest'];
 export type Rhythm = components['schemas']['Rhythm'];
 export type Role = components['schemas']['Role'];
@@ -7926,6 +7977,7 @@ export type RouteTarget = components['schemas']['RouteTarget'];
 export type RouteTask = components['schemas']['RouteTask'];
 export type RouteTrack = components['schemas']['RouteTrack'];
 export type RouteWaypoint = components['schemas']['RouteWaypoint'];
+export type SafeReturn = components['schemas']['SafeReturn'];
 export type SaidFigure = components['schemas']['SaidFigure'];
 export type Scene = components['schemas']['Scene'];
 export type SceneBridge = components['schemas']['SceneBridge'];

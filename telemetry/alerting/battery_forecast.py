@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from inspection.geodesy import LonLat
 from telemetry.alerting.consumption import Consumption, DrainMemory, FlightKind, Wind, east_north_m, kind_of
 from telemetry.alerting.memory import position_of
+from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.route_line import NEAR_VERTEX_M
 from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import FlightModel
@@ -20,7 +21,7 @@ USUAL_CRUISE_MPS = 8.0
 class BatteryForecast:
     """Percentages are of the full battery. None: not known.
 
-    home_percent      takes the straight way home and the landing there; home_s its time
+    home_percent      takes the climb to the height of its return, the straight way home and the landing there; home_s its time
     landing_percent   the same to the nearest landing place other than home, landing_m away
     rest_percent      takes the rest of the route, where it flies that
     down_percent      takes a landing where it is
@@ -115,7 +116,9 @@ def _ways(
         return _Ways()
     height_m, drain, home = told.altitude_relative_m or 0.0, situation.memory.drain, model.line.vertices[0]
     here = model.line.east_north(position)
-    home_s, home_percent, moving_per_s = _way_to(consumption, drain, (home[0] - here[0], home[1] - here[1]), height_m, wind_mps)
+    way, own = (home[0] - here[0], home[1] - here[1]), situation.link.own_return
+    climb_m = 0.0 if own is None or situation.mode is ModeKind.LAND else own.level_m(height_m, math.hypot(*way), 0.0) - height_m
+    home_s, home_percent, moving_per_s = _way_to(consumption, drain, way, height_m, wind_mps, climb_m=climb_m)
     landings = [(math.hypot(*way), way) for way in (east_north_m(position, point) for point in model.rally_points)]
     landing_m, nearest = min(landings, default=(None, None))
     return _Ways(
@@ -129,13 +132,15 @@ def _ways(
 
 
 def _way_to(
-    consumption: Consumption, drain: DrainMemory, way: tuple[float, float], height_m: float, wind_mps: Wind
+    consumption: Consumption, drain: DrainMemory, way: tuple[float, float], height_m: float, wind_mps: Wind, *, climb_m: float = 0.0
 ) -> tuple[float, float, float]:
-    """Seconds, percent, and percent a second while it moves."""
-    flies_s, sinks_s, air_mps = consumption.way(*way, height_m, wind_mps)
+    """Seconds, percent, and percent a second while it moves. climb_m: that it climbs before, and sinks more at the end."""
+    flies_s, sinks_s, air_mps = consumption.way(*way, height_m + climb_m, wind_mps)
+    climbs_s = climb_m / consumption.climb_mps
+    climbing = consumption.percent_per_s(math.hypot(*wind_mps), consumption.climb_mps) * drain.ratio(FlightKind.CLIMBING)
     moving = consumption.percent_per_s(air_mps) * drain.ratio(FlightKind.MOVING)
     still = consumption.percent_per_s(0.0) * drain.ratio(FlightKind.STILL)
-    return flies_s + sinks_s, flies_s * moving + sinks_s * still, moving
+    return climbs_s + flies_s + sinks_s, climbs_s * climbing + flies_s * moving + sinks_s * still, moving
 
 
 def _rest_percent(situation: Situation, model: FlightModel, told: Measurement, consumption: Consumption) -> float | None:

@@ -19,6 +19,8 @@ READ_WITHIN_PERCENT = 1.0
 STEP_PERCENT = 1.0  # of expected drain, between two entries
 STEPS_KEPT = 12
 RATIOS = (0.7, 4.0)  # of observed to expected drain
+CLIMB_MPS = 2.5  # ArduCopter's WPNAV_SPEED_UP; PX4's MPC_Z_V_AUTO_UP is 3
+CLIMB_FACTOR = 1.3  # of the drain of a climb to that of level flight, where the UAV's power is not known
 DESCENT_MPS = 1.5  # PX4's MPC_Z_V_AUTO_DN, ArduCopter's WPNAV_SPEED_DN
 LANDING_MPS, SLOW_BELOW_M = 0.7, 8.0  # PX4's MPC_LAND_SPEED; missions/flight_plan/rules.py
 Wind = tuple[float, float]  # velocity of the air to east and north [m/s]
@@ -45,12 +47,17 @@ class Consumption:
     performance: Performance | None = None
     wind_mps: Wind = (0.0, 0.0)  # as planned
 
-    def percent_per_s(self, airspeed_mps: float) -> float:
-        """Return the drain of level flight [% of the full battery a second]."""
+    @property
+    def climb_mps(self) -> float:
+        """Return the speed of a climb straight up."""
+        return CLIMB_MPS if self.performance is None else self.performance.climb_speed_mps or CLIMB_MPS
+
+    def percent_per_s(self, airspeed_mps: float, climb_mps: float = 0.0) -> float:
+        """Return the drain of level flight, or of a climb [% of the full battery a second]."""
         performance = self.performance
         if performance is None or performance.battery_wh is None:
-            return 100.0 / USUAL_ENDURANCE_S
-        return power_w(performance, airspeed_mps=airspeed_mps) / J_PER_WH * 100.0 / performance.battery_wh
+            return 100.0 / USUAL_ENDURANCE_S * (CLIMB_FACTOR if climb_mps > 0.0 else 1.0)
+        return power_w(performance, airspeed_mps=airspeed_mps, climb_mps=climb_mps) / J_PER_WH * 100.0 / performance.battery_wh
 
     def way(self, east_m: float, north_m: float, height_m: float, wind_mps: Wind) -> tuple[float, float, float]:
         """Return seconds over ground, seconds of landing and the airspeed [m/s] of a straight way, and a landing at its end.

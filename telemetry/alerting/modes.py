@@ -34,6 +34,8 @@ def mode_kind(mode: str) -> ModeKind | None:
     return ModeKind.BY_HAND if name.startswith("MODE ") else _KINDS.get(name)
 
 
+RETURN_ALONG = "return along the route"  # by the rest of the list on board
+
 # Modes that a command of ours leads to.
 LEADS_TO: dict[str, frozenset[ModeKind]] = {
     "arm": frozenset(ModeKind),
@@ -43,6 +45,7 @@ LEADS_TO: dict[str, frozenset[ModeKind]] = {
     "pause": frozenset({ModeKind.HOLD, ModeKind.GUIDED}),
     "hold": frozenset({ModeKind.HOLD, ModeKind.GUIDED}),
     "return": frozenset({ModeKind.RETURN, ModeKind.LAND}),
+    RETURN_ALONG: frozenset({ModeKind.MISSION, ModeKind.LAND}),
     "land": frozenset({ModeKind.LAND}),
     "abort": frozenset({ModeKind.RETURN, ModeKind.LAND}),
 }

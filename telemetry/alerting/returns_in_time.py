@@ -1,4 +1,4 @@
-"""Straight returns of UAVs, now or after a wait: where they come near each other, and the waits by which none does.
+"""Returns of UAVs, straight or along their routes: where they come near each other, and heights and waits by which none does.
 
 Heights are above the sea; NaN where that is not known: what cannot be compared counts as the same height.
 """
@@ -79,43 +79,36 @@ def flying_on(uav: str, points: Sequence[tuple[LonLat, float, float]], speed_mps
     )  # fmt: skip
 
 
-@dataclass(frozen=True)
-class Waits:
-    """How long each return waits before it begins, in their order; `is_clear`: none comes near another one or any other UAV then."""
+def chosen_apart(
+    choices: Sequence[Sequence[TimedRoute]], fixed: Sequence[TimedRoute], rules: SeparationRules, first: Sequence[TimedRoute]
+) -> list[int | None]:
+    """For each UAV the first of its choices that comes near no other UAV; None where none does not, which then flies as `first` has it.
 
-    seconds: tuple[float, ...]
-    is_clear: bool
-
-
-def waits_apart(returns: Sequence[StraightReturn], fixed: Sequence[TimedRoute], rules: SeparationRules, most_s: Sequence[float]) -> Waits:
-    """Waits by which returns keep apart; those that wait hover where they are. The first ones are to wait least.
-
-    most_s: the longest that each may wait. Placed one after another, in their order; where that leaves a conflict, the nearest to its goal
-    first, or the farthest. What no wait solves begins at once, and is told by `is_clear`.
+    UAVs choose one after another, in their order; where that leaves one without a choice, those with the shortest first way are tried
+    first, or those with the longest. fixed: what all others in the air do.
     """
-    in_order = list(range(len(returns)))
-    by_duration = sorted(in_order, key=lambda number: (returns[number].duration_s(), number))
+    in_order = list(range(len(choices)))
+    by_duration = sorted(in_order, key=lambda number: (first[number].end_s, number))
     found = []
     for order in (in_order, by_duration, by_duration[::-1]):
-        waits = _placed(returns, fixed, rules, most_s, order)
-        if waits.is_clear:
-            return waits
-        found.append(waits)
-    return found[0]
+        chosen = _chosen(choices, fixed, rules, first, order)
+        if None not in chosen:
+            return chosen
+        found.append(chosen)
+    return min(found, key=lambda chosen: chosen.count(None))
 
 
-def _placed(
-    returns: Sequence[StraightReturn], fixed: Sequence[TimedRoute], rules: SeparationRules, most_s: Sequence[float], order: Sequence[int]
-) -> Waits:
+def _chosen(
+    choices: Sequence[Sequence[TimedRoute]], fixed: Sequence[TimedRoute], rules: SeparationRules, first: Sequence[TimedRoute],
+    order: Sequence[int],
+) -> list[int | None]:  # fmt: skip
     placed: list[TimedRoute] = []
-    seconds = [0.0] * len(returns)
+    chosen: list[int | None] = [None] * len(choices)
     for number in order:
-        one = returns[number]
-        choices = [wait_s for wait_s in WAITS_S if wait_s <= most_s[number]]
-        free = (wait_s for wait_s in choices if not _meets(one.after(wait_s), [*placed, *fixed], rules))
-        seconds[number] = next(free, 0.0)
-        placed.append(one.after(seconds[number]))
-    return Waits(tuple(seconds), not conflicts(placed, fixed, rules=rules))
+        free = (place for place, one in enumerate(choices[number]) if not _meets(one, [*placed, *fixed], rules))
+        place = chosen[number] = next(free, None)
+        placed.append(first[number] if place is None else choices[number][place])
+    return chosen
 
 
 def _meets(route: TimedRoute, others: Sequence[TimedRoute], rules: SeparationRules) -> bool:

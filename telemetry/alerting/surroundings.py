@@ -5,6 +5,7 @@ from typing import Any
 from uuid import UUID
 
 from inspection.geodesy import LonLat
+from missions.mavlink.own_return import OwnReturn
 from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import EnergyPlan
 from telemetry.alerting.route_line import RouteLine
@@ -25,6 +26,7 @@ class LinkFacts:
     clock_rate: float = 1.0
     battery_state: str = ""
     autopilot: str = ""  # a name of ground_station/flavour.py
+    own_return: OwnReturn | None = None  # how high it flies home by itself; None: not known
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from django.conf import settings
+from django.utils import timezone
 
 from missions.mavlink.content import FlightLoad, MissionType
 from missions.mavlink.own_return import return_height_parameter
@@ -30,7 +31,15 @@ from missions.services.commands import (
 from telemetry.gateway.blind import send_blind
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.preparation import CannotCarry, Task, as_begun, reason_not_to, reason_not_to_start, task_of
+from telemetry.gateway.preparation import (
+    CannotCarry,
+    Task,
+    as_begun,
+    reason_not_to,
+    reason_not_to_start,
+    return_by_list,
+    task_of,
+)
 from telemetry.gateway.reading import OTHER_LIST_READ, ask_for_the_present, read_aboard
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
 from telemetry.gateway.vehicle_limits import reason_not_to_load, warnings_of
@@ -137,18 +146,25 @@ class Carriage:
 
     async def _order(self, task: Task) -> None:
         assert task.order is not None  # noqa: S101 - of two only one is None
+        order, parameters = task.order, task.parameters
         if task.aboard is not None and not await self._is_aboard(task.aboard, task.before):
             return
         too_near = await self._surely(reason_not_to_start, self.command) if self.command.kind == CommandKind.START else None
         if too_near is not None:  # while the list was read, somebody else has taken off
             await self._refuse(too_near)
             return
+        if task.along is not None:
+            found = await self._surely(return_by_list, task.along, self.session.state, time.monotonic(), timezone.now())
+            if isinstance(found, CannotCarry):
+                await self._refuse(found)
+                return
+            parameters = found
         if not await self._surely(note_sent, self.command.pk, **self._fence):
             await self._end(note_released)
             return
         keeper = CommandKeeper(
-            task.order, self.session.state, Ends(self.session.uav.system), settings.VEHICLE_COMMAND_RULES,
-            parameters=task.parameters, unsettled_until_s=self.session.unsettled_until_s(UNSETTLED_S),
+            order, self.session.state, Ends(self.session.uav.system), settings.VEHICLE_COMMAND_RULES,
+            parameters=parameters, unsettled_until_s=self.session.unsettled_until_s(UNSETTLED_S),
         )  # fmt: skip
         told = False
 

@@ -2,11 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from datetime import datetime
 
 from django.conf import settings
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
+from missions.command_rules import ALONG_ROUTE
 from missions.mavlink.content import FlightLoad
 from missions.mavlink.frozen import TakeOff
 from missions.models import CommandKind, MissionState, UavCommand
@@ -15,8 +17,9 @@ from missions.services.start_slots import START_SLOT, reasons_to_carry_later
 from telemetry.gateway.begun_in_air import item_to_begin_with
 from telemetry.ground_station.flavour import RESTARTS, Flavour, Mode
 from telemetry.ground_station.leg import beside_leg
-from telemetry.ground_station.orders import ITEM, Order
+from telemetry.ground_station.orders import ITEM, SPEED_MPS, Order
 from telemetry.ground_station.vehicle_state import VehicleState
+from telemetry.services.along_route import OnBoard, along_route, held_flight
 from telemetry.services.loads import Loaded, loaded_on
 
 LOADING = (CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION)
@@ -43,7 +46,8 @@ class Task:
     """`load` is to be on the vehicle, or `order` to be followed. `wanted` is what UavLink shows then, `before` what it showed.
 
     `aboard` is what the vehicle is to hold, seen once more, before an order is followed that makes it fly its list. `begun_by`: the flight
-    is begun in the air, on the way to this waypoint. `return_height_m` is to be set on the vehicle, above its take-off.
+    is begun in the air, on the way to this waypoint. `return_height_m` is to be set on the vehicle, above its take-off. `along`: the
+    order is to return by the rest of this list.
     """
 
     load: FlightLoad | None = None
@@ -55,6 +59,7 @@ class Task:
     before: Loaded | None = None
     begun_by: int | None = None
     return_height_m: float | None = None
+    along: OnBoard | None = None
     known: Sequence[FlightLoad] = ()
 
 
@@ -71,6 +76,8 @@ def task_of(command: UavCommand) -> Task | CannotCarry:
         return Task(load=EMPTY, before=before, known=_others(command, EMPTY))
     if command.kind == CommandKind.SET_RETURN_HEIGHT:
         return Task(return_height_m=float(command.parameters["height_m"]), before=before)
+    if command.kind == CommandKind.RETURN and command.parameters.get(ALONG_ROUTE):
+        return _return_along(command, before)
     if command.kind not in (CommandKind.UPLOAD_MISSION, *FLIES_LIST):
         parameters = {name: float(value) for name, value in command.parameters.items() if isinstance(value, int | float)}
         return Task(order=Order(command.kind), parameters=parameters, before=before)
@@ -97,6 +104,33 @@ def task_of(command: UavCommand) -> Task | CannotCarry:
         if too_near is not None:
             return too_near
     return Task(order=Order(command.kind), take_off=approved.take_off, aboard=approved.load, before=before, begun_by=begun_by)
+
+
+def _return_along(command: UavCommand, before: Loaded | None) -> Task | CannotCarry:
+    approval = command.approval
+    held = None if approval is None else held_flight(approval, command.uav_id, before)
+    if held is None or approval is None or approval.revoked_at is not None or approval.revoke_requested_at is not None:
+        return CannotCarry("not-loaded", "The UAV does not surely hold its approved route: it cannot return along it.")
+    return Task(order=Order.RETURN, before=before, along=held)
+
+
+def return_by_list(held: OnBoard, state: VehicleState, now_s: float, now: datetime) -> dict[str, float] | CannotCarry:
+    """Parameters of a return along the route from where the vehicle is now; reads the database. now_s: by the state's clock."""
+    if state.position is None or state.altitude_relative_m is None or not _is_new(state.position_at_s, now_s):
+        return CannotCarry("no-position", "The UAV does not tell where it flies.", is_for_good=False)
+    if state.mission_item is None or not _is_new(state.mission_item_at_s, now_s):
+        return CannotCarry("no-item", "The UAV does not tell which waypoint it would fly to.", is_for_good=False)
+    is_ardupilot = state.flavour is Flavour.ARDUPILOT
+    if is_ardupilot and not state.is_in(Mode.MISSION):
+        if state.parameters.get(RESTARTS) is None:
+            return CannotCarry("no-item", f"The UAV does not tell {RESTARTS}: whether it would go on or begin anew.", is_for_good=False)
+        if state.parameters[RESTARTS]:
+            return CannotCarry("begins-anew", f"The UAV would fly its route from the beginning: {RESTARTS} is not 0.")
+    waypoint = held.waypoint_of(state.mission_item - 1 if is_ardupilot else state.mission_item)
+    found = along_route(held, position=state.position, height_m=state.altitude_relative_m, waypoint=waypoint, now=now)
+    if found is None:
+        return CannotCarry("not-clear", "From where the UAV is now no way along its route is clear.")
+    return {ITEM: float(found.item), SPEED_MPS: found.way.speed_mps}
 
 
 def _approved(command: UavCommand, before: Loaded | None) -> ApprovedLoad | CannotCarry:

@@ -15,7 +15,7 @@ from telemetry.ground_station.vehicle_state import VehicleState
 OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
 NAN = math.nan
 ABORT_ROUNDS = 3
-ITEM = "item"
+ITEM, SPEED_MPS = "item", "speed_mps"
 
 
 class Order(StrEnum):
@@ -61,7 +61,7 @@ def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) 
     """For the vehicle as it is now. Raises CannotOrder.
 
     parameters: `altitude_relative_m` to take off to, `speed_mps` to fly at, `item` with which a list is begun in the air, from 0 without
-    home.
+    home. A return with an `item` goes on with the list from there, at `speed_mps`: the rest of it is the way home.
     """
     if state.flavour not in COMMANDED:
         raise CannotOrder("autopilot", "Only PX4 and ArduPilot are commanded: what another autopilot does is not known.")
@@ -69,6 +69,8 @@ def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) 
         raise CannotOrder("vehicle-class", refusal_words(state.vehicle_class))
     if order in (Order.PAUSE, Order.HOLD):
         return OrderPlan(_or_on_ground(_is_in(Mode.HOLD)), ((_mode(state, Mode.HOLD),),))
+    if order is Order.RETURN and ITEM in parameters:
+        return _return_by_list(state, parameters)
     if order is Order.RETURN:
         return OrderPlan(_or_on_ground(_is_in(Mode.RETURN)), ((_mode(state, Mode.RETURN),),))
     if order is Order.LAND:
@@ -169,6 +171,21 @@ def _begin_in_air(state: VehicleState, item: int) -> OrderPlan:
     return OrderPlan(_flies_mission, ((_item(state, item), _mode(state, Mode.MISSION)),))
 
 
+def _return_by_list(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
+    """It is on its way to the item, or past it. The speed goes first: items that set it may be left out."""
+    if state.vehicle_class is not VehicleClass.COPTER:
+        raise CannotOrder("vehicle-class", refusal_words(state.vehicle_class))
+    if not _is_told_to_fly(state):
+        raise CannotOrder("not-flying", "The UAV is on the ground.")
+    place = int(parameters[ITEM])
+    number = _number_of(state, place)
+
+    def is_past(seen: VehicleState) -> bool:
+        return _flies_mission(seen) and seen.mission_item is not None and seen.mission_item >= number
+
+    return OrderPlan(_or_on_ground(is_past), ((_speed(parameters), _item(state, place), _mode(state, Mode.MISSION)),))
+
+
 def _is_told_to_fly(state: VehicleState) -> bool:
     """Raises CannotOrder where it is not known."""
     if state.is_in_air is None:
@@ -183,7 +200,7 @@ def _first_item(state: VehicleState) -> CommandStep:
 
 def _item(state: VehicleState, place: int) -> CommandStep:
     """place: from 0 without home."""
-    item = place if state.flavour is Flavour.PX4 else place + 1
+    item = _number_of(state, place)
     return CommandStep(
         "begin with the first item" if place == 0 else f"begin with item {place + 1}",
         mavlink.MAV_CMD_DO_SET_MISSION_CURRENT,
@@ -192,6 +209,11 @@ def _item(state: VehicleState, place: int) -> CommandStep:
         told_at_s=lambda seen: seen.mission_item_at_s,
         instead=lambda ends: mavlink.MAVLink_mission_set_current_message(ends.system, ends.component, item),
     )
+
+
+def _number_of(state: VehicleState, place: int) -> int:
+    """Of an item, as the vehicle counts."""
+    return place if state.flavour is Flavour.PX4 else place + 1
 
 
 def _take_off(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
@@ -219,7 +241,7 @@ def _abort(state: VehicleState) -> OrderPlan:
 
 def _speed(parameters: Mapping[str, float]) -> CommandStep:
     """Over ground; no message of every vehicle shows it, so its yes has to be enough."""
-    numbers = (1.0, _positive(parameters, "speed_mps"), -1.0, 0.0, 0.0, 0.0, 0.0)
+    numbers = (1.0, _positive(parameters, SPEED_MPS), -1.0, 0.0, 0.0, 0.0, 0.0)
     return CommandStep("change speed", mavlink.MAV_CMD_DO_CHANGE_SPEED, numbers)
 
 

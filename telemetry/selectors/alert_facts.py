@@ -11,7 +11,10 @@ from uuid import UUID
 from django.db import connection
 from django.db.models import Exists, OuterRef
 
+from missions.command_rules import ALONG_ROUTE
+from missions.mavlink.own_return import OwnReturn, own_return
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandState, Mission, Uav, UavCommand
+from telemetry.alerting.modes import RETURN_ALONG
 from telemetry.alerting.said import KEPT_S, Said
 from telemetry.alerting.surroundings import LinkFacts, Order
 from telemetry.estimation.own_time import believed_rate
@@ -37,14 +40,21 @@ def links_of(uav_ids: Collection[int]) -> dict[int, tuple[LinkFacts, Loaded]]:
     rows = UavLink.objects.filter(uav__in=uav_ids).values_list(
         "uav_id", "heard_at", "mode", "is_armed", "is_in_air", "uav__is_simulated", "clock_rate",
         "loaded_sha256", "loaded_approval", "loaded_flight", "loaded_doubt", "autopilot", "battery_state",
+        "uav__autopilot_return",
     )  # fmt: skip
     found = {}
-    for uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate, sha256, approval, flight, doubt, autopilot, battery in rows:
+    for row in rows:
+        uav_id, heard_at, mode, is_armed, is_in_air, is_simulated, clock_rate = row[:7]
+        sha256, approval, flight, doubt, autopilot, battery, told = row[7:]
         rate = believed_rate(clock_rate if is_simulated else None)
         heard_s = None if heard_at is None else heard_at.timestamp()
-        facts = LinkFacts(heard_s, mode, is_armed, is_in_air, rate, battery, autopilot)
+        facts = LinkFacts(heard_s, mode, is_armed, is_in_air, rate, battery, autopilot, _own_return(told))
         found[uav_id] = (facts, Loaded(sha256, approval, flight, doubt, autopilot))
     return found
+
+
+def _own_return(told: Mapping[str, Any]) -> OwnReturn | None:
+    return own_return(told.get("autopilot", ""), told.get("parameters", {}))
 
 
 def said_by(uav_ids: Collection[int], now_s: float) -> dict[int, tuple[Said, ...]]:
@@ -70,11 +80,12 @@ def closed_by_people(pairs: Collection[tuple[int, UUID]], code: str) -> set[tupl
 
 
 _ORDERS = """
-SELECT wanted.uav, command.kind, command.created_at, command.finished_at, command.state,
+SELECT wanted.uav, CASE WHEN command.parameters ? %(along)s THEN %(return_along)s ELSE command.kind END,
+    command.created_at, command.finished_at, command.state,
     EXISTS (SELECT 1 FROM missions_uavcommand open WHERE open.uav_id = wanted.uav
         AND (open.axis = %(mission_axis)s OR open.parameters ? 'hand_over') AND open.state = ANY(%(open)s))
 FROM unnest(%(uavs)s::bigint[], %(missions)s::uuid[]) AS wanted(uav, mission) LEFT JOIN LATERAL (
-    SELECT kind, created_at, finished_at, state FROM missions_uavcommand command
+    SELECT kind, parameters, created_at, finished_at, state FROM missions_uavcommand command
     WHERE uav_id = wanted.uav AND axis = %(flight_axis)s AND state = ANY(%(counting)s)
         AND (mission_id = wanted.mission OR (mission_id IS NULL AND created_at > now() - interval '4 hours'))
     ORDER BY sequence DESC LIMIT 1
@@ -88,6 +99,7 @@ def orders_to(flying: Sequence[tuple[int, UUID]]) -> dict[int, tuple[Order | Non
     It is also while a UAV is held to be given another one.
     """
     values: dict[str, str | list[int] | list[UUID] | list[CommandState]] = {
+        "along": ALONG_ROUTE, "return_along": RETURN_ALONG,
         "uavs": [uav for uav, _ in flying], "missions": [mission for _, mission in flying],
         "mission_axis": CommandAxis.MISSION, "flight_axis": CommandAxis.FLIGHT,
         "open": list(OPEN_COMMANDS), "counting": [*OPEN_COMMANDS, CommandState.APPLIED],

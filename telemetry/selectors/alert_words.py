@@ -67,6 +67,10 @@ TEMPLATES = (
         "%(uav)s is held and was to fly on with %(mission)s, but a step failed: %(step)s. %(words)s"
         " Send it its mission again and start it, or tell it to return."
     ),
+    gettext_noop("No return was sent to %(uav)s, which goes on as before: its return height is not set. %(words)s"),
+    gettext_noop("No return was sent to %(uav)s, which goes on as before: it was to hold first. %(words)s"),
+    gettext_noop("%(uav)s does not return along its route, and goes on as before. %(words)s"),
+    gettext_noop("%(uav)s was told to return, and does not. %(words)s"),
     gettext_noop("Two senders say that they are %(uav)s: %(believed)s, which is believed, and %(other)s."),
     gettext_noop(
         "The signed frames of %(uav)s come from two addresses, %(believed)s and %(other)s. Both are answered; one may belong to a listener."

@@ -41,6 +41,20 @@ class MetOnReturnSerializer(serializers.Serializer):
     is_returning = serializers.BooleanField(help_text="whether the other one returns, too")
 
 
+class AlongRouteSerializer(serializers.Serializer):
+    waypoint = serializers.IntegerField(help_text="of the approved route, to which it flies straight; the rest is flown as approved")
+    length_m = serializers.FloatField()
+    duration_s = serializers.FloatField(help_text="to the landing, with what is done at targets on the way")
+    targets = serializers.IntegerField(help_text="number of targets that are still visited")
+    landing_percent = serializers.FloatField(allow_null=True, help_text="of its battery, left at the landing; null: not known")
+
+
+class SafeReturnSerializer(serializers.Serializer):
+    height_m = serializers.FloatField(allow_null=True, help_text="set before it returns; null: as it is")
+    wait_s = serializers.FloatField(help_text="for which it holds before")
+    along_route = serializers.BooleanField()
+
+
 class PresentReturnSerializer(ReturnCheckSerializer):
     place = serializers.IntegerField(allow_null=True, help_text="the UAV's in its mission; null: it flies none")
     mission = serializers.UUIDField(allow_null=True)
@@ -51,7 +65,10 @@ class PresentReturnSerializer(ReturnCheckSerializer):
     level_m = serializers.FloatField(allow_null=True, help_text="above the take-off, at which it would fly home from here")
     battery = BatteryAtLandingSerializer()
     met = MetOnReturnSerializer(many=True, help_text="UAVs that it comes near on its way home, the first one first")
-    wait_s = serializers.FloatField(allow_null=True, help_text="by which returns are kept apart; null: no wait does, or not known")
+    along = AlongRouteSerializer(allow_null=True, help_text="home by the rest of its approved route; null: not clear, or not known")
+    safest = SafeReturnSerializer(
+        allow_null=True, help_text="parameters of a return in which nothing is in the way and none comes near another; null: there is none"
+    )
 
 
 class PresentReturnsSerializer(serializers.Serializer):
@@ -108,7 +125,8 @@ def present_return_json(found: PresentReturn) -> dict[str, Any]:
         "level_m": _rounded(found.level_m),
         "battery": asdict(battery),
         "met": found.met,
-        "wait_s": found.wait_s,
+        "along": _along_json(found),
+        "safest": None if found.safest is None else asdict(found.safest),
     }
 
 
@@ -121,6 +139,19 @@ def _present_json(present: Present | None) -> dict[str, Any] | None:
         "is_measured": present.is_measured,
         "age_s": _rounded(present.age_s),
         "uncertainty_m": _rounded(present.uncertainty_m),
+    }
+
+
+def _along_json(found: PresentReturn) -> dict[str, Any] | None:
+    if found.along is None:
+        return None
+    way = found.along.way
+    return {
+        "waypoint": way.sequence,
+        "length_m": _rounded(way.length_m),
+        "duration_s": _rounded(way.duration_s),
+        "targets": len(way.targets),
+        "landing_percent": found.along_percent,
     }
 
 

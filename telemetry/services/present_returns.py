@@ -10,45 +10,27 @@ import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
 
-from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy import LonLat
 from inspection.selectors import ground_heights_m
 from missions.flight_plan.rules import SeparationRules
 from missions.flight_plan.separation import TimedRoute, conflicts
 from missions.flight_plan.ways_home import Places
-from missions.mavlink.own_return import OwnReturn
-from missions.models import EndAction, Mission, MissionUav, Route, Uav
+from missions.models import CommandKind, EndAction, Route, Uav
 from missions.services.approved_fence import rally_points
-from missions.services.own_return import ReturnCheck, ReturnState, reported_return, return_checks, return_from
+from missions.services.own_return import ReturnCheck, ReturnState, reported_return, return_checks, ways_now
+from missions.services.staggered_returns import stuck_returns
 from missions.services.start_slots import KEPT_SHARE
 from missions.services.steering import mission_in_hand
 from telemetry.alerting.modes import ModeKind, mode_kind
-from telemetry.alerting.returns_in_time import StraightReturn, flying_on, staying, waits_apart
+from telemetry.alerting.returns_in_time import StraightReturn, flying_on, staying
 from telemetry.selectors.in_the_air import reported_in_the_air
 from telemetry.selectors.present import Heard, Present, heard_of
+from telemetry.services.along_route import AlongRoute, along_route, on_board
+from telemetry.services.safe_returns import BatteryAtLanding, Flown, SafeReturn, battery_at_landing, length_m, safest_returns
 
 MAX_UNCERTAINTY_M = 300.0  # about a position from which a way home is looked at
-MAX_WIDENING_M = 100.0  # by which uncertain positions widen the separation
-MAX_WAIT_S = 600.0
-MAX_WAIT_UNKNOWN_S = 120.0  # of a UAV of which nobody knows how long it can hold
-MAX_BATTERY_AGE_S = 30.0
+MAX_ALONG_UNCERTAINTY_M = 15.0
 FURTHER = timedelta(minutes=5)  # after the expected landing, in which zones count
-
-
-@dataclass(frozen=True)
-class BatteryAtLanding:
-    """Percent of the full battery. `unknown` is the reason why it is not known what is left at the landing; empty where it is."""
-
-    left_percent: float | None = None
-    home_percent: float | None = None
-    landing_percent: float | None = None
-    reserve_percent: float | None = None
-    hold_s: float | None = None
-    unknown: str = ""
-
-    @property
-    def is_short(self) -> bool:
-        known = self.landing_percent is not None and self.reserve_percent is not None
-        return known and self.landing_percent < self.reserve_percent  # type: ignore[operator]
 
 
 @dataclass(frozen=True)
@@ -67,7 +49,8 @@ class MetOnReturn:
 class PresentReturn:
     """Of one UAV. check.warnings tell all that is in its way. `present` None: from all along its route, as where it is now is not known.
 
-    wait_s: after which it keeps apart from all others; 0 where it does at once, None where no wait helps.
+    along: by the rest of its approved route, None where that is not clear or not known. safest: how it is best told, None where no way
+    is clear; `is_straight` of it where it is as well told to return at once.
     """
 
     check: ReturnCheck
@@ -78,46 +61,30 @@ class PresentReturn:
     level_m: float | None
     battery: BatteryAtLanding
     met: tuple[MetOnReturn, ...] = ()
-    wait_s: float | None = 0.0
+    along: AlongRoute | None = None
+    along_percent: float | None = None  # of its battery, left at the landing after that
+    safest: SafeReturn | None = None
 
     @property
     def is_clear(self) -> bool:
         return self.check.state == ReturnState.CLEAR and not self.met and not self.battery.is_short
 
 
-@dataclass(frozen=True)
-class _Flown:
-    """What is known of a UAV in the air, and its straight return; None where nobody knows from or to where that leads."""
-
-    heard: Heard
-    mission: Mission | None
-    place: MissionUav | None
-    check: ReturnCheck
-    own: OwnReturn | None
-    rally: Sequence[tuple[LonLat, float]] = ()
-    home: LonLat | None = None
-    straight: StraightReturn | None = None
-    base_m: float = math.nan  # of its heights, above the sea
-
-    @property
-    def uncertainty_m(self) -> float:
-        return 0.0 if self.heard.present is None else min(self.heard.present.uncertainty_m, MAX_WIDENING_M)
-
-
 @dataclass
 class _Air:
     """The straight returns of those that are told, in their order, and what all others in the air do meanwhile."""
 
-    returning: list[_Flown]
-    others: list[tuple[_Flown, TimedRoute]] = field(default_factory=list)
+    returning: list[Flown]
+    others: list[tuple[Flown, TimedRoute]] = field(default_factory=list)
 
 
 def present_returns(*, uavs: Sequence[Uav], now: datetime) -> list[PresentReturn]:
     """For each of these UAVs of one organisation, as if all of them were told to return at this moment. Raises NoGraph."""
-    flown = [_checked(_flown(heard), now) for heard in heard_of(uavs, now)]
+    refused = {command.uav_id for command in stuck_returns() if command.kind == CommandKind.SET_RETURN_HEIGHT}
+    flown = [_checked(replace(_flown(heard), keeps_height=heard.uav.pk in refused), now) for heard in heard_of(uavs, now)]
     air = _Air([one for one in flown if one.straight is not None])
     air.others = _others(uavs, now)
-    met, waits = _met(air), _waits(air)
+    met, safest = _met(air), safest_returns(air.returning, [way for _other, way in air.others])
     found = []
     for one in flown:
         battery, others = battery_at_landing(one.heard), met.get(one.heard.uav.pk, ())
@@ -127,32 +94,17 @@ def present_returns(*, uavs: Sequence[Uav], now: datetime) -> list[PresentReturn
                 check=replace(one.check, warnings=warnings),
                 mission=None if one.mission is None else one.mission.pk,
                 present=one.heard.present if one.straight is not None else None,
-                distance_m=None if one.straight is None else _length_m(one.straight.position, one.straight.goal),
+                distance_m=None if one.straight is None else length_m(one.straight.position, one.straight.goal),
                 duration_s=None if one.straight is None else one.straight.duration_s(),
                 level_m=_level_m(one),
                 battery=battery,
                 met=tuple(others),
-                wait_s=waits.get(one.heard.uav.pk),
+                along=one.along,
+                along_percent=_along_percent(one, battery),
+                safest=safest.get(one.heard.uav.pk),
             )
         )
     return found
-
-
-def battery_at_landing(heard: Heard) -> BatteryAtLanding:
-    """By what the watch has made of its reports; with the reason where that is not known."""
-    values, forecast = {"uav": heard.uav.name}, heard.battery
-    if heard.is_in_air is False:
-        return BatteryAtLanding(left_percent=heard.battery_percent)
-    if heard.battery_percent is None:
-        return BatteryAtLanding(unknown=_("%(uav)s reports no battery percentage.") % values)
-    if forecast is None or heard.battery_age_s is None or heard.battery_age_s > MAX_BATTERY_AGE_S:
-        words = _("What the way home takes of the battery of %(uav)s is only worked out while it flies a mission and reports.")
-        return BatteryAtLanding(left_percent=heard.battery_percent, unknown=words % values)
-    left, home, reserve = forecast["left_percent"], forecast["home_percent"], forecast["reserve_percent"]
-    if home is None:
-        words = _("What the way home takes of the battery of %(uav)s is not known: it has no position, or the wind leaves no headway.")
-        return BatteryAtLanding(left, reserve_percent=reserve, unknown=words % values)
-    return BatteryAtLanding(left, home, round(left - home, 1), reserve, forecast.get("hold_s"))
 
 
 def _battery_words(battery: BatteryAtLanding) -> list[str]:
@@ -179,26 +131,26 @@ def _met_words(met: MetOnReturn) -> str:
 # one UAV
 
 
-def _flown(heard: Heard) -> _Flown:
+def _flown(heard: Heard) -> Flown:
     """Where it is and how it would return, its way home not yet looked at."""
     uav, present = heard.uav, heard.present
     mission = mission_in_hand(uav)
     place = None if mission is None else mission.mission_uavs.filter(uav=uav).first()
     rally = [] if mission is None or place is None else rally_points(mission, place.sequence)
     reported = reported_return(uav, uav.name, has_rally=bool(rally))
-    one = _Flown(heard, mission, place, reported.check(None if place is None else place.sequence, uav.name, uav.pk), reported.own, rally)
+    one = Flown(heard, mission, place, reported.check(None if place is None else place.sequence, uav.name, uav.pk), reported.own, rally)
     home = heard.home or (None if place is None else LonLat(*(place.home or place.start).coords[:2]))
     if present is None or present.altitude_relative_m is None or present.uncertainty_m > MAX_UNCERTAINTY_M or home is None:
         return one
     own, height_m, base_m = reported.own, present.altitude_relative_m, _base_m(heard, home)
     goal, goal_m = _goal(present.position, home, rally, shuns_home=own is not None and own.shuns_home)
-    level_m = math.nan if own is None else own.level_m(height_m, _length_m(present.position, goal), goal_m)
+    level_m = math.nan if own is None else own.level_m(height_m, length_m(present.position, goal), goal_m)
     speed_mps = place.cruise_speed_mps if place is not None else uav.cruise_speed_mps or settings.FLIGHT_RULES.cruise_speed_mps
     straight = StraightReturn(uav.name, present.position, base_m + height_m, goal, base_m + level_m, _ground_m(goal, base_m), speed_mps)
-    return replace(one, home=home, straight=straight, base_m=base_m)
+    return replace(one, home=home, straight=straight, base_m=base_m, goal_m=goal_m)
 
 
-def _checked(one: _Flown, now: datetime) -> _Flown:
+def _checked(one: Flown, now: datetime) -> Flown:
     """With what is in its way home. One on the ground has none."""
     heard, present, own = one.heard, one.heard.present, one.own
     if heard.is_in_air is False:
@@ -206,16 +158,36 @@ def _checked(one: _Flown, now: datetime) -> _Flown:
         return replace(one, check=replace(one.check, state=ReturnState.NOT_CHECKED, warnings=(words,)), straight=None)
     if one.straight is None or present is None or one.home is None:
         return replace(one, check=_from_route(one))
+    straight, home = one.straight, one.home
+    one = replace(one, along=_along(one, present, now))
     if own is None:
         return one
     positions = present.places()
     height_m = np.full(len(positions), present.altitude_relative_m)
     places = Places(positions, height_m, np.zeros(len(positions), dtype=np.int64))
-    until = now + timedelta(seconds=one.straight.duration_s()) + FURTHER
-    return replace(one, check=return_from(one.check, own, places, one.home, one.rally, (now.timestamp(), until.timestamp())))
+    until = now + timedelta(seconds=straight.duration_s()) + FURTHER
+    ways = ways_now(own, places, home, one.rally, (now.timestamp(), until.timestamp()))
+    return replace(one, check=ways.checked(one.check, own), ways=ways)
 
 
-def _from_route(one: _Flown) -> ReturnCheck:
+def _along(one: Flown, present: Present, now: datetime) -> AlongRoute | None:
+    """Only of one that was measured: the way from an uncertain place to its route is looked at by nobody."""
+    held = on_board(one.heard.uav) if present.is_measured and present.uncertainty_m <= MAX_ALONG_UNCERTAINTY_M else None
+    if held is None or present.altitude_relative_m is None:
+        return None
+    waypoint = one.heard.waypoint_sequence
+    return along_route(held, position=present.position, height_m=present.altitude_relative_m, waypoint=waypoint, now=now)
+
+
+def _along_percent(one: Flown, battery: BatteryAtLanding) -> float | None:
+    """By what the straight way home takes for each of its seconds."""
+    if one.along is None or one.straight is None or battery.left_percent is None or battery.home_percent is None:
+        return None
+    per_s = battery.home_percent / max(one.straight.duration_s(), 1.0)
+    return round(battery.left_percent - per_s * one.along.way.duration_s, 1)
+
+
+def _from_route(one: Flown) -> ReturnCheck:
     """Nobody knows where it is: from all along its route."""
     if one.check.state != ReturnState.CLEAR:
         return one.check
@@ -232,11 +204,7 @@ def _goal(
 ) -> tuple[LonLat, float]:  # fmt: skip
     """Where it flies to, and how high above its take-off it is to come there."""
     goals = [*rally] if shuns_home and rally else [(home, 0.0), *rally]
-    return min(goals, key=lambda goal: _length_m(position, goal[0]))
-
-
-def _length_m(start: LonLat, end: LonLat) -> float:
-    return float(distance_m(np.array([start]), np.array([end]))[0])
+    return min(goals, key=lambda goal: length_m(position, goal[0]))
 
 
 def _base_m(heard: Heard, home: LonLat) -> float:
@@ -252,7 +220,7 @@ def _ground_m(goal: LonLat, base_m: float) -> float:
     return base_m if math.isnan(ground_m) else ground_m
 
 
-def _level_m(one: _Flown) -> float | None:
+def _level_m(one: Flown) -> float | None:
     """At which it flies home, above its take-off."""
     if one.straight is None or one.heard.present is None or math.isnan(one.straight.level_m):
         return None
@@ -262,7 +230,7 @@ def _level_m(one: _Flown) -> float | None:
 # others
 
 
-def _others(uavs: Sequence[Uav], now: datetime) -> list[tuple[_Flown, TimedRoute]]:
+def _others(uavs: Sequence[Uav], now: datetime) -> list[tuple[Flown, TimedRoute]]:
     """UAVs of the organisation in the air that are not told, with what they do from now on; not simulated ones beside real ones."""
     told = {uav.pk for uav in uavs}
     organisations = {uav.organisation_id for uav in uavs}
@@ -279,7 +247,7 @@ def _others(uavs: Sequence[Uav], now: datetime) -> list[tuple[_Flown, TimedRoute
     return found
 
 
-def _going_on(one: _Flown) -> TimedRoute:
+def _going_on(one: Flown) -> TimedRoute:
     """As it is now: on its way home, along its route, or where it is."""
     heard, present = one.heard, one.heard.present
     assert present is not None  # noqa: S101 - asked by the caller
@@ -294,7 +262,7 @@ def _going_on(one: _Flown) -> TimedRoute:
     return flying_on(heard.uav.name, [(present.position, height_m, 0.0), *ahead], one.place.cruise_speed_mps, lands=lands)
 
 
-def _ahead(one: _Flown) -> list[tuple[LonLat, float, float]]:
+def _ahead(one: Flown) -> list[tuple[LonLat, float, float]]:
     """Points of its route from the waypoint on to which it flies: position, height above the sea, seconds there."""
     route = Route.objects.filter(mission=one.mission, mission_uav=one.place, geometry__isnull=False).first()
     if route is None or one.heard.waypoint_sequence is None:
@@ -310,7 +278,7 @@ def _ahead(one: _Flown) -> list[tuple[LonLat, float, float]]:
 # all of them
 
 
-def _rules(one: _Flown, other: _Flown) -> SeparationRules:
+def _rules(one: Flown, other: Flown) -> SeparationRules:
     planned = settings.SEPARATION_RULES
     lateral_m = planned.lateral_m + one.uncertainty_m + other.uncertainty_m
     return SeparationRules(lateral_m, planned.vertical_m, KEPT_SHARE * planned.time_s)
@@ -335,26 +303,3 @@ def _met(air: _Air) -> Mapping[int, list[MetOnReturn]]:
                     MetOnReturn(one.heard.uav.pk, one.heard.uav.name, *apart, round(encounter.at_s[1], 1), is_returning)
                 )
     return {uav: sorted(met, key=lambda other: other.in_s) for uav, met in found.items()}
-
-
-def _waits(air: _Air) -> Mapping[int, float | None]:
-    """By UAV: how long it waits before it returns so that none comes near another; those with the least battery to spare wait least."""
-    if not air.returning:
-        return {}
-    batteries = {one.heard.uav.pk: battery_at_landing(one.heard) for one in air.returning}
-
-    def spare(one: _Flown) -> float:
-        battery = batteries[one.heard.uav.pk]
-        return math.inf if battery.landing_percent is None else battery.landing_percent - (battery.reserve_percent or 0.0)
-
-    def longest_s(one: _Flown) -> float:
-        hold_s = batteries[one.heard.uav.pk].hold_s
-        return MAX_WAIT_UNKNOWN_S if hold_s is None else min(hold_s, MAX_WAIT_S)
-
-    in_order = sorted(air.returning, key=spare)
-    straight = [one.straight for one in in_order if one.straight is not None]
-    planned = settings.SEPARATION_RULES
-    widest_m = max((one.uncertainty_m for one in in_order), default=0.0)
-    rules = SeparationRules(planned.lateral_m + 2.0 * widest_m, planned.vertical_m, KEPT_SHARE * planned.time_s)
-    waits = waits_apart(straight, [way for _other, way in air.others], rules, [longest_s(one) for one in in_order])
-    return {one.heard.uav.pk: wait_s if waits.is_clear else None for one, wait_s in zip(in_order, waits.seconds, strict=True)}

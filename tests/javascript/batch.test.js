@@ -48,15 +48,14 @@ test("the request of one mission names that mission and its UAVs alone", () => {
   });
 });
 
-test("a staggered request says how long each holds, of those that it names", () => {
+test("a request says how each returns, of those that it names", () => {
   const [south] = batchScopes([uav(1, "south", true, 0), uav(7, "south", true, 1)], missions);
-  const waits = new Map([
-    [1, 0],
-    [7, 50],
-    [9, 80],
+  const ways = new Map([
+    [7, { wait_s: 50 }],
+    [9, { height_m: 80 }],
   ]);
-  assert.deepEqual(batchRequest("return", [south], waits).body.waits_s, { 7: 50 });
-  assert.equal("waits_s" in batchRequest("return", [south]).body, false);
+  assert.deepEqual(batchRequest("return", [south], ways).body.ways, { 7: { wait_s: 50 } });
+  assert.equal("ways" in batchRequest("return", [south]).body, false);
 });
 
 test("several missions are one request, each named", () => {

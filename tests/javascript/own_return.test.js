@@ -11,7 +11,7 @@ import {
   returnOf,
   returnSaid,
   saferReturn,
-  staggeredWaits,
+  separateReturns,
   togetherLine,
 } from "../../static/js/domain/own_return.js";
 import { batteryWords } from "../../static/js/monitor/uav_words.js";
@@ -150,32 +150,37 @@ test("an abort says what each aircraft does, and what is in the way of each", ()
   assert.equal(abortQuestion({ name: "South", isActive: true, uavs: uavs.slice(0, 1) }).lines[2], "");
 });
 
+const way = (more = {}) => ({ height_m: null, wait_s: 0, along_route: false, ...more });
+
 test("what meets less than a straight return at once is offered in its place", () => {
-  const higher = check("in_the_way", ["…"], { safe_height_m: 75, wait_s: 0 });
-  assert.deepEqual(saferReturn(higher).parameters, { height_m: 75, then_return: true });
-  assert.match(saferReturn(higher).words, /^Return at 75\Wm$/);
-  assert.equal(saferReturn({ ...higher, safe_height_m: null }), null);
-  const meets = check("clear", ["…"], { met: [{ name: "Kite" }], wait_s: 40, safe_height_m: null });
-  assert.deepEqual(saferReturn(meets).parameters, { wait_s: 40 });
-  assert.equal(saferReturn({ ...meets, wait_s: null }), null);
-  assert.equal(saferReturn(check("clear", [], { wait_s: 0 })), null);
-  const question = questionOf("return", { name: "Tern", returns: higher });
-  assert.deepEqual([question.safer.kind, question.act], ["set-return-height", "Return straight now"]);
+  const offered = (more) => saferReturn(check("in_the_way", ["…"], { safest: way(more) }));
+  assert.deepEqual(offered({ height_m: 75 }).parameters, { height_m: 75 });
+  assert.match(offered({ height_m: 75 }).words, /^Return at 75\Wm$/);
+  assert.deepEqual(offered({ wait_s: 40 }).parameters, { wait_s: 40 });
+  assert.match(offered({ height_m: 75, wait_s: 40 }).words, /^Hold 40\Ws, then return at 75\Wm$/);
+  assert.deepEqual(offered({ along_route: true }).parameters, { along_route: true });
+  assert.equal(offered({}), null, "straight at once");
+  assert.equal(saferReturn(check("in_the_way", ["…"], { safest: null })), null, "no way is clear");
+  const returns = check("in_the_way", ["…"], { safest: way({ along_route: true }) });
+  const question = questionOf("return", { name: "Tern", returns });
+  assert.deepEqual([question.safer.words, question.act], ["Return along the route", "Return straight now"]);
   assert.equal(questionOf("return", { name: "Tern", returns: check("clear") }).act, "Return Tern");
 });
 
-test("several returns are staggered where they meet otherwise, and where that helps", () => {
-  const one = check("clear", [], { uav: 1, met: [{ name: "Kite" }], wait_s: 0 });
-  const other = { ...one, uav: 2, wait_s: 50 };
-  assert.deepEqual(
-    [...staggeredWaits([one, other])],
-    [
-      [1, 0],
-      [2, 50],
-    ],
-  );
-  assert.equal(staggeredWaits([one, { ...other, wait_s: null }]), null);
-  assert.equal(staggeredWaits([{ ...one, met: [] }]), null);
+test("a return along the route says to where, how long, and with what it lands", () => {
+  const along = { waypoint: 8, length_m: 1240, duration_s: 150, targets: 1, landing_percent: 34.4 };
+  const said = returnLines(check("in_the_way", ["…"], { safest: way({ along_route: true }), along })).join(" ");
+  assert.match(said, /straight to waypoint 9, then as approved, .*1 target is still visited\..*Lands with about 34\W%/);
+});
+
+test("several return on separate ways where they meet otherwise, and it is said of whom no way is clear", () => {
+  const one = check("clear", [], { uav: 1, name: "Tern", safest: way(), is_clear: false });
+  const other = { ...one, uav: 2, name: "Kite", safest: way({ height_m: 66 }) };
+  const { ways, lines } = separateReturns([one, other, { ...one, uav: 3, name: "Crow", safest: null }]);
+  assert.deepEqual([...ways], [[2, { height_m: 66 }]]);
+  assert.match(lines[0], /Kite: Return at 66\Wm/);
+  assert.match(lines[1], /^Crow: no way home is clear/);
+  assert.equal(separateReturns([one]), null);
 });
 
 test("a return that waits says until when its UAV holds", () => {

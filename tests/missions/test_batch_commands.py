@@ -250,8 +250,8 @@ def test_a_mission_that_is_not_on_its_way_has_nobody_to_command(here: World, per
 
 def test_a_return_in_turn_lets_the_others_hold_first(two: Any, person: User, client: Client) -> None:
     south, (tern, kite), _north, _second = two
-    waits_s = {str(kite.pk): 40.0}
-    body = {"kind": "return", "uavs": [tern.pk, kite.pk], "waits_s": waits_s}
+    ways = {str(kite.pk): {"wait_s": 40.0}}
+    body = {"kind": "return", "uavs": [tern.pk, kite.pk], "ways": ways}
     answer = post(client, f"missions/{south.pk}/commands", body)
     assert answer.status_code == 200, answer.content
     assert {one["name"]: one["command"]["kind"] for one in answer.json()["results"]} == {"Tern": "return", "Kite": "hold"}
@@ -259,8 +259,10 @@ def test_a_return_in_turn_lets_the_others_hold_first(two: Any, person: User, cli
     assert sorted(kinds_of(kite)) == ["hold", "return"] and kinds_of(tern) == ["return"]
 
 
-@pytest.mark.parametrize(("kind", "waits_s"), [("pause", {"1": 40.0}), ("return", {"x": 40.0}), ("return", {"1": 1e6})])
-def test_waits_are_of_returns_and_of_uavs(kind: str, waits_s: dict[str, float], two: Any, client: Client) -> None:
+@pytest.mark.parametrize(
+    ("kind", "ways"), [("pause", {"1": {"wait_s": 40.0}}), ("return", {"x": {"wait_s": 40.0}}), ("return", {"1": {"wait_s": 1e6}})]
+)
+def test_ways_are_of_returns_and_of_uavs(kind: str, ways: dict[str, Any], two: Any, client: Client) -> None:
     south = two[0]
-    answer = post(client, f"missions/{south.pk}/commands", {"kind": kind, "waits_s": waits_s})
+    answer = post(client, f"missions/{south.pk}/commands", {"kind": kind, "ways": ways})
     assert answer.status_code in (400, 409)

@@ -6,9 +6,10 @@ import pytest
 from django.utils import timezone
 
 from missions.models import CommandKind, CommandState, LinkKind, Uav, UavCommand
-from missions.services.commands import note_failed, note_sent
+from missions.services.commands import claim_commands, note_failed, note_sent, queue_command
 from missions.services.own_return import note_own_return
 from missions.services.refused import Refused
+from missions.services.staggered_returns import stuck_returns
 from missions.services.steering import command_uav
 from tests.missions.flights import an_operator, carry, fleet
 from tests.missions.outbox import claim, fence, now
@@ -114,6 +115,53 @@ def test_a_height_is_refused_that_is_out_of_bounds_or_of_a_uav_whose_parameter_i
         given(uav, user, CommandKind.SET_RETURN_HEIGHT, height_m=75.0)
     with pytest.raises(Refused):
         given(uav, user, CommandKind.RETURN, wait_s=5_000.0)
+
+
+def test_a_return_holds_first_and_then_gets_its_height(uav, user):
+    note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
+    uav.refresh_from_db()
+    hold = given(uav, user, CommandKind.RETURN, wait_s=40.0, height_m=75.0)
+    assert (hold.kind, hold.parameters["height_m"]) == (CommandKind.HOLD, 75.0)
+    carry(uav)
+    height = last(uav)
+    assert (height.kind, height.parameters["height_m"]) == (CommandKind.SET_RETURN_HEIGHT, 75.0)
+    carry(uav)
+    home = last(uav)
+    assert home.kind == CommandKind.RETURN and 35.0 < home.parameters["wait_s"] <= 40.0
+
+
+def test_a_step_that_fails_is_stuck_until_another_command_about_its_flight(uav, user):
+    note_own_return(uav_id=uav.pk, autopilot="ardupilot", parameters=COPTER)
+    uav.refresh_from_db()
+    height = given(uav, user, CommandKind.RETURN, height_m=75.0)
+    (claimed,) = claim(uav)
+    assert note_failed(claimed.pk, "denied", "RTL_ALT stays 3000.", **fence(claimed))
+    assert [command.pk for command in stuck_returns()] == [height.pk]
+    given(uav, user, CommandKind.HOLD)
+    assert stuck_returns() == []
+
+
+def test_a_return_that_the_uav_refuses_is_stuck_and_one_that_is_superseded_is_not(uav, user):
+    home = given(uav, user, CommandKind.RETURN)
+    (claimed,) = claim(uav)
+    assert note_failed(claimed.pk, "denied", "No.", **fence(claimed))
+    assert [command.pk for command in stuck_returns()] == [home.pk]
+    given(uav, user, CommandKind.RETURN, wait_s=40.0)
+    given(uav, user, CommandKind.LAND)
+    assert stuck_returns() == []
+
+
+def test_a_return_along_the_route_is_refused_without_a_mission_and_beside_a_wait(uav, user):
+    with pytest.raises(Refused, match="has no mission"):
+        given(uav, user, CommandKind.RETURN, along_route=True)
+    with pytest.raises(Refused):
+        given(uav, user, CommandKind.RETURN, along_route=True, wait_s=40.0)
+
+
+def test_a_return_along_the_route_is_not_sent_to_one_that_is_not_heard(uav, user):
+    command = queue_command(uav=uav, kind=CommandKind.RETURN, actor=user, parameters={"along_route": True})
+    assert claim_commands(uav_ids=[uav.pk], holder="gateway-1", lease_s=10.0, limit=5, to_unheard=True) == []
+    assert [one.pk for one in claim(uav)] == [command.pk]
 
 
 def test_the_api_takes_both(uav, user):

@@ -21,6 +21,7 @@ pytestmark = pytest.mark.django_db
 COPTER = {"RTL_ALT": 3_000.0, "RTL_CLIMB_MIN": 0.0, "RTL_CONE_SLOPE": 3.0, "RTL_ALT_TYPE": 0.0}
 HOME = (10.001, 55.995)
 EAST = (10.013, 55.995)  # 750 m away
+STRAIGHT = {"height_m": None, "wait_s": 0.0, "along_route": False}
 
 
 @pytest.fixture
@@ -96,7 +97,7 @@ def test_a_clear_way_home_is_told_with_whence_it_was_looked_at(user, uav):
     read(uav)
     flies(uav, EAST)
     (found,) = told(user, uav)
-    assert (found["state"], found["warnings"], found["is_clear"], found["wait_s"]) == ("clear", [], True, 0.0)
+    assert (found["state"], found["warnings"], found["is_clear"], found["safest"]) == ("clear", [], True, STRAIGHT)
     assert found["present"]["position"] == list(EAST) and found["present"]["is_measured"]
     assert found["distance_m"] == pytest.approx(749, abs=5) and found["level_m"] == 30.0
 
@@ -189,7 +190,7 @@ def test_an_unknown_battery_is_told_with_the_reason(user, uav):
     assert battery["left_percent"] == 60.0 and "only worked out while it flies a mission" in battery["unknown"]
 
 
-def test_returns_that_meet_are_told_of_each_other_and_kept_apart_by_waits(user):
+def test_returns_that_meet_are_told_of_each_other_and_kept_apart_by_heights(user):
     world()
     tern, kite = fleet("Tern", "Kite")
     for one, position in ((tern, EAST), (kite, (10.013, 55.9965))):
@@ -199,7 +200,10 @@ def test_returns_that_meet_are_told_of_each_other_and_kept_apart_by_waits(user):
     assert [met["name"] for met in first["met"]] == ["Kite"] and [met["name"] for met in second["met"]] == ["Tern"]
     assert first["met"][0]["is_returning"] and not first["is_clear"]
     assert first["warnings"][0].startswith("Returning now, it comes within")
-    assert min(first["wait_s"], second["wait_s"]) == 0.0 < max(first["wait_s"], second["wait_s"])
+    safest = [first["safest"], second["safest"]]
+    assert safest[0] == STRAIGHT
+    own_m, set_m = first["level_m"], safest[1]["height_m"]
+    assert set_m >= own_m + 15.0 and (safest[1]["wait_s"], safest[1]["along_route"]) == (0.0, False)
     assert told(user, tern)[0]["met"] == [], "Kite flies on"
 
 
@@ -209,8 +213,8 @@ def test_the_one_with_the_least_battery_to_spare_goes_first(user):
     for one, position, left in ((tern, EAST, 60.0), (kite, (10.013, 55.9965), 40.0)):
         read(one)
         flies(one, position, battery_percent=left, estimated=estimated(position, battery=forecast(left_percent=left)))
-    waits = {found["name"]: found["wait_s"] for found in told(user, tern, kite)}
-    assert waits["Kite"] == 0.0 < waits["Tern"]
+    safest = {found["name"]: found["safest"] for found in told(user, tern, kite)}
+    assert safest["Kite"] == STRAIGHT and safest["Tern"]["height_m"] >= 45.0
 
 
 def test_one_that_hovers_in_the_way_is_met_and_one_higher_up_or_on_the_ground_is_not(user):
@@ -221,7 +225,7 @@ def test_one_that_hovers_in_the_way_is_met_and_one_higher_up_or_on_the_ground_is
     flies(tern, EAST)
     flies(kite, (10.007, 55.995), mode="LOITER")
     (found,) = told(user, tern)
-    assert [met["name"] for met in found["met"]] == ["Kite"] and found["wait_s"] is None
+    assert [met["name"] for met in found["met"]] == ["Kite"] and found["safest"]["height_m"] >= 45.0
     flies(kite, (10.007, 55.995), mode="LOITER", height_m=70.0)
     assert told(user, tern)[0]["met"] == []
     flies(kite, (10.007, 55.995), mode="LOITER", is_in_air=False)

@@ -1,10 +1,10 @@
 /** What is in the way when a UAV is told to return or abort: its autopilot flies home by itself, as high as its own parameters say. */
 
-import { t } from "../text.js";
+import { t, tn } from "../text.js";
 import { clockText, durationText, heightText, lengthText, percentText } from "../units.js";
 
 /** @import { Safer } from "./command_questions.js" */
-/** @import { LandingHere, PresentReturn, ReturnCheck } from "../api_types.d.ts" */
+/** @import { LandingHere, PresentReturn, ReturnCheck, SafeReturn } from "../api_types.d.ts" */
 
 export const MIN_HOLD_S = 30; // a shorter hold is none
 
@@ -30,9 +30,26 @@ export function returnLines(check) {
     ...warnings,
     state === "clear" && !check.met.length ? clearText(check) : "",
     landingText(check.battery),
+    check.safest?.along_route && check.along ? alongText(check.along) : "",
     basisText(check.present),
     fence_warning,
   ].filter(Boolean);
+}
+
+/** @param {NonNullable<PresentReturn["along"]>} along */
+function alongText({ waypoint, length_m, duration_s, targets, landing_percent }) {
+  const values = { number: waypoint + 1, distance: lengthText(length_m), time: durationText(duration_s) };
+  return [
+    t("Along the route: straight to waypoint {number}, then as approved, {distance}, {time}.", values),
+    targets ? tn(targets, "{count} target is still visited.", "{count} targets are still visited.") : "",
+    landing_percent === null
+      ? t("Battery at landing not known.")
+      : t("Lands with about {landing} of its battery.", {
+          landing: percentText(Math.max(Math.round(landing_percent), 0)),
+        }),
+  ]
+    .filter(Boolean)
+    .join(" ");
 }
 
 /** @param {PresentReturn["battery"]} battery */
@@ -113,34 +130,55 @@ export function returnLinesOfAll(uavs) {
 }
 
 /**
- * What meets less than a straight return at once: higher up, or after a hold; null where that is as good, or where there is nothing.
+ * What meets less than a straight return at once: along the route, at another height, or after a hold; null where that is as good, or
+ * where there is nothing.
  *
  * @param {PresentReturn} check
  * @returns {Safer | null}
  */
-export function saferReturn({ state, safe_height_m, met, wait_s }) {
-  if (state === "in_the_way")
-    return safe_height_m === null
-      ? null
-      : {
-          words: t("Return at {height}", { height: heightText(safe_height_m) }),
-          kind: "set-return-height",
-          parameters: { height_m: safe_height_m, then_return: true },
-        };
-  return met.length && wait_s
-    ? { words: t("Hold {time}, then return", { time: holdText(wait_s) }), kind: "return", parameters: { wait_s } }
-    : null;
+export function saferReturn({ safest }) {
+  if (!safest) return null;
+  const parameters = wayOf(safest);
+  return Object.keys(parameters).length ? { words: wayWords(safest), kind: "return", parameters } : null;
+}
+
+/** Parameters of a return. @param {SafeReturn} way */
+const wayOf = ({ height_m, wait_s, along_route }) =>
+  along_route ? { along_route } : { ...(height_m !== null && { height_m }), ...(wait_s > 0 && { wait_s }) };
+
+/** @param {SafeReturn} way */
+function wayWords({ height_m, wait_s, along_route }) {
+  if (along_route) return t("Return along the route");
+  if (height_m === null) return t("Hold {time}, then return", { time: holdText(wait_s) });
+  const height = heightText(height_m);
+  return wait_s > 0
+    ? t("Hold {time}, then return at {height}", { time: holdText(wait_s), height })
+    : t("Return at {height}", { height });
 }
 
 /**
- * How long each of several holds before it returns, so that none meets another; null where they need not, or where that does not help.
+ * How each of several returns so that none meets another and nothing is in its way; null where all may as well return straight at once.
+ * `lines` say it, and of which UAVs no way is clear.
  *
  * @param {PresentReturn[]} checks
- * @returns {Map<number, number> | null} seconds by UAV
+ * @returns {{ ways: Map<number, Record<string, any>>, lines: string[] } | null}
  */
-export function staggeredWaits(checks) {
-  if (!checks.some(({ met }) => met.length) || checks.some(({ wait_s }) => wait_s === null)) return null;
-  return new Map(checks.map(({ uav, wait_s }) => [uav ?? 0, wait_s ?? 0]));
+export function separateReturns(checks) {
+  const better = checks.flatMap((check) => {
+    const safer = saferReturn(check);
+    return safer ? [{ uav: check.uav ?? 0, name: check.name, safer }] : [];
+  });
+  if (!better.length) return null;
+  const lost = checks.filter(({ safest, is_clear }) => !safest && !is_clear).map(({ name }) => name);
+  return {
+    ways: new Map(better.map(({ uav, safer }) => [uav, safer.parameters])),
+    lines: [
+      t("On separate ways they keep apart: {ways}.", {
+        ways: better.map(({ name, safer }) => `${name}: ${safer.words}`).join("; "),
+      }),
+      lost.length ? t("{names}: no way home is clear. They return straight.", { names: lost.join(", ") }) : "",
+    ].filter(Boolean),
+  };
 }
 
 /** @param {number} seconds */

@@ -82,17 +82,15 @@ export const leftLines = (scopes) => scopes.flatMap(({ left }) => left.map(({ wh
  *
  * @param {"pause" | "return"} kind
  * @param {BatchScope[]} scopes
- * @param {Map<number, number> | null} [waits] seconds that each holds before it returns
+ * @param {Map<number, Record<string, any>> | null} [ways] how each returns, by UAV; the others straight
  */
-export function batchRequest(kind, scopes, waits = null) {
+export function batchRequest(kind, scopes, ways = null) {
   const missions = scopes.map(({ id, uavs }) => ({ mission: id, uavs: uavs.map((uav) => uav.id) }));
   const told = new Set(missions.flatMap(({ uavs }) => uavs));
-  const staggered = waits && {
-    waits_s: Object.fromEntries([...waits].filter(([uav, wait_s]) => wait_s > 0 && told.has(uav))),
-  };
-  if (missions.length > 1) return { path: "/missions/commands", body: { kind, missions, ...staggered } };
+  const separate = ways && { ways: Object.fromEntries([...ways].filter(([uav]) => told.has(uav))) };
+  if (missions.length > 1) return { path: "/missions/commands", body: { kind, missions, ...separate } };
   const [{ mission, uavs }] = missions;
-  return { path: `/missions/${mission}/commands`, body: { kind, uavs, ...staggered } };
+  return { path: `/missions/${mission}/commands`, body: { kind, uavs, ...separate } };
 }
 
 /** What became of it, in words. @param {BatchAnswer[]} results */

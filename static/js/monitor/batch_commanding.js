@@ -4,12 +4,11 @@ import { ApiError, freshKey, post } from "../api.js";
 import { certaintyOf, MEASURED } from "../domain/certainty.js";
 import { LATE } from "../domain/command_questions.js";
 import { KINDS } from "../domain/flying.js";
-import { holdLinesOfAll, staggeredWaits, togetherLine } from "../domain/own_return.js";
+import { holdLinesOfAll, separateReturns, togetherLine } from "../domain/own_return.js";
 import { confirmAct } from "../page/confirm.js";
 import { CHECKING_HOME, returnsNow } from "../page/present_returns.js";
 import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
-import { durationText } from "../units.js";
 import { answerWords, batchRequest, batchScopes, leftLines, returnLinesOf, scopeChoices } from "./batch.js";
 import { unheardLines } from "./unheard.js";
 
@@ -38,10 +37,10 @@ const ALL = {
  *
  * @param {"pause" | "return"} kind
  * @param {BatchScope[]} scopes
- * @param {Map<number, number> | null} [waits] seconds that each holds before
+ * @param {Map<number, Record<string, any>> | null} [ways] how each returns
  */
-async function tellBatch(kind, scopes, waits = null) {
-  const { path, body } = batchRequest(kind, scopes, waits);
+async function tellBatch(kind, scopes, ways = null) {
+  const { path, body } = batchRequest(kind, scopes, ways);
   try {
     const headers = { "Idempotency-Key": freshKey() };
     const { data } = /** @type {Answer<BatchAnswers>} */ (await post(path, body, { headers }));
@@ -100,24 +99,19 @@ export function createBatch(store, page) {
     });
     /** @param {Map<number, PresentReturn>} returns @returns {[string[], Question["safer"]]} */
     function found(returns) {
-      const waits = staggeredWaits([...returns.values()]);
-      const longest_s = waits ? Math.max(...waits.values()) : 0;
+      const separate = separateReturns([...returns.values()]);
       const together = togetherLine(uavs.map(({ id }) => returns.get(id)));
-      const staggeredLine = t(
-        "One after another they keep apart: the last one holds {time} first, those with the least battery hold least.",
-        { time: durationText(longest_s) },
-      );
-      const said = [together, ...returnLinesOf(scopes, returns), longest_s > 0 ? staggeredLine : ""];
+      const said = [together, ...returnLinesOf(scopes, returns), ...(separate?.lines ?? [])];
       return [
         said,
-        longest_s > 0 ? { words: t("Return one after another"), kind: "return", parameters: { waits } } : null,
+        separate && { words: t("Return on separate ways"), kind: "return", parameters: { ways: separate.ways } },
       ];
     }
     if (asked)
       await tellBatch(
         kind,
         asked.scope && asked.scope !== "all" ? scopes.filter(({ id }) => id === asked.scope) : scopes,
-        asked.safer?.parameters.waits,
+        asked.safer?.parameters.ways,
       );
   };
 }

@@ -2,7 +2,7 @@
 
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
-from telemetry.alerting.modes import AT_THE_END, LEADS_TO, WITHOUT_ORDER, ModeKind
+from telemetry.alerting.modes import AT_THE_END, LEADS_TO, RETURN_ALONG, WITHOUT_ORDER, ModeKind
 from telemetry.alerting.said import AFTER_S, BEFORE_S, quoted
 from telemetry.alerting.situation import Situation
 
@@ -19,6 +19,7 @@ HOLDS_SAYING = "%(uav)s has stopped its mission (%(mode)s) without a command of 
 FLIES_SAYING = "%(uav)s flies a mission again (%(mode)s), though it was told otherwise. It says: %(words)s"
 SETTLES_S = 4.0  # after a command of ours was carried out, until modes are compared again
 AT_END_M = 40.0
+FLY_LIST = frozenset({"start", "resume", "take-off", "arm", RETURN_ALONG})
 
 _WORDS = {
     ModeKind.RETURN: RETURNS, ModeKind.LAND: LANDS, ModeKind.HOLD: HOLDS, ModeKind.MISSION: FLIES, ModeKind.TAKE_OFF: FLIES,
@@ -39,7 +40,7 @@ def detect(situation: Situation) -> list[Finding] | None:
         situation.memory.mode_words = ("", "")
     if kind in (WITHOUT_ORDER if order is None else LEADS_TO.get(order.kind, WITHOUT_ORDER)):
         return []
-    if kind in AT_THE_END and _is_at_end(situation) and (order is None or order.kind in {"start", "resume", "take-off", "arm"}):
+    if kind in AT_THE_END and _is_at_end(situation) and (order is None or order.kind in FLY_LIST):
         return []
     level = CRITICAL if kind in (ModeKind.RETURN, ModeKind.LAND) else WARNING
     mode = newest.measurement.mode or situation.link.mode

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from inspection.geodesy import LonLat
+from missions.mavlink.own_return import own_return
 from telemetry.alerting.acts import acts_of
 from telemetry.alerting.detectors import battery
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
@@ -47,6 +48,25 @@ def far_from_home(flight: TrueFlight) -> int:
 
 def proposed(finding: Finding) -> list[tuple[str, int]]:
     return [(act["kind"], act["uav"]) for act in acts_of(finding.code, 7, finding.details)]
+
+
+def test_the_climb_to_the_height_of_its_return_counts_in_the_way_home(flight):
+    """60 m more up at 2.5 m/s, and down again at 1.5."""
+    second = far_from_home(flight)
+    height_m = flight.states[second].height_m
+
+    def home(**link) -> dict:
+        watch = Watch()
+        found(flight, told(flight, second, 60.0), watch, link=LinkFacts(**link))
+        return watch.memory.battery
+
+    level = home()
+    high = home(own_return=own_return("ardupilot", {"RTL_ALT": (height_m + 60.0) * 100.0, "RTL_ALT_TYPE": 0.0}))
+    per_s = flight.model.consumption.percent_per_s(0.0)
+    assert high["home_s"] - level["home_s"] == pytest.approx(60.0 / flight.model.consumption.climb_mps + 60.0 / 1.5, abs=1.0)
+    assert high["home_percent"] - level["home_percent"] > 0.9 * per_s * (60.0 / flight.model.consumption.climb_mps + 60.0 / 1.5)
+    low = home(own_return=own_return("ardupilot", {"RTL_ALT": 1_000.0, "RTL_CLIMB_MIN": 0.0, "RTL_ALT_TYPE": 0.0}))
+    assert low["home_percent"] == level["home_percent"], "it never comes down first"
 
 
 def test_a_hold_is_no_drain_of_distance(flight):

@@ -23,6 +23,7 @@ class Flyer:
     key: bytes | None = None
     at: tuple[float, float] = (10.0, 55.0)
     altitude_amsl_m: float = 30.0
+    height_m: float | None = None  # above home; None: as station.position has it
     loss: float = 0.0
     seed: int = 1
     heard: list[Any] = field(default_factory=list)
@@ -70,6 +71,7 @@ class Flyer:
         boot_ms = int((now_s - self.booted_s) * 1000)
         told = position(boot_ms, lon=self.at[0], lat=self.at[1])
         told.alt = round(self.altitude_amsl_m * 1000)
+        told.relative_alt = told.relative_alt if self.height_m is None else round(self.height_m * 1000)
         home = mavlink.MAVLink_home_position_message(told.lat, told.lon, told.alt, 0, 0, 0, [1, 0, 0, 0], 0, 0, 0)
         return [told, home]
 

@@ -125,6 +125,17 @@ export default {
     "Geprüft von seinem geschätzten Ort aus, ± {distance}; letzte Meldung vor {age}.",
   "Return at {height}": "Auf {height} zurück",
   "Hold {time}, then return": "{time} halten, dann zurück",
+  "Along the route: straight to waypoint {number}, then as approved, {distance}, {time}.":
+    "Entlang der Route: geradeaus zu Wegpunkt {number}, dann wie freigegeben, {distance}, {time}.",
+  "Battery at landing not known.": "Akku bei der Landung nicht bekannt.",
+  "Lands with about {landing} of its battery.": "Landet mit etwa {landing} seines Akkus.",
+  "Return along the route": "Entlang der Route zurück",
+  "Hold {time}, then return at {height}": "{time} halten, dann auf {height} zurück",
+  "On separate ways they keep apart: {ways}.": "Auf getrennten Wegen bleiben sie auseinander: {ways}.",
+  "{names}: no way home is clear. They return straight.":
+    "{names}: Kein Heimweg ist frei. Sie kehren geradeaus zurück.",
+  "Return on separate ways": "Auf getrennten Wegen zurück",
+  "{count} target is still visited.": ["{count} Ziel wird noch angeflogen.", "{count} Ziele werden noch angeflogen."],
   "All return at once: their ways home keep apart.": "Alle kehren zugleich zurück: Ihre Heimwege halten Abstand.",
   "Set the return height of {name} to {height} with it: lower, something is in its way home":
     "Rückkehrhöhe von {name} dabei auf {height} setzen: Tiefer ist etwas im Heimweg",

@@ -18,9 +18,6 @@ export default {
   "Each flies back to where it took off and lands there. Targets that are not reached stay undone.":
     "Jedes fliegt zu seinem Startplatz zurück und landet dort. Ziele, die nicht erreicht sind, bleiben unerledigt.",
   "Return all": "Alle zurück",
-  "Return one after another": "Nacheinander zurück",
-  "One after another they keep apart: the last one holds {time} first, those with the least battery hold least.":
-    "Nacheinander halten sie Abstand: Das letzte hält zuerst {time}, die mit dem wenigsten Akku am kürzesten.",
   "Battery: too low to hold longer": "Akku: zu wenig, um länger zu halten",
   "Battery: can hold for {time}": "Akku: kann {time} halten",
   "In the air: it returns and lands where it took off; an autopilot that refuses to return lands where it is. On the ground: its motors are switched off.":

@@ -1,0 +1,102 @@
+"""The way home along the approved route: the list that is on board, from one of its waypoints on, and nothing else."""
+
+from dataclasses import dataclass
+from datetime import datetime, timedelta
+
+import numpy as np
+from django.conf import settings
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from inspection.geodesy import LonLat
+from inspection.graph.spans import spans_of
+from inspection.selectors import ground_heights_m
+from inspection.selectors.planning import planning_read
+from missions.mavlink.frozen import Flight
+from missions.models import Approval, LinkKind, Uav
+from missions.selectors import approval_in_force
+from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load
+from missions.services.own_return import zones_applying
+from missions.services.steering import mission_in_hand
+from missions.zone_selectors import zone_margins
+from telemetry.alerting.way_along import Here, WayAlong, way_along, way_along_points
+from telemetry.services.loads import Loaded, loaded_on
+
+FURTHER = timedelta(minutes=5)  # after the expected landing, in which zones count
+
+
+@dataclass(frozen=True)
+class AlongRoute:
+    """`item`: of the list on board, from 0 without home, to which it flies straight. `points` as `way_along_points` has them."""
+
+    way: WayAlong
+    item: int
+    points: tuple[tuple[LonLat, float, float], ...]
+
+
+@dataclass(frozen=True)
+class OnBoard:
+    """A flight of an approval that a UAV was seen to hold, and nothing says that it holds another one since."""
+
+    approved: ApprovedLoad
+
+    @property
+    def flight(self) -> Flight:
+        return self.approved.route.flights[self.approved.flight - 1]
+
+    def waypoint_of(self, item: int) -> int | None:
+        """Sequence of the waypoint to which an item of the list, from 0 without home, belongs."""
+        items = () if self.approved.load is None else self.approved.load.mission
+        return items[item].waypoint if 0 <= item < len(items) else None
+
+    def item_of(self, sequence: int) -> int | None:
+        """The last item that leads to a waypoint: points between lie before it."""
+        items = () if self.approved.load is None else self.approved.load.mission
+        found = [place for place, one in enumerate(items) if one.waypoint == sequence and one.command == mavlink.MAV_CMD_NAV_WAYPOINT]
+        return found[-1] if found else None
+
+
+def on_board(uav: Uav) -> OnBoard | None:
+    """Of the mission that it has in hand; None where it does not surely hold a flight of its approval in force."""
+    mission = mission_in_hand(uav) if uav.link == LinkKind.MAVLINK else None
+    approval = None if mission is None else approval_in_force(mission)
+    if approval is None or approval.revoke_requested_at is not None:
+        return None
+    return held_flight(approval, uav.pk, loaded_on(uav.pk))
+
+
+def held_flight(approval: Approval, uav_id: int, loaded: Loaded | None) -> OnBoard | None:
+    """None where the UAV was not seen to hold a flight of this approval, or may hold another list since."""
+    if loaded is None or loaded.doubt or loaded.approval != approval.pk:
+        return None
+    try:
+        approved = approved_load(approval, uav_id=uav_id, flight=loaded.flight)
+    except (DamagedApproval, LookupError, StopIteration):
+        return None
+    return OnBoard(approved) if approved.load is not None and approved.content_sha256 == loaded.sha256 else None
+
+
+def along_route(held: OnBoard, *, position: LonLat, height_m: float, waypoint: int | None, now: datetime) -> AlongRoute | None:
+    """From where a UAV is, height_m above its take-off and on its way to a waypoint of its route. Raises NoGraph."""
+    flight = held.flight
+    ahead = next((place for place, one in enumerate(flight.waypoints) if one.sequence == waypoint), None)
+    if ahead is None:
+        return None
+    ground = planning_read().ground()
+    positions = np.array([position, *(one.position for one in flight.waypoints[ahead:])], dtype=np.float64)
+    lasts = timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s) if flight.waypoints[-1].arrival_s is None else _rest(flight, ahead)
+    _near, facts = zones_applying(ground.table, positions, (now.timestamp(), (now + lasts + FURTHER).timestamp()))
+    here = Here(position, height_m, ahead)
+    way = way_along(
+        flight, here, cruise_mps=held.approved.route.cruise_speed_mps, base_m=flight.take_off.altitude_amsl_m,
+        ground_heights_m=ground_heights_m, spans=spans_of(ground.network()), zones=facts, margins=zone_margins(),
+        rules=settings.FLIGHT_RULES,
+    )  # fmt: skip
+    item = None if way is None else held.item_of(way.sequence)
+    return None if way is None or item is None else AlongRoute(way, item, tuple(way_along_points(flight, way, here)))
+
+
+def _rest(flight: Flight, ahead: int) -> timedelta:
+    """As planned, from the waypoint before on."""
+    arrivals = [one.arrival_s for one in flight.waypoints]
+    first, last = arrivals[max(ahead - 1, 0)], arrivals[-1]
+    return timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s if first is None or last is None else last - first)

@@ -1,0 +1,165 @@
+"""How UAVs are told to return so that nothing is in their way and none comes near another: at which height, when, or along its route."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from django.conf import settings
+from django.utils.translation import gettext as _
+
+from inspection.geodesy import LonLat, distance_m
+from missions.flight_plan.rules import SeparationRules
+from missions.flight_plan.separation import TimedRoute
+from missions.mavlink.own_return import OwnReturn
+from missions.models import Mission, MissionUav
+from missions.services.own_return import ReturnCheck, ReturnState, WaysNow
+from missions.services.start_slots import KEPT_SHARE
+from telemetry.alerting.returns_in_time import WAITS_S, StraightReturn, chosen_apart, flying_on
+from telemetry.selectors.present import Heard
+from telemetry.services.along_route import AlongRoute
+
+MAX_WIDENING_M = 100.0  # by which uncertain positions widen the separation
+MAX_WAIT_S = 600.0
+MAX_WAIT_UNKNOWN_S = 120.0  # of a UAV of which nobody knows how long it can hold
+MAX_BATTERY_AGE_S = 30.0
+
+
+@dataclass(frozen=True)
+class BatteryAtLanding:
+    """Percent of the full battery. `unknown` is the reason why it is not known what is left at the landing; empty where it is."""
+
+    left_percent: float | None = None
+    home_percent: float | None = None
+    landing_percent: float | None = None
+    reserve_percent: float | None = None
+    hold_s: float | None = None
+    unknown: str = ""
+
+    @property
+    def is_short(self) -> bool:
+        known = self.landing_percent is not None and self.reserve_percent is not None
+        return known and self.landing_percent < self.reserve_percent  # type: ignore[operator]
+
+
+@dataclass(frozen=True)
+class SafeReturn:
+    """A way in which nothing is in the way and no other UAV comes near: after a hold, at another height, or along the route."""
+
+    height_m: float | None = None
+    wait_s: float = 0.0
+    along_route: bool = False
+
+    @property
+    def is_straight(self) -> bool:
+        return self == SafeReturn()
+
+
+@dataclass(frozen=True)
+class Flown:
+    """What is known of a UAV in the air, and its straight return; None where nobody knows from or to where that leads."""
+
+    heard: Heard
+    mission: Mission | None
+    place: MissionUav | None
+    check: ReturnCheck
+    own: OwnReturn | None
+    rally: Sequence[tuple[LonLat, float]] = ()
+    home: LonLat | None = None
+    straight: StraightReturn | None = None
+    ways: WaysNow | None = None
+    keeps_height: bool = False  # it did not take another return height just now
+    along: AlongRoute | None = None
+    base_m: float = math.nan  # of its heights, above the sea
+    goal_m: float = 0.0  # how high above its take-off it is to come to where it lands
+
+    @property
+    def uncertainty_m(self) -> float:
+        return 0.0 if self.heard.present is None else min(self.heard.present.uncertainty_m, MAX_WIDENING_M)
+
+
+def battery_at_landing(heard: Heard) -> BatteryAtLanding:
+    """By what the watch has made of its reports; with the reason where that is not known."""
+    values, forecast = {"uav": heard.uav.name}, heard.battery
+    if heard.is_in_air is False:
+        return BatteryAtLanding(left_percent=heard.battery_percent)
+    if heard.battery_percent is None:
+        return BatteryAtLanding(unknown=_("%(uav)s reports no battery percentage.") % values)
+    if forecast is None or heard.battery_age_s is None or heard.battery_age_s > MAX_BATTERY_AGE_S:
+        words = _("What the way home takes of the battery of %(uav)s is only worked out while it flies a mission and reports.")
+        return BatteryAtLanding(left_percent=heard.battery_percent, unknown=words % values)
+    left, home, reserve = forecast["left_percent"], forecast["home_percent"], forecast["reserve_percent"]
+    if home is None:
+        words = _("What the way home takes of the battery of %(uav)s is not known: it has no position, or the wind leaves no headway.")
+        return BatteryAtLanding(left, reserve_percent=reserve, unknown=words % values)
+    return BatteryAtLanding(left, home, round(left - home, 1), reserve, forecast.get("hold_s"))
+
+
+def safest_returns(returning: Sequence[Flown], others: Sequence[TimedRoute]) -> Mapping[int, SafeReturn | None]:
+    """By UAV: a return in which none comes near another; those with the least battery to spare choose first.
+
+    others: what all others in the air do. Straight at once where that is clear; else at a height of its own, along its route, or after
+    a hold.
+    """
+    if not returning:
+        return {}
+    batteries = {one.heard.uav.pk: battery_at_landing(one.heard) for one in returning}
+
+    def spare(one: Flown) -> float:
+        battery = batteries[one.heard.uav.pk]
+        return math.inf if battery.landing_percent is None else battery.landing_percent - (battery.reserve_percent or 0.0)
+
+    in_order = sorted(returning, key=spare)
+    choices = [_choices(one, batteries[one.heard.uav.pk]) for one in in_order]
+    planned = settings.SEPARATION_RULES
+    widest_m = max(one.uncertainty_m for one in in_order)
+    rules = SeparationRules(planned.lateral_m + 2.0 * widest_m, planned.vertical_m, KEPT_SHARE * planned.time_s)
+    first = [one.straight.after(0.0) for one in in_order if one.straight is not None]
+    flown = [[route for _way, route in of_uav] for of_uav in choices]
+    chosen = chosen_apart(flown, others, rules, first)
+    return {
+        one.heard.uav.pk: None if place is None else of_uav[place][0] for one, of_uav, place in zip(in_order, choices, chosen, strict=True)
+    }
+
+
+def _choices(one: Flown, battery: BatteryAtLanding) -> list[tuple[SafeReturn, TimedRoute]]:
+    """Ways home with nothing in the way, as far as its battery allows, the best first."""
+    if one.straight is None:
+        return []
+    straight, uav = one.straight, one.heard.uav.name
+    is_clear, found = one.check.state == ReturnState.CLEAR, []
+    heights = _heights(one)
+    if is_clear:
+        found.append((SafeReturn(), straight.after(0.0)))
+    found += [(SafeReturn(height_m), raised.after(0.0)) for height_m, raised in heights]
+    if one.along is not None and one.place is not None:
+        points = [(place, one.base_m + height_m, hold_s) for place, height_m, hold_s in one.along.points]
+        found.append((SafeReturn(along_route=True), flying_on(uav, points, one.straight.speed_mps, lands=True)))
+    longest_s = MAX_WAIT_UNKNOWN_S if battery.hold_s is None else min(battery.hold_s, MAX_WAIT_S)
+    waits = [wait_s for wait_s in WAITS_S if 0.0 < wait_s <= longest_s]
+    if is_clear:
+        found += [(SafeReturn(wait_s=wait_s), straight.after(wait_s)) for wait_s in waits]
+    elif heights:
+        found += [(SafeReturn(heights[0][0], wait_s), heights[0][1].after(wait_s)) for wait_s in waits]
+    return found
+
+
+def _heights(one: Flown) -> list[tuple[float, StraightReturn]]:
+    """Return heights that can be set on it, at which nothing is in the way, with the return: at least the separation apart."""
+    own, present, straight = one.own, one.heard.present, one.straight
+    if one.keeps_height or own is None or one.ways is None or straight is None or present is None or present.altitude_relative_m is None:
+        return []
+    step_m = float(math.ceil(settings.SEPARATION_RULES.vertical_m)) + 1.0
+    lowest_m = own.height_m + step_m if one.check.state == ReturnState.CLEAR else one.check.safe_height_m
+    if lowest_m is None:
+        return []
+    away_m, goal_m = length_m(present.position, straight.goal), one.goal_m
+    found = []
+    for height_m in one.ways.clear_heights_m(own, lowest_m, step_m):
+        level_m = own.at_height(height_m).level_m(present.altitude_relative_m, away_m, goal_m)
+        found.append((height_m, replace(straight, level_m=one.base_m + level_m)))
+    return found
+
+
+def length_m(start: LonLat, end: LonLat) -> float:
+    return float(distance_m(np.array([start]), np.array([end]))[0])
