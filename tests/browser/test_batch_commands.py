@@ -92,7 +92,7 @@ def opened(page: Page, path: str) -> Page:
 def told(flyers: list[Flyer]) -> list[list[str]]:
     for flyer in flyers:
         flyer.obeys()
-    return [[kind for kind in flyer.told if kind in {"pause", "return"}] for flyer in flyers]
+    return [[kind for kind in flyer.told if kind in {"hold", "return"}] for flyer in flyers]
 
 
 def test_return_all_on_the_page_of_a_mission_reaches_that_mission_alone(visitor: Visitor, two: dict, picture: Picture) -> None:

@@ -99,3 +99,28 @@ def test_a_uav_in_another_place_blocks_the_start_with_its_reason(visitor: Visito
     expect(panel.locator("#preflight-why")).to_contain_text("Blocked:")
     expect(panel.get_by_role("button", name="Start 2 UAVs")).to_be_disabled()
     expect(panel).to_contain_text("from its planned take-off place. Carry it there")
+
+
+def test_one_that_is_not_connected_is_left_and_named_and_the_others_start(visitor: Visitor, approved: Approved, picture: Picture) -> None:
+    mission, standing = approved
+    switched_on(standing[:1])
+    page: Page = visitor.signs_in("opal")
+    names = [uav["name"] for uav in asks(page, f"/missions/{mission}")["uavs"]]
+    page.goto(f"/missions/{mission}/fly")
+    wait_for_map(page)
+    panel = page.get_by_role("region", name="Before start")
+    panel.get_by_role("button", name="Upload to 2 UAVs").click()
+    expect(panel.get_by_role("button", name="Uploading")).to_be_disabled()
+    standing[0][0].obeys()
+    switched_on(standing[:1])
+    panel.get_by_role("checkbox", name=re.compile("Looked at on site")).check()
+    expect(panel.locator("#preflight-why")).to_have_text(f"{names[1]} is not connected.")
+    in_both_themes(page, picture, "fly-one-is-left")
+    panel.get_by_role("button", name="Start 1 of 2 UAVs").click()
+    question = page.get_by_role("dialog", name="Start 1 UAV in planned order?")
+    expect(question).to_contain_text(f"Not started: {names[1]} is not connected.")
+    question.get_by_role("button", name="Start in planned order").click()
+    expect(page.locator("#planned-starts li")).to_have_count(1)
+    expect(panel.get_by_role("button", name="Connect 1 UAV")).to_be_disabled()
+    page.get_by_role("button", name="Stop starting").click()
+    expect(page.locator("#planned-starts")).to_contain_text("No further UAV is started")

@@ -358,7 +358,7 @@ test("of UAVs that are not heard it is said who is told all the same", () => {
   const [sent, waiting] = unheardLines(uavs, "return", NOW_MS);
   assert.match(sent, /^Nothing is heard from Tern now: this is sent all the same/);
   assert.match(waiting, /^There is no link to Kite, Gull, Wren now: the command waits/);
-  assert.match(unheardLines(uavs.slice(0, 1), "pause", NOW_MS)[0], /^There is no link to Tern now/);
+  assert.match(unheardLines(uavs.slice(0, 1), "resume", NOW_MS)[0], /^There is no link to Tern now/);
   assert.deepEqual(unheardLines([], "return", NOW_MS), []);
 });
 

@@ -19,12 +19,12 @@ import { unheardLines } from "./unheard.js";
 /** @import { BatchScope } from "./batch.js" */
 /** @import { Commanding, MonitorPage, MonitorStore } from "./types.d.ts" */
 
-/** @type {Record<"pause" | "return", { title: (uavs: number) => string, lines: string[], act: string }>} */
+/** @type {Record<"hold" | "return", { title: (uavs: number) => string, lines: string[], act: string }>} */
 const ALL = {
-  pause: {
-    title: (uavs) => tn(uavs, "Pause {count} UAV?", "Pause all {count} UAVs?"),
-    lines: [t("Each stops on its route and waits for Resume, as long as its battery lasts.")],
-    act: t("Pause all"),
+  hold: {
+    title: (uavs) => tn(uavs, "Hold {count} UAV?", "Hold all {count} UAVs?"),
+    lines: [t("Each stops where it is and waits for Resume, as long as its battery lasts.")],
+    act: t("Hold all"),
   },
   return: {
     title: (uavs) => tn(uavs, "Return {count} UAV?", "Return all {count} UAVs?"),
@@ -36,7 +36,7 @@ const ALL = {
 /**
  * One request, whatever its number of UAVs.
  *
- * @param {"pause" | "return"} kind
+ * @param {"hold" | "return"} kind
  * @param {BatchScope[]} scopes
  * @param {Map<number, number> | null} [waits] seconds that each holds before
  */

@@ -102,11 +102,12 @@ export function createCommanding(store, page) {
     if (!uav) return;
     const mission = store.state.missions.find((entry) => entry.id === uav.mission);
     const planned = plannedOf(uav, store.state.details);
-    const isStop = kind === "hold" || kind === "pause"; // the feed tells what is asked of it
+    const isStop = kind === "hold"; // the feed tells what is asked of it
     const flyer = {
       name: uav.name,
       speed_mps: planned?.cruise_speed_mps ?? uav.measured?.speed_mps ?? 5,
       hold_s: uav.estimated?.battery?.hold_s,
+      route: store.state.details.get(uav.mission ?? "")?.plan?.routes[uav.place ?? -1],
     };
     const late = certainty(uav) === MEASURED ? null : unheardLines([uav], kind, store.state.now_ms)[0];
     const question = presentQuestion(isStop ? null : uav.id, kind, flyer, ([first, ...rest]) => [

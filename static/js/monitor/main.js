@@ -15,6 +15,7 @@ import { createCommanding } from "./commanding.js";
 import { mountMonitorMap } from "./map/monitor_map.js";
 import { createMissionDetails } from "./mission_details.js";
 import { mountNarrow } from "./narrow.js";
+import { mountAbortMission } from "./panels/abort_mission.js";
 import { mountAlerts } from "./panels/alerts.js";
 import { mountBoard } from "./panels/board.js";
 import { mountCards } from "./panels/cards.js";
@@ -90,8 +91,9 @@ mountBoard(store, {
   },
 });
 mountSimulation(page);
-mountPlannedStarts({ mission: page.mission, canFly: page.canFly, offersBegin: false });
+mountPlannedStarts({ mission: page.mission, canFly: page.canFly });
 mountPreflight(store, page);
+mountAbortMission(store, page);
 mountCloseMission(store, page);
 mountUrgent(store, { open: narrow.showBoard });
 const commandKeys = commanding ? mountCommandBar(store, commanding) : [];

@@ -174,7 +174,7 @@ export interface PlannedLine {
 export interface Commanding {
   /** opener: the button out of which the question grows */
   ask(id: number, kind: AskedKind, opener?: HTMLElement | null): Promise<void>;
-  askAll(kind: "pause" | "return", opener?: HTMLElement | null): Promise<void>;
+  askAll(kind: "hold" | "return", opener?: HTMLElement | null): Promise<void>;
   /** a command that could not leave this device */
   tryAgain(id: number): Promise<void>;
   giveUp(id: number): void;

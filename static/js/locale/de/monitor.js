@@ -12,9 +12,6 @@ export default {
   "Its flight failed.": "Sein Flug ist gescheitert.",
   "The UAV went past it at a distance.": "Das UAV ist in einem Abstand daran vorbeigeflogen.",
   "The UAV did not stay long enough.": "Das UAV ist nicht lange genug geblieben.",
-  "Each stops on its route and waits for Resume, as long as its battery lasts.":
-    "Jedes hält auf seiner Route an und wartet auf „Fortsetzen“, solange sein Akku reicht.",
-  "Pause all": "Alle pausieren",
   "Each flies back to where it took off and lands there. Targets that are not reached stay undone.":
     "Jedes fliegt zu seinem Startplatz zurück und landet dort. Ziele, die nicht erreicht sind, bleiben unerledigt.",
   "Return all": "Alle zurück",
@@ -31,8 +28,6 @@ export default {
   "Starts in planned order stopped": "Starts in geplanter Reihenfolge angehalten",
   "All starts were given.": "Alle Startbefehle sind gegeben.",
   "Stopped. No further UAV is started.": "Angehalten. Kein weiteres UAV wird gestartet.",
-  "Stopped: a UAV of the mission was told to pause, hold, return, land or abort.":
-    "Angehalten: Ein UAV der Mission bekam Pause, Halten, Rückkehr, Landen oder Abbruch befohlen.",
   "Stopped: the mission is over.": "Angehalten: Die Mission ist zu Ende.",
   "Stopped: the server could not look after it for a minute.":
     "Angehalten: Der Server konnte eine Minute lang nicht danach sehen.",
@@ -46,8 +41,6 @@ export default {
   "{name}: {time} after the first": "{name}: {time} nach dem ersten",
   "Each start is checked against the UAVs in the air and waits where it has to. Closing this page stops nothing.":
     "Jeder Start wird gegen die UAVs in der Luft geprüft und wartet, wo er muss. Diese Seite zu schließen hält nichts an.",
-  "Stop, or any Pause, Hold, Return, Land or Abort of this mission ends it: no further UAV is started.":
-    "„Starts anhalten“ oder jeder Befehl Pause, Halten, Rückkehr, Landen oder Abbruch in dieser Mission beendet es: Kein weiteres UAV wird gestartet.",
   "Before start": "Vor dem Start",
   "All right": "In Ordnung",
   "Look at this": "Sehen Sie sich das an",
@@ -210,7 +203,6 @@ export default {
   "estimated, ±{distance}": "geschätzt, ±{distance}",
   "{distance} to go": "noch {distance}",
   "Go to what flies": "Zu dem, was fliegt",
-  "Pause {count} UAV?": ["{count} UAV pausieren?", "Alle {count} UAVs pausieren?"],
   "Return {count} UAV?": ["{count} UAV zurückrufen?", "Alle {count} UAVs zurückrufen?"],
   "{count} target open": ["{count} Ziel offen", "{count} Ziele offen"],
   "{count} UAV is being told.": ["{count} UAV erhält den Befehl.", "{count} UAVs erhalten den Befehl."],
@@ -254,4 +246,15 @@ export default {
   "Battery: {reserve} to the reserve, {home} home": "Akku: {reserve} bis zur Reserve, {home} bis nach Hause",
   "{count} critical": "{count} kritisch",
   "Reading what is on the UAV…": "Wird vom UAV gelesen…",
+  "{name} is not connected": "{name} ist nicht verbunden",
+  "{name}: {why}": "{name}: {why}",
+  "{name} is not ready": "{name} ist nicht bereit",
+  "{name} does not have the mission": "{name} hat die Mission nicht",
+  "Each stops where it is and waits for Resume, as long as its battery lasts.": "Jedes hält an, wo es ist, und wartet auf „Fortsetzen“, solange sein Akku reicht.",
+  "Hold all": "Alle anhalten",
+  "Stopped: a UAV of the mission was told to hold, return, land or abort.": "Angehalten: Ein UAV der Mission bekam Anhalten, Rückkehr, Landen oder Abbruch befohlen.",
+  "Not started: {names}.": "Nicht gestartet: {names}.",
+  "Stop, or any Hold, Return, Land or Abort of this mission ends it: no further UAV is started.": "„Anhalten“ oder jedes Halten, jede Rückkehr, Landung oder jeder Abbruch in dieser Mission beendet es: Kein weiteres UAV wird gestartet.",
+  "Start {started} of {count} UAV": ["{started} von {count} UAV starten", "{started} von {count} UAVs starten"],
+  "Hold {count} UAV?": ["{count} UAV anhalten?", "Alle {count} UAVs anhalten?"],
 };
