@@ -1220,7 +1220,10 @@ export interface components {
             arrivals: components["schemas"]["EstimateArrival"][];
             /** Format: date-time */
             ends_at: string | null;
-            /** Format: date-time */
+            /**
+             * Format: date-time
+             * @description worked out once a silence: once it has passed, contact is overdue
+             */
             contact_expected_at: string | null;
             /** Format: double */
             report_interval_s: number | null;

@@ -112,8 +112,8 @@ def test_one_operator_starts_a_flight_and_another_sees_it_move_an_alert_and_an_a
     expect(watcher.locator(".map-flyer.measured")).to_have_count(2)
     first = watcher.locator(".map-flyer").first.get_attribute("style")
     along_m = flies_until(watcher, lambda: watcher.locator(".map-flyer").first.get_attribute("style") != first, flyers, along_m)
-    expect(kite.locator(".age")).to_have_text(re.compile(r"^\d(\.\d)? s ago$"))
-    expect(kite.locator(".figures")).to_contain_text("over take-off")
+    expect(kite.locator("[data-figure=age] dd")).to_have_text(re.compile(r"^\d(\.\d)?\ss$"))
+    expect(kite.locator("[data-figure=height]")).to_contain_text(re.compile("AGL|above take-off"))
     expect(kite.locator(".live-strip")).to_be_visible()
 
     off_route = watcher.locator(".alert").filter(has_text="beside its route")

@@ -129,7 +129,7 @@ def flies(plan: Page, live: Page, picture: Picture) -> None:
     answers(live, "Start in planned order")
     expect(live.locator("#mission-state")).to_have_text("Active", timeout=SOON_MS)
     expect(live.locator("#map .map-flyer")).to_have_class(re.compile("measured"), timeout=SOON_MS)
-    expect(card(live, NAME).locator(".figures")).to_contain_text(re.compile("over take-off[1-9]"), timeout=SOON_MS)
+    expect(card(live, NAME).locator("[data-figure=height]")).to_contain_text(re.compile("(AGL|above take-off)[1-9]"), timeout=SOON_MS)
 
 
 def loses_the_link_and_finds_it_again(page: Page, picture: Picture) -> None:

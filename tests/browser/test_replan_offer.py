@@ -111,7 +111,9 @@ def drops_out(visitor: Visitor, flight: Flight) -> tuple[Page, Page]:
         starts(pilot, name)
     expect(watcher.locator("#mission-state")).to_have_text("Active")
     expect(watcher.locator(".map-flyer.measured")).to_have_count(2)
-    expect(card(watcher, "Dunlin").locator(".figures")).to_contain_text(re.compile(r"over take-off\s*[4-9]\d"))  # it has climbed
+    expect(card(watcher, "Dunlin").locator("[data-figure=height]")).to_contain_text(
+        re.compile(r"(AGL|above take-off)\s*[4-9]\d")
+    )  # it has climbed
     flight.vehicles["Dunlin"].comes_home()
     lost = watcher.locator(".alert.critical").filter(has_text="without a command of ours")
     lost.get_by_role("button", name="Acknowledge").click()

@@ -11,6 +11,7 @@ import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { durationText } from "../units.js";
 import { answerWords, batchRequest, batchScopes, leftLines, returnLinesOf, scopeChoices } from "./batch.js";
+import { markSending } from "./sending.js";
 import { unheardLines } from "./unheard.js";
 
 /** @import { BatchAnswers, PresentReturn } from "../api_types.d.ts" */
@@ -36,17 +37,27 @@ const ALL = {
 /**
  * One request, whatever its number of UAVs.
  *
+ * @param {MonitorStore} store
  * @param {"hold" | "return"} kind
  * @param {BatchScope[]} scopes
  * @param {Map<number, number> | null} [waits] seconds that each holds before
  */
-async function tellBatch(kind, scopes, waits = null) {
+async function tellBatch(store, kind, scopes, waits = null) {
   const { path, body } = batchRequest(kind, scopes, waits);
+  const ids = scopes.flatMap(({ uavs }) => uavs.map(({ id }) => id));
+  markSending(store, ids, kind);
   try {
     const headers = { "Idempotency-Key": freshKey() };
     const { data } = /** @type {Answer<BatchAnswers>} */ (await post(path, body, { headers }));
     toast(answerWords(data.results));
+    const refused = data.results.filter(({ command }) => !command);
+    markSending(
+      store,
+      refused.map(({ uav }) => uav),
+      null,
+    );
   } catch (error) {
+    markSending(store, ids, null);
     if (!(error instanceof ApiError)) throw error;
     toast(`${t("{act}: not confirmed.", { act: ALL[kind].act })} ${error.message}`);
   }
@@ -115,6 +126,7 @@ export function createBatch(store, page) {
     }
     if (asked)
       await tellBatch(
+        store,
         kind,
         asked.scope && asked.scope !== "all" ? scopes.filter(({ id }) => id === asked.scope) : scopes,
         asked.safer?.parameters.waits,

@@ -58,6 +58,7 @@ const store = createStore(
     heard_ms: null,
     silent_ms: 0,
     unsent: new Map(),
+    sending: new Map(),
     isWhole: false,
     now_ms: Date.now(),
   }),
@@ -119,8 +120,8 @@ function followFeed(stage) {
 
 /** @param {number} by 1 or -1 */
 function step(by) {
-  const { uavs, alerts, chosen } = store.state;
-  const order = inOrder(uavs, alerts, null);
+  const { uavs, missions, chosen } = store.state;
+  const order = inOrder(uavs, missions);
   if (!order.length) return;
   const at = order.findIndex(({ id }) => id === chosen);
   pick(order[at < 0 ? 0 : (at + by + order.length) % order.length].id);

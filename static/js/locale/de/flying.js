@@ -193,14 +193,17 @@ export default {
     "{count} Ziel ist offen. Geben Sie an, warum es entfällt; der Grund steht im Bericht.",
     "{count} Ziele sind offen. Geben Sie an, warum sie entfallen; die Gründe stehen im Bericht.",
   ],
-  "It stops where it is and waits for Resume, as long as its battery lasts.": "Es hält an, wo es ist, und wartet auf „Fortsetzen“, solange sein Akku reicht.",
-  "Plans keep UAVs apart by their times. Started now, it is up to you to keep them apart: hold one, or have one return.": "Pläne halten UAVs durch ihre Zeiten auseinander. Startet es jetzt, müssen Sie sie auseinanderhalten: eines anhalten oder zurückholen.",
+  "It stops where it is and waits for Resume, as long as its battery lasts.":
+    "Es hält an, wo es ist, und wartet auf „Fortsetzen“, solange sein Akku reicht.",
+  "Plans keep UAVs apart by their times. Started now, it is up to you to keep them apart: hold one, or have one return.":
+    "Pläne halten UAVs durch ihre Zeiten auseinander. Startet es jetzt, müssen Sie sie auseinanderhalten: eines anhalten oder zurückholen.",
   "Fly: {act}": "Fliegen: {act}",
   "Upload flight {flight}": "Flug {flight} hochladen",
   "Upload again": "Erneut hochladen",
   "{name} has what it is to fly.": "{name} hat, was es fliegen soll.",
   "Upload flight {flight} to {name}?": "Flug {flight} auf {name} hochladen?",
   "Upload its route to {name}?": "Die Route auf {name} hochladen?",
-  "What it then has on board is read back and compared with what was approved. Nothing takes off by this.": "Was es danach an Bord hat, wird zurückgelesen und mit dem Freigegebenen verglichen. Dadurch startet nichts.",
+  "What it then has on board is read back and compared with what was approved. Nothing takes off by this.":
+    "Was es danach an Bord hat, wird zurückgelesen und mit dem Freigegebenen verglichen. Dadurch startet nichts.",
   "Upload to {name}": "Auf {name} hochladen",
 };

@@ -6,9 +6,11 @@ import { KINDS } from "../../domain/flying.js";
 import { nextStep, summaryOf, worstOf } from "../../domain/preflight_step.js";
 import { beginStarts } from "../../page/planned_starts.js";
 import { tellUav } from "../../page/tell_uav.js";
-import { toast } from "../../page/toast.js";
+import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { heightText } from "../../units.js";
+
+import { beginSimulation } from "./simulation.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { Mission, MissionStarts, Preflight, PreflightCheck, Rehearsal, UavPreflight } from "../../api_types.d.ts" */
@@ -81,7 +83,8 @@ function heightButton({ uav, name }, { safe_height_m }) {
  * The panel's elements. draw: what was read; drawStep: the button alone.
  *
  * @param {HTMLElement} place
- * @param {{ act: (button: HTMLElement) => unknown, tick: (isDone: boolean) => void }} on
+ * @param {{ act: (button: HTMLElement) => unknown, tick: (isDone: boolean) => void, simulate: (() => unknown) | null }} on simulate: null
+ *   where no UAV of the mission is simulated
  */
 function createPanel(place, on) {
   let drawn = "";
@@ -96,9 +99,15 @@ function createPanel(place, on) {
   );
   const heights = h("div", { class: "preflight-heights" });
   const button = h("button", { type: "button", class: "button primary wide", onclick: () => void on.act(button) });
+  const simulate = h(
+    "button",
+    { type: "button", class: "button wide", hidden: true, onclick: () => void on.simulate?.() },
+    icon("play", "small"),
+    t("Fly in simulation"),
+  );
   const why = h("p", { class: "caption", id: "preflight-why", role: "status" });
   button.setAttribute("aria-describedby", "preflight-why");
-  place.append(h("h2", {}, t("Before start")), list, tick, heights, button, why);
+  place.append(h("h2", {}, t("Before start")), list, tick, heights, button, simulate, why);
 
   return {
     /** What is to be set with the upload. */
@@ -131,6 +140,8 @@ function createPanel(place, on) {
     drawStep({ act, words, image, why: reason, left }, isActing) {
       button.disabled = isActing || act === "connect" || act === "wait" || reason !== "";
       button.dataset.act = act ?? "";
+      simulate.hidden = act !== "connect" || on.simulate === null;
+      simulate.disabled = isActing;
       if (button.dataset.words !== words) {
         button.dataset.words = words;
         button.replaceChildren(icon(image, "small"), words);
@@ -214,6 +225,7 @@ export function mountPreflight(store, page) {
       isPilotDone = isDone;
       draw();
     },
+    simulate: page.hasSimulated ? simulate : null,
   });
   const isBeforeFlight = () => BEFORE_FLIGHT.has(store.state.missions.find(({ id }) => id === mission)?.state ?? "");
 
@@ -240,6 +252,22 @@ export function mountPreflight(store, page) {
       const { data } = /** @type {Answer<{ results: Rehearsal[] }>} */ (await get(`/missions/${mission}/rehearsals`));
       rehearsal = rehearsalCheck(data.results[0] ?? null);
     });
+
+  /** One click: as planned, in real time; the drawer of the simulation changes that. */
+  async function simulate() {
+    isActing = true;
+    draw();
+    try {
+      await beginSimulation(mission);
+      say(t("Simulated UAVs are being started."));
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      toast(error.message);
+    } finally {
+      isActing = false;
+      void read();
+    }
+  }
 
   /** @param {HTMLElement} button */
   async function act(button) {
