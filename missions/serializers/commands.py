@@ -26,6 +26,7 @@ OUTCOMES = {
     "withdrawn": gettext_lazy("It was withdrawn before it was sent."),
     "revoked": gettext_lazy("The approval was revoked."),
 }
+PAUSE_IS_DEPRECATED = "pause is deprecated: hold does the same, and resume goes on from both"
 PRIORITIES = ("safety", "pause", "mission", "parameter")
 
 
@@ -105,7 +106,7 @@ class CommandParametersSerializer(KnownFieldsSerializer):
 
 
 class CommandInputSerializer(WhyInputSerializer):
-    kind = serializers.ChoiceField(choices=CommandKind.choices)
+    kind = serializers.ChoiceField(choices=CommandKind.choices, help_text=PAUSE_IS_DEPRECATED)
     parameters = CommandParametersSerializer(required=False)
 
 
@@ -190,7 +191,7 @@ class ReturnWaySerializer(KnownFieldsSerializer):
 
 
 class _BatchSerializer(WhyInputSerializer):
-    kind = serializers.ChoiceField(choices=sorted(BATCH_KINDS))
+    kind = serializers.ChoiceField(choices=sorted(BATCH_KINDS), help_text=PAUSE_IS_DEPRECATED)
     ways = serializers.DictField(
         child=ReturnWaySerializer(),
         required=False,

@@ -20,6 +20,10 @@ class PlannedStartSerializer(serializers.Serializer):
 
 
 class StartsInputSerializer(serializers.Serializer):
+    uavs = serializers.ListField(
+        child=serializers.IntegerField(), allow_empty=False, required=False,
+        help_text="ids of those to start, the others wait on the ground; each is checked once more as GET …/preflight does. Absent: all",
+    )  # fmt: skip
     pilot_checked = serializers.BooleanField(
         default=False, help_text="who starts them says that what only a pilot can see was looked at; it stays in the history"
     )

@@ -46,6 +46,8 @@ def simulation_of(page: Page, mission: str) -> dict:
 
 def test_simulated_uavs_are_started_changed_and_ended_one_by_one(visitor: Visitor, mission: str, picture: Picture) -> None:
     page = opened(visitor.signs_in("opal"), f"/missions/{mission}/fly")
+    expect(page.get_by_role("region", name="Before start").get_by_role("button", name="Fly in simulation")).to_be_enabled()
+    expect(page.locator("#simulation-state")).to_be_hidden()  # the drawer is folded
     panel = panel_of(page)
     expect(panel.locator("#simulation-state")).to_contain_text("start them here")
     picture(page, "simulation-before")
