@@ -3,11 +3,10 @@
 from collections.abc import Iterable
 from typing import Any
 
-from rest_framework import serializers
-
 from inspection.models import Asset, AssetKind
 from inspection.selectors import asset_detail, asset_label
 from inspection.serializers.assets import FIELDS_OF_AN_ASSET
+from workspace import strict_serializers as serializers
 from workspace.serializers import Declared
 
 MOST_REFS = 2_000

@@ -5,7 +5,6 @@ from typing import Any
 
 from django.conf import settings
 from django.utils.translation import gettext_lazy
-from rest_framework import serializers
 
 from missions.fields import PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -13,6 +12,7 @@ from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults_told import WrongFaults, faults_told
 from simulation.models import SimulatedVehicle, Simulation, SimulationState, VehicleFlavour
 from simulation.serializers.shapes import RehearsalConditionsSerializer
+from workspace import strict_serializers as serializers
 
 SPEEDS = (1, 2, 5, 10)
 MOST_POOL_UAVS = 100
