@@ -19,6 +19,7 @@ from workspace.errors import ApiProblem
 from workspace.whole_numbers import WholeNumber
 
 Row = TypeVar("Row", bound=Model)
+EARLIEST = datetime(2, 1, 1, tzinfo=UTC)  # before it nothing was changed, and less than a year is taken from a time
 LIMIT = WholeNumber("limit", "rows a page; 100 unless told, 1,000 at most")
 
 
@@ -54,7 +55,10 @@ def changed_since(request: Request, queryset: QuerySet[Any, Row]) -> QuerySet[An
     ApiProblem 400.
     """
     since = asked_instant(request, "changed_since")
-    return queryset if since is None else queryset.filter(updated_at__gte=since - timedelta(seconds=settings.CELERY_TASK_TIME_LIMIT))
+    longest = timedelta(seconds=settings.CELERY_TASK_TIME_LIMIT)
+    if since is None or since < EARLIEST:
+        return queryset
+    return queryset.filter(updated_at__gte=since - longest)
 
 
 def asked_instant(request: Request, name: str) -> datetime | None:

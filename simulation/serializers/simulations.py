@@ -5,6 +5,7 @@ from typing import Any
 
 from django.conf import settings
 from django.utils.translation import gettext_lazy
+from drf_spectacular.utils import extend_schema_field
 
 from missions.fields import PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -41,6 +42,7 @@ NOT_OF_THE_FLEET = gettext_lazy(
 )
 
 
+@extend_schema_field({"oneOf": [{"type": "string"}, {"type": "object", "additionalProperties": {}}]})
 class ConditionsField(serializers.JSONField):
     """A name, or an object; read by simulation.views.skies."""
 

@@ -48,6 +48,8 @@ BESIDE_THE_SCHEMA = re.compile(
     "|required for a UAV without an id|A target needs an asset or a position|With a battery its mass is needed"
     "|cross the 180th meridian|There is no such (upload|set)|A speed is checked|A route is as plans have it"
     "|A UAV needs a position|It encloses nothing|a geometry is an object|Only addresses that begin with"
+    "|Both ends are the same tower|A side of the box is|south below north|There is no such import|A stretch needs an asset and no position"
+    "|for this mass and these rotors|A position is not on the globe"
 )
 EXAMPLES = 8  # an operation
 LEFT_OUT = re.compile(r"/(account|people|uav-link)\b")  # they end the token that asks, or have one of their own
@@ -61,6 +63,11 @@ BOUNDED = settings(
 )
 
 
+def has_blanks(case: Any) -> bool:
+    """Whether a parameter of the query is empty, which counts as one that is not there."""
+    return "" in (case.query or {}).values()
+
+
 def faults_of(operation: Any, token: str, mode: GenerationMode) -> list[str]:
     faults: list[str] = []
 
@@ -68,7 +75,7 @@ def faults_of(operation: Any, token: str, mode: GenerationMode) -> list[str]:
     @given(case=operation.as_strategy(generation_mode=mode))
     def ask(case: Any) -> None:
         answer = case.call(headers={"Authorization": f"Bearer {token}"})
-        is_negative = mode is GenerationMode.NEGATIVE and answer.status_code not in {PRECONDITION, TOO_LARGE}
+        is_negative = mode is GenerationMode.NEGATIVE and answer.status_code not in {PRECONDITION, TOO_LARGE} and not has_blanks(case)
         if mode is GenerationMode.POSITIVE and answer.status_code == 400 and not BESIDE_THE_SCHEMA.search(answer.text):
             faults.append(f"{operation.label}: what the document allows is refused: {answer.text[:200]} {case.query} {case.body!r:.200}")
         try:

@@ -39,18 +39,29 @@ def opened(door: Door, user: User, number: int) -> list[WebSocket]:
     return sockets
 
 
+def connected(path: str) -> socket.socket | None:
+    """None while nobody listens there."""
+    beside = socket.socket(socket.AF_UNIX)
+    try:
+        beside.connect(path)
+    except OSError:
+        beside.close()
+        return None
+    return beside
+
+
 def opened_beside(door: Door, path: str, user: User) -> WebSocket:
     """At the live program of this unix socket, past nginx."""
-    beside = socket.socket(socket.AF_UNIX)
-    beside.connect(path)
+    beside = connected(path)
+    assert beside is not None
     cookie = f"{settings.SESSION_COOKIE_NAME}={client_of(user).cookies[settings.SESSION_COOKIE_NAME].value}"
     site = f"127.0.0.1:{door.port}"
     return create_connection(f"ws://{site}/ws/live", timeout=60, socket=beside, cookie=cookie, origin=f"http://{site}")
 
 
 def is_closed_at_once(live: WebSocket) -> bool:
-    opcode, data = live.recv_data()
-    return opcode == 8 and int.from_bytes(data[:2], "big") == TOO_MANY
+    frame = live.recv_frame()  # without an answer to it, for which the other side may not wait
+    return frame.opcode == 8 and int.from_bytes(frame.data[:2], "big") == TOO_MANY
 
 
 def first(live: WebSocket) -> dict[str, Any]:
@@ -78,7 +89,7 @@ def test_one_too_many_of_an_address_is_closed_with_a_code(here: Door) -> None:
 def test_those_of_all_live_programs_are_counted_together(here: Door) -> None:
     path = here.folder / "live-2.sock"
     with running([part.replace("live.sock", path.name) for part in here.live], **here.environment):
-        wait_until(path.exists)
+        wait_until(lambda: (asked := connected(str(path))) is not None and asked.close() is None)
         user = somebody()
         sockets = opened(here, user, OF_A_USER - 2)
         sockets += [opened_beside(here, str(path), user) for _ in range(2)]
