@@ -50,6 +50,7 @@ BESIDE_THE_SCHEMA = re.compile(
     "|A UAV needs a position|It encloses nothing|a geometry is an object|Only addresses that begin with"
     "|Both ends are the same tower|A side of the box is|south below north|There is no such import|A stretch needs an asset and no position"
     "|for this mass and these rotors|A position is not on the globe"
+    "|The names are ids of UAVs|There is no (base|type) [0-9]"  # OpenAPI 3.0 bounds no names of an object
 )
 EXAMPLES = 8  # an operation
 LEFT_OUT = re.compile(r"/(account|people|uav-link)\b")  # they end the token that asks, or have one of their own
