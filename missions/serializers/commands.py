@@ -4,7 +4,6 @@ from typing import Any
 
 from django.utils.translation import gettext_lazy
 from drf_spectacular.utils import extend_schema_field
-from rest_framework import serializers
 
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -13,6 +12,7 @@ from missions.services.batch_commands import BATCH_KINDS, UavAnswer
 from missions.services.closing import MAX_REASON_LENGTH
 from missions.services.steering import MAX_WAIT_S
 from missions.stored_outcomes import outcome_in_words
+from workspace import strict_serializers as serializers
 
 LONGEST_WHY = 300
 MOST_FLIGHTS = 100

@@ -3424,7 +3424,9 @@ export interface components {
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         PatchedSimulationChangeRequest: {
             /** @description the air from now on: calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent; batteries stay as they are */
-            conditions?: unknown;
+            conditions?: string | {
+                [key: string]: unknown;
+            };
             faults?: components["schemas"]["FaultsRequest"];
             /**
              * @description times real time, of all its UAVs
@@ -3575,7 +3577,9 @@ export interface components {
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         PatchedVehicleChangeRequest: {
             /** @description the air from now on: calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent; batteries stay as they are */
-            conditions?: unknown;
+            conditions?: string | {
+                [key: string]: unknown;
+            };
             faults?: components["schemas"]["FaultsRequest"];
         };
         /** @description A zone that somebody draws or corrects. A limit that is null is not stated, which is not 0. */
@@ -5803,7 +5807,9 @@ export interface components {
              * @description calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent
              * @default as-planned
              */
-            conditions: unknown;
+            conditions: string | {
+                [key: string]: unknown;
+            };
             faults?: components["schemas"]["FaultsRequest"];
             /** @default px4 */
             flavour: components["schemas"]["VehicleFlavour"];
@@ -5907,7 +5913,9 @@ export interface components {
              * @description calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent
              * @default calm
              */
-            conditions: unknown;
+            conditions: string | {
+                [key: string]: unknown;
+            };
             faults?: components["schemas"]["FaultsRequest"];
             /**
              * @description the others' follow
