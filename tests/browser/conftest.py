@@ -173,7 +173,11 @@ class ContextPool:
         self._idle: dict[bool, list[BrowserContext]] = {True: [], False: []}
 
     def new(self, *, draws: bool = False, **options: Any) -> BrowserContext:
-        """A context of its own, which is closed after the test; WebGL's triangles are drawn in one that `draws`."""
+        """A context of its own, which is closed after the test; WebGL's triangles are drawn in one that `draws`.
+
+        Without a service worker unless `service_workers="allow"`: tests of faults answer the requests of pages themselves.
+        """
+        options = {"service_workers": "block"} | options
         context = self.browser.new_context(base_url=self.address, reduced_motion="reduce", **options)
         if not HAS_PICTURES:
             context.add_init_script(COARSE_CANVASES)

@@ -5,6 +5,7 @@ import { inOrder } from "../domain/order.js";
 import { openFeed } from "../live/feed.js";
 import { KINDS } from "../live/shown.js";
 import { staleWords } from "../live/stale.js";
+import { copiedAt } from "../offline_copy.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { mountPlannedStarts } from "../page/planned_starts.js";
 import { mountWorkbench } from "../page/workbench.js";
@@ -15,6 +16,7 @@ import { createCommanding } from "./commanding.js";
 import { mountMonitorMap } from "./map/monitor_map.js";
 import { createMissionDetails } from "./mission_details.js";
 import { mountNarrow } from "./narrow.js";
+import { showCopy, silentFeed } from "./offline_copy.js";
 import { mountAlerts } from "./panels/alerts.js";
 import { mountBoard } from "./panels/board.js";
 import { mountCards } from "./panels/cards.js";
@@ -194,11 +196,14 @@ function show() {
   store.update({ isWhole: true }); // from here on what comes is news
 }
 
-const feed = openFeed({
-  mission: page.mission,
-  onChange: take,
-  onState: ({ state, since_ms }) => store.update({ link: state, since_ms }),
-});
+const feed =
+  copiedAt === null
+    ? openFeed({
+        mission: page.mission,
+        onChange: take,
+        onState: ({ state, since_ms }) => store.update({ link: state, since_ms }),
+      })
+    : silentFeed(copiedAt);
 /** What is shown is of `now_ms`: it stands still while the device has no data. */
 const timesOf = () => ({ now_ms: feed.shown_ms(), heard_ms: feed.heard_ms, silent_ms: feed.silent_ms() });
 setInterval(() => store.update(timesOf()), TICK_MS);
@@ -210,7 +215,15 @@ async function load() {
   } catch (error) {
     if (!(error instanceof ApiError)) throw error; // the map says itself that it cannot be read
   }
+  const approved =
+    copiedAt !== null && page.mission
+      ? await showCopy(store, page.mission, (position) => map.showPlace(position))
+      : null;
   await map.ready;
+  if (approved) {
+    map.showApproved(approved);
+    if (!map.opensAtPlace) map.fit({ animate: false });
+  }
   document.documentElement.dataset.loaded = "true";
   let wasFitted = map.opensAtPlace;
   store.listen(["details", "uavs"], ({ details, uavs, missions }) => {

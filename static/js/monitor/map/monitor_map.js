@@ -3,9 +3,11 @@
 import { byId } from "../../dom.js";
 import { certaintyOf, LOST, MEASURED, standsAt } from "../../domain/certainty.js";
 import { alarmOf } from "../../domain/order.js";
-import { routeLetter, routeNumber } from "../../domain/palette.js";
+import { rallyName, routeLetter, routeNumber } from "../../domain/palette.js";
 import { mountControls } from "../../map/controls.js";
 import { createTip } from "../../map/furniture.js";
+import * as fenceLayer from "../../map/layers/fences.js";
+import { createRallyPoints } from "../../map/layers/lost_link.js";
 import * as routesLayer from "../../map/layers/routes.js";
 import { rememberedUnder } from "../../map/look/under.js";
 import { boxAround, createMap } from "../../map/map_view.js";
@@ -135,6 +137,7 @@ class MonitorMap {
       fit: () => this.fit(),
       recoloured: (palette) => {
         flightLayers.recolour(map, palette);
+        fenceLayer.recolour(map);
         this.#parts?.closeUp.recolour();
       },
     });
@@ -182,6 +185,16 @@ class MonitorMap {
       zoom: Math.max(map.getZoom(), NEAR_ZOOM),
       duration: calm.matches ? 0 : JUMP_MS,
     });
+  }
+
+  /** Rally points and fences of what was approved. @param {{ rally: number[][], fences: number[][][] }} approved */
+  showApproved({ rally, fences }) {
+    const { map } = this.#view;
+    createRallyPoints(map, { onMove: () => {} }).update(
+      rally.map((position, place) => ({ position, name: rallyName(place) })),
+      false,
+    );
+    fenceLayer.show(map, fences);
   }
 
   #start() {

@@ -1,0 +1,20 @@
+/** Asks for the server while it cannot be reached, and loads the page anew once it answers. */
+
+const ASK_INTERVAL_MS = 5_000;
+const ASK_TIMEOUT_MS = 4_000;
+const ANSWERS = new Set([200, 401, 403]); // of the application: the page can be loaded from it
+
+export function watchServer() {
+  const ask = async () => {
+    try {
+      const answer = await fetch("/api/v1/account/session", { signal: AbortSignal.timeout(ASK_TIMEOUT_MS) });
+      if (!ANSWERS.has(answer.status)) return;
+      if (location.pathname === "/sign-out") location.href = "/";
+      else location.reload();
+    } catch {
+      /* still away */
+    }
+  };
+  setInterval(() => void ask(), ASK_INTERVAL_MS);
+  addEventListener("online", () => void ask());
+}
