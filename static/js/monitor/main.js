@@ -12,7 +12,9 @@ import { mountWorkbench } from "../page/workbench.js";
 import { mountSceneOpener } from "../scene/opener.js";
 import { createStore } from "../store.js";
 import { t } from "../text.js";
+import { missionNumbers } from "./call_signs.js";
 import { createCommanding } from "./commanding.js";
+import { EVERYTHING } from "./fleet_groups.js";
 import { mountMonitorMap } from "./map/monitor_map.js";
 import { createMissionDetails } from "./mission_details.js";
 import { mountNarrow } from "./narrow.js";
@@ -22,6 +24,7 @@ import { mountBoard } from "./panels/board.js";
 import { mountCards } from "./panels/cards.js";
 import { mountCloseMission } from "./panels/close_mission.js";
 import { mountCommandBar } from "./panels/command_bar.js";
+import { mountFleetFilter } from "./panels/fleet_filter.js";
 import { mountHead } from "./panels/head.js";
 import { mountOffers } from "./panels/offers.js";
 import { mountPreflight } from "./panels/preflight.js";
@@ -51,6 +54,8 @@ const store = createStore(
     flown: new Map(),
     offered: [],
     ground: null,
+    numbers: new Map(),
+    filter: EVERYTHING,
     chosen: null,
     isFollowing: false,
     showsLog: false,
@@ -76,9 +81,12 @@ const commanding = page.canFly ? createCommanding(store, page) : null;
 const narrow = mountNarrow();
 createMissionDetails(store);
 mountHead(store, page);
+const fleetFilter = page.mission === null ? mountFleetFilter(store) : null;
 mountCards(store, {
   isOfOne: page.mission !== null,
   pick,
+  close: () => store.update({ chosen: null, isFollowing: false }),
+  tellShown: (shown, all) => fleetFilter?.tell(shown, all),
   jumpTo: (id) => map.jumpTo(id),
   follow: () => store.update({ isFollowing: !store.state.isFollowing }),
   commanding,
@@ -192,7 +200,11 @@ function show() {
     told.uavs = ofPage(placed([...feed.shown.uavs.values()], [...feed.shown.missions.values()]), page.mission);
   }
   waiting = null;
-  store.update({ ...told, ...timesOf() });
+  const numbers =
+    page.mission === null
+      ? missionNumbers(store.state.numbers, [...feed.shown.missions.values()])
+      : store.state.numbers;
+  store.update({ ...told, numbers, ...timesOf() });
   store.update({ isWhole: true }); // from here on what comes is news
 }
 

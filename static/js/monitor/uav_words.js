@@ -136,6 +136,25 @@ export function estimateWords(uav, certainty, now_ms) {
   };
 }
 
+const MIN_WIND_MPS = 0.5; // below, it comes from nowhere
+
+/** "Wind 5 m/s from 240°, reported by the autopilot 4 s ago"; empty where it reports none. @param {LiveUav} uav @param {number} now_ms */
+export function windWords({ measured, link }, now_ms) {
+  const speed_mps = measured?.wind_speed_mps;
+  if (!measured || typeof speed_mps !== "number") return "";
+  const from_deg = measured.wind_from_deg;
+  const from =
+    typeof from_deg === "number" && speed_mps >= MIN_WIND_MPS
+      ? ` ${t("from {degrees}°", { degrees: Math.round(from_deg) })}`
+      : "";
+  const age_s = Math.max(0, (now_ms - Date.parse(measured.measured_at_of.wind ?? measured.measured_at)) / 1000);
+  const by =
+    link?.kind === "http"
+      ? t("reported by its companion computer {age} s ago", { age: numberText(age_s) })
+      : t("reported by its autopilot {age} s ago", { age: numberText(age_s) });
+  return `${t("Wind {speed}", { speed: speedText(speed_mps) })}${from}, ${by}`;
+}
+
 /** One fact beside its name on the map. @param {LiveUav} uav @param {Certainty | null} certainty */
 export function mapFact(uav, certainty) {
   if (certainty === LOST) return t("lost");

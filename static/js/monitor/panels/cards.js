@@ -4,18 +4,23 @@ import { byId, h, icon, keyedList, refill } from "../../dom.js";
 import { certaintyOf, MEASURED } from "../../domain/certainty.js";
 import { commandWords, isOpen, KINDS, timesOf } from "../../domain/flying.js";
 import { alertsInOrder, inOrder, isOpenAlert } from "../../domain/order.js";
-import { routeLetter, routeNumber } from "../../domain/palette.js";
+import { routeNumber } from "../../domain/palette.js";
 import { profileOf } from "../../domain/route_profile.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, lengthText, numberText } from "../../units.js";
 import { numbersOf, pillOf } from "../board.js";
+import { letterOf, prefixOf } from "../call_signs.js";
 import { rateOf, rateWords } from "../clock_rate.js";
+import { grouped } from "../fleet_groups.js";
 import { liveStrip, progressOf } from "../live_strip.js";
-import { ageWords, batteryWords, estimateWords, figuresOf, nextOf, stateOf } from "../uav_words.js";
+import { ageWords, batteryWords, estimateWords, figuresOf, nextOf, stateOf, windWords } from "../uav_words.js";
+import { makeHead, refreshHead } from "./group_head.js";
+import { UavRow } from "./uav_row.js";
 
 /** @import { AlertLevel, Mission } from "../../api_types.d.ts" */
 /** @import { Certainty } from "../../domain/certainty.js" */
+/** @import { GroupHead } from "../fleet_groups.js" */
 /** @import { Alert, Command, Commanding, LiveMission, LiveUav, MonitorState, MonitorStore, UnsentCommand } from "../types.d.ts" */
 
 /**
@@ -23,13 +28,16 @@ import { ageWords, batteryWords, estimateWords, figuresOf, nextOf, stateOf } fro
  * @property {boolean} isOfOne the page is one mission's, which then need not be named
  * @property {(uav: number) => void} pick
  * @property {(uav: number) => void} jumpTo
+ * @property {() => void} close nothing is chosen any more
  * @property {() => void} follow
+ * @property {(shown: number, all: number) => void} tellShown how many the filter lets through
  * @property {Commanding | null} commanding null for who cannot fly
  */
 /** What is known of a card's UAV beside itself. @typedef {{ mission: LiveMission | null, detail: Mission | undefined, certainty: Certainty | null }} Known */
 
 const SAID_FOR_MS = 60_000; // a command that is over stays on the card
 const STRIP_MARGIN_PX = 32;
+const narrow = matchMedia("(max-width: 720px)"); // there, and where several missions fly, a UAV is a row until it is chosen
 const STRIP_STEP_M = 5; // a UAV that has moved less is drawn where it was
 /** @type {Record<AlertLevel, string>} */
 const LEVEL_ICONS = { critical: "octagon-alert", warning: "triangle-alert", advisory: "info" };
@@ -65,9 +73,10 @@ export function mountCards(store, acts) {
   /** @type {WeakMap<HTMLElement, Card>} */
   const cards = new WeakMap();
 
-  /** @param {LiveUav} uav */
-  function make(uav) {
-    const card = new Card(uav.id, acts);
+  /** @param {LiveUav | GroupHead} entry */
+  function make(entry) {
+    if (isHead(entry)) return makeHead();
+    const card = new Card(entry.id, acts);
     cards.set(card.element, card);
     return card.element;
   }
@@ -76,24 +85,51 @@ export function mountCards(store, acts) {
     list,
     ({ id }) => id,
     make,
-    (element, uav) => cards.get(element)?.show(uav, store.state, list.clientWidth - STRIP_MARGIN_PX),
+    (element, entry) => {
+      if (isHead(entry)) refreshHead(element, entry, store.state.numbers);
+      else cards.get(element)?.show(entry, store.state, list.clientWidth - STRIP_MARGIN_PX);
+    },
   );
-  const draw = () => drawList(inOrder(store.state.uavs, store.state.alerts, store.state.chosen));
+  const draw = () => {
+    const { state } = store;
+    list.classList.toggle("compact", narrow.matches || !acts.isOfOne);
+    const entries = acts.isOfOne ? inOrder(state.uavs, state.alerts, state.chosen) : grouped(state, state.filter);
+    acts.tellShown(entries.filter((entry) => !isHead(entry)).length, state.uavs.length);
+    drawList(entries);
+  };
   store.listen(
-    ["uavs", "missions", "details", "alerts", "commands", "chosen", "now_ms", "isFollowing", "unsent"],
+    [
+      "uavs",
+      "missions",
+      "details",
+      "alerts",
+      "commands",
+      "chosen",
+      "now_ms",
+      "isFollowing",
+      "unsent",
+      "filter",
+      "numbers",
+    ],
     ({ uavs }) => {
       byId("no-uavs").hidden = uavs.length > 0;
       draw();
     },
   );
-  store.listen(["chosen"], () => {
-    byId("part-uavs").scrollTop = 0; // it stands first
+  store.listen(["chosen"], ({ chosen }) => {
+    if (acts.isOfOne && !narrow.matches)
+      byId("part-uavs").scrollTop = 0; // it stands first
+    else if (chosen !== null) list.querySelector(".card.chosen")?.scrollIntoView({ block: "nearest" });
   });
   new ResizeObserver(draw).observe(list);
 }
 
+/** @param {LiveUav | GroupHead} entry @returns {entry is GroupHead} */
+const isHead = (entry) => typeof entry.id === "string";
+
 class Card {
   #acts;
+  #isChosen = false;
   #letter = h("span", { class: "letter" });
   #name = h("strong", {});
   #chip = h("span", { class: "chip" });
@@ -108,8 +144,10 @@ class Card {
   #unsent = h("div", { class: "card-unsent", role: "alert", hidden: true });
   #alerts = h("ul", { class: "card-alerts" });
   #follow;
+  #wind = h("p", { class: "caption card-wind" });
   #buttons;
   #head;
+  #row;
 
   /** @param {number} id of the UAV @param {CardActs} acts */
   constructor(id, acts) {
@@ -126,9 +164,11 @@ class Card {
     const onclick = ({ target }) => {
       if (target instanceof Element && !target.closest("button, a")) acts.pick(id);
     };
+    this.#row = new UavRow(() => (this.#isChosen ? acts.close() : acts.pick(id)));
     this.element = h(
       "li",
       { class: "card", onclick },
+      this.#row.element,
       h("div", { class: "card-top" }, this.#head, this.#age),
       this.#about,
       this.#unsent,
@@ -136,6 +176,7 @@ class Card {
       this.#estimate,
       this.#figures,
       this.#battery,
+      this.#wind,
       this.#strip,
       this.#next,
       this.#alerts,
@@ -152,15 +193,26 @@ class Card {
       certainty: certaintyOf(uav, now_ms),
     };
     const isChosen = uav.id === state.chosen;
-    this.#drawHead(uav, isChosen);
+    this.#isChosen = isChosen;
+    this.#drawHead(uav, isChosen, letterOf(uav, state.numbers));
+    this.#drawUnsent(uav, state.unsent.get(uav.id) ?? null);
+    if (narrow.matches || !this.#acts.isOfOne) {
+      const targets = numbersOf(known.detail);
+      const prefix = prefixOf(uav.mission, state.numbers);
+      this.#row.show(uav, known.certainty, state, (place) => {
+        const target = known.mission?.targets[place];
+        return target ? pillOf(target, targets, prefix) : t("a target");
+      });
+      if (!isChosen) return;
+    }
     this.#drawAge(uav, now_ms);
     this.#drawAbout(uav, known.mission);
     this.#drawEstimate(uav, known.certainty, now_ms);
     this.#drawFigures(uav, known.certainty);
     this.#drawBattery(uav);
-    this.#drawUnsent(uav, state.unsent.get(uav.id) ?? null);
+    this.#drawWind(uav, now_ms);
     this.#drawStrip(uav, known, Math.round(this.#strip.clientWidth || width_px));
-    this.#drawNext(uav, known);
+    this.#drawNext(uav, known, prefixOf(uav.mission, state.numbers));
     this.#drawCommand(commandOf(uav, commands, now_ms));
     this.#drawAlerts(alerts.filter((alert) => alert.uav === uav.id && isOpenAlert(alert)));
     const isFollowed = state.isFollowing && isChosen;
@@ -169,12 +221,12 @@ class Card {
     this.#follow.textContent = isFollowed ? t("Following") : t("Follow");
   }
 
-  /** @param {LiveUav} uav @param {boolean} isChosen */
-  #drawHead(uav, isChosen) {
+  /** @param {LiveUav} uav @param {boolean} isChosen @param {string} letter */
+  #drawHead(uav, isChosen, letter) {
     const route = uav.place === null ? "" : `route-${routeNumber(uav.place)}`;
     this.element.className = `card ${route} ${isChosen ? "chosen" : ""}`;
     this.#head.setAttribute("aria-pressed", `${isChosen}`);
-    this.#letter.textContent = uav.place === null ? "–" : routeLetter(uav.place);
+    this.#letter.textContent = letter || "–";
     this.#name.textContent = uav.name;
     const { words, level } = stateOf(uav);
     this.#chip.textContent = words;
@@ -288,12 +340,19 @@ class Card {
     this.#strip.replaceChildren(liveStrip({ route, width_px, label, states, progress, certainty }));
   }
 
-  /** @param {LiveUav} uav @param {Known} known */
-  #drawNext(uav, { mission, detail, certainty }) {
+  /** As the UAV reports it. @param {LiveUav} uav @param {number} now_ms */
+  #drawWind(uav, now_ms) {
+    const words = windWords(uav, now_ms);
+    this.#wind.hidden = !words;
+    refill(this.#wind, words, () => [words]);
+  }
+
+  /** @param {LiveUav} uav @param {Known} known @param {string} prefix */
+  #drawNext(uav, { mission, detail, certainty }, prefix) {
     const numbers = numbersOf(detail);
     const said = nextOf(uav, (place) => {
       const target = mission?.targets[place];
-      return target ? `${pillOf(target, numbers)} ${target.label}` : t("a target");
+      return target ? `${pillOf(target, numbers, prefix)} ${target.label}` : t("a target");
     });
     this.#next.hidden = !said.next && !said.toGo;
     const at = said.at && `, ${certainty === MEASURED ? "" : "~\u2009"}${said.at}`;

@@ -2,9 +2,10 @@
 
 import { byId, h, icon } from "../../dom.js";
 import { KINDS } from "../../domain/flying.js";
-import { routeLetter, routeNumber } from "../../domain/palette.js";
+import { routeNumber } from "../../domain/palette.js";
 import { t } from "../../text.js";
 import { batchScopes, whyNot } from "../batch.js";
+import { letterOf } from "../call_signs.js";
 import { isHeld } from "../uav_words.js";
 
 /** @import { AskedKind } from "../../domain/command_questions.js" */
@@ -84,7 +85,7 @@ export function mountCommandBar(store, commanding) {
     bar.setAttribute("aria-label", t("Commands to {name}", { name: uav.name }));
     letter.hidden = uav.place === null;
     if (uav.place !== null) {
-      letter.textContent = routeLetter(uav.place);
+      letter.textContent = letterOf(uav, state.numbers);
       letter.className = `letter route-${routeNumber(uav.place)}`;
     }
     name.textContent = uav.name;
