@@ -13,7 +13,7 @@ SERVICE_WORKER = "js/offline/service_worker.js"
 
 def service_worker(_request: HttpRequest) -> HttpResponse:
     """From the root, as a worker serves only what stands below its own address; with a version, so that a new one replaces it."""
-    script = f"const VERSION = {json.dumps(_version())};\n{_source()}"
+    script = f"globalThis.VERSION = {json.dumps(_version())};\n{_source()}"
     return HttpResponse(script, content_type="text/javascript; charset=utf-8", headers={"Cache-Control": "no-cache"})
 
 

@@ -23,7 +23,7 @@ IS_KEPT = """async (addresses) => {
     for (const name of (await caches.keys()).filter((one) => one.startsWith("spanwise-copy-"))) {
         const cache = await caches.open(name);
         const kept = (await cache.keys()).map(({ url }) => new URL(url).pathname);
-        if (addresses.every((address) => kept.includes(address)) && kept.some((one) => one.includes("/tiles/14/"))) return true;
+        if (addresses.every((address) => kept.includes(address)) && kept.some((one) => one.includes("/tiles/15/"))) return true;
     }
     return false;
 }"""
@@ -69,11 +69,20 @@ def signed_in(visitor: Visitor, context: BrowserContext, name: str = "opal") -> 
     return page
 
 
+def waits_until(page: Page, fact: str, argument: Any = None) -> None:
+    """`fact` answers with a promise, which wait_for_function takes for true."""
+    for _try in range(90):
+        if page.evaluate(fact, argument):
+            return
+        page.wait_for_timeout(500)
+    raise AssertionError(fact)
+
+
 def visits(page: Page, mission: str) -> None:
     """Open the page of the mission's flight once, and wait until the browser has kept it."""
     page.goto(f"/missions/{mission}/fly")
     wait_for_map(page)
-    page.wait_for_function(IS_KEPT, arg=[f"/missions/{mission}", f"/missions/{mission}/fly", f"/api/v1/missions/{mission}"])
+    waits_until(page, IS_KEPT, [f"/missions/{mission}", f"/missions/{mission}/fly", f"/api/v1/missions/{mission}"])
 
 
 def test_after_one_visit_an_approved_mission_opens_without_a_network(visitor: Visitor, mission: str, picture: Picture) -> None:
@@ -165,7 +174,7 @@ def test_another_user_of_the_browser_gets_nothing_of_the_copy(visitor: Visitor, 
     context.add_cookies(visitor.site.came_in["vera"][1])
     page.goto("/")
     page.locator("html[data-loaded]").wait_for(state="attached")
-    page.wait_for_function(f"async () => (await ({KEPT_OF_USERS})()).length === 0")
+    waits_until(page, f"async () => (await ({KEPT_OF_USERS})()).length === 0")
 
 
 def test_a_line_that_stands_still_ends_in_the_copy_and_not_in_waiting(visitor: Visitor, mission: str) -> None:
@@ -176,7 +185,7 @@ def test_a_line_that_stands_still_ends_in_the_copy_and_not_in_waiting(visitor: V
         context.add_cookies(cookies)
         page.goto(f"{line.address}/missions/{mission}/fly")
         wait_for_map(page)
-        page.wait_for_function(IS_KEPT, arg=[f"/missions/{mission}/fly"])
+        waits_until(page, IS_KEPT, [f"/missions/{mission}/fly"])
         line.freeze()
         page.reload()
         wait_for_map(page)

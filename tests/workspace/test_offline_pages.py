@@ -16,7 +16,7 @@ def test_the_service_worker_is_a_script_at_the_root_that_browsers_ask_for_each_t
     assert answer.status_code == 200
     assert answer["Content-Type"].startswith("text/javascript")
     assert answer["Cache-Control"] == "no-cache"
-    assert re.match(r'const VERSION = "[0-9a-f]*";\n', answer.content.decode())
+    assert re.match(r'globalThis\.VERSION = "[0-9a-f]*";\n', answer.content.decode())
 
 
 def test_the_page_without_a_connection_is_the_same_for_a_stranger_and_a_user() -> None:

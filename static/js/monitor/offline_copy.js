@@ -56,6 +56,7 @@ export function silentFeed(keptAt) {
  */
 export async function showCopy(store, id, show) {
   for (const part of ["right-parts", "narrow-tabs", "part-uavs", "live-facts"]) byId(part).hidden = true;
+  byId("workbench").dataset.right = "folded";
   const { mission, approval, element } = await readBriefing(id, show);
   store.update({ missions: [missionOfCopy(mission)], details: new Map([[id, mission]]) });
   byId("part-uavs").after(element);

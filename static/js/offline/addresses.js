@@ -2,7 +2,7 @@
 
 /** @import { Mission, MissionState } from "../api_types.d.ts" */
 
-const [MIN_ZOOM, MAX_ZOOM] = [7, 14];
+const [MIN_ZOOM, MAX_ZOOM] = [7, 15]; // the nearest that the map asks for
 const MAX_TILES = 240;
 const AROUND_DEG = 0.01; // some 1 km of what lies beside a route
 

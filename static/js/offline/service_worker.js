@@ -3,7 +3,7 @@
  *
  * A page that comes from the copy says so (`data-offline-copy` on its first element) and asks for documents of the copy by a header;
  * every other page gets nothing from it but static files. The copy is one user's, and goes when that user signs out. The server puts
- * `const VERSION` before this text, which changes with the static files; a script that is not a module is what every browser takes.
+ * `globalThis.VERSION` before this text, which changes with the static files; a script that is not a module is what every browser takes.
  */
 
 /**
@@ -12,9 +12,9 @@
  * @typedef {{ type: "keep", owner: string, whole: string[], map: string[] } | { type: "drop", starts: string[] }} Order
  */
 
-/** @type {string} */
-const version = /** @type {any} */ (globalThis).VERSION ?? "";
 const worker = /** @type {any} */ (globalThis);
+/** @type {string} */
+const version = worker.VERSION ?? "";
 
 const [COPIES, SHELLS] = ["spanwise-copy-", "spanwise-shell-"]; // what is a user's; what is everybody's: static files, and the page without data
 const [COPY, SHELL] = [COPIES + version, SHELLS + version];
