@@ -2,6 +2,7 @@
 
 import json
 from functools import cache
+from pathlib import Path
 
 from django.contrib.staticfiles import finders
 from django.contrib.staticfiles.storage import staticfiles_storage
@@ -27,8 +28,7 @@ def _source() -> str:
     if staticfiles_storage.exists(SERVICE_WORKER):
         with staticfiles_storage.open(SERVICE_WORKER) as file:
             return str(file.read().decode())
-    with open(str(finders.find(SERVICE_WORKER)), encoding="utf-8") as file:
-        return file.read()
+    return Path(str(finders.find(SERVICE_WORKER))).read_text(encoding="utf-8")
 
 
 class OfflinePage(TemplateView):

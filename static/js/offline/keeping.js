@@ -37,7 +37,7 @@ async function keep(workers, page) {
       isKept(mission)
         ? {
             type: "keep",
-            owner: `${page.userId} of ${page.organisationId}`,
+            owner: `${page.userId}@${page.organisationId}`,
             whole: wholeOf(id, fleet),
             map: tilesOf(placesOf(mission)),
           }

@@ -47,7 +47,7 @@ function ownerOf(html) {
   const found = PAGE_DATA.exec(html);
   if (!found) return null;
   const { userId, organisationId } = JSON.parse(found[1]);
-  return userId === undefined ? null : `${userId} of ${organisationId}`;
+  return userId === undefined ? null : `${userId}@${organisationId}`;
 }
 
 /** @param {Response} answer @param {string} keptAt ISO 8601 */
