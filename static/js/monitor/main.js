@@ -138,7 +138,8 @@ const byNumber = Array.from({ length: 8 }, (_, place) => ({
   keys: [`${place + 1}`],
   words: place === 0 ? t("Choose UAV A; 2 to 8: B to H") : "",
   act() {
-    const uav = store.state.uavs.find((entry) => entry.place === place);
+    const mission = missionSeen(store.state); // several have a UAV A
+    const uav = store.state.uavs.find((entry) => entry.place === place && entry.mission === mission);
     if (!uav) return false;
     pick(uav.id);
     return true;
