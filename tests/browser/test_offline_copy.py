@@ -132,7 +132,7 @@ def test_a_page_that_was_not_kept_names_the_copies_that_are_there(visitor: Visit
     row = page.get_by_role("listitem").filter(has_text=NAME)
     expect(row).to_contain_text(COPY_FROM)
     assert faults(page) == []
-    row.get_by_role("link", name=f"Flight of {NAME}").click()
+    row.get_by_role("link", name=f"Fly: {NAME}").click()
     wait_for_map(page)
     expect(page.locator(".copy-banner")).to_contain_text(COPY_FROM)
 

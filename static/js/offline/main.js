@@ -36,8 +36,8 @@ const rowOf = ({ id, name, keptAt }) =>
       h("strong", {}, name),
       h("small", { title: exactText(keptAt) }, t("Offline copy from {time}", { time: clockText(keptAt) })),
     ),
-    h("a", { class: "button", href: `/missions/${id}`, "aria-label": t("Plan of {name}", { name }) }, t("Plan|stage")),
-    h("a", { class: "button", href: `/missions/${id}/fly`, "aria-label": t("Flight of {name}", { name }) }, t("Fly")),
+    h("a", { class: "button", href: `/missions/${id}`, "aria-label": `${t("Plan|stage")}: ${name}` }, t("Plan|stage")),
+    h("a", { class: "button", href: `/missions/${id}/fly`, "aria-label": `${t("Fly")}: ${name}` }, t("Fly")),
   );
 
 byId("try-again").addEventListener("click", () => location.reload());
