@@ -19,6 +19,7 @@ from tests.browser.uav_over_http import Flyer
 pytestmark = [pytest.mark.browser, pytest.mark.long]
 
 MISSIONS, UAVS_EACH = 6, 10
+BESIDE_DEG = 0.0006  # some 50 m from its tower, so that routes keep clear of each other
 COVERED = """() => {
     const shown = [...document.querySelectorAll(".flyer-label, .map-cluster")]
         .filter((element) => element.checkVisibility({ visibilityProperty: true }));
@@ -33,7 +34,7 @@ COUNTED = """() => [...document.querySelectorAll(".map-cluster")].reduce((sum, o
 
 def sent(page: Page, site: Site, number: int, towers: list[dict[str, Any]]) -> list[Flyer]:
     """A mission that is on board of its ten UAVs."""
-    at = [[region.east[0] + 0.004 * column, region.east[1] - 0.006 * number] for column in range(UAVS_EACH)]
+    at = [[tower["geometry"]["coordinates"][0] + BESIDE_DEG, tower["geometry"]["coordinates"][1]] for tower in towers]  # one at each
     made = [
         writes(page, "POST", "/uavs", {"name": f"Falcon {number}{column}", "position": place, "is_simulated": True, "link": "http"})["id"]
         for column, place in enumerate(at)
