@@ -57,13 +57,14 @@ def uploads(page: Page, standing: list[tuple[Flyer, list[float]]], heard: int) -
     panel = page.get_by_role("region", name="Before start")
     upload = panel.get_by_role("button", name="Upload to 2 UAVs")
     is_uploading = panel.get_by_role("button", name="Uploading")
-    for _ in range(MOST_REPORTS):
-        switched_on(standing[:heard])
-        if upload.count() and upload.is_enabled():
+    for button in (upload, is_uploading):
+        for _ in range(MOST_REPORTS):
+            switched_on(standing[:heard])
+            if button.count():
+                break
+            page.wait_for_timeout(1000)  # a UAV reports once a second
+        if button is upload:
             upload.click()
-        if is_uploading.count():
-            break
-        page.wait_for_timeout(1000)  # a UAV reports once a second
     expect(is_uploading).to_be_disabled()
     return panel
 

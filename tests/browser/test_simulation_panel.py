@@ -114,7 +114,7 @@ def test_the_panel_obeys_the_readers_units_and_language(visitor: Visitor, missio
     try:
         writes(page, "PATCH", "/account", {"language": "de", "units": "imperial"})
         opened(page, f"/missions/{mission}/fly")
-        panel = page.get_by_role("region", name="Simulation")
+        panel = panel_of(page)
         panel.get_by_role("button", name="In der Simulation fliegen").click()
         expect(panel.locator(".simulation-uavs")).to_contain_text("am Boden", timeout=SOON_MS)
         expect(panel.locator(".simulation-three .unit")).to_have_text(["mph", "°", "mph"])
