@@ -36,7 +36,7 @@ def is_held(uav_id: int) -> bool:
 def valid_until(continuation: Mission, now: datetime) -> datetime:
     """When the first UAV comes too near to where it leaves its route, if all fly on as they do; VALID_FOR from now at the latest."""
     left_s = [left for route in _routes(continuation) if (left := _left_s(route, now)) is not None]
-    return min(now + VALID_FOR, *(now + timedelta(seconds=left) for left in left_s))
+    return min([now + VALID_FOR, *(now + timedelta(seconds=left) for left in left_s)])
 
 
 def why_outdated(offer: ReplanOffer, now: datetime) -> str:
