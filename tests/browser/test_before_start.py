@@ -42,7 +42,9 @@ def approved(visitor: Visitor, site: Site) -> Iterator[Approved]:
     writes(page, "POST", f"/missions/{mission}/approve")
     page.context.close()
     flyers = [Flyer(HttpLink(site.address, token)) for token in tokens]
-    yield mission, list(zip(flyers, places, strict=True))
+    standing = list(zip(flyers, places, strict=True))
+    yield mission, standing
+    switched_on(standing)  # on the ground, so that no batch of another test reaches them
     ends(visitor, mission, flyers)
 
 
