@@ -165,11 +165,16 @@ function growFrom(dialog, opener) {
   const box = opener.getBoundingClientRect();
   const middle = box.left + box.width / 2;
   const left = Math.min(Math.max(EDGE_PX, middle - dialog.offsetWidth / 2), innerWidth - dialog.offsetWidth - EDGE_PX);
-  const above = box.top - dialog.offsetHeight - EDGE_PX;
+  // its lower edge stays where it is when more is known and said: the buttons never leave the window
+  const room = box.top - 2 * EDGE_PX;
+  const isAbove = room >= dialog.offsetHeight || room >= innerHeight / 2;
   Object.assign(dialog.style, {
     margin: "0",
     left: `${left}px`,
-    top: `${Math.max(EDGE_PX, above)}px`,
+    top: isAbove ? "auto" : `${EDGE_PX}px`,
+    bottom: isAbove ? `${innerHeight - box.top + EDGE_PX}px` : "auto",
+    maxHeight: `${isAbove ? room : innerHeight - 2 * EDGE_PX}px`,
+    overflowY: "auto",
     transformOrigin: `${middle - left}px 100%`,
   });
   dialog.classList.add("grown");
