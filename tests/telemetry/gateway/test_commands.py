@@ -17,7 +17,7 @@ from telemetry.selectors.alert_words import alert_words
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.flyer import Flyer
-from tests.telemetry.gateway.station import PATIENCE_S, gateway_at_work, port_of, unsigned_uav, wait_for
+from tests.telemetry.gateway.station import PATIENCE_S, gateway_at_work, port_of, wait_for
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.px4 import Px4
 from tests.workspace.people import somebody
@@ -25,17 +25,6 @@ from tests.workspace.people import somebody
 pytestmark = pytest.mark.django_db(transaction=True)
 WAYPOINT = mavlink.MAV_CMD_NAV_WAYPOINT
 FLAVOURS = {Flavour.PX4: Px4, Flavour.ARDUPILOT: ArduPilot}
-
-
-@pytest.fixture(autouse=True)
-def own_folders(settings, tmp_path):
-    settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
-    settings.FLIGHT_LOG_DIR = tmp_path
-
-
-@pytest.fixture
-def uav() -> Uav:
-    return unsigned_uav(7, is_simulated=True)
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from missions.services.steering import command_uav
 from telemetry.ground_station.flavour import Flavour
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world
-from tests.telemetry.gateway.station import gateway_at_work, unsigned_uav, wait_for
+from tests.telemetry.gateway.station import gateway_at_work, wait_for
 from tests.telemetry.gateway.test_commands import FLAVOURS, dispatch, ended, flyer
 from tests.workspace.people import somebody
 
@@ -17,11 +17,6 @@ TOLD = {
     Flavour.PX4: ({"RTL_RETURN_ALT": 60.0, "RTL_TYPE": 0.0, "RTL_MIN_DIST": 10.0}, {"RTL_RETURN_ALT": 85.0}, 85.0),
     Flavour.ARDUPILOT: ({"RTL_ALT": 1_500.0, "RTL_CLIMB_MIN": 0.0, "RTL_ALT_TYPE": 0.0}, {"RTL_ALT": 8_000.0}, 80.0),
 }
-
-
-@pytest.fixture
-def uav() -> Uav:
-    return unsigned_uav(7, is_simulated=True)
 
 
 @pytest.fixture

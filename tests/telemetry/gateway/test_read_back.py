@@ -17,7 +17,7 @@ from telemetry.services.loads import Doubt
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import UAV_AT, world
 from tests.telemetry.gateway.flyer import Flyer
-from tests.telemetry.gateway.station import gateway_at_work, port_of, unsigned_uav, wait_for
+from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for
 from tests.telemetry.gateway.test_commands import begin, dispatch, ended, flyer
 from tests.telemetry.vehicles.px4 import Px4
 from tests.workspace.people import somebody
@@ -25,11 +25,6 @@ from tests.workspace.people import somebody
 pytestmark = pytest.mark.django_db(transaction=True)
 CORNER, GLOBAL = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, mavlink.MAV_FRAME_GLOBAL
 OTHERS_FENCE = [MissionItem(CORNER, GLOBAL, (3.0, 0.0, 0.0, 0.0), 100_000_000 + number, 550_000_000) for number in range(3)]
-
-
-@pytest.fixture
-def uav() -> Uav:
-    return unsigned_uav(7, is_simulated=True)
 
 
 @pytest.fixture

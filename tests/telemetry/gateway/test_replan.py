@@ -43,12 +43,6 @@ class InAir(Flyer):
         return [told, home]
 
 
-@pytest.fixture(autouse=True)
-def own_folders(settings, tmp_path):
-    settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
-    settings.FLIGHT_LOG_DIR = tmp_path
-
-
 @pytest.fixture
 def mission(own_folders, tmp_path) -> Mission:
     ground(tmp_path / "hill.tif", HOME_M)

@@ -15,23 +15,12 @@ from telemetry.selectors.alert_words import alert_words
 from telemetry.services.return_alerts import settle_return_alerts
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import rebuild, world, zone_around
-from tests.telemetry.gateway.station import gateway_at_work, unsigned_uav, wait_for
+from tests.telemetry.gateway.station import gateway_at_work, wait_for
 from tests.telemetry.gateway.test_commands import FLAVOURS, begin, dispatch, ended, flyer
 from tests.workspace.people import somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 HEIGHT = {Flavour.PX4: "RTL_RETURN_ALT", Flavour.ARDUPILOT: "RTL_ALT"}
-
-
-@pytest.fixture(autouse=True)
-def own_folders(settings, tmp_path):
-    settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
-    settings.FLIGHT_LOG_DIR = tmp_path
-
-
-@pytest.fixture
-def uav() -> Uav:
-    return unsigned_uav(7, is_simulated=True)
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from missions.command_rules import HAND_OVER
 from missions.mavlink.frames import frames_of_datagram
 from missions.mavlink.signing import FrameWriter
-from missions.models import CommandKind, CommandState, Uav, UavCommand
+from missions.models import CommandKind, CommandState, UavCommand
 from missions.services.commands import queue_command
 from telemetry.gateway import carriage, desk
 from telemetry.gateway.fleet import KnownUav
@@ -19,7 +19,7 @@ from telemetry.ground_station.flavour import Flavour
 from telemetry.models import UavLink
 from telemetry.services.links import Lease
 from tests.telemetry.gateway.flyer import Flyer
-from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, unsigned_uav, wait_for
+from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, wait_for
 from tests.telemetry.gateway.test_commands import FLAVOURS, ended
 from tests.telemetry.gateway.test_outages import database_away
 
@@ -32,11 +32,6 @@ RETURNING = {Flavour.PX4: 4 << 16 | 5 << 24, Flavour.ARDUPILOT: 6}
 def soon_silent(monkeypatch):
     for module in (carriage, desk):
         monkeypatch.setattr(module, "HEARD_WITHIN_S", 1.5)
-
-
-@pytest.fixture
-def uav() -> Uav:
-    return unsigned_uav(7, is_simulated=True)
 
 
 def sent_unheard(command: UavCommand) -> bool:

@@ -4,7 +4,7 @@ import pytest
 
 from inspection.geodesy import LonLat
 from missions.mavlink.content import MissionType
-from missions.models import CommandState, Mission, Uav
+from missions.models import CommandState, Mission
 from missions.serializers.commands import command_json
 from missions.services.approval import approve_mission
 from missions.services.dispatch import load_of
@@ -14,7 +14,7 @@ from telemetry.ground_station.flavour import Flavour
 from telemetry.models import UavLink
 from tests.missions.flights import ground, planned
 from tests.missions.worlds import UAV_AT, world
-from tests.telemetry.gateway.station import gateway_at_work, unsigned_uav, wait_for
+from tests.telemetry.gateway.station import gateway_at_work, wait_for
 from tests.telemetry.gateway.test_commands import dispatch, ended, flyer, holds
 from tests.telemetry.vehicles.px4 import Px4
 from tests.workspace.people import somebody
@@ -22,17 +22,6 @@ from tests.workspace.people import somebody
 pytestmark = pytest.mark.django_db(transaction=True)
 ASIDE = LonLat(UAV_AT.lon + 0.001, UAV_AT.lat)  # some 60 m
 WIDE = {"MIS_DIST_1WP": 5_000.0, "MIS_DIST_WPS": 5_000.0}
-
-
-@pytest.fixture(autouse=True)
-def own_folders(settings, tmp_path):
-    settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
-    settings.FLIGHT_LOG_DIR = tmp_path
-
-
-@pytest.fixture
-def uav() -> Uav:
-    return unsigned_uav(7, is_simulated=True)
 
 
 @pytest.fixture

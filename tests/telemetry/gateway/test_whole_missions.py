@@ -4,7 +4,7 @@ import time
 
 import pytest
 
-from missions.models import CommandKind, CommandState, Mission, MissionState, Uav
+from missions.models import CommandKind, CommandState, Mission, MissionState
 from missions.routing.problem import Task, TaskKind
 from missions.services import TargetRequest
 from missions.services.commands import queue_command
@@ -13,18 +13,13 @@ from telemetry.ground_station.flavour import Flavour
 from telemetry.models import TelemetryRecord, UavLink
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around
-from tests.telemetry.gateway.station import gateway_at_work, unsigned_uav, wait_for
+from tests.telemetry.gateway.station import gateway_at_work, wait_for
 from tests.telemetry.gateway.test_commands import begin, dispatch, ended, flyer, holds
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.workspace.people import client_of, somebody
 
 pytestmark = pytest.mark.django_db(transaction=True)
 PLANE, ROVER = 1, 10
-
-
-@pytest.fixture
-def uav() -> Uav:
-    return unsigned_uav(7, is_simulated=True)
 
 
 @pytest.fixture
