@@ -299,8 +299,8 @@ CELERY_BEAT_SCHEDULE = {
     "settle proposals whose worker was lost": {"task": "inspection.tasks.settle_proposals", "schedule": 15.0, "options": {"expires": 15}},
     "look after offers of another plan": {"task": "missions.tasks.look_after_offers", "schedule": 2.0, "options": {"expires": 2}},
     "start UAVs in planned order": {"task": "missions.tasks.start_in_planned_order", "schedule": 2.0, "options": {"expires": 2}},
-    "tell of UAVs that wait for their other route": {
-        "task": "telemetry.tasks.tell_of_hand_overs",
+    "alert about failed hand-overs and returns": {
+        "task": "telemetry.tasks.settle_command_alerts",
         "schedule": 2.0,
         "options": {"expires": 2},
     },

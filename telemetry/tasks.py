@@ -3,8 +3,7 @@
 from celery import shared_task
 
 from telemetry import services
-from telemetry.services.hand_over_alerts import settle_hand_over_alerts
-from telemetry.services.return_alerts import settle_return_alerts
+from telemetry.services import command_alerts
 from telemetry.services.targets_checked import store_missing_visits
 
 
@@ -14,9 +13,8 @@ def forget_old_telemetry() -> None:
 
 
 @shared_task(time_limit=30, soft_time_limit=25)
-def tell_of_hand_overs() -> None:
-    settle_hand_over_alerts()
-    settle_return_alerts()
+def settle_command_alerts() -> None:
+    command_alerts.settle_command_alerts()
 
 
 @shared_task(time_limit=300, soft_time_limit=290)

@@ -2,13 +2,13 @@
 
 from telemetry.alerting.order import DETECTORS
 from telemetry.selectors.alert_words import TEMPLATES
-from telemetry.services import alerts, hand_over_alerts, mission_alerts, uav_outbox
+from telemetry.services import alerts, command_alerts, mission_alerts, uav_outbox
 
 
 def test_every_template_is_named_for_the_catalogues():
     modules = [
         *(detector.detect.__globals__ for detector in DETECTORS),
-        *(vars(module) for module in (alerts, hand_over_alerts, mission_alerts, uav_outbox)),
+        *(vars(module) for module in (alerts, command_alerts, mission_alerts, uav_outbox)),
     ]
     said = {value for names in modules for value in names.values() if isinstance(value, str) and "%(uav)s" in value}
     assert said == set(TEMPLATES)

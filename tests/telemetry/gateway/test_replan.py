@@ -16,7 +16,7 @@ from telemetry.ground_station.compare import differences
 from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.wire import held_list
 from telemetry.models import Alert, UavLink
-from telemetry.services.hand_over_alerts import settle_hand_over_alerts
+from telemetry.services.command_alerts import settle_command_alerts
 from tests.missions.flights import ground
 from tests.missions.replanning.in_flight import Flight, planned_over_a_line
 from tests.telemetry.gateway.flyer import Flyer
@@ -154,13 +154,13 @@ def test_a_uav_that_cannot_be_given_its_route_stays_held_and_it_is_said(mission,
         own = flight.uavs[1]
         upload = wait_for(lambda: UavCommand.objects.filter(uav=own, mission=offer.continuation, kind="upload-mission").first())
         assert ended(upload).state == CommandState.FAILED
-        settle_hand_over_alerts()
+        settle_command_alerts()
         alert = Alert.objects.get(uav=own, code="hand-over-failed", closed_at=None)
         assert "return" in alert.message and alert.values["uav"] == own.name
         assert vehicles[1].custom_mode == 17, "in BRAKE"
         assert not UavCommand.objects.filter(uav=own, mission=offer.continuation, kind=CommandKind.START).exists()
         home = command_uav(uav=own, kind=CommandKind.RETURN, actor=mission.author)
         assert ended(home).state == CommandState.APPLIED
-        settle_hand_over_alerts()
+        settle_command_alerts()
         alert.refresh_from_db()
         assert alert.closed_at is not None and alert.closed_at <= timezone.now()

@@ -12,7 +12,7 @@ from missions.services.steering import command_uav
 from telemetry.ground_station.flavour import Flavour
 from telemetry.models import Alert
 from telemetry.selectors.alert_words import alert_words
-from telemetry.services.return_alerts import settle_return_alerts
+from telemetry.services.command_alerts import settle_command_alerts
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import rebuild, world, zone_around
 from tests.telemetry.gateway.station import gateway_at_work, wait_for
@@ -86,7 +86,7 @@ def test_a_zone_on_the_rest_of_its_way_is_said_and_nothing_is_sent(flavour, uav,
         command = ended(along(uav, mission))
         assert (command.state, command.outcome_code) == (CommandState.FAILED, "not-clear")
         assert vehicle.current_item - offset == item
-    settle_return_alerts()
+    settle_command_alerts()
     alert = Alert.objects.get(code="return-not-begun", closed_at=None)
     assert alert.level == "critical" and alert.details["acts"] == [{"kind": "return", "uav": uav.pk}]
     assert "does not return along its route" in alert_words(alert.message, alert.values)
@@ -105,12 +105,12 @@ def test_a_height_that_cannot_be_set_is_told_at_once_and_the_return_as_it_is_end
         assert command.kind == CommandKind.SET_RETURN_HEIGHT
         assert ended(command).state == CommandState.FAILED
         assert not Uav.objects.get(pk=uav.pk).commands.filter(kind=CommandKind.RETURN).exists()
-        settle_return_alerts()
+        settle_command_alerts()
         alert = Alert.objects.get(code="return-not-begun", closed_at=None)
         words = alert_words(alert.message, alert.values)
         assert "its return height is not set" in words and "stays" in words
         assert [stuck.pk for stuck in stuck_returns()] == [command.pk]
         home = command_uav(uav=Uav.objects.get(pk=uav.pk), kind=CommandKind.RETURN, actor=mission.author)
-        settle_return_alerts()
+        settle_command_alerts()
         assert not Alert.objects.filter(code="return-not-begun", closed_at=None).exists()
         assert ended(home).state == CommandState.APPLIED
