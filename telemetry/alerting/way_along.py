@@ -4,7 +4,7 @@ Nothing but the leg from where the UAV is to that waypoint is new: it is looked 
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,7 +58,7 @@ def way_along(
     if flight.end_action == HOVER or not 0 <= here.ahead < len(points):
         return None
     ground = None if base_m is None else ground_heights_m
-    for first in _quickest_first(flight, here, cruise_mps):
+    for first in _quickest_first(flight, here, cruise_mps, rules):
         if _is_clear(points[first:], here, base_m, ground, spans, zones, margins, rules):
             length_m, duration_s = _length_and_time(points[first:], here, cruise_mps, rules)
             targets = tuple(dict.fromkeys(point.target for point in points[first:] if point.target is not None))
@@ -73,25 +73,23 @@ def way_along_points(flight: Flight, way: WayAlong, here: Here) -> list[tuple[Lo
     return [(here.position, here.height_m, 0.0), *ahead]
 
 
-def _quickest_first(flight: Flight, here: Here, cruise_mps: float) -> Iterator[int]:
+def _quickest_first(flight: Flight, here: Here, cruise_mps: float, rules: FlightRules) -> list[int]:
     points = flight.waypoints
     numbers = range(here.ahead, len(points))
-    yield from sorted(numbers, key=lambda first: _length_and_time(points[first:], here, cruise_mps, None)[1])
+    return sorted(numbers, key=lambda first: _length_and_time(points[first:], here, cruise_mps, rules)[1])
 
 
-def _length_and_time(points: Sequence[FrozenWaypoint], here: Here, cruise_mps: float, rules: FlightRules | None) -> tuple[float, float]:
-    """Metres and seconds over ground, with holds, and with the descent at the end where rules are given."""
+def _length_and_time(points: Sequence[FrozenWaypoint], here: Here, cruise_mps: float, rules: FlightRules) -> tuple[float, float]:
+    """Metres and seconds over ground, with holds and the descent at the end."""
     places = np.array([here.position, *(point.position for point in points)], dtype=np.float64)
     legs_m = distance_m(places[:-1], places[1:])
     speeds = np.array([point.speed_mps or cruise_mps for point in points])
     rises = np.abs(np.diff([here.height_m, *(point.altitude_relative_m for point in points)]))
-    climb_mps = FlightRules().climb_speed_mps if rules is None else rules.climb_speed_mps
-    seconds = float(np.maximum(legs_m / speeds, rises / climb_mps).sum()) + sum(map(_hold_s, points))
-    if rules is not None:
-        slow_m, landing_mps = rules.manoeuvres.slow_below_m, rules.manoeuvres.landing_mps
-        down_m = points[-1].altitude_agl_m
-        seconds += max(down_m - slow_m, 0.0) / climb_mps + min(down_m, slow_m) / landing_mps
-    return float(legs_m.sum()), seconds
+    climb_mps, slow_m, landing_mps = rules.climb_speed_mps, rules.manoeuvres.slow_below_m, rules.manoeuvres.landing_mps
+    down_m = points[-1].altitude_agl_m
+    down_s = max(down_m - slow_m, 0.0) / climb_mps + min(down_m, slow_m) / landing_mps
+    flown_s = float(np.maximum(legs_m / speeds, rises / climb_mps).sum()) + sum(map(_hold_s, points))
+    return float(legs_m.sum()), flown_s + down_s
 
 
 def _hold_s(point: FrozenWaypoint) -> float:

@@ -26,7 +26,15 @@ from telemetry.alerting.returns_in_time import StraightReturn, flying_on, stayin
 from telemetry.selectors.in_the_air import reported_in_the_air
 from telemetry.selectors.present import Heard, Present, heard_of
 from telemetry.services.along_route import FURTHER, AlongRoute, along_route, on_board
-from telemetry.services.safe_returns import BatteryAtLanding, Flown, SafeReturn, battery_at_landing, length_m, safest_returns
+from telemetry.services.safe_returns import (
+    BatteryAtLanding,
+    Flown,
+    SafeReturn,
+    along_landing_percent,
+    battery_at_landing,
+    length_m,
+    safest_returns,
+)
 
 MAX_UNCERTAINTY_M = 300.0  # about a position from which a way home is looked at
 MAX_ALONG_UNCERTAINTY_M = 15.0
@@ -99,7 +107,7 @@ def present_returns(*, uavs: Sequence[Uav], now: datetime) -> list[PresentReturn
                 battery=battery,
                 met=tuple(others),
                 along=one.along,
-                along_percent=_along_percent(one, battery),
+                along_percent=along_landing_percent(one, battery),
                 safest=safest.get(one.heard.uav.pk),
             )
         )
@@ -176,14 +184,6 @@ def _along(one: Flown, present: Present, now: datetime) -> AlongRoute | None:
         return None
     waypoint = one.heard.waypoint_sequence
     return along_route(held, position=present.position, height_m=present.altitude_relative_m, waypoint=waypoint, now=now)
-
-
-def _along_percent(one: Flown, battery: BatteryAtLanding) -> float | None:
-    """By what the straight way home takes for each of its seconds."""
-    if one.along is None or one.straight is None or battery.left_percent is None or battery.home_percent is None:
-        return None
-    per_s = battery.home_percent / max(one.straight.duration_s(), 1.0)
-    return round(battery.left_percent - per_s * one.along.way.duration_s, 1)
 
 
 def _from_route(one: Flown) -> ReturnCheck:

@@ -95,11 +95,19 @@ def battery_at_landing(heard: Heard) -> BatteryAtLanding:
     return BatteryAtLanding(left, home, round(left - home, 1), reserve, forecast.get("hold_s"))
 
 
+def along_landing_percent(one: Flown, battery: BatteryAtLanding) -> float | None:
+    """Left at the landing after a return along the route, by what the straight way home takes for each of its seconds."""
+    if one.along is None or one.straight is None or battery.left_percent is None or battery.home_percent is None:
+        return None
+    per_s = battery.home_percent / max(one.straight.duration_s(), 1.0)
+    return round(battery.left_percent - per_s * one.along.way.duration_s, 1)
+
+
 def safest_returns(returning: Sequence[Flown], others: Sequence[TimedRoute]) -> Mapping[int, SafeReturn | None]:
     """By UAV: a return in which none comes near another; those with the least battery to spare choose first.
 
     others: what all others in the air do. Straight at once where that is clear; else at a height of its own, along its route, or after
-    a hold.
+    a hold. Along its route comes last where it would land below the reserve, and is left out where the battery does not last.
     """
     if not returning:
         return {}
@@ -132,16 +140,26 @@ def _choices(one: Flown, battery: BatteryAtLanding) -> list[tuple[SafeReturn, Ti
     if is_clear:
         found.append((SafeReturn(), straight.after(0.0)))
     found += [(SafeReturn(height_m), raised.after(0.0)) for height_m, raised in heights]
-    if one.along is not None and one.place is not None:
-        points = [(place, one.base_m + height_m, hold_s) for place, height_m, hold_s in one.along.points]
-        found.append((SafeReturn(along_route=True), flying_on(uav, points, one.straight.speed_mps, lands=True)))
+    along, last = _along(one, straight, uav), []
+    left_percent = along_landing_percent(one, battery)
+    if left_percent is None or left_percent >= (battery.reserve_percent or 0.0):
+        found += along
+    elif left_percent > 0.0:
+        last = along
     longest_s = MAX_WAIT_UNKNOWN_S if battery.hold_s is None else min(battery.hold_s, MAX_WAIT_S)
     waits = [wait_s for wait_s in WAITS_S if 0.0 < wait_s <= longest_s]
     if is_clear:
         found += [(SafeReturn(wait_s=wait_s), straight.after(wait_s)) for wait_s in waits]
     elif heights:
         found += [(SafeReturn(heights[0][0], wait_s), heights[0][1].after(wait_s)) for wait_s in waits]
-    return found
+    return [*found, *last]
+
+
+def _along(one: Flown, straight: StraightReturn, uav: str) -> list[tuple[SafeReturn, TimedRoute]]:
+    if one.along is None or one.place is None:
+        return []
+    points = [(place, one.base_m + height_m, hold_s) for place, height_m, hold_s in one.along.points]
+    return [(SafeReturn(along_route=True), flying_on(uav, points, straight.speed_mps, lands=True))]
 
 
 def _heights(one: Flown) -> list[tuple[float, StraightReturn]]:
