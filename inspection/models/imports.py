@@ -7,7 +7,7 @@ from django.contrib.gis.db import models
 from django.db.models import Q
 from django.db.models.functions import Now
 
-from workspace.models import Job
+from workspace.models import DEFAULT_ORGANISATION_ID, Job
 
 MAX_REMOVED_PERCENT = 5.0  # of auto_apply, where nobody states another
 
@@ -138,6 +138,11 @@ class ImportProposal(models.Model):
 
     def __str__(self) -> str:
         return f"{self.get_kind_display()} {self.file_name}"
+
+    @property
+    def organisation_id(self) -> int:
+        """Whose file it is, and whose external ids it has."""
+        return self.created_by.organisation_id if self.created_by else DEFAULT_ORGANISATION_ID
 
 
 class ChangeAction(models.TextChoices):

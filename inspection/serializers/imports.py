@@ -12,7 +12,7 @@ from inspection.serializers.features import GeometrySerializer
 from inspection.services.proposals.bounds import KINDS
 from inspection.services.uploads import PART_BYTES
 from workspace.fields import FiniteFloatField
-from workspace.models import DEFAULT_ORGANISATION_ID, JobState, User
+from workspace.models import JobState, User
 from workspace.serializers import Declared
 from workspace.stored_words import in_words
 
@@ -148,8 +148,7 @@ def upload_json(upload: Upload) -> dict[str, Any]:
 def proposal_json(proposal: ImportProposal, reader: User, *, is_brief: bool = False) -> dict[str, Any]:
     """In a list without what only the open one needs, such as the samples and the preview of an asset file."""
     job = proposal.job
-    is_own = reader.organisation_id == (proposal.created_by.organisation_id if proposal.created_by else DEFAULT_ORGANISATION_ID)
-    whole = proposal.summary if is_own else _without_external_ids(proposal.summary)
+    whole = proposal.summary if reader.organisation_id == proposal.organisation_id else _without_external_ids(proposal.summary)
     summary = {name: value for name, value in whole.items() if not (is_brief and isinstance(value, dict | list))}
     if "notes" in summary:
         summary["notes"] = [in_words(note) for note in summary["notes"]]

@@ -130,7 +130,7 @@ def return_by_list(held: OnBoard, state: VehicleState, now_s: float, now: dateti
     found = along_route(held, position=state.position, height_m=state.altitude_relative_m, waypoint=waypoint, now=now)
     if found is None:
         return CannotCarry("not-clear", "From where the UAV is now no way along its route is clear.")
-    return {ITEM: float(found.item), SPEED_MPS: found.way.speed_mps}
+    return {ITEM: float(found.item), SPEED_MPS: found.path.speed_mps}
 
 
 def _approved(command: UavCommand, before: Loaded | None) -> ApprovedLoad | CannotCarry:

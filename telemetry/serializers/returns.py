@@ -145,12 +145,12 @@ def _present_json(present: Present | None) -> dict[str, Any] | None:
 def _along_json(found: PresentReturn) -> dict[str, Any] | None:
     if found.along is None:
         return None
-    way = found.along.way
+    path = found.along.path
     return {
-        "waypoint": way.sequence,
-        "length_m": _rounded(way.length_m),
-        "duration_s": _rounded(way.duration_s),
-        "targets": len(way.targets),
+        "waypoint": path.sequence,
+        "length_m": _rounded(path.length_m),
+        "duration_s": _rounded(path.duration_s),
+        "targets": len(path.targets),
         "landing_percent": found.along_percent,
     }
 

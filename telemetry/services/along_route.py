@@ -18,7 +18,7 @@ from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_l
 from missions.services.own_return import zones_applying
 from missions.services.steering import mission_in_hand
 from missions.zone_selectors import zone_margins
-from telemetry.alerting.way_along import Here, WayAlong, way_along, way_along_points
+from telemetry.alerting.return_path import Here, ReturnPath, return_path, return_path_points
 from telemetry.services.loads import Loaded, loaded_on
 
 FURTHER = timedelta(minutes=5)  # after the expected landing, in which zones count
@@ -26,9 +26,9 @@ FURTHER = timedelta(minutes=5)  # after the expected landing, in which zones cou
 
 @dataclass(frozen=True)
 class AlongRoute:
-    """`item`: of the list on board, from 0 without home, to which it flies straight. `points` as `way_along_points` has them."""
+    """`item`: of the list on board, from 0 without home, to which it flies straight. `points` as `return_path_points` has them."""
 
-    way: WayAlong
+    path: ReturnPath
     item: int
     points: tuple[tuple[LonLat, float, float], ...]
 
@@ -86,13 +86,13 @@ def along_route(held: OnBoard, *, position: LonLat, height_m: float, waypoint: i
     lasts = timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s) if flight.waypoints[-1].arrival_s is None else _rest(flight, ahead)
     _near, facts = zones_applying(ground.table, positions, (now.timestamp(), (now + lasts + FURTHER).timestamp()))
     here = Here(position, height_m, ahead)
-    way = way_along(
+    path = return_path(
         flight, here, cruise_mps=held.approved.route.cruise_speed_mps, base_m=flight.take_off.altitude_amsl_m,
         ground_heights_m=ground_heights_m, spans=spans_of(ground.network()), zones=facts, margins=zone_margins(),
         rules=settings.FLIGHT_RULES,
     )  # fmt: skip
-    item = None if way is None else held.item_of(way.sequence)
-    return None if way is None or item is None else AlongRoute(way, item, tuple(way_along_points(flight, way, here)))
+    item = None if path is None else held.item_of(path.sequence)
+    return None if path is None or item is None else AlongRoute(path, item, tuple(return_path_points(flight, path, here)))
 
 
 def _rest(flight: Flight, ahead: int) -> timedelta:

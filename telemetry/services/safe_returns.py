@@ -100,7 +100,7 @@ def along_landing_percent(one: Flown, battery: BatteryAtLanding) -> float | None
     if one.along is None or one.straight is None or battery.left_percent is None or battery.home_percent is None:
         return None
     per_s = battery.home_percent / max(one.straight.duration_s(), 1.0)
-    return round(battery.left_percent - per_s * one.along.way.duration_s, 1)
+    return round(battery.left_percent - per_s * one.along.path.duration_s, 1)
 
 
 def safest_returns(returning: Sequence[Flown], others: Sequence[TimedRoute]) -> Mapping[int, SafeReturn | None]:

@@ -7,8 +7,8 @@ import pytest
 from inspection.geodesy import LonLat
 from missions.models import MissionUav, Uav
 from missions.services.own_return import ReturnCheck, ReturnState
+from telemetry.alerting.return_path import ReturnPath
 from telemetry.alerting.returns_in_time import StraightReturn, flying_on
-from telemetry.alerting.way_along import WayAlong
 from telemetry.selectors.present import Heard
 from telemetry.services.along_route import AlongRoute
 from telemetry.services.safe_returns import Flown, SafeReturn, safest_returns
@@ -21,8 +21,8 @@ def in_the_air(left_percent: float | None, state: ReturnState = ReturnState.IN_T
     battery: dict[str, Any] = {"left_percent": left_percent, "home_percent": 5.0, "reserve_percent": 20.0, "hold_s": 60.0}
     heard = Heard(Uav(pk=1, name="Tern"), is_in_air=True, battery_percent=left_percent, battery=battery, battery_age_s=1.0)
     straight = StraightReturn("Tern", HERE, 60.0, HOME, 60.0, 0.0, 10.0)
-    way = WayAlong(1, 1, 10.0, 4_000.0, 4.0 * straight.duration_s(), ())
-    along = AlongRoute(way, 1, ((HERE, 60.0, 0.0), (NORTH, 60.0, 0.0), (HOME, 60.0, 0.0)))
+    path = ReturnPath(1, 1, 10.0, 4_000.0, 4.0 * straight.duration_s(), ())
+    along = AlongRoute(path, 1, ((HERE, 60.0, 0.0), (NORTH, 60.0, 0.0), (HOME, 60.0, 0.0)))
     check = ReturnCheck(place=0, name="Tern", uav=1, state=state)
     return Flown(heard, None, MissionUav(), check, None, straight=straight, along=along, base_m=0.0)
 

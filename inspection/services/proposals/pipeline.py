@@ -388,7 +388,7 @@ def _provenance(proposal: ImportProposal) -> Provenance:
     return Provenance(
         file_name=proposal.file_name, source_address=stated.get("source_address", ""), licence=stated.get("licence", ""),
         attribution=stated.get("attribution", ""), fetched_at=fetched,
-        organisation_id=proposal.created_by.organisation_id if proposal.created_by else DEFAULT_ORGANISATION_ID,
+        organisation_id=proposal.organisation_id,
     )  # fmt: skip
 
 

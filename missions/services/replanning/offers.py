@@ -84,12 +84,12 @@ def settle_offers(*, now: datetime | None = None) -> int:
                 continue
             if words:
                 end_offer(held, OfferState.OUTDATED, words)
-                _follow(held)
+                _compute_again(held)
                 found += 1
     return found
 
 
-def _follow(offer: ReplanOffer) -> None:
+def _compute_again(offer: ReplanOffer) -> None:
     """Work an outdated offer out again. The caller holds the rows."""
     mission = offer.mission
     if mission.state != MissionState.ACTIVE or mission.deleted_at is not None:

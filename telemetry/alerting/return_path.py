@@ -1,4 +1,4 @@
-"""The way home by the rest of an approved flight: straight to one of its waypoints ahead, and on as approved to where it lands.
+"""The path home by the rest of an approved flight: straight to one of its waypoints ahead, and on as approved to where it lands.
 
 Nothing but the leg from where the UAV is to that waypoint is new: it is looked at as the autopilot flies it, straight in place and height.
 """
@@ -32,7 +32,7 @@ class Here:
 
 
 @dataclass(frozen=True)
-class WayAlong:
+class ReturnPath:
     """`first`: index of the waypoint to which it flies straight; `sequence` that in the stored route. `speed_mps` is flown from there on.
 
     `targets` are the places of the mission's targets that are still visited on it.
@@ -46,11 +46,11 @@ class WayAlong:
     targets: tuple[int, ...]
 
 
-def way_along(
+def return_path(
     flight: Flight, here: Here, *, cruise_mps: float, base_m: float | None, ground_heights_m: GroundHeights | None, spans: Spans,
     zones: ZoneFacts, margins: Margins, rules: FlightRules,
-) -> WayAlong | None:  # fmt: skip
-    """The quickest of the ways that meet no zone and keep clear of the ground and of obstacles; None where there is none.
+) -> ReturnPath | None:  # fmt: skip
+    """The quickest of the paths that meet no zone and keep clear of the ground and of obstacles; None where there is none.
 
     base_m: the take-off above the sea; None, or None for ground_heights_m: flat ground is assumed. zones: those that apply meanwhile.
     """
@@ -63,13 +63,13 @@ def way_along(
             length_m, duration_s = _length_and_time(points[first:], here, cruise_mps, rules)
             targets = tuple(dict.fromkeys(point.target for point in points[first:] if point.target is not None))
             speed_mps = points[first].speed_mps or cruise_mps
-            return WayAlong(first, points[first].sequence, speed_mps, length_m, duration_s, targets)
+            return ReturnPath(first, points[first].sequence, speed_mps, length_m, duration_s, targets)
     return None
 
 
-def way_along_points(flight: Flight, way: WayAlong, here: Here) -> list[tuple[LonLat, float, float]]:
+def return_path_points(flight: Flight, path: ReturnPath, here: Here) -> list[tuple[LonLat, float, float]]:
     """Position, height above the take-off, and seconds of staying, from where it is to where it comes down."""
-    ahead = [(point.position, point.altitude_relative_m, _hold_s(point)) for point in flight.waypoints[way.first :]]
+    ahead = [(point.position, point.altitude_relative_m, _hold_s(point)) for point in flight.waypoints[path.first :]]
     return [(here.position, here.height_m, 0.0), *ahead]
 
 

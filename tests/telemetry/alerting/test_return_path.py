@@ -16,7 +16,7 @@ from missions.flight_plan.clearance import Margins, ZoneFacts
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.waypoints import WaypointKind
 from missions.mavlink.frozen import HOVER, RETURN, Flight, FrozenWaypoint, TakeOff
-from telemetry.alerting.way_along import Here, WayAlong, way_along, way_along_points
+from telemetry.alerting.return_path import Here, ReturnPath, return_path, return_path_points
 
 RULES, MARGINS = FlightRules(), Margins(lateral_m=12.0, height_m=10.0, terrain_tolerance_m=10.0)
 FRAME = LocalFrame.around(10.0, 56.0)
@@ -57,8 +57,10 @@ def flat(positions: np.ndarray) -> np.ndarray:
     return np.full(len(positions), BASE_M)
 
 
-def along(flight: Flight, east: float, north: float, ahead: int, *, ground=flat, spans=None, meets=None, height_m=60.0) -> WayAlong | None:
-    return way_along(
+def along(
+    flight: Flight, east: float, north: float, ahead: int, *, ground=flat, spans=None, meets=None, height_m=60.0
+) -> ReturnPath | None:
+    return return_path(
         flight, Here(lon_lat(east, north), height_m, ahead), cruise_mps=10.0, base_m=BASE_M, ground_heights_m=ground,
         spans=wires() if spans is None else spans, zones=zones() if meets is None else meets, margins=MARGINS, rules=RULES,
     )  # fmt: skip
@@ -117,7 +119,7 @@ def test_no_way_that_is_offered_crosses_a_zone_or_goes_below_the_margins(places,
     way = along(flight, *here, 0, ground=ground, meets=zones(*boxes), spans=wires(*lines), height_m=height_m)
     if way is None:
         return
-    flown = way_along_points(flight, way, Here(lon_lat(*here), height_m, 0))
+    flown = return_path_points(flight, way, Here(lon_lat(*here), height_m, 0))
     metres = FRAME.to_metres(np.array([point for point, _height_m, _hold_s in flown]))
     for start, end in pairwise(metres):
         for west, south, east, north in boxes:
