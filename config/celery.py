@@ -19,7 +19,7 @@ app.steps["worker"].update({LoopPulse, SoftEnd})
 watch_tasks()
 
 
-MAKES_NO_PLANS = {"simulation"}
+MAKES_NO_PLANS = {"data", "simulation"}
 
 
 @worker_before_create_process.connect

@@ -254,7 +254,7 @@ REST_FRAMEWORK: dict[str, Any] = {
 
 SPECTACULAR_SETTINGS = openapi_settings()
 
-# Open websockets that one `live` program takes; 0: as many as there are. Those of an address count for all operators behind it.
+# Open websockets over all `live` programs; 0: as many as there are. Those of an address count for all operators behind it.
 SOCKETS_PER_USER = int(os.environ.get("SPANWISE_SOCKETS_PER_USER", "32"))
 SOCKETS_PER_ADDRESS = sockets_per_address(operators_per_address())
 

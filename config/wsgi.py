@@ -10,7 +10,8 @@ os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
 begin_tracing("web")  # before the middleware is put together, of which it is a part
 application = get_wsgi_application()
 
-from config.warming import warm_up_beside, warming_faults  # noqa: E402 (Django first)
+import config.urls  # noqa: E402, F401 (Django first; before the first request comes in)
+from config.warming import warm_up_beside, warming_faults  # noqa: E402
 from missions.services import warm_up  # noqa: E402
 from operation.garbage import keep_what_is_there  # noqa: E402
 from operation.program import program_begins  # noqa: E402

@@ -40,6 +40,13 @@ class PositionField(serializers.Field):
         return [float(value[0]), float(value[1])]
 
 
+class BetweenField(FiniteFloatField):
+    """A JSON number from the first to the second bound."""
+
+    def __init__(self, bounds: tuple[float, float], **options: Any) -> None:
+        super().__init__(min_value=bounds[0], max_value=bounds[1], **options)
+
+
 class AboveZeroField(FiniteFloatField):
     """A JSON number above 0."""
 

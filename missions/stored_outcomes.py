@@ -4,6 +4,7 @@ Unlike other stored words an outcome may be several sentences, and what a vehicl
 """
 
 import re
+from functools import cache
 
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
@@ -133,8 +134,12 @@ def _pattern(sentence: str) -> re.Pattern[str]:
     return re.compile(rf"{words}(?=\s|$)", re.S)
 
 
-# Those with more words of their own first: what they leave open is shorter.
-_PATTERNS = [(sentence, _pattern(sentence)) for sentence in sorted(SENTENCES, key=lambda one: -len(re.sub(r"%\(\w+\)s", "", one)))]
+@cache
+def _patterns() -> list[tuple[str, re.Pattern[str]]]:
+    """Those with more words of their own first: what they leave open is shorter."""
+    return [(sentence, _pattern(sentence)) for sentence in sorted(SENTENCES, key=lambda one: -len(re.sub(r"%\(\w+\)s", "", one)))]
+
+
 _AS_IT_IS = re.compile(r".+?(?:[.;](?=\s)|$)", re.S)
 
 
@@ -152,7 +157,7 @@ def is_foreseen(stored: str) -> bool:
     """Whether all of it is made of known sentences."""
     rest = stored.lstrip()
     while rest:
-        match = next((match for _sentence, pattern in _PATTERNS if (match := pattern.match(rest))), None)
+        match = next((match for _sentence, pattern in _patterns() if (match := pattern.match(rest))), None)
         if match is None:
             return False
         rest = rest[match.end() :].lstrip()
@@ -161,7 +166,7 @@ def is_foreseen(stored: str) -> bool:
 
 def _first(rest: str) -> tuple[str, str]:
     """What stands there, and what it is in the reader's language."""
-    for sentence, pattern in _PATTERNS:
+    for sentence, pattern in _patterns():
         if match := pattern.match(rest):
             values = {name: _(value) if value in PARTS else value for name, value in match.groupdict().items()}
             return match[0], _(sentence) % values if values else _(sentence)

@@ -7,7 +7,7 @@ class TelemetryConfig(AppConfig):
     name = "telemetry"
 
     def ready(self) -> None:
-        from missions.approval_hooks import register_check  # noqa: PLC0415 (models are there by then)
+        from missions.approval_hooks import register_check, register_start_check  # noqa: PLC0415 (models are there by then)
         from missions.flight_hooks import register_flight_teller  # noqa: PLC0415
         from missions.in_air_hooks import register_ground_source, register_never_heard_source, register_source  # noqa: PLC0415
 
@@ -16,3 +16,4 @@ class TelemetryConfig(AppConfig):
         register_ground_source("telemetry.selectors.in_the_air.reported_on_the_ground")
         register_never_heard_source("telemetry.selectors.in_the_air.never_heard")
         register_check("telemetry.services.approved_vehicles.reasons_of_vehicles")
+        register_start_check("telemetry.services.preflight.reasons_not_ready")

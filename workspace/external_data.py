@@ -6,9 +6,9 @@ from typing import Any
 
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, extend_schema_field
-from rest_framework import serializers
 from rest_framework.request import Request
 
+from workspace import strict_serializers as serializers
 from workspace.errors import ApiProblem
 
 MAX_EXTERNAL_ID_LENGTH = 200

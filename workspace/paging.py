@@ -3,6 +3,7 @@
 import base64
 import binascii
 import json
+from collections.abc import Collection
 from dataclasses import dataclass
 from datetime import UTC, datetime, time, timedelta
 from typing import Any, Generic, TypeVar
@@ -15,8 +16,11 @@ from django.utils.translation import gettext as _
 from rest_framework.request import Request
 
 from workspace.errors import ApiProblem
+from workspace.whole_numbers import WholeNumber
 
 Row = TypeVar("Row", bound=Model)
+EARLIEST = datetime(2, 1, 1, tzinfo=UTC)  # before it nothing was changed, and less than a year is taken from a time
+LIMIT = WholeNumber("limit", "rows a page; 100 unless told, 1,000 at most")
 
 
 @dataclass(frozen=True)
@@ -51,7 +55,10 @@ def changed_since(request: Request, queryset: QuerySet[Any, Row]) -> QuerySet[An
     ApiProblem 400.
     """
     since = asked_instant(request, "changed_since")
-    return queryset if since is None else queryset.filter(updated_at__gte=since - timedelta(seconds=settings.CELERY_TASK_TIME_LIMIT))
+    longest = timedelta(seconds=settings.CELERY_TASK_TIME_LIMIT)
+    if since is None or since < EARLIEST:
+        return queryset
+    return queryset.filter(updated_at__gte=since - longest)
 
 
 def asked_instant(request: Request, name: str) -> datetime | None:
@@ -70,23 +77,23 @@ def asked_instant(request: Request, name: str) -> datetime | None:
     return at if at.tzinfo else at.replace(tzinfo=UTC)
 
 
-def asked_flag(request: Request, name: str) -> bool:
-    """Whether a query parameter is true. Raises ApiProblem 400 for what is neither true nor false."""
+def asked_flag(request: Request, name: str) -> bool | None:
+    """Whether a query parameter is true; None without one. Raises ApiProblem 400 for what is neither true nor false."""
+    text = asked_choice(request, name, ("true", "false"))
+    return text == "true" if text else None
+
+
+def asked_choice(request: Request, name: str, known: Collection[str]) -> str:
+    """Return the word of a query parameter; empty without one. Raises ApiProblem 400 for what is not known."""
     text = request.query_params.get(name, "")
-    if text not in {"", "true", "false"}:
-        fault = _("true or false is needed.")
+    if text and text not in known:
+        fault = _("Known are {names}.").format(names=", ".join(known))
         raise ApiProblem(400, "invalid", f"{name}: {fault}", details={name: [fault]})
-    return text == "true"
+    return text
 
 
 def _limit(request: Request, default_limit: int, max_limit: int) -> int:
-    text = request.query_params.get("limit", "")
-    if not text:
-        return default_limit
-    if not (text.isascii() and text.isdigit() and len(text) < 10 and int(text) > 0):
-        fault = _("A whole number from 1 is needed.")
-        raise ApiProblem(400, "invalid", f"limit: {fault}", details={"limit": [fault]})
-    return min(int(text), max_limit)
+    return min(LIMIT.asked(request) or default_limit, max_limit)
 
 
 def _field(queryset: QuerySet[Any], name: str) -> Any:

@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 from django.contrib.auth.password_validation import validate_password
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from rest_framework import serializers
 
+from workspace import strict_serializers as serializers
 from workspace.accounts import revision_of_person
 from workspace.browser_sessions import session_ends_at
 from workspace.invitations import LONGEST_DAYS, state_of

@@ -10,7 +10,6 @@ from django.urls import reverse
 from django.utils import timezone
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -18,7 +17,7 @@ from workspace import accounts, invitations, second_factors
 from workspace.errors import ApiProblem
 from workspace.invitations import InvitationState
 from workspace.models import Invitation, Role, SecondFactor, SignInEntry, SignInOutcome, User
-from workspace.paging import page_of
+from workspace.paging import asked_choice, page_of
 from workspace.people_serializers import (
     InvitationInputSerializer,
     InvitationPageSerializer,
@@ -38,16 +37,10 @@ from workspace.public_address import public_address
 from workspace.schema import PAGE_PARAMETERS
 from workspace.services import NoAdministratorLeft, OperatorsAlone, may_change
 from workspace.signed_in import SignedInRequest
+from workspace.whole_numbers import WholeNumber
 
 HERE_WITHIN = timedelta(minutes=5)
-
-
-def _one_of(request: Request, name: str, known: list[str]) -> str:
-    value = request.query_params.get(name, "")
-    if value and value not in known:
-        message = _("Known are {names}.").format(names=", ".join(known))
-        raise ApiProblem(400, "invalid", f"{name}: {message}", details={name: [message]})
-    return value
+DAYS = WholeNumber("days", "only the last so many days", maximum=99_999)
 
 
 def _people(request: SignedInRequest) -> QuerySet[User]:
@@ -92,9 +85,9 @@ class PersonList(APIView):
     )
     def get(self, request: SignedInRequest) -> Response:
         people = _people(request).filter(_named(request.query_params.get("text", "")[:200]))
-        if role := _one_of(request, "role", Role.values):
+        if role := asked_choice(request, "role", Role.values):
             people = people.filter(role=role)
-        if access := _one_of(request, "access", ["in", "out", "here"]):
+        if access := asked_choice(request, "access", ["in", "out", "here"]):
             wanted: dict[str, dict[str, Any]] = {
                 "in": {"is_active": True},
                 "out": {"is_active": False},
@@ -237,7 +230,7 @@ class InvitationList(APIView):
     )
     def get(self, request: SignedInRequest) -> Response:
         rows = invitations.invitations_of(request.user).select_related("invited_by", "accepted_by")
-        if state := _one_of(request, "state", [state.value for state in InvitationState]):
+        if state := asked_choice(request, "state", [state.value for state in InvitationState]):
             rows = rows.filter(invitations.in_state(InvitationState(state)))
         page = page_of(request, rows, order=("-created_at", "-pk"))
         return Response({"results": InvitationSerializer(page.rows, many=True).data, "next": page.next})
@@ -282,7 +275,7 @@ class SignInList(APIView):
             OpenApiParameter("text", str, description="words of the person's name or e-mail address"),
             OpenApiParameter("outcome", str, enum=SignInOutcome.values),
             OpenApiParameter("address", str, description="beginning of the IP address"),
-            OpenApiParameter("days", {"type": "integer", "minimum": 1, "maximum": 99_999}, description="only the last so many days"),
+            DAYS.documented,
             *PAGE_PARAMETERS,
         ],
         responses=SignInPageSerializer,
@@ -291,14 +284,11 @@ class SignInList(APIView):
         entries = SignInEntry.objects.filter(Q(user__organisation_id=request.user.organisation_id) | Q(user=None)).select_related("user")
         if text := request.query_params.get("text", "")[:200].strip():
             entries = entries.filter(_named(text, "user__"))
-        if outcome := _one_of(request, "outcome", SignInOutcome.values):
+        if outcome := asked_choice(request, "outcome", SignInOutcome.values):
             entries = entries.filter(outcome=outcome)
         if address := request.query_params.get("address", "")[:45].strip():
             entries = entries.filter(address__istartswith=address)
-        if days := request.query_params.get("days", ""):
-            if not (days.isascii() and days.isdigit() and 0 < int(days[:6]) < 100_000):
-                message = _("A whole number from 1 is needed.")
-                raise ApiProblem(400, "invalid", f"days: {message}", details={"days": [message]})
-            entries = entries.filter(recorded_at__gt=timezone.now() - timedelta(days=int(days[:6])))
+        if days := DAYS.asked(request):
+            entries = entries.filter(recorded_at__gt=timezone.now() - timedelta(days=days))
         page = page_of(request, entries, order=("-recorded_at", "-pk"))
         return Response({"results": SignInSerializer(page.rows, many=True).data, "next": page.next})

@@ -5,15 +5,15 @@ from collections.abc import Iterable
 from typing import Any
 
 from drf_spectacular.openapi import AutoSchema
-from drf_spectacular.utils import OpenApiParameter
+from drf_spectacular.utils import OpenApiParameter, PolymorphicProxySerializer
 from rest_framework.permissions import SAFE_METHODS
 
 from workspace.api_headers import HEADERS_OF_ERRORS
 from workspace.errors import PROBLEM_JSON
 from workspace.idempotency import LONGEST_KEY, TAKES_KEY
+from workspace.paging import LIMIT
 from workspace.serializers import ErrorSerializer
 
-WHOLE_NUMBER = {"type": "integer", "minimum": 1, "maximum": 999_999_999}
 TIME = {"type": "string", "format": "date-time"}
 DAY_OR_TIME = {"anyOf": [{"type": "string", "format": "date"}, TIME]}
 PRINTABLE_ASCII = "^[ -~]+$"
@@ -26,7 +26,7 @@ def several_of(values: Iterable[str]) -> dict[str, Any]:
 
 
 PAGE_PARAMETERS = [
-    OpenApiParameter("limit", WHOLE_NUMBER, description="rows a page; 100 unless told, 1,000 at most"),
+    LIMIT.documented,
     OpenApiParameter("cursor", str, description="taken from `next` of the page before"),
 ]
 CHANGED_SINCE = OpenApiParameter(
@@ -79,6 +79,11 @@ class SpanwiseSchema(AutoSchema):
         for status, response in responses.items():
             _name_headers(response, self._headers_of(status))
         return operation
+
+    def _get_request_for_media_type(self, serializer: Any, direction: Any = "request") -> Any:
+        """A body of one of several shapes may not be missing where something is made; drf-spectacular says so of single shapes alone."""
+        schema, is_required = super()._get_request_for_media_type(serializer, direction)
+        return schema, is_required or (self.method == "POST" and isinstance(serializer, PolymorphicProxySerializer))
 
     def _map_basic_serializer(self, serializer: Any, direction: Any) -> dict[str, Any]:
         """A body whose serializer refuses other fields has no others."""

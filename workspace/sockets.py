@@ -2,7 +2,6 @@
 
 import asyncio
 import logging
-from collections import Counter
 from collections.abc import Coroutine
 from contextlib import suppress
 from importlib import import_module
@@ -22,6 +21,7 @@ from workspace.browser_sessions import note_session
 from workspace.farewell import farewell_here
 from workspace.models import User
 from workspace.sign_in_attempts import network_of
+from workspace.socket_places import socket_places_here
 from workspace.visitors import visitor_address
 
 logger = logging.getLogger(__name__)
@@ -31,8 +31,6 @@ STILL_THERE_EVERY_S = 20.0  # a proxy between here and the page closes what is s
 
 RETRY_AFTER = b"2"  # seconds
 ENDED, FAILED, SIGNED_OUT, NOTHING_TO_SAY, TOO_MANY = 1000, 1011, 4401, 4400, 4429
-
-_open: Counter[str] = Counter()  # websockets of this process, by user and by network
 
 
 class SignedInSocket(AsyncWebsocketConsumer):
@@ -45,7 +43,7 @@ class SignedInSocket(AsyncWebsocketConsumer):
         """Hangs up only once nobody waits for what the browser says: the server says nothing to it before that."""
         self._tasks: list[asyncio.Task[None]] = []
         self._hung_up: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        self._places: list[str] = []  # that it takes in _open
+        self._place: str | None = None  # among the open websockets of its user and its network
         with about(**_facts_of(scope)):  # whatever is begun here knows it, too
             spoken = asyncio.ensure_future(super().__call__(scope, receive, send))
         try:
@@ -59,13 +57,11 @@ class SignedInSocket(AsyncWebsocketConsumer):
         finally:
             for task in (spoken, *self._tasks):
                 task.cancel()
-            _open.subtract(self._places)
-            for place in self._places:
-                if not _open[place]:
-                    del _open[place]
             if self._counted_as is not None:
                 farewell_here().forget(self)
                 WEBSOCKETS.labels(self._counted_as).dec()
+            if self._place is not None:
+                await socket_places_here().give_back(self._place)
 
     def kind(self) -> str:
         """What its page follows, one of a few words."""
@@ -92,13 +88,11 @@ class SignedInSocket(AsyncWebsocketConsumer):
         """Take a place among the open websockets of this user and this network, or tell the page by a close code that none is left."""
         network = network_of(_address_of(self.scope))
         wanted = {f"user {user.pk}": settings.SOCKETS_PER_USER, f"network {network}": settings.SOCKETS_PER_ADDRESS}
-        if any(most and _open[place] >= most for place, most in wanted.items()):
+        self._place = await socket_places_here().take(wanted)
+        if self._place is None:
             await AsyncWebsocketConsumer.accept(self)  # a refused handshake shows a page no reason
             await self.close(TOO_MANY)
-            return True
-        self._places = list(wanted)
-        _open.update(self._places)
-        return False
+        return self._place is None
 
     async def send(self, *arguments: Any, **named: Any) -> None:
         await super().send(*arguments, **named)

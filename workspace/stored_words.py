@@ -1,6 +1,7 @@
 """What workers have stored in English, in the language of whoever reads it: they do not know who that will be."""
 
 import re
+from functools import cache
 
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
@@ -153,6 +154,7 @@ TEMPLATES = (
 )
 
 
+@cache
 def _pattern(template: str) -> re.Pattern[str]:
     parts = re.split(r"%\((\w+)\)s", template)
     return re.compile(
@@ -160,14 +162,11 @@ def _pattern(template: str) -> re.Pattern[str]:
     )
 
 
-_PATTERNS = {template: _pattern(template) for template in TEMPLATES}
-
-
 def in_words(stored: str) -> str:
     """The same sentence in the reader's language; as it is where nobody has foreseen it. Several stand on lines of their own."""
     if "\n" in stored:
         return "\n".join(in_words(line) for line in stored.split("\n"))
-    for template, pattern in _PATTERNS.items():
-        if match := pattern.fullmatch(stored):
+    for template in TEMPLATES:
+        if match := _pattern(template).fullmatch(stored):
             return _(template) % match.groupdict() if match.groupdict() else _(template)
     return stored

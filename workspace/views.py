@@ -8,9 +8,8 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from workspace import selectors, services
-from workspace.errors import ApiProblem
 from workspace.models import OPEN_STATES, Job, JobState, User
-from workspace.paging import asked_flag, page_of
+from workspace.paging import asked_choice, asked_flag, page_of
 from workspace.permissions import CURATORS, PLANNERS
 from workspace.schema import PAGE_PARAMETERS
 from workspace.serializers import JobPageSerializer, JobSerializer, ListedJobSerializer
@@ -38,10 +37,7 @@ class JobList(APIView):
     )
     def get(self, request: SignedInRequest) -> Response:
         jobs = selectors.jobs_of_organisation(request.user.organisation)
-        if state := request.query_params.get("state"):
-            if state not in JobState.values:
-                message = f"Known states are {', '.join(JobState.values)}."
-                raise ApiProblem(400, "invalid", f"state: {message}", details={"state": [message]})
+        if state := asked_choice(request, "state", JobState.values):
             jobs = jobs.filter(state=state)
         if asked_flag(request, "open"):
             jobs = jobs.filter(state__in=OPEN_STATES)

@@ -3,14 +3,13 @@
 import json
 from typing import Any
 
-from rest_framework import serializers
-
 from inspection.models import Asset, AssetKind, GapKind, GapState
 from inspection.selectors import asset_detail, asset_label
 from inspection.selectors.gaps import DrawnGap, GapSummary
 from inspection.serializers.features import collection_serializer, feature_serializer
 from inspection.serializers.gap_words import sentence, title
 from inspection.services.repairs import Offer, Repaired
+from workspace import strict_serializers as serializers
 from workspace.serializers import Declared
 
 LONGEST_NOTE = 500

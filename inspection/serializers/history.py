@@ -2,9 +2,8 @@
 
 from typing import Any
 
-from rest_framework import serializers
-
 from inspection.services.facts import differing
+from workspace import strict_serializers as serializers
 from workspace.models import AuditEntry
 
 OF_THE_SOURCE = {"node_osm_ids", "parts", "content_hash", "data_import_id", "asset_set_id", "zone_set_id", "source_heights", "properties"}

@@ -4,13 +4,13 @@ import json
 from typing import Any
 
 from django.utils.translation import gettext as _
-from rest_framework import serializers
 
 from inspection.models import MAX_REMOVED_PERCENT, ChangeAction, ImportKind, ImportProposal, ProposalOrigin, ProposalState, Upload
 from inspection.selectors.imports import DrawnChange
 from inspection.serializers.features import GeometrySerializer
 from inspection.services.proposals.bounds import KINDS
 from inspection.services.uploads import PART_BYTES
+from workspace import strict_serializers as serializers
 from workspace.fields import FiniteFloatField
 from workspace.models import JobState, User
 from workspace.serializers import Declared

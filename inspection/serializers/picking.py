@@ -3,11 +3,10 @@
 from collections.abc import Iterable
 from typing import Any
 
-from rest_framework import serializers
-
 from inspection.models import Asset, AssetKind
 from inspection.selectors import asset_detail, asset_label
 from inspection.serializers.assets import FIELDS_OF_AN_ASSET
+from workspace import strict_serializers as serializers
 from workspace.serializers import Declared
 
 MOST_REFS = 2_000
@@ -47,11 +46,14 @@ class LookupOutputSerializer(serializers.Serializer):
     results = LookupResultSerializer(many=True, help_text="in the order asked, each reference once")
 
 
+COORDINATE = serializers.FloatField(min_value=-1e6, max_value=1e6)  # degrees, or metres of a height
+
+
 class DrawnAreaSerializer(serializers.Serializer):
     type = serializers.ChoiceField(choices=["Polygon"])
     coordinates = serializers.ListField(
         child=serializers.ListField(
-            child=serializers.ListField(child=serializers.FloatField(), min_length=2, max_length=3), min_length=3, max_length=MOST_CORNERS
+            child=serializers.ListField(child=COORDINATE, min_length=2, max_length=3), min_length=3, max_length=MOST_CORNERS
         ),
         min_length=1,
         max_length=1,

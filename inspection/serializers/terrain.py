@@ -4,7 +4,6 @@ from typing import Any
 
 from django.conf import settings
 from django.utils.translation import gettext as _
-from rest_framework import serializers
 
 from inspection.selectors.terrain_models import TerrainModel
 from inspection.selectors.zones_along import ZoneStretch
@@ -12,6 +11,7 @@ from inspection.serializers.features import GeometrySerializer
 from inspection.serializers.zones import LimitSerializer, ScheduleField, limit_json
 from inspection.services.facts import geojson
 from inspection.terrain.heights import REFERENCES
+from workspace import strict_serializers as serializers
 from workspace.serializers import Declared
 
 MOST_VERTICES = 2_000

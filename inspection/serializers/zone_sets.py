@@ -2,12 +2,11 @@
 
 from typing import Any
 
-from rest_framework import serializers
-
 from inspection.models import DataImport, ImportProposal, ProposalState, ZoneSetVersion, ZoneSubscription
 from inspection.selectors.zone_sets import CountedZoneSet
 from inspection.serializers.features import SourceSerializer, source_json
 from inspection.services.zone_import import FORMAT_NAMES
+from workspace import strict_serializers as serializers
 from workspace.models import User
 from workspace.outgoing import OutgoingRefused, check_address
 from workspace.serializers import Declared

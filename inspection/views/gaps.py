@@ -32,7 +32,7 @@ from inspection.services.repair_edits import CannotRepair
 from inspection.services.repairs import offers_of, preview_of, repair_gap, undo_repair
 from inspection.views.parameters import BOX, box_of, invalid, text_of
 from workspace.errors import ApiProblem
-from workspace.paging import page_of
+from workspace.paging import asked_choice, page_of
 from workspace.permissions import CURATORS
 from workspace.schema import PAGE_PARAMETERS, several_of
 from workspace.signed_in import SignedInRequest
@@ -178,7 +178,5 @@ def _kinds(request: Request) -> list[GapKind]:
 
 
 def _state(request: Request) -> GapState | None:
-    text = request.query_params.get("state", "")
-    if text and text not in GapState.values:
-        raise invalid("state", _("Known states are %(value)s.") % {"value": ", ".join(GapState.values)})
+    text = asked_choice(request, "state", GapState.values)
     return GapState(text) if text else None

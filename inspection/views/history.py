@@ -19,7 +19,7 @@ from inspection.services.history import follow_source, revert_asset, revert_zone
 from inspection.views.edits import edits
 from inspection.views.parameters import invalid
 from workspace.models import AuditEntry, User
-from workspace.paging import page_of
+from workspace.paging import asked_choice, page_of
 from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
@@ -78,9 +78,7 @@ class HistoryList(APIView):
         responses=GroundHistoryPageSerializer,
     )
     def get(self, request: Request) -> Response:
-        subject_type = request.query_params.get("subject_type", "")
-        if subject_type and subject_type not in SUBJECTS:
-            raise invalid("subject_type", _("Known are %(value)s.") % {"value": ", ".join(SUBJECTS)})
+        subject_type = asked_choice(request, "subject_type", SUBJECTS)
         actor = request.query_params.get("actor", "")
         if not actor.isprintable():
             raise invalid("actor", _("A user name is printable."))

@@ -34,7 +34,7 @@ from inspection.views.parameters import invalid
 from inspection.views.uploads import CuratorsAlone
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
-from workspace.paging import page_of
+from workspace.paging import asked_choice, page_of
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
@@ -46,13 +46,6 @@ def _proposal(proposal_id: UUID) -> ImportProposal:
         return proposal_of_id(proposal_id)
     except ImportProposal.DoesNotExist as error:
         raise Http404 from error
-
-
-def _one_of(request: Request, name: str, known: list[str]) -> str:
-    value = request.query_params.get(name, "")
-    if value and value not in known:
-        raise invalid(name, _("Known are %(value)s.") % {"value": ", ".join(known)})
-    return value
 
 
 def _answer(request: SignedInRequest, proposal_id: UUID, status: int = 200) -> Response:
@@ -80,7 +73,7 @@ class ImportList(APIView):
         responses=ProposalPageSerializer,
     )
     def get(self, request: SignedInRequest) -> Response:
-        kind, state = _one_of(request, "kind", ImportKind.values), _one_of(request, "state", ProposalState.values)
+        kind, state = asked_choice(request, "kind", ImportKind.values), asked_choice(request, "state", ProposalState.values)
         page = page_of(request, proposals(kind=kind, states=[state] if state else None), order=NEWEST_FIRST, default_limit=50)
         return Response({"results": [proposal_json(proposal, request.user, is_brief=True) for proposal in page.rows], "next": page.next})
 
@@ -171,7 +164,7 @@ class ImportChanges(APIView):
         responses=ChangeCollectionSerializer,
     )
     def get(self, request: Request, proposal_id: UUID) -> Response:
-        action = _one_of(request, "action", ChangeAction.values)
+        action = asked_choice(request, "action", ChangeAction.values)
         page = page_of(request, changes_of_proposal(_proposal(proposal_id), action=action))
         return Response({"type": "FeatureCollection", "features": [change_feature(change) for change in page.rows], "next": page.next})
 

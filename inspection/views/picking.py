@@ -1,10 +1,10 @@
 """Doors to many assets at once, for those who pick what is inspected. Nothing is stored."""
 
+from dataclasses import replace
 from itertools import islice
 
 from django.http import Http404
 from django.utils.translation import gettext as _
-from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -26,11 +26,12 @@ from inspection.serializers.picking import (
 from inspection.views.parameters import invalid
 from workspace.errors import ApiProblem
 from workspace.models import Role
-from workspace.paging import asked_flag
+from workspace.paging import asked_choice, asked_flag
+from workspace.whole_numbers import WholeNumber
 
 MOST_CHOICES = 20
-FROM = OpenApiParameter("from", int, description="id of the support where it begins")
-TO = OpenApiParameter("to", int, description="id of the support where it ends")
+FROM = WholeNumber("from", "id of the support where it begins")
+TO = WholeNumber("to", "id of the support where it ends")
 
 
 def _asset(asset_id: int, kind: AssetKind) -> Asset:
@@ -40,15 +41,13 @@ def _asset(asset_id: int, kind: AssetKind) -> Asset:
     return asset
 
 
-def _support_of(request: Request, name: str) -> Asset | None:
-    text = request.query_params.get(name, "")
-    if not text:
+def _support_of(request: Request, end: WholeNumber) -> Asset | None:
+    key = end.asked(request)
+    if key is None:
         return None
-    support = None
-    if text.isascii() and text.isdigit() and len(text) < 19:
-        support = Asset.objects.filter(pk=int(text), kind=AssetKind.TOWER, vanished_at=None).first()
+    support = Asset.objects.filter(pk=key, kind=AssetKind.TOWER, vanished_at=None).first()
     if support is None:
-        raise invalid(name, _("There is no such tower or pole."))
+        raise invalid(end.name, _("There is no such tower or pole."))
     return support
 
 
@@ -112,12 +111,12 @@ class LineSupports(APIView):
     @extend_schema(
         operation_id="list_line_supports",
         summary="Towers and poles of a line in order, or those from one to another",
-        parameters=[FROM, TO],
+        parameters=[FROM.documented, TO.documented],
         responses=SupportsOutputSerializer,
     )
     def get(self, request: Request, asset_id: int) -> Response:
         line = _asset(asset_id, AssetKind.LINE)
-        start, end = _support_of(request, "from"), _support_of(request, "to")
+        start, end = _support_of(request, FROM), _support_of(request, TO)
         if (start is None) != (end is None):
             raise invalid("from" if start is None else "to", _("Both ends are needed, or none."))
         if start is None or end is None:
@@ -133,11 +132,11 @@ class StretchAlongLines(APIView):
     @extend_schema(
         operation_id="get_stretch",
         summary="What is between two towers along the lines, also over several lines of a circuit",
-        parameters=[OpenApiParameter(name.name, OpenApiTypes.INT, required=True, description=name.description) for name in (FROM, TO)],
+        parameters=[replace(end, required=True).documented for end in (FROM, TO)],
         responses=SupportsOutputSerializer,
     )
     def get(self, request: Request) -> Response:
-        start, end = _support_of(request, "from"), _support_of(request, "to")
+        start, end = _support_of(request, FROM), _support_of(request, TO)
         if start is None or end is None:
             raise invalid("from" if start is None else "to", _("Both ends are needed."))
         if start == end:
@@ -169,7 +168,7 @@ class RailwayBridges(APIView):
         railway = _asset(asset_id, AssetKind.RAILWAY)
         found = picking.bridges_of_railway(
             railway,
-            all_sections=request.query_params.get("sections") == "all",
-            also_over=asked_flag(request, "over"),
+            all_sections=asked_choice(request, "sections", ("own", "all")) == "all",
+            also_over=asked_flag(request, "over") or False,
         )
         return Response({"sections": len(found.sections), "bridges": picked_assets(found.bridges)})

@@ -4,24 +4,29 @@ from typing import Any
 
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema
-from rest_framework import serializers
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.models import AssetSet, DataImport
 from inspection.services.regions import Region, counts_of_region, delete_region
 from inspection.views.parameters import invalid
+from workspace import strict_serializers as serializers
 from workspace.permissions import CURATORS
 from workspace.signed_in import SignedInRequest
+from workspace.whole_numbers import MAX_NUMBER
 
 
 class RegionInputSerializer(serializers.Serializer):
     """One of bbox, import and set."""
 
     bbox = serializers.ListField(
-        child=serializers.FloatField(), min_length=4, max_length=4, required=False, help_text="west, south, east, north"
+        child=serializers.FloatField(min_value=-180, max_value=180),
+        min_length=4,
+        max_length=4,
+        required=False,
+        help_text="west, south, east, north",
     )
-    import_id = serializers.IntegerField(required=False, help_text="a data import")
+    import_id = serializers.IntegerField(required=False, min_value=1, max_value=MAX_NUMBER, help_text="a data import")
     set = serializers.CharField(max_length=200, required=False, help_text="the name of a set of assets")
     dry_run = serializers.BooleanField(default=False, help_text="only count")
 

@@ -2,7 +2,6 @@
 
 from django.http import Http404
 from django.urls import reverse
-from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, extend_schema
 from rest_framework.request import Request
 from rest_framework.response import Response
@@ -15,13 +14,16 @@ from inspection.serializers.zones import ZoneCollectionSerializer, ZoneDetailFea
 from inspection.services import delete_zone, save_zone
 from inspection.views.edits import edits
 from inspection.views.history import answer, zone_now
-from inspection.views.parameters import BOX, box_of, invalid, text_of
+from inspection.views.parameters import BOX, box_of, text_of
 from workspace.idempotency import idempotent
 from workspace.paging import changed_since, page_of
 from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
 from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
+from workspace.whole_numbers import WholeNumber
+
+ZONE_SET = WholeNumber("zone_set", "the id of a set")
 
 
 class ZoneList(APIView):
@@ -33,14 +35,14 @@ class ZoneList(APIView):
         parameters=[
             BOX,
             OpenApiParameter("text", str, description="words in name, identifier, restriction or reason"),
-            OpenApiParameter("zone_set", int, description="the id of a set"),
+            ZONE_SET.documented,
             CHANGED_SINCE,
             *PAGE_PARAMETERS,
         ],
         responses=ZoneCollectionSerializer,
     )
     def get(self, request: Request) -> Response:
-        found = selectors.zones(box=box_of(request), text=text_of(request), zone_set=_set_of(request))
+        found = selectors.zones(box=box_of(request), text=text_of(request), zone_set=ZONE_SET.asked(request))
         page = page_of(request, changed_since(request, found))
         features = [zone_feature(zone) for zone in page.rows]
         return Response({"type": "FeatureCollection", "features": features, "next": page.next})
@@ -104,10 +106,3 @@ class ZoneDetail(APIView):
             return NoFlyZone.objects.get(pk=zone_id)
         except NoFlyZone.DoesNotExist as error:
             raise Http404 from error
-
-
-def _set_of(request: Request) -> int | None:
-    text = request.query_params.get("zone_set", "")
-    if text and not (text.isascii() and text.isdigit() and len(text) < 10):
-        raise invalid("zone_set", _("The id of a set is a whole number."))
-    return int(text) if text else None

@@ -23,6 +23,7 @@ MAX_BODY_DRAG = 0.5  # of all drag at the maximum airspeed
 
 MASSES_KG = (0.05, 1_000.0)
 BATTERIES_WH = (1.0, 100_000.0)
+RESERVES_PERCENT = (0.0, 90.0)
 AIRSPEEDS_MPS = (1.0, 100.0)
 ROTOR_DISKS_M2 = (0.001, 1_000.0)
 EFFICIENCIES = (0.1, 0.95)  # of a hover: a fault of units lies outside
@@ -72,7 +73,7 @@ class Performance:
     def __post_init__(self) -> None:
         _check(self.battery_wh, *BATTERIES_WH, "battery_wh")
         _check(self.mass_kg, *MASSES_KG, "mass_kg")
-        _check(self.reserve_percent, 0.0, 90.0, "reserve_percent")
+        _check(self.reserve_percent, *RESERVES_PERCENT, "reserve_percent")
         _check(self.max_airspeed_mps, *AIRSPEEDS_MPS, "max_airspeed_mps")
         _check(self.climb_speed_mps, 0.1, 30.0, "climb_speed_mps")
         _check(self.descent_speed_mps, 0.1, 30.0, "descent_speed_mps")

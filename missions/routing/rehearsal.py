@@ -53,7 +53,7 @@ def rehearse_proof() -> None:
 
 
 def rehearse_search() -> None:
-    """Solve problems that are searched."""
+    """Solve problems that are searched, no longer than until everything has run: a whole search takes seconds of the processor."""
     _solve_both_objectives(exact.MAX_TARGETS + 1)
 
 
@@ -69,5 +69,6 @@ def _solve_both_objectives(targets: int) -> None:
                 between_m=np.abs(places[:, None] - places[None]),
                 to_start_m=np.stack([places, places], axis=1),
                 objective=objective,
-            )
+            ),
+            stop=lambda: True,
         )

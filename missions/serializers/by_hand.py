@@ -3,7 +3,6 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
-from rest_framework import serializers
 
 from missions.fields import AboveZeroField, PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -12,6 +11,7 @@ from missions.serializers.shapes import WaypointSerializer
 from missions.services.hand_checks import HandLook
 from missions.services.hand_points import MOST_WAYPOINTS, HandPoint
 from missions.services.plan_json import column_to_json, timing_to_json, waypoints_to_json
+from workspace import strict_serializers as serializers
 from workspace.fields import FiniteFloatField
 
 MOST_LEGS = 200

@@ -4,7 +4,6 @@ from typing import Any
 
 from django.utils.translation import gettext_lazy
 from drf_spectacular.utils import extend_schema_field
-from rest_framework import serializers
 
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -13,6 +12,7 @@ from missions.services.batch_commands import BATCH_KINDS, UavAnswer
 from missions.services.closing import MAX_REASON_LENGTH
 from missions.services.steering import MAX_WAIT_S
 from missions.stored_outcomes import outcome_in_words
+from workspace import strict_serializers as serializers
 
 LONGEST_WHY = 300
 MOST_FLIGHTS = 100
@@ -26,6 +26,7 @@ OUTCOMES = {
     "withdrawn": gettext_lazy("It was withdrawn before it was sent."),
     "revoked": gettext_lazy("The approval was revoked."),
 }
+PAUSE_IS_DEPRECATED = "pause is deprecated: hold does the same, and resume goes on from both"
 PRIORITIES = ("safety", "pause", "mission", "parameter")
 
 
@@ -105,7 +106,7 @@ class CommandParametersSerializer(KnownFieldsSerializer):
 
 
 class CommandInputSerializer(WhyInputSerializer):
-    kind = serializers.ChoiceField(choices=CommandKind.choices)
+    kind = serializers.ChoiceField(choices=CommandKind.choices, help_text=PAUSE_IS_DEPRECATED)
     parameters = CommandParametersSerializer(required=False)
 
 
@@ -190,7 +191,7 @@ class ReturnWaySerializer(KnownFieldsSerializer):
 
 
 class _BatchSerializer(WhyInputSerializer):
-    kind = serializers.ChoiceField(choices=sorted(BATCH_KINDS))
+    kind = serializers.ChoiceField(choices=sorted(BATCH_KINDS), help_text=PAUSE_IS_DEPRECATED)
     ways = serializers.DictField(
         child=ReturnWaySerializer(),
         required=False,

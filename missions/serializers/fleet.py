@@ -3,16 +3,24 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
-from rest_framework import serializers
 
-from missions.fields import AboveZeroField, PositionField
-from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json
+from missions.fields import AboveZeroField, BetweenField, PositionField
+from missions.flight_plan.performance import (
+    AIRSPEEDS_MPS,
+    BATTERIES_WH,
+    MASSES_KG,
+    PERFORMANCE_KEYS,
+    RESERVES_PERCENT,
+    ROTOR_DISKS_M2,
+    InvalidPerformance,
+    performance_from_json,
+)
 from missions.models import Base, CredentialKind, UavCredential, UavType
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
 from missions.serializers.known_fields import KnownFieldsSerializer
-from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, LARGEST_DISK_M2, LARGEST_POWER_W, MOST_RESERVE_PERCENT
+from missions.serializers.limits import LARGEST_POWER_W
 from missions.serializers.performance import fault_words
-from workspace.fields import FiniteFloatField
+from workspace import strict_serializers as serializers
 
 MOST_SENSORS = 12
 
@@ -24,13 +32,11 @@ class UavTypeSerializer(KnownFieldsSerializer):
     name = serializers.CharField(max_length=100)
     max_range_m = AboveZeroField(allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery")
     cruise_speed_mps = AboveZeroField(required=False, max_value=FASTEST_MPS)
-    battery_wh = AboveZeroField(allow_null=True, required=False, max_value=LARGEST_BATTERY_WH, help_text="watt-hours of a full battery")
-    mass_kg = AboveZeroField(allow_null=True, required=False, max_value=HEAVIEST_KG, help_text="kilograms at take-off")
-    reserve_percent = FiniteFloatField(required=False, min_value=0, max_value=MOST_RESERVE_PERCENT, help_text="that no plan uses")
-    max_airspeed_mps = AboveZeroField(allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: its cruise speed")
-    rotor_disk_m2 = AboveZeroField(
-        allow_null=True, required=False, max_value=LARGEST_DISK_M2, help_text="area swept by all rotors; null: the Iris's"
-    )
+    battery_wh = BetweenField(BATTERIES_WH, allow_null=True, required=False, help_text="watt-hours of a full battery")
+    mass_kg = BetweenField(MASSES_KG, allow_null=True, required=False, help_text="kilograms at take-off")
+    reserve_percent = BetweenField(RESERVES_PERCENT, required=False, help_text="that no plan uses")
+    max_airspeed_mps = BetweenField(AIRSPEEDS_MPS, allow_null=True, required=False, help_text="null: its cruise speed")
+    rotor_disk_m2 = BetweenField(ROTOR_DISKS_M2, allow_null=True, required=False, help_text="area swept by all rotors; null: the Iris's")
     hover_power_w = AboveZeroField(
         allow_null=True, required=False, max_value=LARGEST_POWER_W, help_text="in a calm hover, as measured; null: worked out"
     )

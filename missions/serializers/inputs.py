@@ -7,13 +7,21 @@ from typing import Any
 from django.conf import settings
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from rest_framework import serializers
 
-from missions.fields import AboveZeroField, PositionField
+from missions.fields import AboveZeroField, BetweenField, PositionField
 from missions.fleet_selectors import FIGURES, figures_of, uavs_of_organisation
 from missions.flight_plan.conditions import Conditions, InvalidConditions, conditions_from_json
 from missions.flight_plan.lost_link import LostLink
-from missions.flight_plan.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json
+from missions.flight_plan.performance import (
+    AIRSPEEDS_MPS,
+    BATTERIES_WH,
+    MASSES_KG,
+    PERFORMANCE_KEYS,
+    RESERVES_PERCENT,
+    ROTOR_DISKS_M2,
+    InvalidPerformance,
+    performance_from_json,
+)
 from missions.models import EndAction, Objective, TargetPriority, Uav
 from missions.routing.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
 from missions.routing.problem import Objective as RoutingObjective
@@ -21,10 +29,7 @@ from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import (
     FARTHEST_RANGE_M,
     FASTEST_MPS,
-    HEAVIEST_KG,
     HIGHEST_WIND_M,
-    LARGEST_BATTERY_WH,
-    LARGEST_DISK_M2,
     LARGEST_KEY,
     LARGEST_POWER_W,
     LEAST_CHARGING_W,
@@ -32,7 +37,6 @@ from missions.serializers.limits import (
     LONGEST_UAV_NAME,
     MOST_DAYS_AHEAD,
     MOST_RALLY_POINTS,
-    MOST_RESERVE_PERCENT,
     MOST_SENSORS_OF_UAV,
     MOST_SORTIES,
     MOST_TARGETS,
@@ -52,6 +56,7 @@ from missions.services import (
     with_bases,
 )
 from missions.services.requests import GO_ON, LostLinkRequest, lost_link_from_json
+from workspace import strict_serializers as serializers
 from workspace.external_data import AttributesField, ExternalIdField
 from workspace.fields import FiniteFloatField
 
@@ -93,15 +98,11 @@ class ConditionsSerializer(KnownFieldsSerializer):
 class PerformanceFieldsSerializer(KnownFieldsSerializer):
     """Battery, mass and airspeed; missing: the stored UAV's type's."""
 
-    battery_wh = AboveZeroField(
-        required=False, allow_null=True, max_value=LARGEST_BATTERY_WH, help_text="of a full battery; null: its energy is not counted"
-    )
-    mass_kg = AboveZeroField(required=False, allow_null=True, max_value=HEAVIEST_KG, help_text="at take-off; null: the Iris's")
-    reserve_percent = FiniteFloatField(
-        required=False, min_value=0, max_value=MOST_RESERVE_PERCENT, help_text="of the battery, that no plan uses"
-    )
-    max_airspeed_mps = AboveZeroField(required=False, allow_null=True, max_value=FASTEST_MPS, help_text="null: its cruise speed")
-    rotor_disk_m2 = AboveZeroField(required=False, allow_null=True, max_value=LARGEST_DISK_M2, help_text="null: the Iris's")
+    battery_wh = BetweenField(BATTERIES_WH, required=False, allow_null=True, help_text="of a full battery; null: its energy is not counted")
+    mass_kg = BetweenField(MASSES_KG, required=False, allow_null=True, help_text="at take-off; null: the Iris's")
+    reserve_percent = BetweenField(RESERVES_PERCENT, required=False, help_text="of the battery, that no plan uses")
+    max_airspeed_mps = BetweenField(AIRSPEEDS_MPS, required=False, allow_null=True, help_text="null: its cruise speed")
+    rotor_disk_m2 = BetweenField(ROTOR_DISKS_M2, required=False, allow_null=True, help_text="null: the Iris's")
     hover_power_w = AboveZeroField(required=False, allow_null=True, max_value=LARGEST_POWER_W, help_text="as measured; null: worked out")
 
 

@@ -7,7 +7,6 @@ import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema_field
-from rest_framework import serializers
 
 from inspection.serializers.schedule_words import schedule_sentence
 from inspection.serializers.zones import ScheduleField
@@ -17,6 +16,7 @@ from missions.flight_plan.clearance import FlownRoute
 from missions.models import EndAction
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.zone_selectors import LegalWindows
+from workspace import strict_serializers as serializers
 
 MOST_WAYPOINTS = 20_000
 MOST_ROUTES = 50

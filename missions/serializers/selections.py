@@ -2,14 +2,13 @@
 
 from typing import Any
 
-from rest_framework import serializers
-
 from inspection.selectors import asset_detail, asset_label
 from missions.fields import PositionField
 from missions.models import SavedSelection, TargetPriority
 from missions.selection_selectors import KeptTarget, kept_targets
 from missions.serializers.inputs import OptionsSerializer, TargetInputSerializer
 from missions.serializers.shapes import TaskOutputSerializer
+from workspace import strict_serializers as serializers
 from workspace.serializers import Declared
 
 

@@ -3,10 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
-from rest_framework import serializers
-
 from missions.models import PlannedStarts, Route, StartsEnd
 from missions.services.planned_starts import StartState
+from workspace import strict_serializers as serializers
 
 
 class PlannedStartSerializer(serializers.Serializer):
@@ -20,6 +19,10 @@ class PlannedStartSerializer(serializers.Serializer):
 
 
 class StartsInputSerializer(serializers.Serializer):
+    uavs = serializers.ListField(
+        child=serializers.IntegerField(), allow_empty=False, required=False,
+        help_text="ids of those to start, the others wait on the ground; each is checked once more as GET …/preflight does. Absent: all",
+    )  # fmt: skip
     pilot_checked = serializers.BooleanField(
         default=False, help_text="who starts them says that what only a pilot can see was looked at; it stays in the history"
     )

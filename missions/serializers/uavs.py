@@ -3,16 +3,22 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
-from rest_framework import serializers
 
-from missions.fields import AboveZeroField, PositionField
+from missions.fields import AboveZeroField, BetweenField, PositionField
 from missions.fleet_selectors import UavWithUse, bases_of_organisation, performance_with, types_of_organisation
-from missions.flight_plan.performance import OWN_PERFORMANCE_KEYS, InvalidPerformance
+from missions.flight_plan.performance import (
+    AIRSPEEDS_MPS,
+    BATTERIES_WH,
+    MASSES_KG,
+    OWN_PERFORMANCE_KEYS,
+    RESERVES_PERCENT,
+    InvalidPerformance,
+)
 from missions.models import CredentialKind, EndAction, LinkKind, Uav, UavState
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
 from missions.serializers.known_fields import KnownFieldsSerializer
-from missions.serializers.limits import HEAVIEST_KG, LARGEST_BATTERY_WH, MOST_RESERVE_PERCENT
 from missions.serializers.performance import fault_words
+from workspace import strict_serializers as serializers
 from workspace.external_data import AttributesField, ExternalIdField
 from workspace.fields import FiniteFloatField
 
@@ -48,15 +54,11 @@ class UavPropertiesSerializer(KnownFieldsSerializer):
         allow_null=True, required=False, max_value=FARTHEST_RANGE_M, help_text="metres on one battery; null: the type's, else not limited"
     )
     cruise_speed_mps = AboveZeroField(allow_null=True, required=False, max_value=FASTEST_MPS, help_text="null: the type's, else the usual")
-    battery_wh = AboveZeroField(
-        allow_null=True, required=False, max_value=LARGEST_BATTERY_WH, help_text="watt-hours of a full battery; null: the type's"
-    )
-    mass_kg = AboveZeroField(allow_null=True, required=False, max_value=HEAVIEST_KG, help_text="kilograms at take-off; null: the type's")
-    reserve_percent = FiniteFloatField(
-        allow_null=True, required=False, min_value=0, max_value=MOST_RESERVE_PERCENT, help_text="that no plan uses; null: the type's"
-    )
-    max_airspeed_mps = AboveZeroField(
-        allow_null=True, required=False, max_value=FASTEST_MPS, help_text="through the air; null: the type's, else its cruise speed"
+    battery_wh = BetweenField(BATTERIES_WH, allow_null=True, required=False, help_text="watt-hours of a full battery; null: the type's")
+    mass_kg = BetweenField(MASSES_KG, allow_null=True, required=False, help_text="kilograms at take-off; null: the type's")
+    reserve_percent = BetweenField(RESERVES_PERCENT, allow_null=True, required=False, help_text="that no plan uses; null: the type's")
+    max_airspeed_mps = BetweenField(
+        AIRSPEEDS_MPS, allow_null=True, required=False, help_text="through the air; null: the type's, else its cruise speed"
     )
     heading_deg = FiniteFloatField(
         allow_null=True, required=False, min_value=0, max_value=359.999999, help_text="degrees from true north, clockwise; null: not known"

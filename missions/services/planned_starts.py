@@ -1,6 +1,6 @@
 """Start a mission's UAVs in planned order: on the server, each checked against those in the air, stoppable from any page."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import asdict, dataclass
 from datetime import datetime, timedelta
 from enum import StrEnum
@@ -11,6 +11,7 @@ from django.db.models import QuerySet
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from missions.approval_hooks import reasons_against_starts
 from missions.command_rules import SAFETY_RANKS
 from missions.command_selectors import places_in_flight, upload_of
 from missions.models import (
@@ -60,8 +61,13 @@ class PlannedStart:
     why: str = ""
 
 
-def begin_planned_starts(*, mission: Mission, actor: User, pilot_checked: bool = False) -> PlannedStarts:
-    """Plan the first starts of all UAVs that have their route and did not start yet; the first one in LEAD_S seconds.
+def begin_planned_starts(
+    *, mission: Mission, actor: User, uavs: Collection[int] | None = None, pilot_checked: bool = False
+) -> PlannedStarts:
+    """Plan the first starts of the UAVs that have their route and did not start yet; the first one in LEAD_S seconds.
+
+    uavs: ids of those to start, the others wait on the ground; None: all of them. Those that are named are checked once more by what
+    later apps know of them: link, position, battery.
 
     pilot_checked: the actor has said that what only a pilot can see was looked at; it stays in the history.
     Raises Refused, also where one of them does not have its route as approved.
@@ -74,8 +80,12 @@ def begin_planned_starts(*, mission: Mission, actor: User, pilot_checked: bool =
         if held.planned_starts.filter(ended_at=None).exists():
             raise refuse("already_starting", _("Its UAVs are being started in planned order already."))
         routes = _routes_to_start(held, approval)
+        if uavs is not None:
+            routes = _chosen(routes, uavs)
         if not routes:
             raise refuse("nothing_to_start", _("No UAV of this mission waits for its first start."))
+        if uavs is not None:
+            refuse_for(reasons_against_starts(held, uavs))
         refuse_for(_not_loaded(routes, approval))
         first_s = routes[0].departs_s
         begin = timezone.now() + timedelta(seconds=LEAD_S)
@@ -93,6 +103,24 @@ def begin_planned_starts(*, mission: Mission, actor: User, pilot_checked: bool =
         after = {"uavs": [entry.uav for entry in entries], "pilot_checked": pilot_checked}
         note(held, actor, "begin-starts", before=None, after=after)
     return starts
+
+
+def _chosen(routes: Sequence[Route], uavs: Collection[int]) -> list[Route]:
+    """Raises Refused where one of these UAVs does not wait for its first start."""
+    chosen = [route for route in routes if route.mission_uav.uav_id in uavs]
+    if len(chosen) < len(set(uavs)):
+        raise refuse("not_waiting", _("One of these UAVs does not wait for its first start in this mission."))
+    return chosen
+
+
+def uavs_being_started(mission: Mission) -> set[int]:
+    """Those whose start in planned order is due later."""
+    return {
+        entry["uav"]
+        for starts in mission.planned_starts.filter(ended_at=None)
+        for entry in starts.uavs
+        if entry["state"] == StartState.WAITING
+    }
 
 
 def waiting_for_start(mission: Mission) -> list[Route]:

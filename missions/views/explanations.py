@@ -6,9 +6,7 @@ from uuid import UUID
 
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
-from rest_framework import serializers
-from rest_framework.request import Request
+from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -25,8 +23,12 @@ from workspace.errors import ApiProblem
 from workspace.models import Role
 from workspace.signed_in import SignedInRequest
 from workspace.throttling import ScopedRate
+from workspace.whole_numbers import WholeNumber
 
 EVERYBODY = frozenset(Role)
+
+UAVS = WholeNumber("uav", "the routes of these UAVs alone, by their index", minimum=0, maximum=99_999, max_values=1_000)
+TARGETS = WholeNumber("target", "these targets alone, by their index", minimum=0, maximum=99_999, max_values=1_000)
 
 
 class _Explanation(APIView):
@@ -96,8 +98,8 @@ class MissionExplanation(_Explanation):
         description="Each route against the straight line, the zones behind its detours, what another UAV would fly, what binds it; "
         "and why each target that is left out is. Worked out on the ground of now.",
         parameters=[
-            OpenApiParameter("uav", int, many=True, description="the routes of these UAVs alone, by their index"),
-            OpenApiParameter("target", int, many=True, description="these targets alone, by their index"),
+            UAVS.documented,
+            TARGETS.documented,
         ],
         responses={
             200: explanations.MissionExplanationSerializer,
@@ -108,18 +110,12 @@ class MissionExplanation(_Explanation):
         mission = mission_or_404(request.user, mission_id)
         if mission.planned_at is None:
             raise ApiProblem(409, "not_planned", _("The mission has no routes yet."))
-        uavs, targets = (_places(request, name) for name in ("uav", "target"))
-        if uavs is not None or targets is not None:
-            uavs, targets = uavs or (), targets or ()
+        uavs: Collection[int] | None = UAVS.all_asked(request)
+        targets: Collection[int] | None = TARGETS.all_asked(request)
+        if not uavs and not targets:
+            uavs = targets = None
         with api_problems():
             asked = services.request_of_mission(mission=mission)
             asked = replace(asked, bases=stored_bases(mission.organisation), organisation=mission.organisation_id)
             answer = explain_mission(mission=mission, request=asked, uavs=uavs, targets=targets)
         return Response(explanations.MissionExplanationSerializer(answer).data)
-
-
-def _places(request: Request, name: str) -> Collection[int] | None:
-    texts = request.query_params.getlist(name)
-    if any(not (text.isascii() and text.isdigit() and len(text) < 6) for text in texts):
-        raise serializers.ValidationError({name: [_("A whole number is needed.")]})
-    return {int(text) for text in texts} if texts else None

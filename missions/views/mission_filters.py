@@ -10,15 +10,17 @@ from missions.list_selectors import LAST_CHANGED_FIRST, ORDERS, MissionFilter, o
 from missions.models import MissionState
 from workspace.errors import ApiProblem
 from workspace.external_data import EXTERNAL_ID, asked_external_id
-from workspace.paging import asked_instant
-from workspace.schema import DAY_OR_TIME, WHOLE_NUMBER, several_of
+from workspace.paging import asked_flag, asked_instant
+from workspace.schema import DAY_OR_TIME, several_of
+from workspace.whole_numbers import WholeNumber
 
 ORDER_NAMES = [*ORDERS, *(f"-{name}" for name in ORDERS)]
+UAV = WholeNumber("uav", "id of a UAV that the mission uses")
 FILTER_PARAMETERS = [
     OpenApiParameter("text", str, description="part of the name, of the author's name or of a target's name"),
     OpenApiParameter("state", several_of(MissionState.values), description=f"one or several with commas: {', '.join(MissionState.values)}"),
     OpenApiParameter("author", str, description="user name"),
-    OpenApiParameter("uav", WHOLE_NUMBER, description="id of a UAV that the mission uses"),
+    UAV.documented,
     OpenApiParameter("stale", bool, description="whether the ground or a UAV has changed since the mission was planned"),
     OpenApiParameter("changed_from", DAY_OR_TIME, description="date or time with offset, ISO 8601"),
     OpenApiParameter("changed_before", DAY_OR_TIME, description="date or time with offset, ISO 8601"),
@@ -35,20 +37,17 @@ def asked_filter(request: Request) -> MissionFilter:
     states = tuple(state for state in ask.get("state", "").split(",") if state)
     if unknown := [state for state in states if state not in MissionState.values]:
         raise _refusal("state", _("There is no state %(state)s.") % {"state": unknown[0][:20]})
-    uav = ask.get("uav", "")
-    if uav and not (uav.isascii() and uav.isdigit() and len(uav) < 19):
-        raise _refusal("uav", _("The number of a UAV is needed."))
     return MissionFilter(
         text=ask.get("text", "").strip()[:100].replace("\0", ""),
         states=states,
         author=ask.get("author", "").strip()[:150].replace("\0", ""),
-        uav=int(uav) if uav else None,
-        is_stale={"true": True, "false": False}.get(ask.get("stale", "")),
+        uav=UAV.asked(request),
+        is_stale=asked_flag(request, "stale"),
         changed_from=asked_instant(request, "changed_from"),
         changed_before=asked_instant(request, "changed_before"),
         external_id=asked_external_id(request),
         target_external_id=asked_external_id(request, "target_external_id"),
-        is_deleted=ask.get("deleted") == "true",
+        is_deleted=asked_flag(request, "deleted") or False,
     )
 
 

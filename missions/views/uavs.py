@@ -20,12 +20,15 @@ from workspace.errors import ApiProblem
 from workspace.external_data import EXTERNAL_ID, asked_external_id
 from workspace.idempotency import idempotent
 from workspace.models import User
-from workspace.paging import changed_since, page_of
+from workspace.paging import asked_choice, changed_since, page_of
 from workspace.permissions import ADMINISTRATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
-from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS, WHOLE_NUMBER
+from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
+from workspace.whole_numbers import WholeNumber
 
+STATES = (*UavState.values, fleet_selectors.EVERY_STATE)
+BASE, TYPE = WholeNumber("base"), WholeNumber("type")
 WAIVES_SAFETY = ("is_simulated", "allows_unsigned")
 
 INPUT = PolymorphicProxySerializer(
@@ -70,19 +73,8 @@ def _values(request: SignedInRequest, uav: Uav | None = None) -> dict[str, Any]:
 def _filters(request: Request) -> dict[str, Any]:
     """Raises ApiProblem for what is no state or no id."""
     words = {name: request.query_params.get(name, "").strip()[:100].replace("\0", "") for name in ("text", "state", "sensor")}
-    faults = {}
-    if words["state"] not in {"", fleet_selectors.EVERY_STATE, *UavState.values}:
-        faults["state"] = ["One of active, maintenance, retired, all."]
-    ids = {}
-    for name, field in (("base", "base"), ("type", "uav_type")):
-        text = request.query_params.get(name, "")
-        if text and not (text.isascii() and text.isdigit() and len(text) < 19):
-            faults[name] = ["A whole number is needed."]
-        elif text:
-            ids[field] = int(text)
-    if faults:
-        place, messages = next(iter(faults.items()))
-        raise ApiProblem(400, "invalid", f"{place}: {messages[0]}", details=faults)
+    asked_choice(request, "state", STATES)
+    ids = {"base": BASE.asked(request), "uav_type": TYPE.asked(request)}
     return words | ids | {"external_id": asked_external_id(request)}
 
 
@@ -92,11 +84,9 @@ class UavList(APIView):
         summary="UAVs of one's organisation, by name",
         parameters=[
             OpenApiParameter("text", str, description="part of the name, the base's name, the type's name or the serial number"),
-            OpenApiParameter(
-                "state", str, enum=[*UavState.values, fleet_selectors.EVERY_STATE], description="without it all but the retired ones"
-            ),
-            OpenApiParameter("base", WHOLE_NUMBER),
-            OpenApiParameter("type", WHOLE_NUMBER),
+            OpenApiParameter("state", str, enum=STATES, description="without it all but the retired ones"),
+            BASE.documented,
+            TYPE.documented,
             OpenApiParameter("sensor", str, description="part of the name of one of its sensors"),
             EXTERNAL_ID,
             CHANGED_SINCE,

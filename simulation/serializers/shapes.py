@@ -1,10 +1,9 @@
 """Shapes of rehearsals, for the OpenAPI document and for what comes in."""
 
-from rest_framework import serializers
-
 from missions.serializers.shapes import WindLayerOutputSerializer
 from simulation.models import VerdictLevel
 from simulation.rehearsing.sky import Named
+from workspace import strict_serializers as serializers
 from workspace.models import JobState
 from workspace.serializers import Declared, JobErrorField
 

@@ -5,7 +5,7 @@ from typing import Any
 
 from django.conf import settings
 from django.utils.translation import gettext_lazy
-from rest_framework import serializers
+from drf_spectacular.utils import extend_schema_field
 
 from missions.fields import PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
@@ -13,6 +13,7 @@ from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults_told import WrongFaults, faults_told
 from simulation.models import SimulatedVehicle, Simulation, SimulationState, VehicleFlavour
 from simulation.serializers.shapes import RehearsalConditionsSerializer
+from workspace import strict_serializers as serializers
 
 SPEEDS = (1, 2, 5, 10)
 MOST_POOL_UAVS = 100
@@ -41,6 +42,7 @@ NOT_OF_THE_FLEET = gettext_lazy(
 )
 
 
+@extend_schema_field({"oneOf": [{"type": "string"}, {"type": "object", "additionalProperties": {}}]})
 class ConditionsField(serializers.JSONField):
     """A name, or an object; read by simulation.views.skies."""
 

@@ -6,13 +6,11 @@ from uuid import UUID
 from django.db import transaction
 from django.http import Http404
 from django.urls import reverse
-from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
-from rest_framework.request import Request
+from drf_spectacular.utils import OpenApiResponse, extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.selectors import ground_revision
-from inspection.views.parameters import invalid
 from missions.flight_plan.conditions import conditions_from_json
 from missions.models import Mission
 from missions.services.refused import Refused
@@ -34,6 +32,7 @@ from workspace.schema import PAGE_PARAMETERS
 from workspace.services import TooManyJobs
 from workspace.signed_in import SignedInRequest
 from workspace.tasks import send_job_on_commit
+from workspace.whole_numbers import WholeNumber
 
 NEWEST_FIRST = ("-created_at", "-pk")
 USUAL = (Named.AS_PLANNED,)
@@ -42,6 +41,8 @@ REFUSED = {
     409: OpenApiResponse(description="There is no plan to fly: `details.reasons` has each reason."),
     429: OpenApiResponse(description="Too many of your rehearsals are waiting or running."),
 }
+
+RUN = WholeNumber("run", "which of its conditions, from 0; 0 by default", minimum=0, maximum=999)
 
 
 class MissionRehearsals(APIView):
@@ -107,13 +108,13 @@ class RehearsalTrackOfRun(APIView):
         operation_id="get_rehearsal_track",
         summary="The lines that a rehearsal flew, beside the planned ones",
         description="A row a second. Heights above take-off are those of each flight.",
-        parameters=[OpenApiParameter("run", int, description="which of its conditions, from 0; 0 by default")],
+        parameters=[RUN.documented],
         responses=shapes.RehearsalTrackSerializer,
     )
     def get(self, request: SignedInRequest, mission_id: UUID, rehearsal_id: UUID) -> Response:
         mission = mission_or_404(request.user, mission_id)
         rehearsal = rehearsal_or_404(request.user, mission_id, rehearsal_id)
-        run = _run_number(request)
+        run = RUN.asked(request) or 0
         if run not in {row.sequence for row in rehearsal.runs.all()}:
             raise Http404
         tracks = {track.uav: track for track in selectors.tracks_of_run(rehearsal, run)}
@@ -149,10 +150,3 @@ def _known(mission: Mission) -> dict[str, Any]:
     except Refused:
         content = None
     return {"content_sha256": content, "ground_revision": ground_revision()}
-
-
-def _run_number(request: Request) -> int:
-    text = request.query_params.get("run", "0")
-    if not (text.isascii() and text.isdigit() and len(text) < 4):
-        raise invalid("run", "A whole number from 0 is needed.")
-    return int(text)

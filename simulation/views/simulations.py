@@ -36,7 +36,7 @@ from simulation.views.skies import sky_of
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
 from workspace.models import User
-from workspace.paging import page_of
+from workspace.paging import asked_choice, page_of
 from workspace.permissions import FLYING
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
@@ -217,9 +217,7 @@ class SimulatedVehicleDetail(APIView):
 
 
 def _listed(request: Request, found: Any) -> Response:
-    which = request.query_params.get("state", WHICH[0])
-    if which not in WHICH:
-        raise invalid("state", f"One of {', '.join(WHICH)}.")
+    which = asked_choice(request, "state", WHICH) or WHICH[0]
     page = page_of(request, found.filter(state__in=PRESENT) if which == WHICH[0] else found, order=NEWEST_FIRST, default_limit=20)
     return Response({"results": [shapes.simulation_json(simulation) for simulation in page.rows], "next": page.next})
 

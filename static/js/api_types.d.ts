@@ -158,7 +158,6 @@ export interface components {
             /**
              * @description a command, or take-over: a pilot on site flies it
              *
-             *     * `pause` - pause
              *     * `hold` - hold
              *     * `return` - return
              *     * `land` - land
@@ -169,14 +168,13 @@ export interface components {
             uav: number;
         };
         /**
-         * @description * `pause` - pause
-         *     * `hold` - hold
+         * @description * `hold` - hold
          *     * `return` - return
          *     * `land` - land
          *     * `take-over` - take-over
          * @enum {string}
          */
-        AlertActKindEnum: "pause" | "hold" | "return" | "land" | "take-over";
+        AlertActKindEnum: "hold" | "return" | "land" | "take-over";
         AlertCounts: {
             critical: number;
             warning: number;
@@ -563,6 +561,15 @@ export interface components {
         BatchInputRequest: {
             /** @default  */
             why: string;
+            /**
+             * @description pause is deprecated: hold does the same, and resume goes on from both
+             *
+             *     * `hold` - hold
+             *     * `land` - land
+             *     * `pause` - pause
+             *     * `resume` - resume
+             *     * `return` - return
+             */
             kind: components["schemas"]["BatchKind"];
             /** @description of return: how UAVs, by their ids, return, so that they keep apart; the others straight and at once */
             ways?: {
@@ -839,6 +846,23 @@ export interface components {
         CommandInputRequest: {
             /** @default  */
             why: string;
+            /**
+             * @description pause is deprecated: hold does the same, and resume goes on from both
+             *
+             *     * `upload-mission` - Send the mission
+             *     * `clear-mission` - Take the mission off the UAV
+             *     * `arm` - Arm
+             *     * `take-off` - Take off
+             *     * `start` - Start the mission
+             *     * `pause` - Pause
+             *     * `resume` - Resume
+             *     * `hold` - Hold
+             *     * `return` - Return
+             *     * `land` - Land
+             *     * `abort` - Abort the mission
+             *     * `change-speed` - Change speed
+             *     * `set-return-height` - Set the return height
+             */
             kind: components["schemas"]["CommandKind"];
             parameters?: components["schemas"]["CommandParametersRequest"];
         };
@@ -1216,7 +1240,10 @@ export interface components {
             arrivals: components["schemas"]["EstimateArrival"][];
             /** Format: date-time */
             ends_at: string | null;
-            /** Format: date-time */
+            /**
+             * Format: date-time
+             * @description worked out once a silence: once it has passed, contact is overdue
+             */
             contact_expected_at: string | null;
             /** Format: double */
             report_interval_s: number | null;
@@ -3007,6 +3034,15 @@ export interface components {
         MissionsBatchInputRequest: {
             /** @default  */
             why: string;
+            /**
+             * @description pause is deprecated: hold does the same, and resume goes on from both
+             *
+             *     * `hold` - hold
+             *     * `land` - land
+             *     * `pause` - pause
+             *     * `resume` - resume
+             *     * `return` - return
+             */
             kind: components["schemas"]["BatchKind"];
             /** @description of return: how UAVs, by their ids, return, so that they keep apart; the others straight and at once */
             ways?: {
@@ -3388,7 +3424,9 @@ export interface components {
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         PatchedSimulationChangeRequest: {
             /** @description the air from now on: calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent; batteries stay as they are */
-            conditions?: unknown;
+            conditions?: string | {
+                [key: string]: unknown;
+            };
             faults?: components["schemas"]["FaultsRequest"];
             /**
              * @description times real time, of all its UAVs
@@ -3539,7 +3577,9 @@ export interface components {
         /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
         PatchedVehicleChangeRequest: {
             /** @description the air from now on: calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent; batteries stay as they are */
-            conditions?: unknown;
+            conditions?: string | {
+                [key: string]: unknown;
+            };
             faults?: components["schemas"]["FaultsRequest"];
         };
         /** @description A zone that somebody draws or corrects. A limit that is null is not stated, which is not 0. */
@@ -3859,7 +3899,7 @@ export interface components {
         };
         Preflight: {
             /**
-             * @description connect: no UAV that lacks the mission is heard; upload: POST …/dispatch; wait: uploads are under way; start: POST …/planned-starts; null: nothing is left to start
+             * @description connect: none is ready, and none that lacks the mission is heard; upload: POST …/dispatch; wait: uploads are under way; start: POST …/planned-starts with those that are ready; null: nothing is left to start
              *
              *     * `connect` - connect
              *     * `upload` - upload
@@ -5767,7 +5807,9 @@ export interface components {
              * @description calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent
              * @default as-planned
              */
-            conditions: unknown;
+            conditions: string | {
+                [key: string]: unknown;
+            };
             faults?: components["schemas"]["FaultsRequest"];
             /** @default px4 */
             flavour: components["schemas"]["VehicleFlavour"];
@@ -5871,7 +5913,9 @@ export interface components {
              * @description calm, as-planned, strong-wind, weak-battery, or an object with own figures as in rehearsals: name, wind, temperature_c, gusts_mps, turbulence_mps_at_20ft, battery_percent
              * @default calm
              */
-            conditions: unknown;
+            conditions: string | {
+                [key: string]: unknown;
+            };
             faults?: components["schemas"]["FaultsRequest"];
             /**
              * @description the others' follow
@@ -5992,6 +6036,8 @@ export interface components {
          */
         StaleCauseWhatEnum: "zone" | "uav" | "base" | "asset" | "terrain" | "elsewhere";
         StartsInputRequest: {
+            /** @description ids of those to start, the others wait on the ground; each is checked once more as GET …/preflight does. Absent: all */
+            uavs?: number[];
             /**
              * @description who starts them says that what only a pilot can see was looked at; it stays in the history
              * @default false
@@ -6697,6 +6743,8 @@ export interface components {
             is_loaded: boolean;
             /** @description one of its checks has failed */
             blocks: boolean;
+            /** @description it has the mission and none of its checks has failed: it may be started without the others */
+            is_ready: boolean;
             checks: components["schemas"]["PreflightCheck"][];
         };
         /**

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 ACTS = "acts"  # in the details of an alert whose acts depend on more than its code
-PAUSE, HOLD, RETURN, LAND = "pause", "hold", "return", "land"  # commands
+HOLD, RETURN, LAND = "hold", "return", "land"  # commands
 TAKE_OVER = "take-over"  # no command: a pilot on site flies it
-KINDS = (PAUSE, HOLD, RETURN, LAND, TAKE_OVER)
-_OF_CODE = {"no-progress": HOLD, "off-route": PAUSE, "zone": HOLD, "weather": RETURN, "height-off": HOLD}
+KINDS = (HOLD, RETURN, LAND, TAKE_OVER)
+_OF_CODE = {"no-progress": HOLD, "off-route": HOLD, "zone": HOLD, "weather": RETURN, "height-off": HOLD}
 
 
 def acts(*kinds: str, uav_id: int) -> list[dict[str, Any]]:

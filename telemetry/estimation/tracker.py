@@ -51,6 +51,7 @@ class Tracker:
     _states: list[State | None] = field(default_factory=list)  # after each report; None before the first position
     _outlook: tuple[tuple[float, float], tuple[Arrival, ...], Arrival | None] | None = None
     _hearing: Hearing | None = None
+    _contact: tuple[float, float | None] | None = None  # report that a silence began with, and when it is expected to end
     _arrivals_s: deque[float] = field(default_factory=lambda: deque(maxlen=ARRIVALS_KEPT))
 
     @property
@@ -73,6 +74,7 @@ class Tracker:
         """Where on earlier flights something was heard promptly."""
         if self._hearing is not None and places:
             self._hearing.learn(self._frame.to_metres(np.array(places)))
+            self._contact = None
 
     def take(self, report: Report) -> None:
         read = sound(report)
@@ -192,10 +194,13 @@ class Tracker:
         )
 
     def _contact_expected_s(self, state: State, along_m: float, at_s: float) -> float | None:
+        """Worked out once a silence: a time that passes is overdue, and is not moved on."""
         if self._hearing is None or not self.is_silent(at_s):
             return None
-        expected_s = self._hearing.expected_s(state, along_m, self.time.own_s(at_s))
-        return None if expected_s is None else self.time.server_s(expected_s)
+        if self._contact is None or self._contact[0] != state.report_s:
+            expected_s = self._hearing.expected_s(state, along_m, self.time.own_s(at_s))
+            self._contact = (state.report_s, None if expected_s is None else self.time.server_s(expected_s))
+        return self._contact[1]
 
     def _foreseen(self, state: State) -> tuple[tuple[Arrival, ...], Arrival | None]:
         """By the server's clock; worked out once a report."""

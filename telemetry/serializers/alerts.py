@@ -2,13 +2,12 @@
 
 from typing import Any
 
-from rest_framework import serializers
-
 from missions.serializers.known_fields import KnownFieldsSerializer
 from telemetry.alerting.acts import ACTS, KINDS, acts_of
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alert_words import alert_words
 from telemetry.selectors.alerts import WORST
+from workspace import strict_serializers as serializers
 from workspace.models import User
 
 

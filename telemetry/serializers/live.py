@@ -130,7 +130,9 @@ class EstimateShapeSerializer(serializers.Serializer):
     to_go_m = serializers.FloatField(allow_null=True)
     arrivals = EstimateArrivalSerializer(many=True)
     ends_at = serializers.DateTimeField(allow_null=True)
-    contact_expected_at = serializers.DateTimeField(allow_null=True)
+    contact_expected_at = serializers.DateTimeField(
+        allow_null=True, help_text="worked out once a silence: once it has passed, contact is overdue"
+    )
     report_interval_s = serializers.FloatField(allow_null=True)
     battery = BatteryForecastSerializer(allow_null=True, required=False)
 

@@ -22,6 +22,9 @@ class UavPreflightSerializer(serializers.Serializer):
     place = serializers.IntegerField(help_text="in the mission")
     is_loaded = serializers.BooleanField(help_text="the mission was uploaded, and read back as approved")
     blocks = serializers.BooleanField(help_text="one of its checks has failed")
+    is_ready = serializers.BooleanField(
+        help_text="it has the mission and none of its checks has failed: it may be started without the others"
+    )
     checks = PreflightCheckSerializer(many=True)
 
 
@@ -29,8 +32,8 @@ class PreflightSerializer(serializers.Serializer):
     next_act = serializers.ChoiceField(
         choices=[(act.value, act.value) for act in NextAct],
         allow_null=True,
-        help_text="connect: no UAV that lacks the mission is heard; upload: POST …/dispatch; wait: uploads are under way; "
-        "start: POST …/planned-starts; null: nothing is left to start",
+        help_text="connect: none is ready, and none that lacks the mission is heard; upload: POST …/dispatch; wait: uploads are under way; "
+        "start: POST …/planned-starts with those that are ready; null: nothing is left to start",
     )
     checks = PreflightCheckSerializer(many=True, help_text="of the whole mission")
     uavs = UavPreflightSerializer(many=True, help_text="whose first flight has not begun, in the order of their departures")

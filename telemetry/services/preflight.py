@@ -1,6 +1,6 @@
 """Checks before the UAVs of a mission are started: what is ready, what speaks against a start, and which act comes next."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timedelta
 from enum import StrEnum
@@ -24,7 +24,7 @@ from missions.selectors import approval_in_force, mission_of_organisation
 from missions.services.approval_checks import look_at
 from missions.services.dispatch import TO_SEND
 from missions.services.own_return import ReturnCheck, ReturnState, return_checks
-from missions.services.planned_starts import routes_not_begun
+from missions.services.planned_starts import routes_not_begun, uavs_being_started
 from missions.services.refused import Reason
 from missions.services.start_slots import reasons_to_wait
 from missions.stored_outcomes import outcome_in_words
@@ -80,6 +80,11 @@ class UavPreflight:
     def blocks(self) -> bool:
         return any(check.state == CheckState.FAILED for check in self.checks)
 
+    @property
+    def is_ready(self) -> bool:
+        """Whether it may be started without waiting for others of its mission."""
+        return self.is_loaded and not self.blocks
+
 
 @dataclass(frozen=True)
 class Preflight:
@@ -91,12 +96,13 @@ class Preflight:
 
 
 def preflight_of(mission: Mission, *, now: datetime) -> Preflight:
-    """Checks of the UAVs whose first flight has not begun. Raises NoGraph."""
+    """Checks of the UAVs whose first flight has not begun and which are not being started. Raises NoGraph."""
     approval = approval_in_force(mission)
     if approval is None or approval.revoke_requested_at is not None or mission.state not in TO_SEND:
         return Preflight(None, (), ())
     related = ("mission", "mission_uav__uav__uav_type", "mission_uav__uav__connection", "mission_uav__uav__watch")
-    routes = list(routes_not_begun(mission, approval).select_related(*related))
+    starting = uavs_being_started(mission)
+    routes = list(routes_not_begun(mission, approval).exclude(mission_uav__uav__in=starting).select_related(*related))
     if not routes:
         return Preflight(None, (), ())
     period = int(now.timestamp() // MAP_CHECK_PERIOD_S)
@@ -128,14 +134,28 @@ def _checked_on_the_map(
 
 
 def _next_act(rows: tuple[UavPreflight, ...]) -> NextAct:
-    """Connected UAVs without the mission come first; those that nobody hears hold up no others' upload."""
-    states = [{check.code: check.state for check in row.checks} for row in rows]
-    to_load = [found for row, found in zip(rows, states, strict=True) if not row.is_loaded]
-    if not to_load:
-        return NextAct.START
-    if any(found["mission"] == CheckState.WAITING and found["link"] == CheckState.OK for found in to_load):
+    """Connected UAVs without the mission come first. Those that nobody hears, and those that refused it, hold up no other's start."""
+    states = [{check.code: check.state for check in row.checks} for row in rows if not row.is_loaded]
+    heard = [found["mission"] for found in states if found["link"] == CheckState.OK]
+    if CheckState.WAITING in heard:
         return NextAct.WAIT
-    return NextAct.UPLOAD if any(found["link"] == CheckState.OK for found in to_load) else NextAct.CONNECT
+    if CheckState.UNKNOWN in heard:
+        return NextAct.UPLOAD
+    if not states or any(row.is_ready for row in rows):
+        return NextAct.START
+    return NextAct.UPLOAD if heard else NextAct.CONNECT
+
+
+def reasons_not_ready(mission: Mission, uav_ids: Collection[int]) -> list[Reason]:
+    """What blocks the start of these UAVs by the checks before start; those of a mission that cannot be started have no checks."""
+    found = preflight_of(mission, now=timezone.now())
+    against = [Reason(check.code, check.message) for check in found.checks if check.state == CheckState.FAILED]
+    for row in found.uavs:
+        if row.uav in uav_ids:
+            against += [
+                Reason(check.code, f"{row.name}: {check.message}", row.place) for check in row.checks if check.state == CheckState.FAILED
+            ]
+    return against
 
 
 def _against(reasons: Sequence[Reason], place: int | None) -> Iterator[Check]:

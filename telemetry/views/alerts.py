@@ -15,12 +15,12 @@ from telemetry.selectors.alerts import AlertFilter, alerts_of_organisation, aler
 from telemetry.serializers import alerts as shapes
 from telemetry.services.alerts import acknowledge_alert, note_alert
 from telemetry.services.down_alerts import ClosedByItself, close_down_alert
-from telemetry.views.log_filters import mission_of, time_of, uav_of
+from telemetry.views.log_filters import UAV, mission_of, time_of
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
-from workspace.paging import page_of
+from workspace.paging import asked_choice, asked_flag, page_of
 from workspace.permissions import FLYING
-from workspace.schema import PAGE_PARAMETERS, TIME, WHOLE_NUMBER, several_of
+from workspace.schema import PAGE_PARAMETERS, TIME, several_of
 from workspace.signed_in import SignedInRequest
 
 STATES = ("open", "closed")
@@ -31,7 +31,7 @@ FILTERS = [
     OpenApiParameter("acknowledged", bool),
     OpenApiParameter("level", several_of(AlertLevel.values), description=f"one or several with commas: {', '.join(AlertLevel.values)}"),
     OpenApiParameter("code", str, description="one or several with commas"),
-    OpenApiParameter("uav", WHOLE_NUMBER, description="id of a UAV"),
+    UAV.documented,
     OpenApiParameter("mission", UUID, description="id of a mission"),
     OpenApiParameter("opened_from", TIME, description="opened at or after this time, with its zone"),
     OpenApiParameter("opened_before", TIME, description="opened before this time, with its zone"),
@@ -135,20 +135,16 @@ def _detail(alert: Alert) -> dict[str, object]:
 def _asked(request: Request) -> AlertFilter:
     """Raises ApiProblem 400."""
     ask = request.query_params
-    state, acknowledged = ask.get("state", ""), ask.get("acknowledged", "")
-    if state not in ("", *STATES):
-        raise invalid("state", "open or closed.")
-    if acknowledged not in ("", "true", "false"):
-        raise invalid("acknowledged", "true or false.")
+    state = asked_choice(request, "state", STATES)
     levels = tuple(filter(None, ask.get("level", "").split(",")))
     if any(level not in AlertLevel.values for level in levels):
         raise invalid("level", f"{', '.join(AlertLevel.values)}.")
     return AlertFilter(
         is_open=state == "open" if state else None,
-        is_acknowledged=acknowledged == "true" if acknowledged else None,
+        is_acknowledged=asked_flag(request, "acknowledged"),
         levels=levels,
         codes=tuple(code[:50].replace("\0", "") for code in ask.get("code", "").split(",") if code),
-        uav_id=uav_of(request),
+        uav_id=UAV.asked(request),
         mission_id=mission_of(request),
         opened_from=time_of(request, "opened_from"),
         opened_before=time_of(request, "opened_before"),

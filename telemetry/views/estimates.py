@@ -3,24 +3,22 @@
 from uuid import UUID
 
 from drf_spectacular.utils import OpenApiParameter, extend_schema
-from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from inspection.views.parameters import invalid
 from missions.views.missions import mission_or_404
 from telemetry.selectors.estimates import estimates_of_mission
 from telemetry.serializers.estimates import EstimateCollectionSerializer, estimate_feature
-from telemetry.views.log_filters import THINNED, sampled, time_of, uav_of
-from workspace.paging import page_of
+from telemetry.views.log_filters import THINNED, UAV, sampled, time_of
+from workspace.paging import asked_flag, page_of
 from workspace.renderers import FastJSONRenderer
-from workspace.schema import PAGE_PARAMETERS, TIME, WHOLE_NUMBER
+from workspace.schema import PAGE_PARAMETERS, TIME
 from workspace.signed_in import SignedInRequest
 
 FILTERS = [
     OpenApiParameter("from", TIME, description="of moments at or after this time, with its zone"),
     OpenApiParameter("to", TIME, description="of moments before this time, with its zone"),
-    OpenApiParameter("uav", WHOLE_NUMBER, description="id of a UAV"),
+    UAV.documented,
     OpenApiParameter("replaced", bool, description="true: those for whose second a measurement came later; false: the others"),
     *THINNED,
 ]
@@ -43,19 +41,12 @@ class MissionEstimates(APIView):
     def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
         estimates = estimates_of_mission(
             mission_or_404(request.user, mission_id),
-            uav_id=uav_of(request),
+            uav_id=UAV.asked(request),
             estimated_from=time_of(request, "from"),
             estimated_before=time_of(request, "to"),
-            is_replaced=_flag(request, "replaced"),
+            is_replaced=asked_flag(request, "replaced"),
         )
         chosen = sampled(request, estimates, time="estimated_for")
         page = page_of(request, chosen.rows, order=("estimated_for", "pk"))
         features = [estimate_feature(row) for row in page.rows]
         return Response({"type": "FeatureCollection", "features": features, "every_s": chosen.every_s, "next": chosen.next(page.next)})
-
-
-def _flag(request: Request, name: str) -> bool | None:
-    text = request.query_params.get(name, "")
-    if text not in {"", "true", "false"}:
-        raise invalid(name, "true or false is needed.")
-    return text == "true" if text else None

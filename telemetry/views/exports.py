@@ -51,8 +51,13 @@ ABOUT = (
     "rounded to the resolution of their sensors. Each record has the times of measurement, receipt and storage, and in CSV and GeoJSON "
     "a flag where its time is wrong; the tracks of GPX and KML leave out those without a place and those from the future."
 )
-EVERY = OpenApiParameter("every_s", float, description="of each UAV one record in so many seconds; 0 for all", default=EVERY_S)
 MOST_S = 3_600.0
+EVERY = OpenApiParameter(
+    "every_s",
+    {"type": "number", "minimum": 0, "maximum": MOST_S},
+    description="of each UAV one record in so many seconds; 0 for all",
+    default=EVERY_S,
+)
 KIND = OpenApiParameter("kind", str, OpenApiParameter.PATH, enum=[*KINDS], description="how the file ends")
 NOTHING = {409: OpenApiResponse(description="Nothing was recorded: there is no file.")}
 FILES: dict[Any, Any] = {(200, kind.media_type.partition(";")[0]): OpenApiTypes.STR for kind in KINDS.values()} | NOTHING

@@ -16,21 +16,27 @@ from inspection.views.parameters import BOX, box_of, invalid
 from telemetry.decoding.companion_reports import instant
 from telemetry.selectors.log import LogFilter
 from telemetry.selectors.thinning import LONGEST_S, SHORTEST_S, one_each, spacing_for
-from workspace.schema import TIME, WHOLE_NUMBER
+from workspace.schema import TIME
+from workspace.whole_numbers import WholeNumber
 
 USUAL_SPAN = timedelta(days=1)
-MOST_CHOSEN = 100_000
+UAV = WholeNumber("uav", "id of a UAV")
+MOST = WholeNumber("most", "so many at most over all pages, evenly chosen, but up to two a UAV; `next` has the every_s", maximum=100_000)
 TIMES = [
     OpenApiParameter("from", TIME, description="measured at or after this time, with its zone"),
     OpenApiParameter("to", TIME, description="measured before this time, with its zone"),
 ]
 THINNED = [
-    OpenApiParameter("every_s", float, description="of each UAV the first record in so many seconds, and none from the future"),
-    OpenApiParameter("most", int, description="so many at most over all pages, evenly chosen, but up to two a UAV; `next` has the every_s"),
+    OpenApiParameter(
+        "every_s",
+        {"type": "number", "minimum": SHORTEST_S, "maximum": LONGEST_S},
+        description="of each UAV the first record in so many seconds, and none from the future",
+    ),
+    MOST.documented,
 ]
 FILTERS = [
     *TIMES,
-    OpenApiParameter("uav", WHOLE_NUMBER, description="id of a UAV"),
+    UAV.documented,
     OpenApiParameter("mission", UUID, description="id of a mission"),
     BOX,
     *THINNED,
@@ -54,7 +60,7 @@ class Sampled:
 
 def asked_log(request: Request) -> LogFilter:
     """Without a UAV, a mission or a beginning: of the last day. Raises ApiProblem 400."""
-    uav_id, mission_id = uav_of(request), mission_of(request)
+    uav_id, mission_id = UAV.asked(request), mission_of(request)
     wanted = LogFilter(uav_id, mission_id, time_of(request, "from"), time_of(request, "to"), box_of(request))
     if uav_id is None and mission_id is None and wanted.measured_from is None:
         last_day = (wanted.measured_before or timezone.now()) - USUAL_SPAN
@@ -66,17 +72,15 @@ def sampled(
     request: Request, rows: QuerySet[Any], *, of: Callable[[QuerySet[Any]], QuerySet[Any]] = lambda rows: rows, time: str = "measured_at"
 ) -> Sampled:
     """All rows where no thinning is asked for, else those chosen from `of` them. Raises ApiProblem 400."""
-    every_s, most = request.query_params.get("every_s", ""), request.query_params.get("most", "")
+    every_s, most = request.query_params.get("every_s", ""), MOST.asked(request)
     if every_s and most:
         raise invalid("most", "Either every_s or most.")
-    if most and not (most.isascii() and most.isdigit() and len(most) < 10 and 1 <= int(most) <= MOST_CHOSEN):
-        raise invalid("most", f"A whole number from 1 to {MOST_CHOSEN} is needed.")
     if not every_s and not most:
         return Sampled(rows, None, None)
     candidates = of(rows)
-    spacing_s = spacing_for(candidates, int(most), time=time) if most else _seconds(every_s)
+    spacing_s = spacing_for(candidates, most, time=time) if most else _seconds(every_s)
     chosen = rows if spacing_s is None else one_each(candidates, spacing_s, time=time)
-    return Sampled(chosen, spacing_s, int(most) if most else None)
+    return Sampled(chosen, spacing_s, most)
 
 
 def time_of(request: Request, name: str) -> datetime | None:
@@ -95,13 +99,6 @@ def _seconds(text: str) -> float:
     if not SHORTEST_S <= value <= LONGEST_S:
         raise invalid("every_s", f"A number of seconds from {SHORTEST_S:g} to {LONGEST_S:g} is needed.")
     return value
-
-
-def uav_of(request: Request) -> int | None:
-    text = request.query_params.get("uav", "")
-    if text and not (text.isascii() and text.isdigit() and len(text) < 19):
-        raise invalid("uav", "The number of a UAV is needed.")
-    return int(text) if text else None
 
 
 def mission_of(request: Request) -> UUID | None:

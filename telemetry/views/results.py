@@ -8,7 +8,6 @@ from rest_framework.response import Response
 from rest_framework.views import APIView
 
 from inspection.selectors import references_of
-from inspection.views.parameters import invalid
 from telemetry.selectors.results import ResultFilter, results_that_match
 from telemetry.serializers.results import ResultPageSerializer, result_json
 from telemetry.views.log_filters import mission_of, time_of
@@ -16,10 +15,12 @@ from workspace.external_data import asked_external_id
 from workspace.paging import asked_instant, page_of
 from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS, TIME
 from workspace.signed_in import SignedInRequest
+from workspace.whole_numbers import WholeNumber
 
 NEWEST_FIRST = ("-state_at", "-pk")
+ASSET = WholeNumber("asset", "id of an asset")
 FILTERS = [
-    OpenApiParameter("asset", int, description="id of an asset"),
+    ASSET.documented,
     OpenApiParameter("external_id", str, description="your organisation's id of the asset"),
     OpenApiParameter("mission", UUID, description="id of a mission"),
     OpenApiParameter("from", TIME, description="`state_at` at or after this time, with its zone"),
@@ -47,11 +48,8 @@ class Results(APIView):
 
 def _asked(request: Request) -> ResultFilter:
     """Raises ApiProblem 400."""
-    asset = request.query_params.get("asset", "")
-    if asset and not (asset.isascii() and asset.isdigit() and len(asset) < 19):
-        raise invalid("asset", "The number of an asset is needed.")
     return ResultFilter(
-        asset_id=int(asset) if asset else None,
+        asset_id=ASSET.asked(request),
         external_id=asked_external_id(request),
         mission_id=mission_of(request),
         settled_from=time_of(request, "from"),

@@ -2,12 +2,10 @@
 
 from django.http import Http404
 from django.utils import timezone
-from django.utils.translation import gettext as _
-from drf_spectacular.utils import OpenApiParameter, extend_schema
+from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
-from inspection.views.parameters import invalid
 from missions.fleet_selectors import uavs_of_organisation
 from missions.models import Uav
 from missions.views.problems import api_problems
@@ -16,8 +14,9 @@ from telemetry.serializers.returns import LandingHereSerializer, PresentReturnsS
 from telemetry.services.landing_here import landing_here
 from telemetry.services.present_returns import present_returns
 from workspace.signed_in import SignedInRequest
+from workspace.whole_numbers import WholeNumber
 
-MAX_UAVS = 50
+UAVS = WholeNumber("uav", "ids of UAVs", max_values=50, required=True)
 
 
 class Returns(APIView):
@@ -27,7 +26,7 @@ class Returns(APIView):
         description="From where each is at this moment, measured or estimated, straight home at the height of its own autopilot: the"
         " ground, towers and wires, zones that apply then, the other UAVs that return with it or are in the air, and its battery at the"
         " landing.",
-        parameters=[OpenApiParameter("uav", int, many=True, description="ids of UAVs")],
+        parameters=[UAVS.documented],
         responses=PresentReturnsSerializer,
     )
     def get(self, request: SignedInRequest) -> Response:
@@ -53,10 +52,7 @@ class UavLanding(APIView):
 
 def _asked(request: SignedInRequest) -> list[Uav]:
     """In the order asked for. Raises ApiProblem 400 and Http404."""
-    texts = request.query_params.getlist("uav")
-    if not texts or len(texts) > MAX_UAVS or not all(text.isascii() and text.isdigit() and len(text) < 19 for text in texts):
-        raise invalid("uav", _("The numbers of 1 to %(most)s UAVs are needed.") % {"most": MAX_UAVS})
-    keys = list(dict.fromkeys(int(text) for text in texts))
+    keys = UAVS.all_asked(request)
     found = {uav.pk: uav for uav in uavs_of_organisation(request.user.organisation).filter(pk__in=keys)}
     if len(found) < len(keys):
         raise Http404

@@ -18,7 +18,7 @@ from telemetry.selectors.vehicles import unknown_vehicles
 from telemetry.serializers.vehicles import AdoptionSerializer, UnknownVehiclePageSerializer, UnknownVehicleSerializer, vehicle_json
 from telemetry.services.unknown_vehicles import AlreadySettled, NewUav, NoPlace, adopt_vehicle, heed_vehicle, ignore_vehicle
 from workspace.errors import ApiProblem
-from workspace.paging import page_of
+from workspace.paging import asked_choice, page_of
 from workspace.permissions import AdministratorsAlone
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
@@ -39,9 +39,7 @@ class UnknownVehicles(APIView):
         responses=UnknownVehiclePageSerializer,
     )
     def get(self, request: Request) -> Response:
-        state = request.query_params.get("state", UnknownVehicleState.NEW.value)
-        if state not in UnknownVehicleState.values:
-            raise ApiProblem(400, "invalid", "state: new, ignored or adopted.", details={"state": ["new, ignored or adopted."]})
+        state = asked_choice(request, "state", UnknownVehicleState.values) or UnknownVehicleState.NEW
         page = page_of(request, unknown_vehicles().filter(state=state), order=("-heard_at", "-pk"))
         return Response({"results": [vehicle_json(vehicle) for vehicle in page.rows], "next": page.next})
 

@@ -82,7 +82,11 @@ def answers(page: Page, act: str) -> None:
 
 
 def panel_of(page: Page) -> Any:
-    return page.get_by_role("region", name="Simulation")
+    """The drawer, which is folded until somebody opens it."""
+    panel = page.get_by_role("region", name="Simulation")
+    if panel.locator("details:not([open])").count():
+        panel.locator("summary").click()
+    return panel
 
 
 def flies_in_simulation(page: Page, pace: str) -> None:

@@ -51,7 +51,8 @@ def ends(visitor: Visitor, mission: str, flyers: list[Flyer]) -> None:
         for flyer in flyers:
             flyer.obeys()
     for flyer in flyers:
-        flyer.reports(0.0, is_in_air=False, is_armed=False)  # else it is waited for by the starts of the next test
+        if flyer.content is not None:
+            flyer.reports(0.0, is_in_air=False, is_armed=False)  # else it is waited for by the starts of the next test
     for uav in asks(page, f"/missions/{mission}")["uavs"]:
         writes(page, "PATCH", f"/uavs/{uav['id']}", {"state": "retired", "name": f"Flown {uav['id']}"})
     page.context.close()
@@ -92,7 +93,7 @@ def opened(page: Page, path: str) -> Page:
 def told(flyers: list[Flyer]) -> list[list[str]]:
     for flyer in flyers:
         flyer.obeys()
-    return [[kind for kind in flyer.told if kind in {"pause", "return"}] for flyer in flyers]
+    return [[kind for kind in flyer.told if kind in {"hold", "return"}] for flyer in flyers]
 
 
 def test_return_all_on_the_page_of_a_mission_reaches_that_mission_alone(visitor: Visitor, two: dict, picture: Picture) -> None:

@@ -1,4 +1,4 @@
-"""A planned mission is approved, frozen, sent, steered and taken back."""
+"""A planned mission is approved, frozen, and taken back; Plan leads to Fly, where it is sent and steered."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -57,9 +57,24 @@ def answers(page: Page, act: str) -> None:
     expect(page.get_by_role("dialog")).to_have_count(0)
 
 
-def test_a_mission_is_approved_frozen_sent_steered_and_revoked(
-    visitor: Visitor, mission: str, picture: Callable[[Page, str], None]
-) -> None:
+def cannot_be_told(page: Page, name: str) -> None:
+    """One that never connected: every command says why not."""
+    page.locator("#uav-cards .card").filter(has_text=name).get_by_role("button", name=re.compile(name)).click()
+    bar = page.get_by_role("group", name=f"Commands to {name}")
+    for act in ("Hold", "Return", "Land here", "Abort"):
+        expect(bar.get_by_role("button", name=act, exact=True)).to_be_disabled()
+    expect(bar).to_contain_text(f"{name} never connected.")
+    bar.get_by_role("button", name="More").click()
+    menu = page.locator(".menu")
+    start = menu.get_by_role("button", name="Start", exact=True)
+    expect(start).to_be_disabled()
+    expect(start).to_have_attribute("title", f"{name} does not have its mission yet.")
+    expect(menu.get_by_role("button", name="Upload again")).to_be_disabled()
+    page.keyboard.press("Escape")
+    expect(page.get_by_role("button", name="Abort the mission")).to_be_visible()
+
+
+def test_a_mission_is_approved_frozen_sent_and_revoked(visitor: Visitor, mission: str, picture: Callable[[Page, str], None]) -> None:
     page = visitor.signs_in("opal")
     opened(page, mission)
     state = page.locator("#mission-state")
@@ -78,35 +93,23 @@ def test_a_mission_is_approved_frozen_sent_steered_and_revoked(
     expect(page.get_by_role("textbox", name="Name of the mission")).to_have_attribute("readonly", "")
     assert posts(page, f"/missions/{mission.split('/')[-1]}", {"name": "Other"}, method="PATCH").status == 409
 
-    page.get_by_role("button", name="Send to UAVs").click()
-    expect(page.get_by_role("dialog")).to_contain_text("Nothing takes off by this.")
-    answers(page, "Send to UAVs")
+    expect(page.get_by_role("button", name=re.compile("^Send|^Upload|^Start|^Hold|^Abort"))).to_have_count(0)
+    expect(page.get_by_role("link", name="Fly: Connect 2 UAVs")).to_have_class(re.compile("primary"))
+    assert posts(page, f"/missions/{mission.split('/')[-1]}/dispatch", {}).ok  # before they are switched on
     expect(state).to_have_text("Dispatched")
     uavs = page.get_by_role("list", name="UAVs of this mission").get_by_role("listitem")
     expect(uavs).to_have_count(2)
     for number in range(2):
         expect(uavs.nth(number)).to_contain_text("Waiting for the UAV")
-    petrel = uavs.filter(has_text="Petrel")
-    start = petrel.get_by_role("button", name="Start", exact=True)
-    expect(start).to_be_disabled()
-    expect(start).to_have_attribute("title", "Petrel does not have its mission yet.")
-
-    petrel.get_by_role("button", name="Hold", exact=True).click()
-    question = page.get_by_role("dialog", name="Hold Petrel?")
-    expect(question.get_by_role("button", name="Hold Petrel")).to_be_focused()
-    page.keyboard.press("Escape")
-    expect(page.get_by_role("dialog")).to_have_count(0)
     assert [command["kind"] for command in asks(page, f"{mission}/commands")["results"]] == ["upload-mission"] * 2
-    petrel.get_by_role("button", name="Land here", exact=True).click()
-    expect(page.get_by_role("dialog").get_by_role("button", name="Keep flying")).to_be_focused()
-    page.keyboard.press("Escape")
-    petrel.get_by_role("button", name="Hold", exact=True).click()
-    picture(page, "hold-light")
-    answers(page, "Hold Petrel")
-    expect(petrel).to_contain_text(re.compile(r"Hold: waiting \d\d:\d\d"))
     page.locator("#commands summary").click()
-    expect(page.get_by_role("list", name="Commands").get_by_role("listitem")).to_have_count(3)
+    expect(page.get_by_role("list", name="Commands").get_by_role("listitem")).to_have_count(2)
     picture(page, "flying-light")
+    page.get_by_role("link", name="Fly: Connect 2 UAVs").click()
+    wait_for_map(page)
+    cannot_be_told(page, "Petrel")
+    page.go_back()
+    wait_for_map(page)
 
     page.get_by_role("button", name="Revoke").click()
     question = page.get_by_role("dialog")
@@ -177,5 +180,6 @@ def test_viewers_see_a_mission_on_its_way_and_have_no_buttons(visitor: Visitor, 
     opened(page, mission)
     expect(page.get_by_text("Waiting for the UAV").first).to_be_visible()
     expect(page.get_by_role("button", name=re.compile("^Hold|^Revoke|^Abort|^Send"))).to_have_count(0)
+    expect(page.get_by_role("link", name=re.compile("^Fly: "))).to_have_count(0)
     assert posts(operator, f"/missions/{key}/revoke", {"reason": "Over"}).ok
     expect(page.locator("#mission-state")).to_have_text("Planned")

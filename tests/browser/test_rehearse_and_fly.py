@@ -109,29 +109,33 @@ def approves_and_sends(page: Page, picture: Picture) -> None:
     expect(page.locator("#mission-state")).to_have_text("Approved", timeout=SOON_MS)
     page.get_by_role("link", name="Plan", exact=True).click()
     wait_for_map(page)
-    page.get_by_role("button", name="Send to UAVs").click()
-    answers(page, "Send to UAVs")
-    expect(page.locator("#mission-state")).to_have_text("Dispatched", timeout=SOON_MS)
     expect(page.locator("#flyers .simulated-mark")).to_be_visible()
+    fly = page.get_by_role("link", name=re.compile("^Fly: "))
+    expect(fly).to_have_attribute("href", re.compile("/fly$"))
 
 
 def flies(plan: Page, live: Page, picture: Picture) -> None:
     """In real time: a browser that is slow is still there in time."""
     flies_in_simulation(live, "Real time")
+    panel = live.get_by_role("region", name="Before start")
+    panel.get_by_role("button", name="Upload to 1 UAV").click(timeout=SOON_MS)
+    expect(live.locator("#mission-state")).to_have_text("Dispatched", timeout=SOON_MS)
     expect(card(live, NAME).locator(".simulated-mark").first).to_be_visible(timeout=SOON_MS)
     expect(plan.locator("#flyers")).to_contain_text("On the UAV: what was approved", timeout=SOON_MS)
+    expect(plan.get_by_role("link", name="Fly: Start 1 UAV")).to_be_visible(timeout=SOON_MS)
     picture(plan, "flow-5-on-board")
-    plan.locator("#flyers").get_by_role("button", name="Start", exact=True).click()
-    answers(plan, f"Start {NAME}")
+    panel.get_by_role("checkbox", name=re.compile("Looked at on site")).check()
+    panel.get_by_role("button", name="Start 1 UAV").click()
+    answers(live, "Start in planned order")
     expect(live.locator("#mission-state")).to_have_text("Active", timeout=SOON_MS)
     expect(live.locator("#map .map-flyer")).to_have_class(re.compile("measured"), timeout=SOON_MS)
-    expect(card(live, NAME).locator(".figures")).to_contain_text(re.compile("over take-off[1-9]"), timeout=SOON_MS)
+    expect(card(live, NAME).locator("[data-figure=height]")).to_contain_text(re.compile("(AGL|above take-off)[1-9]"), timeout=SOON_MS)
 
 
 def loses_the_link_and_finds_it_again(page: Page, picture: Picture) -> None:
     """While it stands in the air, so that the flight waits for whoever looks at it."""
     panel = panel_of(page)
-    is_told(page, "Pause")
+    is_told(page, "Hold")
     expect(card(page, NAME).locator(".chip").first).to_have_text("Holding", timeout=SOON_MS)
     panel.get_by_label("Link or GPS lost for").fill(SILENT_S)
     panel.get_by_role("button", name="Lose the link").click()

@@ -91,8 +91,10 @@ def opened(page: Page, path: str) -> Page:
 
 
 def starts(page: Page, name: str) -> None:
-    row = page.locator("#flyers .flyer").filter(has_text=name)
-    row.get_by_role("button", name="Start", exact=True).click()
+    """Alone, by the menu of its commands."""
+    card(page, name).get_by_role("button", name=re.compile(name)).click()
+    page.get_by_role("group", name=f"Commands to {name}").get_by_role("button", name="More").click()
+    page.locator(".menu").get_by_role("button", name="Start", exact=True).click()
     page.get_by_role("dialog").get_by_role("button", name=f"Start {name}").click()
     expect(page.get_by_role("dialog")).to_have_count(0)
 
@@ -103,13 +105,15 @@ def card(page: Page, name: str) -> Any:
 
 def drops_out(visitor: Visitor, flight: Flight) -> tuple[Page, Page]:
     """The pages of who started the flight and of who watches it, once another plan is offered on both."""
-    pilot = opened(visitor.signs_in("opal"), f"/missions/{flight.mission}")
+    pilot = opened(visitor.signs_in("opal"), f"/missions/{flight.mission}/fly")
     watcher = opened(visitor.signs_in("rory"), f"/missions/{flight.mission}/fly")
     for name in NAMES:
         starts(pilot, name)
     expect(watcher.locator("#mission-state")).to_have_text("Active")
     expect(watcher.locator(".map-flyer.measured")).to_have_count(2)
-    expect(card(watcher, "Dunlin").locator(".figures")).to_contain_text(re.compile(r"over take-off\s*[4-9]\d"))  # it has climbed
+    expect(card(watcher, "Dunlin").locator("[data-figure=height]")).to_contain_text(
+        re.compile(r"(AGL|above take-off)\s*[4-9]\d")
+    )  # it has climbed
     flight.vehicles["Dunlin"].comes_home()
     lost = watcher.locator(".alert.critical").filter(has_text="without a command of ours")
     lost.get_by_role("button", name="Acknowledge").click()

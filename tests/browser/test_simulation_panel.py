@@ -46,6 +46,8 @@ def simulation_of(page: Page, mission: str) -> dict:
 
 def test_simulated_uavs_are_started_changed_and_ended_one_by_one(visitor: Visitor, mission: str, picture: Picture) -> None:
     page = opened(visitor.signs_in("opal"), f"/missions/{mission}/fly")
+    expect(page.get_by_role("region", name="Before start").get_by_role("button", name="Fly in simulation")).to_be_enabled()
+    expect(page.locator("#simulation-state")).to_be_hidden()  # the drawer is folded
     panel = panel_of(page)
     expect(panel.locator("#simulation-state")).to_contain_text("start them here")
     picture(page, "simulation-before")
@@ -112,7 +114,7 @@ def test_the_panel_obeys_the_readers_units_and_language(visitor: Visitor, missio
     try:
         writes(page, "PATCH", "/account", {"language": "de", "units": "imperial"})
         opened(page, f"/missions/{mission}/fly")
-        panel = page.get_by_role("region", name="Simulation")
+        panel = panel_of(page)
         panel.get_by_role("button", name="In der Simulation fliegen").click()
         expect(panel.locator(".simulation-uavs")).to_contain_text("am Boden", timeout=SOON_MS)
         expect(panel.locator(".simulation-three .unit")).to_have_text(["mph", "°", "mph"])

@@ -59,10 +59,10 @@ test("a request says how each returns, of those that it names", () => {
 });
 
 test("several missions are one request, each named", () => {
-  const { path, body } = batchRequest("pause", batchScopes(uavs, missions));
+  const { path, body } = batchRequest("hold", batchScopes(uavs, missions));
   assert.equal(path, "/missions/commands");
   assert.deepEqual(body, {
-    kind: "pause",
+    kind: "hold",
     missions: [
       { mission: "south", uavs: [1] },
       { mission: "north", uavs: [3] },

@@ -183,23 +183,12 @@ test("flights are sent one after the other", () => {
   assert.equal(flying.flightToSend({ ...kite, flown: 2 }, []), null);
 });
 
-test("a mission has the buttons of its stage", () => {
-  assert.deepEqual(flying.stageActs(mission("approved"), []), { send: true, revoke: true, abort: false });
-  const all = [command("upload-mission", "applied"), command("upload-mission", "queued", { uav: { id: 8 } })];
-  assert.deepEqual(flying.stageActs(mission("dispatched"), all), { send: false, revoke: true, abort: true });
-  assert.equal(flying.stageActs(mission("dispatched"), []).send, true);
-  assert.deepEqual(flying.stageActs(mission("active"), all), { send: false, revoke: false, abort: true });
-  assert.deepEqual(flying.stageActs(mission("failed"), all), { send: false, revoke: false, abort: true });
-  assert.deepEqual(flying.stageActs(mission("aborted"), all), { send: false, revoke: false, abort: false });
-});
-
-test("a zone in the way keeps an approved mission from being sent, a change elsewhere does not", () => {
-  const touched = mission("approved", { is_stale: true, stale_causes: [{ what: "zone" }] });
-  assert.match(flying.stageActs(touched, []).send, /changed since it was approved/);
-  assert.equal(
-    flying.stageActs(mission("approved", { is_stale: true, stale_causes: [{ what: "elsewhere" }] }), []).send,
-    true,
-  );
+test("a mission is revoked before it is flown, and aborted while it is", () => {
+  const states = ["planned", "approved", "dispatched", "active", "failed", "aborted"];
+  const which = (may) => states.filter((state) => may({ state }));
+  assert.deepEqual(which(flying.canBeRevoked), ["approved", "dispatched"]);
+  assert.deepEqual(which(flying.canBeAborted), ["dispatched", "active", "failed"]);
+  assert.deepEqual(which(flying.isFlown), ["approved", "dispatched", "active"]);
 });
 
 test("a change of the map data that touches nothing of the mission is not told", () => {

@@ -19,59 +19,9 @@ import {
   whyNotDecided,
 } from "../../static/js/monitor/offer_words.js";
 import { ofPage, placed } from "../../static/js/monitor/placed.js";
-import { ageWords, batteryWords, estimateWords, figuresOf, stateOf } from "../../static/js/monitor/uav_words.js";
+import { ageWords, estimateWords, stateOf } from "../../static/js/monitor/uav_words.js";
 import { unheardLines } from "../../static/js/monitor/unheard.js";
-
-const NOW_MS = Date.parse("2026-09-21T14:15:00Z");
-const ago = (seconds) => new Date(NOW_MS - seconds * 1000).toISOString();
-const plain = (text) => text.replace(/[\u00a0\u2009]/g, " ");
-
-const EACH_SECOND = { interval_s: 1, late_after_s: 5, silent_after_s: 10 };
-const EACH_TEN_SECONDS = { interval_s: 10, late_after_s: 25, silent_after_s: 30 };
-
-function uav({ id = 1, age_s = 0.7, estimated = null, place = 0, rhythm = EACH_SECOND, ...measured } = {}) {
-  return {
-    id,
-    name: `UAV ${id}`,
-    mission: "m",
-    place,
-    link: { mode: "Mission", is_in_air: true, waypoint_sequence: null },
-    estimated,
-    rhythm,
-    measured: {
-      measured_at: ago(age_s),
-      received_at: ago(age_s),
-      position: [10, 50],
-      altitude_relative_m: 45,
-      speed_mps: 9.8,
-      heading_deg: 90,
-      battery_percent: 71,
-      mode: "Mission",
-      is_in_air: true,
-      ...measured,
-    },
-  };
-}
-
-const estimate = (change = {}) => ({
-  at: ago(0.5),
-  report_at: ago(74),
-  position: [10.01, 50],
-  altitude_relative_m: 46,
-  altitude_amsl_m: null,
-  speed_mps: 10,
-  heading_deg: 80,
-  bound: { along_m: 410, across_m: 60, bearing_deg: 90, height_m: 5, speed_mps: 1 },
-  is_measured: false,
-  is_lost: false,
-  waypoint_sequence: 3,
-  along_route_m: 2000,
-  to_go_m: 12_500,
-  arrivals: [{ waypoint_sequence: 4, target: 2, at: ago(-235), earliest: ago(-200), latest: ago(-270) }],
-  ends_at: ago(-1260),
-  contact_expected_at: ago(-70),
-  ...change,
-});
+import { ago, EACH_TEN_SECONDS, estimate, NOW_MS, plain, uav } from "./live_uav.js";
 
 test("a UAV with a fresh report is measured, a silent one is estimated, and lost once nobody vouches for it", () => {
   assert.equal(certaintyOf(uav(), NOW_MS), MEASURED);
@@ -92,9 +42,9 @@ test("an estimated UAV stands where the estimate says, a measured one where it w
 
 test("a UAV that reports each ten seconds is late when alerts call it late, and no sooner", () => {
   const late = (age_s) => ageWords(uav({ age_s, rhythm: EACH_TEN_SECONDS }), NOW_MS);
-  assert.deepEqual(late(9.6), { words: "9.6 s ago", isLate: false });
+  assert.deepEqual(late(9.6), { figure: "9.6\u00a0s", isLate: false });
   assert.deepEqual([late(24.9).isLate, late(25).isLate], [false, true]);
-  assert.deepEqual([plain(late(29).words), plain(late(31).words)], ["29 s ago", "no report for 31 s"]);
+  assert.deepEqual([plain(late(29).figure), plain(late(31).figure)], ["29 s", "31 s"]);
   assert.equal(
     certaintyOf(uav({ age_s: 20, rhythm: EACH_TEN_SECONDS }), NOW_MS),
     MEASURED,
@@ -112,7 +62,7 @@ test("a flight that was told to be over is over, whatever the last report said",
   assert.equal(inAir({ ...uav(), measured: null }), true);
   const switchedOff = uav({ age_s: 7200, is_in_air: false });
   assert.equal(certaintyOf(switchedOff, NOW_MS), MEASURED, "it stands where it landed");
-  assert.deepEqual(ageWords(switchedOff, NOW_MS), { words: "no report for 2\u00a0h", isLate: false });
+  assert.deepEqual(ageWords(switchedOff, NOW_MS), { figure: "2\u00a0h", isLate: false });
 });
 
 test("a UAV keeps its letter after its mission, until it flies another that is on the page", () => {
@@ -131,27 +81,18 @@ test("a UAV keeps its letter after its mission, until it flies another that is o
   assert.equal(placed([over], [])[0], over);
 });
 
-test("the age of a report is said, late ones in amber", () => {
-  assert.deepEqual(ageWords(uav(), NOW_MS), { words: "0.7 s ago", isLate: false });
-  assert.deepEqual(ageWords(uav({ age_s: 6 }), NOW_MS), { words: "6.0 s ago", isLate: true });
-  assert.equal(plain(ageWords(uav({ age_s: 74 }), NOW_MS).words), "no report for 74 s");
-});
-
-test("estimated figures have a tilde and name what a height is above", () => {
-  const figures = figuresOf(uav({ age_s: 74, estimated: estimate() }), ESTIMATED);
-  assert.deepEqual(
-    figures.slice(0, 3).map(({ figure, unit, words }) => plain(`${figure} ${unit} ${words}`)),
-    ["~ 71 % battery", "~ 46 m over take-off", "~ 10 m/s speed"],
-  );
-  assert.equal(plain(figuresOf(uav(), MEASURED)[1].figure), "45");
-  assert.equal(figuresOf(uav({ altitude_relative_m: null, altitude_amsl_m: 300 }), MEASURED)[1].words, "over the sea");
-  assert.equal(figuresOf(uav({ battery_percent: null }), MEASURED)[0].figure, "—");
+test("the age of a report is a figure, late ones in amber", () => {
+  assert.deepEqual(ageWords(uav(), NOW_MS), { figure: "0.7\u00a0s", isLate: false });
+  assert.deepEqual(ageWords(uav({ age_s: 6 }), NOW_MS), { figure: "6.0\u00a0s", isLate: true });
+  assert.equal(plain(ageWords(uav({ age_s: 74 }), NOW_MS).figure), "74 s");
 });
 
 test("the box says how far off an estimate may be", () => {
   const { strong, rest } = estimateWords(uav({ age_s: 74, estimated: estimate() }), ESTIMATED, NOW_MS);
   assert.equal(plain(strong), "Estimated, within 410 m");
-  assert.match(rest, /95 of 100 times.*Contact expected by/);
+  assert.match(rest, /95 of 100 times.*Next contact expected \d\d:\d\d:\d\d/);
+  const overdue = estimate({ contact_expected_at: ago(5) });
+  assert.match(estimateWords(uav({ age_s: 74, estimated: overdue }), ESTIMATED, NOW_MS).rest, /Contact overdue since/);
   assert.equal(estimateWords(uav(), MEASURED, NOW_MS), null);
 });
 
@@ -176,16 +117,12 @@ const alert = (id, level, change = {}) => ({
   ...change,
 });
 
-test("UAVs stand with the chosen one first, then by alert, then by landing time", () => {
-  const uavs = [1, 2, 3, 4].map((id) => uav({ id, estimated: estimate({ ends_at: ago(-1000 + id) }) }));
-  const order = inOrder(
-    uavs,
-    [alert(2, "critical"), alert(1, "warning"), alert(3, "critical", { closed_at: ago(1) })],
-    4,
-  );
+test("UAVs stand mission by mission in the order of their letters, whatever happens to them", () => {
+  const of = (id, mission, place) => ({ ...uav({ id }), mission, place });
+  const uavs = [of(1, null, null), of(2, "b", 0), of(3, "a", 1), of(4, "a", 0)];
   assert.deepEqual(
-    order.map(({ id }) => id),
-    [4, 2, 1, 3],
+    inOrder(uavs, [{ id: "a" }, { id: "b" }]).map(({ id }) => id),
+    [4, 3, 2, 1],
   );
 });
 
@@ -247,7 +184,7 @@ test("the board shows what goes on before what is to come and what is done", () 
   const rows = boardRows(missions, [uav({ estimated: estimate() })], details);
   assert.deepEqual(
     rows.map(({ pill, state }) => `${pill} ${state}`),
-    ["A3 in-progress", "A4 pending", "A5 failed", "A2 complete", "A1 complete"],
+    ["A3 next", "A4 pending", "A5 failed", "A2 complete", "A1 complete"],
   );
   assert.equal(boardRows(missions, [uav({ mode: "Hold", estimated: estimate() })], details)[0].state, "held");
 });
@@ -268,7 +205,7 @@ test("the log has every step of a command and of an alert, the newest first", ()
   const events = eventsOf({ commands: [command], alerts: [alert(9, "warning", { closed_at: ago(1) })], missions: [] });
   assert.deepEqual(
     events.map(({ words }) => words),
-    ["Over: alert 9", "Kite: Hold, failed – no answer", "alert 9", "Kite: Hold, sent", "Kite: Hold, given by opal"],
+    ["Resolved: alert 9", "Kite: Hold, failed – no answer", "alert 9", "Kite: Hold, sent", "Kite: Hold, given by opal"],
   );
 });
 
@@ -370,7 +307,7 @@ test("of UAVs that are not heard it is said who is told all the same", () => {
   const [sent, waiting] = unheardLines(uavs, "return", NOW_MS);
   assert.match(sent, /^Nothing is heard from Tern now: this is sent all the same/);
   assert.match(waiting, /^There is no link to Kite, Gull, Wren now: the command waits/);
-  assert.match(unheardLines(uavs.slice(0, 1), "pause", NOW_MS)[0], /^There is no link to Tern now/);
+  assert.match(unheardLines(uavs.slice(0, 1), "resume", NOW_MS)[0], /^There is no link to Tern now/);
   assert.deepEqual(unheardLines([], "return", NOW_MS), []);
 });
 
@@ -403,21 +340,6 @@ test("who is in the air can be told something, also after its mission", () => {
 test("a UAV without a GPS fix is drawn as estimated, though it reports", () => {
   assert.equal(certaintyOf(uav({ gps_fix: 1 }), NOW_MS), ESTIMATED);
   assert.equal(certaintyOf(uav({ gps_fix: 3 }), NOW_MS), MEASURED);
-});
-
-test("the battery's figure has its level, and minutes to the reserve stand against minutes home", () => {
-  const battery = {
-    level: "warning",
-    left_percent: 31,
-    reserve_percent: 20,
-    home_percent: 9,
-    home_s: 240,
-    reserve_in_s: 720,
-  };
-  const low = uav({ estimated: estimate({ is_measured: true, battery }) });
-  assert.equal(figuresOf(low, MEASURED)[0].level, "warning");
-  assert.equal(plain(batteryWords(low)), "Battery: 12 min to the reserve, 4 min home");
-  assert.equal(batteryWords(uav()), "");
 });
 
 test("an offer that has expired cannot be decided, nor one on a device that has no data", () => {

@@ -14,7 +14,6 @@ import {
   separateReturns,
   togetherLine,
 } from "../../static/js/domain/own_return.js";
-import { batteryWords } from "../../static/js/monitor/uav_words.js";
 
 const check = (state, warnings = [], more = {}) => ({
   place: 1,
@@ -87,18 +86,6 @@ test("a hold says how long it can last", () => {
   ]);
   assert.match(shortest, /^Kite: It can hold for about 7\Wmin/);
   assert.equal(unknown, "Not known how long they can hold: Crow.");
-});
-
-test("the card of a UAV that is held says how long it can", () => {
-  const battery = { level: "", reserve_in_s: 720, home_s: 240, hold_s: 400 };
-  const held = (hold_s, mode = "LOITER") => ({
-    measured: { mode, is_in_air: true },
-    estimated: { battery: { ...battery, hold_s } },
-  });
-  assert.match(batteryWords(held(400)), /^Battery: can hold for 7\Wmin$/);
-  assert.equal(batteryWords(held(10)), "Battery: too low to hold longer");
-  assert.match(batteryWords(held(400, "AUTO")), /to the reserve/);
-  assert.match(batteryWords(held(null)), /to the reserve/);
 });
 
 test("what is in the way is a warning, what is not known is said", () => {

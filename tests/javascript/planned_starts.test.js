@@ -22,8 +22,8 @@ test("what became of a start is said, and of one that was stopped that it was no
 
 test("the question names each UAV in its order with its time after the first", () => {
   const waiting = [
-    { name: "Tern", after_s: 0 },
-    { name: "Kite", after_s: 180 },
+    { name: "Tern", after_s: 60 }, // one that is left on the ground was to go first
+    { name: "Kite", after_s: 240 },
   ];
   assert.deepEqual(orderLines(waiting), ["Tern: in 10 s", "Kite: 3:00 after the first"]);
 });

@@ -3,10 +3,14 @@ import { test } from "node:test";
 
 globalThis.document ??= { cookie: "", querySelector: () => null, documentElement: { lang: "en", dataset: {} } };
 globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
-const { nextStep, rehearsalCheck, summaryOf } = await import("../../static/js/monitor/panels/preflight.js");
+const { nextStep, summaryOf } = await import("../../static/js/domain/preflight_step.js");
+const { rehearsalCheck } = await import("../../static/js/monitor/panels/preflight.js");
 
 const check = (code, state, message = code) => ({ code, state, message });
-const row = (name, more = {}) => ({ uav: 1, name, place: 0, is_loaded: false, blocks: false, checks: [], ...more });
+const row = (name, more = {}) => {
+  const { is_loaded = false, blocks = false } = more;
+  return { uav: 1, name, place: 0, is_loaded, blocks, is_ready: is_loaded && !blocks, checks: [], ...more };
+};
 const preflight = (next_act, uavs, checks = []) => ({ next_act, checks, uavs });
 
 test("the button names the next act and how many UAVs it is about", () => {
@@ -28,6 +32,22 @@ test("what has failed blocks the start with its reason, whatever was ticked", ()
   assert.equal(nextStep(preflight("start", [blocked]), true).why, "Blocked: Kite");
   const zone = check("zone", "failed", "A zone came.");
   assert.equal(nextStep(preflight("start", [blocked], [zone]), true).why, "A zone came.");
+});
+
+test("one that is not connected is left, named, and blocks no others", () => {
+  const ready = ["Tern", "Crow"].map((name, uav) => row(name, { uav, is_loaded: true }));
+  const kite = row("Kite", { uav: 7, blocks: true, checks: [check("link", "failed", "It was never heard.")] });
+  const step = nextStep(preflight("start", [...ready, kite]), true);
+  assert.deepEqual([step.words, step.why, step.left], ["Start 2 of 3 UAVs", "", ["Kite is not connected"]]);
+  assert.deepEqual(step.uavs, [0, 1]);
+  const low = row("Kite", { is_loaded: true, blocks: true, checks: [check("battery", "failed", "It has 20 %.")] });
+  assert.deepEqual(nextStep(preflight("start", [...ready, low]), true).left, ["Kite: It has 20 %."]);
+  assert.equal(nextStep(preflight("start", [...ready, kite]), false).why, "Tick what was looked at on site.");
+});
+
+test("a zone in the way keeps an approved mission from being uploaded", () => {
+  const zone = check("zone", "failed", "A zone came.");
+  assert.equal(nextStep(preflight("upload", [row("Tern")], [zone]), false).why, "A zone came.");
 });
 
 test("the worst check of a UAV is what is said of it", () => {

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from django.utils import timezone
 
-from missions.models import CommandKind, Mission, MissionState, Uav
+from missions.models import CommandKind, Mission, MissionState, PlannedStarts, Uav
 from missions.selectors import mission_of_organisation
 from missions.services.dispatch import dispatch_mission
 from missions.services.outbox import note_failed
@@ -50,6 +50,10 @@ def checks(mission: Mission) -> Preflight:
     return preflight_of(mission_of_organisation(mission.organisation, mission.pk), now=timezone.now())
 
 
+def begins(person: User, mission: Mission, *uavs: Uav) -> Any:
+    return post(client_of(person), f"missions/{mission.pk}/planned-starts", {"uavs": [uav.pk for uav in uavs]})
+
+
 def states(found: Preflight, uav: Uav) -> dict[str, CheckState]:
     row = next(row for row in found.uavs if row.uav == uav.pk)
     return {check.code: check.state for check in row.checks}
@@ -80,9 +84,46 @@ def test_one_that_nobody_hears_holds_up_no_others_upload(two: tuple[Mission, Uav
     dispatch_mission(mission=mission, actor=person)
     carry(tern)
     found = checks(mission)
-    assert found.next_act == NextAct.CONNECT
     assert states(found, kite)["link"] == CheckState.FAILED
     assert states(found, tern)["mission"] == CheckState.OK
+
+
+def test_one_that_is_not_connected_holds_up_no_others_start(two: tuple[Mission, Uav, Uav], person: User) -> None:
+    mission, tern, kite = two
+    heard(tern)
+    dispatch_mission(mission=mission, actor=person)
+    carry(tern)
+    found = checks(mission)
+    assert found.next_act == NextAct.START
+    assert {row.uav: row.is_ready for row in found.uavs} == {tern.pk: True, kite.pk: False}
+    answer = begins(person, mission, tern)
+    assert answer.status_code == 201, answer.content
+    assert [start["uav"] for start in answer.json()["uavs"]] == [tern.pk]
+    left = checks(mission)
+    assert [row.uav for row in left.uavs] == [kite.pk], "what is being started is not offered again"
+    assert left.next_act == NextAct.CONNECT
+
+
+def test_the_service_checks_again_those_that_it_is_to_start(two: tuple[Mission, Uav, Uav], person: User) -> None:
+    mission, tern, kite = two
+    heard(tern, kite)
+    dispatch_mission(mission=mission, actor=person)
+    carry(tern, kite)
+    heard(kite, gps_fix=1, stream="boot-2")  # since the page was read
+    answer = begins(person, mission, tern, kite)
+    assert answer.status_code == 409, answer.content
+    assert "Kite: It has no position yet." in answer.content.decode()
+    assert begins(person, mission, tern).status_code == 201
+
+
+def test_a_uav_of_another_mission_is_not_started_with_these(two: tuple[Mission, Uav, Uav], person: User) -> None:
+    mission, tern, kite = two
+    heard(tern, kite)
+    dispatch_mission(mission=mission, actor=person)
+    carry(tern, kite)
+    [other] = fleet("Crow")
+    answer = begins(person, mission, tern, other)
+    assert (answer.status_code, PlannedStarts.objects.count()) == (409, 0)
 
 
 def test_a_uav_that_was_heard_long_ago_is_not_connected(two: tuple[Mission, Uav, Uav]) -> None:
@@ -124,7 +165,7 @@ def test_an_upload_that_failed_and_one_in_doubt_are_told(two: tuple[Mission, Uav
     carry(kite)
     UavLink.objects.filter(uav=kite).update(loaded_doubt="rebooted")
     found = checks(mission)
-    assert found.next_act == NextAct.UPLOAD
+    assert found.next_act == NextAct.START, "the other one is ready"
     assert states(found, tern)["mission"] == CheckState.FAILED
     assert "Item 3 is refused." in str(found.uavs)
     assert states(found, kite)["mission"] == CheckState.WARNING
@@ -160,7 +201,7 @@ def test_polls_of_one_period_check_the_map_once(two: tuple[Mission, Uav, Uav], d
     heard(tern, kite)
     checks(mission)
     loaded = mission_of_organisation(mission.organisation, mission.pk)
-    with django_assert_max_num_queries(6):  # approval, routes with UAVs, ground, and an upload of each UAV
+    with django_assert_max_num_queries(7):  # approval, starts under way, routes with UAVs, ground, and an upload of each UAV
         preflight_of(loaded, now=timezone.now())
 
 

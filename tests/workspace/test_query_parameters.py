@@ -8,6 +8,7 @@ import pytest
 from django.conf import settings
 from django.test import Client
 
+from missions.flight_plan.performance import BATTERIES_WH, MASSES_KG, ROTOR_DISKS_M2
 from tests.workspace.described_answers import openapi_document
 from tests.workspace.people import client_of, somebody
 from workspace.models import Role
@@ -132,3 +133,39 @@ def test_pages_examples_and_documents_ask_with_known_parameters_alone(document: 
             assert any(name in own for own in found), (file, path, name)
             checked += 1
     assert checked >= 50
+
+
+@pytest.mark.parametrize("since", ["0001-01-01", "0001-01-01T00:00:00Z", "9999-12-31T23:59:59Z"])
+def test_any_time_may_be_asked_for_since_when_rows_have_changed(since: str) -> None:
+    assert client_of(somebody()).get("/api/v1/zones", {"changed_since": since}).status_code == 200
+
+
+@pytest.mark.parametrize("zone_set", ["-1", "0", "1000000000", "1.5", "١"])
+def test_a_number_outside_the_bounds_of_the_document_is_refused(zone_set: str) -> None:
+    answer = client_of(somebody()).get("/api/v1/zones", {"zone_set": zone_set})
+    assert answer.status_code == 400
+    assert answer.json()["error"]["details"] == {"zone_set": ["A whole number from 1 to 999999999 is needed."]}
+
+
+@pytest.mark.parametrize("name", ["stale", "deleted"])
+def test_what_is_neither_true_nor_false_is_refused(name: str) -> None:
+    assert client_of(somebody()).get("/api/v1/missions", {name: "perhaps"}).status_code == 400
+
+
+@pytest.mark.parametrize("name", [7, True])
+def test_a_name_is_a_json_string(name: Any) -> None:
+    body = {"name": name, "position": [9.0, 47.0]}
+    answer = client_of(somebody(Role.ADMINISTRATOR)).post("/api/v1/bases", body, content_type="application/json")
+    assert answer.status_code == 400
+    assert answer.json()["error"]["details"] == {"name": ["Not a valid string."]}
+
+
+def test_the_document_bounds_figures_of_uav_types_as_planning_does(document: Any) -> None:
+    described = document["components"]["schemas"]["UavTypeRequest"]["properties"]
+    bounds = {
+        name: (schema["minimum"], schema["maximum"]) for name, schema in described.items() if "minimum" in schema and "maximum" in schema
+    }
+    assert bounds["battery_wh"] == BATTERIES_WH
+    assert bounds["mass_kg"] == MASSES_KG
+    assert bounds["rotor_disk_m2"] == ROTOR_DISKS_M2
+    assert document["paths"]["/api/v1/uavs"]["post"]["requestBody"]["required"] is True

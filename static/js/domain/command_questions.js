@@ -67,7 +67,7 @@ export const WHY = { name: "why", label: t("Why (kept in the history)") };
  */
 /** @typedef {Partial<AskedFlyer> & { name: string }} AskedOf */
 
-/** @typedef {Exclude<CommandKind, "upload-mission" | "clear-mission" | "set-return-height">} AskedKind */
+/** @typedef {Exclude<CommandKind, "upload-mission" | "clear-mission" | "set-return-height" | "pause">} AskedKind */
 
 /** @type {Record<AskedKind, (flyer: AskedFlyer) => Omit<Question, "opener">>} */
 const ASKED = {
@@ -105,13 +105,6 @@ const ASKED = {
     },
     image: "plane-takeoff",
   }),
-  pause: ({ name, hold_s }) => ({
-    title: t("Pause {name}?", { name }),
-    lines: [t("It stops on its route and waits for Resume, as long as its battery lasts."), holdLine(hold_s), LATE],
-    keep: t("Keep flying"),
-    act: t("Pause {name}", { name }),
-    isBack: true,
-  }),
   resume: ({ name }) => ({
     title: t("Resume the flight of {name}?", { name }),
     lines: [t("It flies on along its route from where it is."), LATE],
@@ -120,11 +113,7 @@ const ASKED = {
   }),
   hold: ({ name, hold_s }) => ({
     title: t("Hold {name}?", { name }),
-    lines: [
-      t("It stops where it is and stays there until it is told otherwise, as long as its battery lasts."),
-      holdLine(hold_s),
-      LATE,
-    ],
+    lines: [t("It stops where it is and waits for Resume, as long as its battery lasts."), holdLine(hold_s), LATE],
     keep: t("Keep flying"),
     act: t("Hold {name}", { name }),
     isBack: true,
@@ -201,7 +190,7 @@ export const outOfSlotQuestion = (name, why) => ({
   lines: [
     why,
     t(
-      "Plans keep UAVs apart by their times. Started now, it is up to you to keep them apart: pause one, or have one return.",
+      "Plans keep UAVs apart by their times. Started now, it is up to you to keep them apart: hold one, or have one return.",
     ),
   ],
   keep: t("Wait"),

@@ -16,7 +16,7 @@ export const KINDS = {
   arm: t("Arm"),
   "take-off": t("Take off"),
   start: t("Start"),
-  pause: t("Pause"),
+  pause: t("Hold"), // as older clients of the API still ask for it
   resume: t("Resume"),
   hold: t("Hold"),
   return: t("Return"),
@@ -42,6 +42,8 @@ const ON_ITS_WAY = ["dispatched", "active"];
 export const isFrozen = (mission) => !["draft", "planned"].includes(mission.state);
 /** @param {{ state: MissionState }} mission */
 export const isOnItsWay = (mission) => ON_ITS_WAY.includes(mission.state);
+/** What is approved and not over. @param {{ state: MissionState }} mission */
+export const isFlown = ({ state }) => state === "approved" || ON_ITS_WAY.includes(state);
 /** @param {{ state: CommandState }} command */
 export const isOpen = ({ state }) => ["queued", "sent", "acknowledged"].includes(state);
 /** @param {{ kind: CommandKind }} command */
@@ -317,25 +319,8 @@ export function stageWords(mission) {
 export const groundCauses = ({ is_stale, stale_causes }) =>
   is_stale ? (stale_causes ?? []).filter(({ what }) => what !== "uav" && what !== "elsewhere") : [];
 
-/**
- * Which buttons of the mission there are: { send, revoke, abort } with true, false, or the reason why not now.
- *
- * @param {Mission} mission
- * @param {readonly Command[]} commands
- */
-export function stageActs(mission, commands) {
-  const isBeingRevoked = Boolean(mission.approval?.revoke_requested_at);
-  const toSend = flyersOf(mission).filter((flyer) => flightToSend(flyer, commands) !== null);
-  const stale = mission.is_stale && mission.stale_causes.some(({ what }) => what !== "elsewhere");
-  const send = mission.state === "approved" || (mission.state === "dispatched" && toSend.length > 0 && !isBeingRevoked);
-  const whyNot = stale
-    ? t("The ground has changed since it was approved. Revoke it, and plan again.")
-    : isBeingRevoked
-      ? t("The approval is being taken back.")
-      : "";
-  return {
-    send: send && (whyNot || true),
-    revoke: ["approved", "dispatched"].includes(mission.state),
-    abort: isOnItsWay(mission) || mission.state === "failed", // who said that its last flight failed may be wrong
-  };
-}
+/** Whether its approval can be revoked. @param {Pick<Mission, "state">} mission */
+export const canBeRevoked = ({ state }) => ["approved", "dispatched"].includes(state);
+
+/** Whether it can be aborted: who said that its last flight failed may be wrong. @param {Pick<Mission, "state">} mission */
+export const canBeAborted = (mission) => isOnItsWay(mission) || mission.state === "failed";

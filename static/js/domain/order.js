@@ -1,6 +1,6 @@
 /** What stands above what: UAVs and alerts. Values in, values out. */
 
-/** @import { Alert, AlertLevel, LiveUav } from "../api_types.d.ts" */
+/** @import { Alert, AlertLevel, LiveMission, LiveUav } from "../api_types.d.ts" */
 
 /** @type {Record<AlertLevel, number>} */
 const RANKS = { critical: 0, warning: 1, advisory: 2 };
@@ -39,33 +39,19 @@ export function alarmOf(uav, alerts) {
   return levels.sort((a, b) => RANKS[a] - RANKS[b])[0] ?? null;
 }
 
-/** The worst open alert of each UAV: Map of uav → rank, 0 for critical. @param {Alert[]} alerts */
-function worstOf(alerts) {
-  /** @type {Map<number | null, number>} */
-  const worst = new Map();
-  for (const { uav, level } of alerts.filter(isOpenAlert))
-    worst.set(uav, Math.min(worst.get(uav) ?? CALM, RANKS[level]));
-  return worst;
-}
-
 /**
- * The chosen one, then by alert level, then by landing time, then by place.
+ * Mission by mission, in each by its letters; those of no mission last. Whatever happens to a UAV, it keeps its place.
  *
  * @param {LiveUav[]} uavs
- * @param {Alert[]} alerts
- * @param {number | null} chosen
+ * @param {Pick<LiveMission, "id">[]} missions in the order of the page
  */
-export function inOrder(uavs, alerts, chosen) {
-  const worst = worstOf(alerts);
-  /** @param {LiveUav} uav */
-  const keys = (uav) => [
-    uav.id === chosen ? 0 : 1,
-    worst.get(uav.id) ?? CALM,
-    Date.parse(uav.estimated?.ends_at ?? "") || Infinity,
-    uav.mission === null ? 1 : 0,
-    uav.place ?? 0,
-  ];
-  return sorted(uavs, keys);
+export function inOrder(uavs, missions) {
+  const ranks = new Map(missions.map(({ id }, rank) => [id, rank]));
+  return sorted(uavs, ({ id, mission, place }) => [
+    mission === null ? Infinity : (ranks.get(mission) ?? missions.length),
+    place ?? Infinity,
+    id,
+  ]);
 }
 
 /**

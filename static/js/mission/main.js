@@ -90,6 +90,7 @@ const BEGINNING = {
   commands: null,
   returns: null,
   connections: new Map(),
+  preflight: null,
   isDispatching: false,
   rehearsal: NO_REHEARSAL,
 };
@@ -112,10 +113,10 @@ mountHeader(store, actions, page.canPlan, {
   canCopy: page.canFly,
   showPlace: (position) => map.goTo({ position, zoom: 14 }),
 });
-const flyingKeys = page.isFrozen
-  ? mountFlying(store, flying, { canFly: page.canFly, saveCopy: () => void actions.save({ asCopy: true }) })
-  : [];
-if (page.isFrozen) mountPlannedStarts({ mission: page.mission, canFly: page.canFly });
+if (page.isFrozen) {
+  mountFlying(store, flying, { canFly: page.canFly, saveCopy: () => void actions.save({ asCopy: true }) });
+  mountPlannedStarts({ mission: page.mission, canFly: page.canFly });
+}
 
 if (page.canPlan) mountApprove(store, flying);
 const scene = mountSceneOpener(sceneOfMission);
@@ -169,7 +170,6 @@ startChrome({
   bindings: [
     { keys: ["/"], words: t("Find an asset"), act: finder.focus },
     ...(page.canPlan ? planningKeys() : []),
-    ...flyingKeys,
     ...rehearsalKeys,
     ...map.bindings,
     scene.binding,

@@ -12,6 +12,7 @@ import type {
   MissionUav,
   ObjectiveEnum,
   Plan,
+  Preflight,
   Present,
   Rehearsal,
   RehearsalDetail,
@@ -414,6 +415,8 @@ export interface MissionPageState {
   returns: ReturnCheck[] | null;
   /** by id of the UAV; null: could not be read */
   connections: Map<number, UavConnection | null>;
+  /** checks before start, as the page Fly shows them; null: not read */
+  preflight: Preflight | null;
   isDispatching: boolean;
   rehearsal: RehearsalState;
 }

@@ -80,7 +80,7 @@ export const leftLines = (scopes) => scopes.flatMap(({ left }) => left.map(({ wh
 /**
  * The request of a batch: { path, body }. It names the UAVs that the question named, and no others.
  *
- * @param {"pause" | "return"} kind
+ * @param {"hold" | "return"} kind
  * @param {BatchScope[]} scopes
  * @param {Map<number, Record<string, any>> | null} [ways] how each returns, by UAV; the others straight
  */

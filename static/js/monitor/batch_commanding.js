@@ -10,6 +10,7 @@ import { CHECKING_HOME, returnsNow } from "../page/present_returns.js";
 import { toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { answerWords, batchRequest, batchScopes, leftLines, returnLinesOf, scopeChoices } from "./batch.js";
+import { markSending } from "./sending.js";
 import { unheardLines } from "./unheard.js";
 
 /** @import { BatchAnswers, PresentReturn } from "../api_types.d.ts" */
@@ -18,12 +19,12 @@ import { unheardLines } from "./unheard.js";
 /** @import { BatchScope } from "./batch.js" */
 /** @import { Commanding, MonitorPage, MonitorStore } from "./types.d.ts" */
 
-/** @type {Record<"pause" | "return", { title: (uavs: number) => string, lines: string[], act: string }>} */
+/** @type {Record<"hold" | "return", { title: (uavs: number) => string, lines: string[], act: string }>} */
 const ALL = {
-  pause: {
-    title: (uavs) => tn(uavs, "Pause {count} UAV?", "Pause all {count} UAVs?"),
-    lines: [t("Each stops on its route and waits for Resume, as long as its battery lasts.")],
-    act: t("Pause all"),
+  hold: {
+    title: (uavs) => tn(uavs, "Hold {count} UAV?", "Hold all {count} UAVs?"),
+    lines: [t("Each stops where it is and waits for Resume, as long as its battery lasts.")],
+    act: t("Hold all"),
   },
   return: {
     title: (uavs) => tn(uavs, "Return {count} UAV?", "Return all {count} UAVs?"),
@@ -35,17 +36,27 @@ const ALL = {
 /**
  * One request, whatever its number of UAVs.
  *
- * @param {"pause" | "return"} kind
+ * @param {MonitorStore} store
+ * @param {"hold" | "return"} kind
  * @param {BatchScope[]} scopes
  * @param {Map<number, Record<string, any>> | null} [ways] how each returns
  */
-async function tellBatch(kind, scopes, ways = null) {
+async function tellBatch(store, kind, scopes, ways = null) {
   const { path, body } = batchRequest(kind, scopes, ways);
+  const ids = scopes.flatMap(({ uavs }) => uavs.map(({ id }) => id));
+  markSending(store, ids, kind);
   try {
     const headers = { "Idempotency-Key": freshKey() };
     const { data } = /** @type {Answer<BatchAnswers>} */ (await post(path, body, { headers }));
     toast(answerWords(data.results));
+    const refused = data.results.filter(({ command }) => !command);
+    markSending(
+      store,
+      refused.map(({ uav }) => uav),
+      null,
+    );
   } catch (error) {
+    markSending(store, ids, null);
     if (!(error instanceof ApiError)) throw error;
     toast(`${t("{act}: not confirmed.", { act: ALL[kind].act })} ${error.message}`);
   }
@@ -109,6 +120,7 @@ export function createBatch(store, page) {
     }
     if (asked)
       await tellBatch(
+        store,
         kind,
         asked.scope && asked.scope !== "all" ? scopes.filter(({ id }) => id === asked.scope) : scopes,
         asked.safer?.parameters.ways,

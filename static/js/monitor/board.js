@@ -22,11 +22,12 @@ import { isHeld } from "./uav_words.js";
  * @property {boolean} isExpected
  * @property {string} reason
  */
-/** @typedef {TargetState | "held"} BoardState `held`: its UAV holds on the way to it */
+/** @typedef {TargetState | "held" | "next"} BoardState `held`, `next`: its UAV holds on the way to it, is on the way */
 
 /** @type {Record<BoardState, { words: string, image: string, rank: number }>} */
 export const STATES = {
   held: { words: t("Held"), image: "circle-pause", rank: 0 },
+  next: { words: t("Next"), image: "navigation", rank: 1 },
   "in-progress": { words: t("In progress"), image: "circle-dot", rank: 1 },
   pending: { words: t("Pending"), image: "circle-dashed", rank: 2 },
   failed: { words: t("Failed"), image: "circle-x", rank: 3 },
@@ -116,7 +117,7 @@ function rowOf(mission, target, numbers, uav) {
     isToCome && isNext && uav && isHeld(uav)
       ? "held"
       : target.state === "pending" && isNext && uav && inAir(uav)
-        ? "in-progress"
+        ? "next"
         : target.state;
   return {
     key: `${mission.id} ${target.place}`,

@@ -10,6 +10,7 @@ import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
 import { createBatch } from "./batch_commanding.js";
+import { dropSent, markSending } from "./sending.js";
 import { unheardLines } from "./unheard.js";
 
 /** @import { CommandKind, LiveMission, LiveUav, Mission } from "../api_types.d.ts" */
@@ -51,6 +52,7 @@ function keptUnsent(store, id, unsent) {
 
 /** What reached the server all the same is no longer unsent, as the feed tells once it is back. @param {MonitorStore} store */
 function dropArrived(store) {
+  dropSent(store);
   store.listen(["commands"], ({ commands, unsent }) => {
     for (const [id, { kind, at_ms }] of unsent)
       if (commands.some((one) => one.uav.id === id && one.kind === kind && Date.parse(one.created_at) >= at_ms))
@@ -72,12 +74,15 @@ export function createCommanding(store, page) {
    * @param {string} [key] of the command: tried again it is the same
    */
   async function told(uav, kind, filled = {}, key = freshKey()) {
+    markSending(store, [uav.id], kind);
     try {
       const isTold = await tellUav(uav.id, uav.name, kind, filled, { key, within_ms: ANSWER_WITHIN_MS });
       keptUnsent(store, uav.id, null);
+      if (!isTold) markSending(store, [uav.id], null);
       if (isTold) say(t("{act}: {name} is being told.", { act: KINDS[kind], name: uav.name }));
       return isTold;
     } catch (error) {
+      markSending(store, [uav.id], null);
       if (!(error instanceof ApiError)) throw error;
       if (error.isAway) {
         keptUnsent(store, uav.id, {
@@ -102,11 +107,12 @@ export function createCommanding(store, page) {
     if (!uav) return;
     const mission = store.state.missions.find((entry) => entry.id === uav.mission);
     const planned = plannedOf(uav, store.state.details);
-    const isStop = kind === "hold" || kind === "pause"; // the feed tells what is asked of it
+    const isStop = kind === "hold"; // the feed tells what is asked of it
     const flyer = {
       name: uav.name,
       speed_mps: planned?.cruise_speed_mps ?? uav.measured?.speed_mps ?? 5,
       hold_s: uav.estimated?.battery?.hold_s,
+      route: store.state.details.get(uav.mission ?? "")?.plan?.routes[uav.place ?? -1],
     };
     const late = certainty(uav) === MEASURED ? null : unheardLines([uav], kind, store.state.now_ms)[0];
     const question = presentQuestion(isStop ? null : uav.id, kind, flyer, ([first, ...rest]) => [

@@ -72,7 +72,7 @@ function ofAlert({ id, level, message, is_simulated, opened_at, closed_at, ackno
       key: `alert ${id} closed`,
       at: closed_at,
       image: "circle-check",
-      words: t("Over: {message}", { message }),
+      words: t("Resolved: {message}", { message }),
     });
   return rows.map((row) => ({ ...row, isSimulated: is_simulated }));
 }

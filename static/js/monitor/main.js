@@ -15,6 +15,7 @@ import { createCommanding } from "./commanding.js";
 import { mountMonitorMap } from "./map/monitor_map.js";
 import { createMissionDetails } from "./mission_details.js";
 import { mountNarrow } from "./narrow.js";
+import { mountAbortMission } from "./panels/abort_mission.js";
 import { mountAlerts } from "./panels/alerts.js";
 import { mountBoard } from "./panels/board.js";
 import { mountCards } from "./panels/cards.js";
@@ -57,6 +58,7 @@ const store = createStore(
     heard_ms: null,
     silent_ms: 0,
     unsent: new Map(),
+    sending: new Map(),
     isWhole: false,
     now_ms: Date.now(),
   }),
@@ -90,8 +92,9 @@ mountBoard(store, {
   },
 });
 mountSimulation(page);
-mountPlannedStarts({ mission: page.mission, canFly: page.canFly, offersBegin: false });
+mountPlannedStarts({ mission: page.mission, canFly: page.canFly });
 mountPreflight(store, page);
+mountAbortMission(store, page);
 mountCloseMission(store, page);
 mountUrgent(store, { open: narrow.showBoard });
 const commandKeys = commanding ? mountCommandBar(store, commanding) : [];
@@ -117,8 +120,8 @@ function followFeed(stage) {
 
 /** @param {number} by 1 or -1 */
 function step(by) {
-  const { uavs, alerts, chosen } = store.state;
-  const order = inOrder(uavs, alerts, null);
+  const { uavs, missions, chosen } = store.state;
+  const order = inOrder(uavs, missions);
   if (!order.length) return;
   const at = order.findIndex(({ id }) => id === chosen);
   pick(order[at < 0 ? 0 : (at + by + order.length) % order.length].id);

@@ -40,6 +40,12 @@ export interface UnsentCommand {
   at_ms: number;
 }
 
+/** at_ms: the page's time when it was given. */
+export interface SendingCommand {
+  kind: CommandKind;
+  at_ms: number;
+}
+
 /** A route of another plan that is offered, by the UAV's place in the mission that flies now. */
 export interface OfferedRoute {
   place: number;
@@ -67,6 +73,8 @@ export interface MonitorState extends Live {
   silent_ms: number;
   /** commands that could not leave this device, by UAV */
   unsent: Map<number, UnsentCommand>;
+  /** commands on their way to the server, and those it has and the feed does not tell yet, by UAV */
+  sending: Map<number, SendingCommand>;
   /** false until the first snapshot is shown: what comes later is news */
   isWhole: boolean;
   /** the server's time */
@@ -174,7 +182,7 @@ export interface PlannedLine {
 export interface Commanding {
   /** opener: the button out of which the question grows */
   ask(id: number, kind: AskedKind, opener?: HTMLElement | null): Promise<void>;
-  askAll(kind: "pause" | "return", opener?: HTMLElement | null): Promise<void>;
+  askAll(kind: "hold" | "return", opener?: HTMLElement | null): Promise<void>;
   /** a command that could not leave this device */
   tryAgain(id: number): Promise<void>;
   giveUp(id: number): void;

@@ -14,7 +14,6 @@ import { toast } from "./toast.js";
  * @typedef {object} StartsContext
  * @property {string | null} mission the only one of the page; null: all
  * @property {boolean} canFly
- * @property {boolean} [offersBegin] false where another part of the page begins them
  */
 
 const POLL_MS = 2000;
@@ -25,7 +24,7 @@ const SHOWN_AFTER_MS = 300_000; // as the server lists them
 const ENDS = {
   done: t("All starts were given."),
   stopped: t("Stopped. No further UAV is started."),
-  commanded: t("Stopped: a UAV of the mission was told to pause, hold, return, land or abort."),
+  commanded: t("Stopped: a UAV of the mission was told to hold, return, land or abort."),
   "mission-over": t("Stopped: the mission is over."),
   interrupted: t("Stopped: the server could not look after it for a minute."),
 };
@@ -48,7 +47,10 @@ export const orderLines = (waiting) =>
   waiting.map(({ name, after_s }, place) =>
     place === 0
       ? t("{name}: in 10 s", { name })
-      : t("{name}: {time} after the first", { name, time: countdownText(after_s * 1000) }),
+      : t("{name}: {time} after the first", {
+          name,
+          time: countdownText((after_s - waiting[0].after_s) * 1000),
+        }),
   );
 
 /** @param {() => Promise<unknown>} act @param {string} failed */
@@ -62,29 +64,31 @@ async function tried(act, failed) {
 }
 
 /**
- * Asks, and has the server start them.
+ * Asks, and has the server start them; who asks has looked at what only a pilot can see.
  *
  * @param {string} mission
- * @param {WaitingStart[]} waiting
+ * @param {WaitingStart[]} waiting those that are to be started
  * @param {HTMLElement} opener
- * @param {{ pilot_checked?: boolean }} [said]
+ * @param {{ left: string[] }} others of each UAV that is not started with them, why
  */
-export async function beginStarts(mission, waiting, opener, said = {}) {
+export async function beginStarts(mission, waiting, opener, { left }) {
   const asked = await confirmAct({
     title: tn(waiting.length, "Start {count} UAV in planned order?", "Start {count} UAVs in planned order?"),
     lines: [
       ...orderLines(waiting),
+      left.length > 0 && t("Not started: {names}.", { names: left.join("; ") }),
       t(
         "Each start is checked against the UAVs in the air and waits where it has to. Closing this page stops nothing.",
       ),
-      t("Stop, or any Pause, Hold, Return, Land or Abort of this mission ends it: no further UAV is started."),
+      t("Stop, or any Hold, Return, Land or Abort of this mission ends it: no further UAV is started."),
     ],
     act: t("Start in planned order"),
     image: "plane-takeoff",
     opener,
   });
   const headers = { "Idempotency-Key": freshKey() };
-  if (asked) await tried(() => post(`/missions/${mission}/planned-starts`, said, { headers }), t("Not started."));
+  const body = { uavs: waiting.map(({ uav }) => uav), pilot_checked: true };
+  if (asked) await tried(() => post(`/missions/${mission}/planned-starts`, body, { headers }), t("Not started."));
 }
 
 /** @param {PlannedStarts} starts */
@@ -119,12 +123,10 @@ const startsPart = ({ ended_at, ended_by, end, mission_name, uavs }, { now_ms, i
 ];
 
 /** @param {StartsContext} context */
-export function mountPlannedStarts({ mission, canFly, offersBegin = true }) {
+export function mountPlannedStarts({ mission, canFly }) {
   const place = byId("planned-starts");
   /** @type {PlannedStarts[]} */
   let shown = [];
-  /** @type {WaitingStart[]} */
-  let waiting = [];
   let ahead_ms = 0; // the server's clock before this one
   let drawn = "";
 
@@ -132,7 +134,6 @@ export function mountPlannedStarts({ mission, canFly, offersBegin = true }) {
     const { data } = /** @type {Answer<MissionStarts>} */ (await get(`/missions/${mission}/planned-starts`));
     const newest = data.starts;
     shown = newest && isShown(newest, Date.parse(data.server_time)) ? [newest] : [];
-    waiting = data.waiting;
     return data.server_time;
   }
 
@@ -153,14 +154,13 @@ export function mountPlannedStarts({ mission, canFly, offersBegin = true }) {
 
   function draw() {
     const now_ms = Date.now() + ahead_ms;
-    const canBegin = offersBegin && canFly && waiting.length > 1 && shown.every(({ ended_at }) => ended_at);
-    place.hidden = shown.length === 0 && !canBegin;
+    place.hidden = shown.length === 0;
     const words = shown.flatMap((starts) => starts.uavs.map((start) => startWords(start, !starts.ended_at, now_ms)));
-    const key = JSON.stringify([words, shown.map(({ id, end }) => [id, end]), canBegin]);
+    const key = JSON.stringify([words, shown.map(({ id, end }) => [id, end])]);
     if (key === drawn) return;
     const hadFocus = place.contains(document.activeElement);
     drawn = key;
-    place.replaceChildren(...shown.flatMap((starts) => partOf(starts, now_ms)), ...(canBegin ? [beginButton()] : []));
+    place.replaceChildren(...shown.flatMap((starts) => partOf(starts, now_ms)));
     if (hadFocus) place.querySelector("button")?.focus({ preventScroll: true });
   }
 
@@ -171,11 +171,6 @@ export function mountPlannedStarts({ mission, canFly, offersBegin = true }) {
       ? [actButton("stop", "octagon-alert", t("Stop starting"), () => stop(starts).then(read))]
       : []),
   ];
-
-  const beginButton = () =>
-    actButton("begin", "plane-takeoff", t("Start in planned order"), (opener) =>
-      beginStarts(mission ?? "", waiting, opener).then(read),
-    );
 
   void read();
   setInterval(() => !document.hidden && void read(), POLL_MS);

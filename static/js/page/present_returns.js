@@ -16,7 +16,6 @@ const LOOKED_AT = {
   abort: CHECKING_HOME,
   land: t("What lies below is being looked at …"),
   hold: t("How long it can hold is being looked at …"),
-  pause: t("How long it can hold is being looked at …"),
 };
 
 /**

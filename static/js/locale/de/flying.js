@@ -9,9 +9,8 @@ export default {
   "Arm": "Scharf schalten",
   "Take off": "Abheben",
   "Start": "Starten",
-  "Pause": "Pausieren",
   "Resume": "Fortsetzen",
-  "Hold": "Halten",
+  "Hold": "Anhalten",
   "Land here": "Hier landen",
   "Abort": "Abbrechen",
   "Change speed": "Tempo ändern",
@@ -65,8 +64,6 @@ export default {
   "Approved by {name} {time}.": "Freigegeben von {name} {time}.",
   "It is being flown: nothing of it can be changed.": "Sie wird geflogen: Nichts daran kann geändert werden.",
   "Nothing of it can be changed until that is revoked.": "Bis das widerrufen wird, kann nichts daran geändert werden.",
-  "The ground has changed since it was approved. Revoke it, and plan again.":
-    "Der Boden hat sich seit der Freigabe geändert. Widerrufen Sie sie, und planen Sie neu.",
   "If it cannot be reached in time, the command expires and is not carried out later.":
     "Ist es nicht rechtzeitig zu erreichen, verfällt der Befehl und wird auch später nicht ausgeführt.",
   "Why (kept in the history)": "Warum (steht im Verlauf)",
@@ -83,22 +80,14 @@ export default {
     "Es steigt senkrecht auf und bleibt dort, bis es etwas anderes hört.",
   "Let {name} take off": "{name} abheben lassen",
   "Height above the place of take-off [m]": "Höhe über dem Startplatz [m]",
-  "Pause {name}?": "{name} pausieren?",
-  "It stops on its route and waits for Resume, as long as its battery lasts.":
-    "Es bleibt auf seiner Route stehen und wartet auf Fortsetzen, solange der Akku reicht.",
   "Keep flying": "Weiterfliegen",
   "Start {name} outside its slot?": "{name} außerhalb seines Zeitfensters starten?",
-  "Plans keep UAVs apart by their times. Started now, it is up to you to keep them apart: pause one, or have one return.":
-    "Pläne halten UAVs durch ihre Zeiten auseinander. Jetzt gestartet, müssen Sie sie auseinanderhalten: Halten Sie eines an, oder lassen Sie eines zurückkehren.",
   Wait: "Warten",
   "Start {name} all the same": "{name} trotzdem starten",
-  "Pause {name}": "{name} pausieren",
   "Resume the flight of {name}?": "Den Flug von {name} fortsetzen?",
   "It flies on along its route from where it is.": "Es fliegt seine Route weiter, von da, wo es ist.",
   "Resume {name}": "{name} fortsetzen",
   "Hold {name}?": "{name} anhalten?",
-  "It stops where it is and stays there until it is told otherwise, as long as its battery lasts.":
-    "Es bleibt stehen, wo es ist, bis es etwas anderes hört, solange der Akku reicht.",
   "Hold {name}": "{name} anhalten",
   "Return {name}?": "{name} zurückholen?",
   "It flies back to where it took off and lands there. Targets that it has not reached stay undone.":
@@ -139,7 +128,6 @@ export default {
   "All return at once: their ways home keep apart.": "Alle kehren zugleich zurück: Ihre Heimwege halten Abstand.",
   "Set the return height of {name} to {height} with it: lower, something is in its way home":
     "Rückkehrhöhe von {name} dabei auf {height} setzen: Tiefer ist etwas im Heimweg",
-  "It is being set.": "Sie wird gerade gesetzt.",
   "Set return height to {height}": "Rückkehrhöhe auf {height} setzen",
   "Land {name} here": "{name} hier landen",
   "Abort the flight of {name}?": "Den Flug von {name} abbrechen?",
@@ -169,14 +157,8 @@ export default {
   "Keep it approved": "Freigegeben lassen",
   "Revoke": "Widerrufen",
   "Not revoked.": "Nicht widerrufen.",
-  "Send flight {flight} to {name}?": "Flug {flight} an {name} senden?",
-  "Send its route to {name}?": "{name} seine Route senden?",
-  "{names}: what each one then has on board is read back and compared with what was approved. Nothing takes off by this.":
-    "{names}: Was jedes dann an Bord hat, wird zurückgelesen und mit dem Freigegebenen verglichen. Davon hebt nichts ab.",
   "A UAV that is not connected gets its route when it is, within the hour.":
     "Ein UAV, das nicht verbunden ist, bekommt seine Route, sobald es das ist, innerhalb einer Stunde.",
-  "Send to {name}": "An {name} senden",
-  "Send to UAVs": "An UAVs senden",
   "Not sent.": "Nicht gesendet.",
   "Abort “{name}”?": "„{name}“ abbrechen?",
   "{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.":
@@ -195,10 +177,7 @@ export default {
   "Not yet": "Noch nicht",
   "Sending to {name}": "Senden an {name}",
   "Commands to {name}": "Befehle an {name}",
-  "Send flight {flight}": "Flug {flight} senden",
-  "Send again": "Noch einmal senden",
   "by the program": "vom Programm",
-  "Pause the chosen UAV": "Das gewählte UAV pausieren",
   "Hold the chosen UAV": "Das gewählte UAV anhalten",
   "Return the chosen UAV": "Das gewählte UAV zurückholen",
   "Land the chosen UAV here": "Das gewählte UAV hier landen",
@@ -211,7 +190,6 @@ export default {
     "{count} UAV fliegt insgesamt {length}: {names}.",
     "{count} UAVs fliegen insgesamt {length}: {names}.",
   ],
-  "Send the mission to {count} UAV?": ["Die Mission an {count} UAV senden?", "Die Mission an {count} UAVs senden?"],
   "In the air: {names}. The mission can be closed once all UAVs are down.":
     "In der Luft: {names}. Die Mission kann abgeschlossen werden, sobald alle UAVs gelandet sind.",
   "Keep open": "Offen lassen",
@@ -226,4 +204,17 @@ export default {
     "{count} Ziel ist offen. Geben Sie an, warum es entfällt; der Grund steht im Bericht.",
     "{count} Ziele sind offen. Geben Sie an, warum sie entfallen; die Gründe stehen im Bericht.",
   ],
+  "It stops where it is and waits for Resume, as long as its battery lasts.":
+    "Es hält an, wo es ist, und wartet auf „Fortsetzen“, solange sein Akku reicht.",
+  "Plans keep UAVs apart by their times. Started now, it is up to you to keep them apart: hold one, or have one return.":
+    "Pläne halten UAVs durch ihre Zeiten auseinander. Startet es jetzt, müssen Sie sie auseinanderhalten: eines anhalten oder zurückholen.",
+  "Fly: {act}": "Fliegen: {act}",
+  "Upload flight {flight}": "Flug {flight} hochladen",
+  "Upload again": "Erneut hochladen",
+  "{name} has what it is to fly.": "{name} hat, was es fliegen soll.",
+  "Upload flight {flight} to {name}?": "Flug {flight} auf {name} hochladen?",
+  "Upload its route to {name}?": "Die Route auf {name} hochladen?",
+  "What it then has on board is read back and compared with what was approved. Nothing takes off by this.":
+    "Was es danach an Bord hat, wird zurückgelesen und mit dem Freigegebenen verglichen. Dadurch startet nichts.",
+  "Upload to {name}": "Auf {name} hochladen",
 };

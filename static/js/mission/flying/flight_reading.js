@@ -4,16 +4,17 @@
  */
 
 import { ApiError, get } from "../../api.js";
-import { flyersOf, isOnItsWay, isOpen, KINDS } from "../../domain/flying.js";
+import { flyersOf, isFlown, isOnItsWay, isOpen, KINDS } from "../../domain/flying.js";
 import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 
 /** @import { Answer } from "../../api.js" */
-/** @import { Command, CommandPage, Mission, ReturnChecks, UavConnection } from "../../api_types.d.ts" */
+/** @import { Command, CommandPage, Mission, Preflight, ReturnChecks, UavConnection } from "../../api_types.d.ts" */
 /** @import { MissionPageData, MissionStore } from "../types.d.ts" */
 
 const POLL_MS = 2000;
 const CONNECTIONS_EVERY_MS = 20_000;
+const PREFLIGHT_EVERY_MS = 6000;
 const RETURNS_EVERY_MS = 60_000; // they take the server longer, and seldom change
 
 /** @param {MissionStore} store @param {Pick<MissionPageData, "isFrozen">} page */
@@ -21,6 +22,7 @@ export function createFlightReading(store, page) {
   let isAsking = false;
   let connectionsAt = 0;
   let returnsAt = 0;
+  let preflightAt = 0;
 
   /**
    * By UAV, what is known of it and of what is on board; null while that could not be read.
@@ -55,6 +57,20 @@ export function createFlightReading(store, page) {
     }
   }
 
+  /** Which act comes next on the page Fly; null while that could not be read. */
+  async function readPreflight() {
+    const { mission } = store.state;
+    if (!mission) return;
+    preflightAt = Date.now();
+    try {
+      const { data } = /** @type {Answer<Preflight>} */ (await get(`/missions/${mission.id}/preflight`));
+      store.update({ preflight: data });
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      store.update({ preflight: null });
+    }
+  }
+
   async function readCommands() {
     const { mission } = store.state;
     if (isAsking || !mission) return;
@@ -73,7 +89,9 @@ export function createFlightReading(store, page) {
   /** Often while something is under way, else now and then. */
   function poll() {
     const { mission, commands } = store.state;
-    if (document.hidden || !mission || !(isOnItsWay(mission) || commands?.some(isOpen))) return;
+    if (document.hidden || !mission) return;
+    if (isFlown(mission) && Date.now() - preflightAt >= PREFLIGHT_EVERY_MS) void readPreflight();
+    if (!(isOnItsWay(mission) || commands?.some(isOpen))) return;
     void readCommands();
     if (Date.now() - connectionsAt >= CONNECTIONS_EVERY_MS) void readConnections(mission);
     if (Date.now() - returnsAt >= RETURNS_EVERY_MS) void readReturns();
@@ -91,6 +109,7 @@ export function createFlightReading(store, page) {
         void readCommands();
         void readConnections(mission);
         void readReturns();
+        if (isFlown(mission)) void readPreflight();
       });
       document.addEventListener("visibilitychange", () => {
         if (!document.hidden) void readCommands();

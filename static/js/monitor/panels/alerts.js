@@ -33,7 +33,6 @@ const LEVELS = {
 const ACT_WORDS = {
   return: (name) => t("Return {name}", { name }),
   hold: (name) => t("Hold {name}", { name }),
-  pause: (name) => t("Pause {name}", { name }),
   land: (name) => t("Land {name} here", { name }),
   "take-over": () => t("Pilot takes over"),
 };

@@ -1,22 +1,23 @@
 /** The fleet: a card for each UAV. Parts that a second changes are renewed in place, so that focus and pointer stay. */
 
 import { byId, h, icon, keyedList, refill } from "../../dom.js";
-import { certaintyOf, MEASURED } from "../../domain/certainty.js";
+import { certaintyOf } from "../../domain/certainty.js";
 import { commandWords, isOpen, KINDS, timesOf } from "../../domain/flying.js";
-import { alertsInOrder, inOrder, isOpenAlert } from "../../domain/order.js";
+import { alarmOf, alertsInOrder, inOrder, isOpenAlert } from "../../domain/order.js";
 import { routeLetter, routeNumber } from "../../domain/palette.js";
 import { profileOf } from "../../domain/route_profile.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, lengthText, numberText } from "../../units.js";
 import { numbersOf, pillOf } from "../board.js";
+import { batteryWords, figuresOf } from "../card_figures.js";
 import { rateOf, rateWords } from "../clock_rate.js";
 import { liveStrip, progressOf } from "../live_strip.js";
-import { ageWords, batteryWords, estimateWords, figuresOf, nextOf, stateOf } from "../uav_words.js";
+import { estimateWords, stateOf } from "../uav_words.js";
 
 /** @import { AlertLevel, Mission } from "../../api_types.d.ts" */
 /** @import { Certainty } from "../../domain/certainty.js" */
-/** @import { Alert, Command, Commanding, LiveMission, LiveUav, MonitorState, MonitorStore, UnsentCommand } from "../types.d.ts" */
+/** @import { Alert, Command, Commanding, LiveMission, LiveUav, MonitorState, MonitorStore, SendingCommand, UnsentCommand } from "../types.d.ts" */
 
 /**
  * @typedef {object} CardActs
@@ -31,8 +32,14 @@ import { ageWords, batteryWords, estimateWords, figuresOf, nextOf, stateOf } fro
 const SAID_FOR_MS = 60_000; // a command that is over stays on the card
 const STRIP_MARGIN_PX = 32;
 const STRIP_STEP_M = 5; // a UAV that has moved less is drawn where it was
+const FIGURES = ["battery", "height", "speed", "home", "next", "age"]; // in the order of figuresOf
 /** @type {Record<AlertLevel, string>} */
 const LEVEL_ICONS = { critical: "octagon-alert", warning: "triangle-alert", advisory: "info" };
+
+/** @type {Record<AlertLevel, string>} */
+const LEVEL_WORDS = { critical: t("Critical alert"), warning: t("Warning"), advisory: t("Advisory") };
+/** @param {string} words */
+const unseen = (words) => h("span", { class: "unseen" }, words);
 
 /** @param {number} rate */
 const rateMark = (rate) =>
@@ -78,17 +85,15 @@ export function mountCards(store, acts) {
     make,
     (element, uav) => cards.get(element)?.show(uav, store.state, list.clientWidth - STRIP_MARGIN_PX),
   );
-  const draw = () => drawList(inOrder(store.state.uavs, store.state.alerts, store.state.chosen));
+  const draw = () => drawList(inOrder(store.state.uavs, store.state.missions));
   store.listen(
-    ["uavs", "missions", "details", "alerts", "commands", "chosen", "now_ms", "isFollowing", "unsent"],
+    ["uavs", "missions", "details", "alerts", "commands", "chosen", "now_ms", "isFollowing", "unsent", "sending"],
     ({ uavs }) => {
       byId("no-uavs").hidden = uavs.length > 0;
       draw();
     },
   );
-  store.listen(["chosen"], () => {
-    byId("part-uavs").scrollTop = 0; // it stands first
-  });
+  store.listen(["chosen"], () => list.querySelector(".card.chosen")?.scrollIntoView({ block: "nearest" }));
   new ResizeObserver(draw).observe(list);
 }
 
@@ -97,12 +102,11 @@ class Card {
   #letter = h("span", { class: "letter" });
   #name = h("strong", {});
   #chip = h("span", { class: "chip" });
-  #age = h("span", { class: "age" });
+  #alarm = h("span", { class: "card-alarm", hidden: true });
   #about = h("p", { class: "caption of-mission" });
   #estimate = h("p", { class: "estimate" });
   #figures = h("dl", { class: "figures" });
   #strip = h("div", { class: "strip-place" });
-  #next = h("p", { class: "next" });
   #battery = h("p", { class: "card-battery" });
   #command = h("p", { class: "card-command" });
   #unsent = h("div", { class: "card-unsent", role: "alert", hidden: true });
@@ -129,15 +133,14 @@ class Card {
     this.element = h(
       "li",
       { class: "card", onclick },
-      h("div", { class: "card-top" }, this.#head, this.#age),
+      h("div", { class: "card-top" }, this.#head, this.#alarm),
       this.#about,
+      this.#figures,
+      this.#strip,
       this.#unsent,
       this.#command,
       this.#estimate,
-      this.#figures,
       this.#battery,
-      this.#strip,
-      this.#next,
       this.#alerts,
       this.#buttons,
     );
@@ -152,16 +155,15 @@ class Card {
       certainty: certaintyOf(uav, now_ms),
     };
     const isChosen = uav.id === state.chosen;
-    this.#drawHead(uav, isChosen);
-    this.#drawAge(uav, now_ms);
+    const alarm = alarmOf(uav.id, alerts);
+    this.#drawHead(uav, isChosen, alarm);
     this.#drawAbout(uav, known.mission);
     this.#drawEstimate(uav, known.certainty, now_ms);
-    this.#drawFigures(uav, known.certainty);
+    this.#drawFigures(uav, known, now_ms);
     this.#drawBattery(uav);
     this.#drawUnsent(uav, state.unsent.get(uav.id) ?? null);
     this.#drawStrip(uav, known, Math.round(this.#strip.clientWidth || width_px));
-    this.#drawNext(uav, known);
-    this.#drawCommand(commandOf(uav, commands, now_ms));
+    this.#drawCommand(commandOf(uav, commands, now_ms), state.sending.get(uav.id) ?? null);
     this.#drawAlerts(alerts.filter((alert) => alert.uav === uav.id && isOpenAlert(alert)));
     const isFollowed = state.isFollowing && isChosen;
     this.#buttons.hidden = !isChosen;
@@ -169,23 +171,18 @@ class Card {
     this.#follow.textContent = isFollowed ? t("Following") : t("Follow");
   }
 
-  /** @param {LiveUav} uav @param {boolean} isChosen */
-  #drawHead(uav, isChosen) {
+  /** An alert marks the card in its place. @param {LiveUav} uav @param {boolean} isChosen @param {AlertLevel | null} alarm */
+  #drawHead(uav, isChosen, alarm) {
     const route = uav.place === null ? "" : `route-${routeNumber(uav.place)}`;
-    this.element.className = `card ${route} ${isChosen ? "chosen" : ""}`;
+    this.element.className = `card ${route} ${isChosen ? "chosen" : ""} ${alarm ? `alarm-${alarm}` : ""}`;
+    this.#alarm.hidden = alarm === null;
+    refill(this.#alarm, alarm ?? "", () => (alarm ? [icon(LEVEL_ICONS[alarm]), unseen(LEVEL_WORDS[alarm])] : []));
     this.#head.setAttribute("aria-pressed", `${isChosen}`);
     this.#letter.textContent = uav.place === null ? "–" : routeLetter(uav.place);
     this.#name.textContent = uav.name;
     const { words, level } = stateOf(uav);
     this.#chip.textContent = words;
     this.#chip.className = `chip ${level === "warning" ? "aborted" : level === "active" ? "draft" : ""}`;
-  }
-
-  /** @param {LiveUav} uav @param {number} now_ms */
-  #drawAge(uav, now_ms) {
-    const { words, isLate } = ageWords(uav, now_ms);
-    refill(this.#age, `${isLate} ${words}`, () => [isLate && icon("signal", "small"), words]);
-    this.#age.classList.toggle("late", isLate);
   }
 
   /** Whether it is simulated, and in which mission it flies. @param {LiveUav} uav @param {LiveMission | null} mission */
@@ -211,14 +208,24 @@ class Card {
     ]);
   }
 
-  /** @param {LiveUav} uav @param {Certainty | null} certainty */
-  #drawFigures(uav, certainty) {
-    const figures = figuresOf(uav, certainty);
+  /** @param {LiveUav} uav @param {Known} known @param {number} now_ms */
+  #drawFigures(uav, { mission, detail, certainty }, now_ms) {
+    const numbers = numbersOf(detail);
+    const place = uav.place ?? -1;
+    const figures = figuresOf(uav, certainty, {
+      now_ms,
+      home: detail?.uavs[place]?.position ?? null,
+      route: detail?.plan?.routes[place] ?? null,
+      targetOf(sequence) {
+        const target = mission?.targets[sequence];
+        return target ? { pill: pillOf(target, numbers), label: target.label } : null;
+      },
+    });
     refill(this.#figures, JSON.stringify(figures), () =>
-      figures.map(({ figure, unit, words, level, title }) =>
+      figures.map(({ figure, unit, words, level, title }, number) =>
         h(
           "div",
-          { class: level || null, title: title || null },
+          { class: level || null, title: title || null, "data-figure": FIGURES[number] },
           h("dt", {}, words),
           h("dd", {}, figure, unit && h("small", {}, ` ${unit}`)),
         ),
@@ -226,11 +233,12 @@ class Card {
     );
   }
 
-  /** Minutes to the reserve against minutes home. @param {LiveUav} uav */
+  /** Minutes to the reserve against minutes home, once that is urgent. @param {LiveUav} uav */
   #drawBattery(uav) {
-    const words = batteryWords(uav);
+    const level = uav.estimated?.battery?.level ?? "";
+    const words = level && batteryWords(uav);
     this.#battery.hidden = !words;
-    this.#battery.className = `card-battery ${uav.estimated?.battery?.level ?? ""}`;
+    this.#battery.className = `card-battery ${level}`;
     refill(this.#battery, words, () => [words]);
   }
 
@@ -288,31 +296,23 @@ class Card {
     this.#strip.replaceChildren(liveStrip({ route, width_px, label, states, progress, certainty }));
   }
 
-  /** @param {LiveUav} uav @param {Known} known */
-  #drawNext(uav, { mission, detail, certainty }) {
-    const numbers = numbersOf(detail);
-    const said = nextOf(uav, (place) => {
-      const target = mission?.targets[place];
-      return target ? `${pillOf(target, numbers)} ${target.label}` : t("a target");
-    });
-    this.#next.hidden = !said.next && !said.toGo;
-    const at = said.at && `, ${certainty === MEASURED ? "" : "~\u2009"}${said.at}`;
-    refill(this.#next, JSON.stringify([said, certainty]), () => [
-      h("span", {}, said.next && [t("Next"), " ", h("strong", {}, said.next), at]),
-      h("span", { class: "quiet-text" }, said.toGo),
-    ]);
-  }
-
-  /** @param {Command | null} command */
-  #drawCommand(command) {
-    this.#command.hidden = command === null;
-    if (!command) return;
-    const said = commandWords(command);
-    this.#command.className = `card-command ${said.level ?? ""}`;
-    refill(this.#command, `${command.id} ${command.state} ${said.words}`, () => [
-      icon(said.image, "small"),
-      h("span", {}, h("strong", {}, said.words), h("small", {}, timesOf(command, exactClockText))),
-    ]);
+  /** One line: what is on its way to the server, else the last command, its times in the tooltip. @param {Command | null} command @param {SendingCommand | null} sending */
+  #drawCommand(command, sending) {
+    this.#command.hidden = command === null && sending === null;
+    if (sending) {
+      this.#command.className = "card-command";
+      this.#command.title = "";
+      const words = t("{act}: being sent …", { act: KINDS[sending.kind] });
+      refill(this.#command, words, () => [icon("loader-circle", "small"), h("strong", {}, words)]);
+    } else if (command) {
+      const said = commandWords(command);
+      this.#command.className = `card-command ${said.level ?? ""}`;
+      this.#command.title = timesOf(command, exactClockText);
+      refill(this.#command, `${command.id} ${command.state} ${said.words}`, () => [
+        icon(said.image, "small"),
+        h("strong", {}, said.words),
+      ]);
+    }
   }
 
   /** @param {Alert[]} alerts open ones of the UAV */

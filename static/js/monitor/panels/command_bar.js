@@ -3,23 +3,23 @@
 import { byId, h, icon } from "../../dom.js";
 import { KINDS } from "../../domain/flying.js";
 import { routeLetter, routeNumber } from "../../domain/palette.js";
+import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { t } from "../../text.js";
 import { batchScopes, whyNot } from "../batch.js";
+import { uavMenu } from "../uav_menu.js";
 import { isHeld } from "../uav_words.js";
 
 /** @import { AskedKind } from "../../domain/command_questions.js" */
 /** @import { Binding } from "../../page/keyboard.js" */
 /** @import { Commanding, LiveUav, MonitorState, MonitorStore } from "../types.d.ts" */
 
-/** @typedef {{ kind: AskedKind, image: string, words: string, isWide?: boolean, isDanger?: boolean }} CommandButton */
+/** @typedef {{ kind: AskedKind, image: string, words: string, isDanger?: boolean }} CommandButton */
 
 /** @type {CommandButton[]} */
 const BUTTONS = [
-  { kind: "pause", image: "pause", words: KINDS.pause },
-  { kind: "hold", image: "hand", words: KINDS.hold, isWide: true },
+  { kind: "hold", image: "hand", words: KINDS.hold },
   { kind: "return", image: "house", words: KINDS.return },
   { kind: "land", image: "plane-landing", words: KINDS.land },
-  { kind: "change-speed", image: "gauge", words: t("Speed"), isWide: true },
   { kind: "abort", image: "octagon-alert", words: KINDS.abort, isDanger: true },
 ];
 
@@ -32,33 +32,53 @@ function chosenFlyer(state) {
   return uav && !whyNot(uav) ? uav : null;
 }
 
-/** What Pause asks for now: a UAV that holds is resumed. @param {LiveUav} uav */
-const pauseOrResume = (uav) => (isHeld(uav) ? "resume" : "pause");
+/** What Hold asks for now: a UAV that holds is resumed. @param {LiveUav} uav */
+const holdOrResume = (uav) => (isHeld(uav) ? "resume" : "hold");
 
 /** @param {MonitorStore} store @param {Commanding} commanding */
 function makeButtons(store, commanding) {
-  return BUTTONS.map(({ kind, image, words, isWide, isDanger }) => {
+  return BUTTONS.map(({ kind, image, words, isDanger }) => {
     /** @param {Event} event */
     const ask = ({ currentTarget }) => {
       const uav = chosenFlyer(store.state);
       const opener = /** @type {HTMLElement} */ (currentTarget);
-      if (uav) void commanding.ask(uav.id, kind === "pause" ? pauseOrResume(uav) : kind, opener);
+      if (uav) void commanding.ask(uav.id, kind === "hold" ? holdOrResume(uav) : kind, opener);
     };
-    const look = `command-button ${isWide ? "wide" : ""} ${isDanger ? "danger" : ""}`;
+    const look = `command-button ${isDanger ? "danger" : ""}`;
     const properties = { type: "button", class: look, "data-kind": kind, onclick: ask };
     return h("button", properties, icon(image), h("span", {}, words));
   });
 }
 
-/** "Pause all" and "Return all" in the head of the page. @param {MonitorStore} store @param {Commanding} commanding */
+/** What is seldom asked, in a menu that is read when it is opened. @param {MonitorStore} store @param {Commanding} commanding */
+function makeMore(store, commanding) {
+  const more = h(
+    "button",
+    { type: "button", class: "command-button", "aria-haspopup": "true", "aria-expanded": "false" },
+    icon("ellipsis"),
+    h("span", {}, t("More")),
+  );
+  more.addEventListener("click", async () => {
+    const uav = chosenUav(store.state);
+    if (!uav?.mission) return;
+    const items = await uavMenu(
+      { mission: uav.mission, uav: uav.id, silent: whyNot(uav) },
+      { opener: more, ask: (kind) => commanding.ask(uav.id, kind, more) },
+    );
+    if (items) toggleMenu(more, () => menuOf(t("Commands to {name}", { name: uav.name }), items));
+  });
+  return more;
+}
+
+/** "Hold all" and "Return all" in the foot of the side. @param {MonitorStore} store @param {Commanding} commanding */
 function mountAll(store, commanding) {
-  const pause = byId("pause-all", HTMLButtonElement);
+  const hold = byId("hold-all", HTMLButtonElement);
   const home = byId("return-all", HTMLButtonElement);
-  pause.addEventListener("click", () => void commanding.askAll("pause", pause));
+  hold.addEventListener("click", () => void commanding.askAll("hold", hold));
   home.addEventListener("click", () => void commanding.askAll("return", home));
   store.listen(["uavs", "missions"], (state) => {
     const isIdle = batchScopes(state.uavs, state.missions).length === 0;
-    for (const button of [pause, home]) {
+    for (const button of [hold, home]) {
       button.disabled = isIdle;
       button.title = isIdle ? t("No UAV of a mission is in the air.") : "";
     }
@@ -70,10 +90,11 @@ export function mountCommandBar(store, commanding) {
   const letter = h("span", { class: "letter" });
   const name = h("strong", {});
   const buttons = makeButtons(store, commanding);
-  const [pause] = buttons;
+  const more = makeMore(store, commanding);
+  const [hold] = buttons;
   const who = h("span", { class: "command-who" }, letter, name);
   const why = h("p", { class: "command-why caption", hidden: true });
-  const bar = h("div", { class: "command-bar float", role: "group", hidden: true }, who, buttons, why);
+  const bar = h("div", { class: "command-bar float", role: "group", hidden: true }, who, buttons, more, why);
   byId("main").append(bar);
 
   store.listen(["chosen", "uavs", "missions"], (state) => {
@@ -93,12 +114,14 @@ export function mountCommandBar(store, commanding) {
       button.disabled = reason !== "";
       button.title = reason;
     }
+    more.disabled = uav.mission === null;
+    more.title = uav.mission === null ? t("{name} has no mission.", { name: uav.name }) : "";
     why.hidden = reason === "";
     why.textContent = reason;
-    const kind = pauseOrResume(uav);
-    if (pause.dataset.kind === kind) return;
-    pause.dataset.kind = kind;
-    pause.replaceChildren(icon(kind === "resume" ? "play" : "pause"), h("span", {}, KINDS[kind]));
+    const kind = holdOrResume(uav);
+    if (hold.dataset.kind === kind) return;
+    hold.dataset.kind = kind;
+    hold.replaceChildren(icon(kind === "resume" ? "play" : "hand"), h("span", {}, KINDS[kind]));
   });
   mountAll(store, commanding);
 
@@ -114,7 +137,6 @@ export function mountCommandBar(store, commanding) {
     },
   });
   return [
-    key("shift+p", "pause", t("Pause the chosen UAV")),
     key("shift+h", "hold", t("Hold the chosen UAV")),
     key("shift+r", "return", t("Return the chosen UAV")),
     key("shift+l", "land", t("Land the chosen UAV here")),

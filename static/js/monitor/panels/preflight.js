@@ -3,21 +3,19 @@
 import { ApiError, freshKey, get, post } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
 import { KINDS } from "../../domain/flying.js";
+import { nextStep, summaryOf, worstOf } from "../../domain/preflight_step.js";
 import { beginStarts } from "../../page/planned_starts.js";
 import { tellUav } from "../../page/tell_uav.js";
-import { toast } from "../../page/toast.js";
-import { t, tn } from "../../text.js";
+import { say, toast } from "../../page/toast.js";
+import { t } from "../../text.js";
 import { heightText } from "../../units.js";
+
+import { beginSimulation } from "./simulation.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { Mission, MissionStarts, Preflight, PreflightCheck, Rehearsal, UavPreflight } from "../../api_types.d.ts" */
+/** @import { NextStep } from "../../domain/preflight_step.js" */
 /** @import { MonitorPage, MonitorStore } from "../types.d.ts" */
-
-/**
- * The button: what it says, whether it can be pressed, and why not.
- *
- * @typedef {{ act: Preflight["next_act"], words: string, image: string, why: string }} NextStep
- */
 
 const POLL_MS = 2500;
 const BEFORE_FLIGHT = new Set(["approved", "dispatched", "active"]);
@@ -30,77 +28,6 @@ const STATES = {
   waiting: { image: "timer", words: t("Waits") },
   failed: { image: "octagon-alert", words: t("Blocks the start") },
 };
-/** @type {PreflightCheck["state"][]} */
-const WORST_FIRST = ["failed", "waiting", "warning", "unknown", "ok"];
-
-/** @param {Pick<PreflightCheck, "state">[]} checks */
-const worstOf = (checks) => WORST_FIRST.find((state) => checks.some((check) => check.state === state)) ?? "ok";
-
-/** What is said of a UAV in one line: its worst check, or that it is ready. @param {Pick<UavPreflight, "checks">} row */
-export function summaryOf({ checks }) {
-  const worst = worstOf(checks);
-  const said = checks.filter(({ state }) => state === worst);
-  if (worst === "ok") return t("Ready");
-  if (worst === "failed" || worst === "waiting") return said[0].message;
-  return worst === "warning"
-    ? tn(said.length, "{count} warning", "{count} warnings")
-    : tn(said.length, "{count} check not known", "{count} checks not known");
-}
-
-/**
- * @param {Preflight} preflight
- * @param {boolean} isPilotDone
- * @returns {NextStep | null}
- */
-export function nextStep({ next_act, checks, uavs }, isPilotDone) {
-  const waiting = uavs.filter(({ is_loaded }) => !is_loaded);
-  switch (next_act) {
-    case "connect":
-      return {
-        act: next_act,
-        words: tn(waiting.length, "Connect {count} UAV", "Connect {count} UAVs"),
-        image: "radio",
-        why: t("Not heard: {names}. Switch them on; this page sees them by itself.", { names: namesOf(waiting) }),
-      };
-    case "upload":
-      return {
-        act: next_act,
-        words: tn(waiting.length, "Upload to {count} UAV", "Upload to {count} UAVs"),
-        image: "send",
-        why: "",
-      };
-    case "wait":
-      return {
-        act: next_act,
-        words: t("Uploading …"),
-        image: "send",
-        why: t("What each UAV has on board is read back and compared."),
-      };
-    case "start": {
-      const blocked = uavs.filter(({ blocks }) => blocks);
-      const against = checks.find(({ state }) => state === "failed");
-      const why = against
-        ? against.message
-        : blocked.length
-          ? t("Blocked: {names}", { names: namesOf(blocked) })
-          : isPilotDone
-            ? ""
-            : t("Tick what was looked at on site.");
-      return {
-        act: next_act,
-        words: tn(uavs.length, "Start {count} UAV", "Start {count} UAVs"),
-        image: "plane-takeoff",
-        why,
-      };
-    }
-    default:
-      return null;
-  }
-}
-
-/** @param {UavPreflight[]} rows */
-const namesOf = (rows) => rows.map(({ name }) => name).join(", ");
-
 /**
  * Of this very plan: one that failed or is of another plan is warned of.
  *
@@ -128,6 +55,17 @@ const checkRow = ({ code, state, message }, remedy = null) =>
     h("span", {}, h("span", { class: "unseen" }, `${STATES[state].words}: `), message, remedy),
   );
 
+/** Whether it is being told. @param {number} uav @param {string} name @param {number} height_m */
+async function setHeight(uav, name, height_m) {
+  try {
+    return await tellUav(uav, name, "set-return-height", { height_m });
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    toast(`${t("{name} was not told: {act}.", { name, act: KINDS["set-return-height"] })} ${error.message}`);
+    return false;
+  }
+}
+
 /** One click to a height at which nothing is in the way home. @param {UavPreflight} row @param {PreflightCheck} check */
 function heightButton({ uav, name }, { safe_height_m }) {
   if (safe_height_m === null) return null;
@@ -135,13 +73,7 @@ function heightButton({ uav, name }, { safe_height_m }) {
   const set = async ({ currentTarget }) => {
     const button = /** @type {HTMLButtonElement} */ (currentTarget);
     button.disabled = true;
-    try {
-      await tellUav(uav, name, "set-return-height", { height_m: safe_height_m });
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      button.disabled = false;
-      toast(`${t("{name} was not told: {act}.", { name, act: KINDS["set-return-height"] })} ${error.message}`);
-    }
+    button.disabled = await setHeight(uav, name, safe_height_m);
   };
   const words = t("Set return height to {height}", { height: heightText(safe_height_m) });
   return h("button", { type: "button", class: "button small", onclick: set }, icon("rotate-ccw", "small"), words);
@@ -151,7 +83,8 @@ function heightButton({ uav, name }, { safe_height_m }) {
  * The panel's elements. draw: what was read; drawStep: the button alone.
  *
  * @param {HTMLElement} place
- * @param {{ act: (button: HTMLElement) => unknown, tick: (isDone: boolean) => void }} on
+ * @param {{ act: (button: HTMLElement) => unknown, tick: (isDone: boolean) => void, simulate: (() => unknown) | null }} on simulate: null
+ *   where no UAV of the mission is simulated
  */
 function createPanel(place, on) {
   let drawn = "";
@@ -164,12 +97,25 @@ function createPanel(place, on) {
     h("input", { type: "checkbox", id: "pilot-checked", onchange: ticked }),
     h("span", {}, t("Looked at on site: propellers and battery, take-off place, airspace and weather, radio at hand")),
   );
+  const heights = h("div", { class: "preflight-heights" });
   const button = h("button", { type: "button", class: "button primary wide", onclick: () => void on.act(button) });
+  const simulate = h(
+    "button",
+    { type: "button", class: "button wide", hidden: true, onclick: () => void on.simulate?.() },
+    icon("play", "small"),
+    t("Fly in simulation"),
+  );
   const why = h("p", { class: "caption", id: "preflight-why", role: "status" });
   button.setAttribute("aria-describedby", "preflight-why");
-  place.append(h("h2", {}, t("Before start")), list, tick, button, why);
+  place.append(h("h2", {}, t("Before start")), list, tick, heights, button, simulate, why);
 
   return {
+    /** What is to be set with the upload. */
+    heights: () =>
+      [...heights.querySelectorAll("input:checked")].map((input) => {
+        const { value, dataset } = /** @type {HTMLInputElement} */ (input);
+        return { uav: Number(value), name: dataset.name ?? "", height_m: Number(dataset.height) };
+      }),
     /** @param {Preflight} preflight @param {PreflightCheck | null} rehearsal */
     draw(preflight, rehearsal) {
       const whole = [...preflight.checks, ...(rehearsal ? [rehearsal] : [])];
@@ -177,6 +123,7 @@ function createPanel(place, on) {
       tick.hidden = preflight.next_act !== "start";
       if (key === drawn) return;
       drawn = key;
+      drawHeights(heights, preflight);
       const parts = /** @type {HTMLElement[]} */ ([...list.querySelectorAll("details[open]")]);
       const open = new Set(parts.map(({ dataset }) => dataset.uav));
       const rows = preflight.uavs.map((row) => uavPart(row, open.has(`${row.uav}`)));
@@ -190,17 +137,55 @@ function createPanel(place, on) {
       );
     },
     /** @param {NextStep} step @param {boolean} isActing */
-    drawStep({ act, words, image, why: reason }, isActing) {
+    drawStep({ act, words, image, why: reason, left }, isActing) {
       button.disabled = isActing || act === "connect" || act === "wait" || reason !== "";
       button.dataset.act = act ?? "";
+      simulate.hidden = act !== "connect" || on.simulate === null;
+      simulate.disabled = isActing;
       if (button.dataset.words !== words) {
         button.dataset.words = words;
         button.replaceChildren(icon(image, "small"), words);
       }
-      why.hidden = reason === "";
-      if (why.textContent !== reason) why.textContent = reason;
+      const said = [reason, left.length > 0 && `${left.join("; ")}.`].filter(Boolean).join(" ");
+      why.hidden = said === "";
+      if (why.textContent !== said) why.textContent = said;
     },
   };
+}
+
+/** Heights that are set with the upload unless they are unticked. @param {HTMLElement} place @param {Preflight} preflight */
+function drawHeights(place, { next_act, uavs }) {
+  const unticked = new Set(
+    [...place.querySelectorAll("input")].filter(({ checked }) => !checked).map(({ value }) => value),
+  );
+  const rows = next_act === "upload" ? uavs.filter(({ is_loaded }) => !is_loaded) : [];
+  const wanted = rows.flatMap(({ uav, name, checks }) => {
+    const height_m = checks.find(({ safe_height_m }) => safe_height_m !== null)?.safe_height_m ?? null;
+    return height_m === null ? [] : [{ uav, name, height_m }];
+  });
+  place.replaceChildren(
+    ...wanted.map(({ uav, name, height_m }) =>
+      h(
+        "label",
+        { class: "preflight-tick" },
+        h("input", {
+          type: "checkbox",
+          value: `${uav}`,
+          checked: !unticked.has(`${uav}`),
+          "data-name": name,
+          "data-height": `${height_m}`,
+        }),
+        h(
+          "span",
+          {},
+          t("Set the return height of {name} to {height} with it: lower, something is in its way home", {
+            name,
+            height: heightText(height_m),
+          }),
+        ),
+      ),
+    ),
+  );
 }
 
 /** @param {UavPreflight} row @param {boolean} isOpen */
@@ -240,6 +225,7 @@ export function mountPreflight(store, page) {
       isPilotDone = isDone;
       draw();
     },
+    simulate: page.hasSimulated ? simulate : null,
   });
   const isBeforeFlight = () => BEFORE_FLIGHT.has(store.state.missions.find(({ id }) => id === mission)?.state ?? "");
 
@@ -267,6 +253,22 @@ export function mountPreflight(store, page) {
       rehearsal = rehearsalCheck(data.results[0] ?? null);
     });
 
+  /** One click: as planned, in real time; the drawer of the simulation changes that. */
+  async function simulate() {
+    isActing = true;
+    draw();
+    try {
+      await beginSimulation(mission);
+      say(t("Simulated UAVs are being started."));
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      toast(error.message);
+    } finally {
+      isActing = false;
+      void read();
+    }
+  }
+
   /** @param {HTMLElement} button */
   async function act(button) {
     const step = preflight && nextStep(preflight, isPilotDone);
@@ -274,8 +276,12 @@ export function mountPreflight(store, page) {
     isActing = true;
     draw();
     try {
-      if (step.act === "upload") await upload(mission);
-      else if (step.act === "start") await start(mission, button);
+      const heights = panel.heights();
+      if (step.act === "upload") {
+        await upload(mission);
+        for (const { uav, name, height_m } of heights) await setHeight(uav, name, height_m);
+      }
+      if (step.act === "start") await start(mission, step, button);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
       toast(`${step.act === "upload" ? t("Not sent.") : t("Not started.")} ${error.message}`);
@@ -297,8 +303,9 @@ async function upload(mission) {
   await post(`/missions/${mission}/dispatch`, {}, { headers });
 }
 
-/** @param {string} mission @param {HTMLElement} opener */
-async function start(mission, opener) {
+/** Those that are ready, in planned order. @param {string} mission @param {NextStep} step @param {HTMLElement} opener */
+async function start(mission, { uavs, left }, opener) {
   const { data } = /** @type {Answer<MissionStarts>} */ (await get(`/missions/${mission}/planned-starts`));
-  await beginStarts(mission, data.waiting, opener, { pilot_checked: true });
+  const waiting = data.waiting.filter(({ uav }) => uavs.includes(uav));
+  await beginStarts(mission, waiting, opener, { left });
 }

@@ -1,6 +1,6 @@
 /** Simulated UAVs that stand in for a mission's: how each does, started, given wind and faults while they fly, ended. Only where the fleet says that they are simulated. */
 
-import { ApiError, get, patch, post, remove } from "../../api.js";
+import { ApiError, freshKey, get, patch, post, remove } from "../../api.js";
 import { byId, h, icon, keyedList, refill } from "../../dom.js";
 import { routeLetter, routeNumber } from "../../domain/palette.js";
 import { confirmAct } from "../../page/confirm.js";
@@ -31,7 +31,6 @@ const EVERY_MS = 2000;
 const LASTS_S = 60; // of the clock on the wall, until somebody says otherwise
 const LONGEST_FAULT_S = 86_400;
 const [MOST_WIND_MPS, MOST_GUSTS_MPS] = [60, 10]; // simulation/rehearsing/sky.py
-const AGAIN = () => crypto.randomUUID?.() ?? `${Date.now()}-${Math.random()}`;
 
 /** @param {string} id @param {(readonly [number | string, string])[]} entries value and words of each */
 const choice = (id, entries) =>
@@ -169,16 +168,21 @@ class SimulationPanel {
   }
 }
 
+/**
+ * Simulated UAVs stand in for those of a mission that are simulated. Rejects with ApiError.
+ *
+ * @param {string | null} mission
+ * @param {number} [speed] times real time
+ * @param {string} [conditions] wind
+ */
+export const beginSimulation = (mission, speed = 1, conditions = AIRS[0][0]) =>
+  post(`/missions/${mission}/simulated-flights`, { speed, conditions }, { headers: { "Idempotency-Key": freshKey() } });
+
 /** What a simulation is begun with. @param {MonitorPage} page @param {Do} act */
 function startForm(page, act) {
   const speed = choice("simulation-start-speed", SPEEDS);
   const air = choice("simulation-air", AIRS);
-  const begin = () =>
-    post(
-      `/missions/${page.mission}/simulated-flights`,
-      { speed: Number(speed.value), conditions: air.value },
-      { headers: { "Idempotency-Key": AGAIN() } },
-    );
+  const begin = () => beginSimulation(page.mission, Number(speed.value), air.value);
   /** @param {Event} event */
   const onsubmit = (event) => {
     event.preventDefault();

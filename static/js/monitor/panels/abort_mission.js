@@ -1,0 +1,48 @@
+/** "Abort the mission" on the page of a mission that is on its way. */
+
+import { ApiError, freshKey, post } from "../../api.js";
+import { abortQuestion } from "../../domain/command_questions.js";
+import { canBeAborted } from "../../domain/flying.js";
+import { confirmAct } from "../../page/confirm.js";
+import { CHECKING_HOME, returnsNow } from "../../page/present_returns.js";
+import { toast } from "../../page/toast.js";
+import { t } from "../../text.js";
+
+/** @import { LiveMission } from "../../api_types.d.ts" */
+/** @import { MonitorPage, MonitorState, MonitorStore } from "../types.d.ts" */
+
+/** @param {MonitorStore} store @param {MonitorPage} page */
+export function mountAbortMission(store, page) {
+  const button = document.getElementById("abort-mission");
+  if (!(button instanceof HTMLButtonElement)) return;
+  /** @param {Pick<MonitorState, "missions">} state */
+  const own = ({ missions }) => missions.find(({ id }) => id === page.mission);
+  button.addEventListener("click", () => {
+    const mission = own(store.state);
+    if (mission) void abort(mission, button, store);
+  });
+  store.listen(["missions"], (state) => {
+    const mission = own(state);
+    button.hidden = !mission || !canBeAborted(mission);
+  });
+}
+
+/** @param {LiveMission} mission @param {HTMLElement} opener @param {MonitorStore} store */
+async function abort({ id, name, state }, opener, store) {
+  const told = { name, isActive: state === "active" };
+  const flyers = store.state.uavs.filter(({ mission }) => mission === id);
+  const first = abortQuestion({ ...told, uavs: flyers.map((flyer) => ({ name: flyer.name, check: null })) });
+  const later = returnsNow(flyers.map((flyer) => flyer.id)).then((returns) =>
+    abortQuestion({ ...told, uavs: flyers.map((flyer) => ({ name: flyer.name, check: returns.get(flyer.id) })) }),
+  );
+  const asked = await confirmAct({ ...first, lines: [...first.lines.slice(0, 2), CHECKING_HOME], later, opener });
+  if (!asked) return;
+  try {
+    // what stops UAVs is not held up by what somebody else has changed meanwhile
+    const headers = { "If-Match": "*", "Idempotency-Key": freshKey() };
+    await post(`/missions/${id}/abort`, { why: asked.why }, { headers });
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    toast(`${t("Not aborted.")} ${error.message}`);
+  }
+}

@@ -1,0 +1,29 @@
+/** Commands that are on their way to the server, or there and not told by the feed yet: said on the card at once. */
+
+/** @import { CommandKind } from "../api_types.d.ts" */
+/** @import { MonitorStore } from "./types.d.ts" */
+
+const CLOCKS_APART_MS = 3000;
+const SENDING_AT_MOST_MS = 12_000; // what the feed has not told by then is said by its other parts
+
+/** @param {MonitorStore} store @param {number[]} ids of UAVs @param {CommandKind | null} kind null: nothing is on its way */
+export function markSending(store, ids, kind) {
+  const sending = new Map(store.state.sending);
+  for (const id of ids) {
+    if (kind) sending.set(id, { kind, at_ms: store.state.now_ms });
+    else sending.delete(id);
+  }
+  store.update({ sending });
+}
+
+/** Once the feed tells them they are commands like others. @param {MonitorStore} store */
+export function dropSent(store) {
+  store.listen(["commands", "now_ms"], ({ commands, sending, now_ms }) => {
+    for (const [id, { kind, at_ms }] of sending) {
+      const isThere = commands.some(
+        (one) => one.uav.id === id && one.kind === kind && Date.parse(one.created_at) >= at_ms - CLOCKS_APART_MS,
+      );
+      if (isThere || now_ms - at_ms > SENDING_AT_MOST_MS) markSending(store, [id], null);
+    }
+  });
+}
