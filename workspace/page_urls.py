@@ -10,11 +10,14 @@ from workspace.account_pages import (
     NewPasswordSetPage,
     PasswordChangedPage,
 )
+from workspace.offline_pages import OfflinePage, service_worker
 from workspace.people_pages import AccountPage, AdministrationPage, InvitationPage
 from workspace.second_factor_pages import CodePage, NewCodesPage, RemovePage, SetUpPage
 from workspace.sign_in_pages import SignInPage, SignOutPage
 
 urlpatterns = [
+    path("service-worker.js", service_worker, name="service-worker"),
+    path("offline", OfflinePage.as_view(), name="offline"),
     path("sign-in", SignInPage.as_view(), name="sign-in"),
     path("sign-in/code", CodePage.as_view(), name="sign-in-code"),
     path("sign-out", SignOutPage.as_view(), name="sign-out"),

@@ -18,7 +18,8 @@ class SignedInPage(LoginRequiredMixin, TemplateView):
     def get_context_data(self, **kwargs: Any) -> dict[str, Any]:
         user = self.request.user
         page = {
-            "userId": user.pk, "userName": user.username, "role": user.role, "canPlan": user.can_plan, "canCurate": user.can_curate,
+            "userId": user.pk, "organisationId": user.organisation_id, "userName": user.username, "role": user.role,
+            "canPlan": user.can_plan, "canCurate": user.can_curate,
             "sessionEndsIn_s": seconds_left(self.request.session),
         } | self.page(**kwargs)  # fmt: skip
         return super().get_context_data(**kwargs) | {"page": page}

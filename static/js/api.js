@@ -1,5 +1,6 @@
 /** The one module that fetches: CSRF, the error shape, and words for what went wrong. */
 
+import { COPY_HEADER, copiedAt } from "./offline_copy.js";
 import { t } from "./text.js";
 
 /** @import { Job } from "./api_types.d.ts" */
@@ -126,17 +127,19 @@ async function problemOf(response) {
  * @param {string} path below the API's root, or an address that the API has given
  * @param {Options} [options]
  * @returns {Promise<Answer>}
- * @throws {ApiError} an abort passes as AbortError
+ * @throws {ApiError} an abort passes as AbortError; of an offline copy all but GET are refused here
  */
 export async function request(method, path, { body, bytes, headers = {}, signal, keepalive = false } = {}) {
   const address = path.startsWith("http") || path.startsWith("/api/") ? path : ROOT + path;
+  if (copiedAt !== null && method !== "GET")
+    throw new ApiError(t("This is an offline copy: nothing can be sent."), { code: "offline_copy" });
   /** @type {RequestInit & { headers: Record<string, string> }} */
   const send = {
     method,
     signal,
     keepalive,
     credentials: "same-origin",
-    headers: { Accept: "application/json", ...headers },
+    headers: { Accept: "application/json", ...(copiedAt === null ? {} : { [COPY_HEADER]: copiedAt }), ...headers },
   };
   if (method !== "GET") send.headers["X-CSRFToken"] = cookie("__Host-csrftoken") || cookie("csrftoken"); // the first over https
   if (body !== undefined) {

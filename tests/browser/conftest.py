@@ -44,6 +44,7 @@ NO_TRIANGLES = """
 DESK = {"width": 1440, "height": 900}
 STORAGES = "local_storage,indexeddb,service_workers,cache_storage,file_systems"  # of Storage.clearDataForOrigin in Chrome's protocol
 EMPTY_PAGE = "about:blank"
+NO_COMPLAINTS = ("GL Driver Message", "Service Worker registration blocked by Playwright")
 PICTURE_SETTLES_MS = 800  # for documentation alone: a change of theme reaches the map a few frames later
 MAX_TEST_S = 300.0
 PASSWORD = "inspect-the-lines"
@@ -173,7 +174,11 @@ class ContextPool:
         self._idle: dict[bool, list[BrowserContext]] = {True: [], False: []}
 
     def new(self, *, draws: bool = False, **options: Any) -> BrowserContext:
-        """A context of its own, which is closed after the test; WebGL's triangles are drawn in one that `draws`."""
+        """A context of its own, which is closed after the test; WebGL's triangles are drawn in one that `draws`.
+
+        Without a service worker unless `service_workers="allow"`: tests of faults answer the requests of pages themselves.
+        """
+        options = {"service_workers": "block"} | options
         context = self.browser.new_context(base_url=self.address, reduced_motion="reduce", **options)
         if not HAS_PICTURES:
             context.add_init_script(COARSE_CANVASES)
@@ -275,7 +280,7 @@ class Visitor:
         return page
 
     def _heard(self, message: ConsoleMessage) -> None:
-        if message.type == "error" or (message.type == "warning" and "GL Driver Message" not in message.text):
+        if message.type == "error" or (message.type == "warning" and not any(words in message.text for words in NO_COMPLAINTS)):
             self.complaints.append(message.text)
 
     def _asked(self, url: str) -> None:

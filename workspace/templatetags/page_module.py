@@ -9,6 +9,7 @@ from django.conf import settings
 from django.contrib.staticfiles.storage import staticfiles_storage
 from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString
+from django.utils.translation import get_language
 
 register = template.Library()
 
@@ -19,8 +20,19 @@ IMPORTED = re.compile(r"""^(?:import|export)\s[^;]*?from\s*["']([./][^"']+)["'];
 def page_module(name: str) -> SafeString:
     """`{% page_module "js/missions/main.js" %}`"""
     address = staticfiles_storage.url(name)
-    preloads = format_html_join("\n", '<link rel="modulepreload" href="{}">', ((found,) for found in imported_by(address)))
+    behind = dict.fromkeys((*imported_by(address), *_texts()))
+    preloads = format_html_join("\n", '<link rel="modulepreload" href="{}">', ((found,) for found in behind))
     return format_html('{}\n<script type="module" src="{}"></script>', preloads, address)
+
+
+def _texts() -> tuple[str, ...]:
+    """Modules of the page's language, which its scripts import by name."""
+    language = (get_language() or "").split("-")[0]
+    name = f"js/locale/{language}.js"
+    if language == settings.LANGUAGE_CODE.split("-")[0] or not staticfiles_storage.exists(staticfiles_storage.stored_name(name)):
+        return ()
+    address = staticfiles_storage.url(name)
+    return (*imported_by(address), address)
 
 
 @cache

@@ -41,6 +41,9 @@ export function routeLetter(sequence) {
     : `${String.fromCharCode(64 + Math.floor(sequence / 26))}${String.fromCharCode(65 + (sequence % 26))}`;
 }
 
+/** Name of a rally point: "R2", as on the map. @param {number} index */
+export const rallyName = (index) => `R${index + 1}`;
+
 /** @param {(token: string) => string} [read] @returns {Palette} */
 export function readPalette(
   read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim(),

@@ -18,6 +18,7 @@ import mission from "./de/mission.js";
 import missionPanels from "./de/mission_panels.js";
 import missions from "./de/missions.js";
 import monitor from "./de/monitor.js";
+import offline from "./de/offline.js";
 import planning from "./de/planning.js";
 import rehearsal from "./de/rehearsal.js";
 import report from "./de/report.js";
@@ -46,6 +47,7 @@ export default {
   ...missionPanels,
   ...missions,
   ...monitor,
+  ...offline,
   ...planning,
   ...rehearsal,
   ...report,

@@ -1,6 +1,7 @@
 /** The controls that every map has: zoom, fit, layers, measuring, coordinates, and what is said when the map cannot be read. */
 
 import { byId, h, icon } from "../dom.js";
+import { copiedAt } from "../offline_copy.js";
 import { closeMenu, menuOf, toggleMenu } from "../page/chrome.js";
 import { copyText } from "../page/clipboard.js";
 import { onTheme } from "../page/theme.js";
@@ -71,7 +72,7 @@ export function mountControls(view, page, act) {
   mountLayersButton(map, under, act);
   const measure = createMeasure(map, frame, byId("measure"), { onSwitch: act.measures, isBusy: act.isBusy });
   mountPlaceMenu(map, frame, measure, act);
-  watchTiles(map, frame);
+  if (copiedAt === null) watchTiles(map, frame); // a copy has the tiles round its mission, and no others
 
   return {
     attribute,

@@ -1,6 +1,7 @@
 /** The map itself: made once, coloured again when the theme changes, with its camera. */
 
 import { readPalette } from "../domain/palette.js";
+import { COPY_HEADER, copiedAt } from "../offline_copy.js";
 import { hashOf, showsAnything, viewOf } from "./address.js";
 import * as graticule from "./layers/graticule.js";
 import { provideImages } from "./look/images.js";
@@ -37,6 +38,7 @@ export function createMap(container, { baseMap, satellite, under, describe, boun
     ...(opened
       ? { center: opened.centre, zoom: opened.zoom }
       : { bounds: bounds ?? WORLD, fitBoundsOptions: { padding: paddingIn(container), maxZoom: NEAREST_FIT } }),
+    ...(copiedAt === null ? {} : { transformRequest: (url) => ({ url, headers: { [COPY_HEADER]: copiedAt } }) }),
     attributionControl: false,
     dragRotate: false,
     pitchWithRotate: false,

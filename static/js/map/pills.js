@@ -33,8 +33,8 @@ const DART_HEIGHT_PX = 16;
 /** How wide a pill with this label is drawn, about. @param {string} label */
 export const pillWidth = (label) => Math.max(LEAST_WIDTH_PX, label.length * LETTER_PX + PADDING_PX);
 
-/** @param {Pick<Pill, "sequence" | "isMissed">} a @param {Pick<Pill, "sequence" | "isMissed">} b */
-const isSameKind = (a, b) => a.sequence === b.sequence && a.isMissed === b.isMissed;
+/** @param {Pick<Pill, "sequence" | "letter" | "isMissed">} a @param {Pick<Pill, "sequence" | "letter" | "isMissed">} b */
+const isSameKind = (a, b) => a.sequence === b.sequence && a.letter === b.letter && a.isMissed === b.isMissed;
 
 /**
  * Groups of pills to draw, given their places on the screen: [{ members, x, y, label }]. Those of one UAV that would overlap become one.

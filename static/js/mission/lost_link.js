@@ -4,7 +4,7 @@
  */
 
 import { distance_m } from "../domain/geodesy.js";
-import { routeLetter } from "../domain/palette.js";
+import { rallyName, routeLetter } from "../domain/palette.js";
 import { language, localeOf, t, tn } from "../text.js";
 import { durationText, exactHeightText, numberText } from "../units.js";
 
@@ -104,9 +104,6 @@ export const withoutRallyPoint = (lost_link, index) =>
 
 /** Whether UAVs may land at rally points: where they go on, none is used. @param {Wish} lost_link */
 export const usesRallyPoints = (lost_link) => wholeLostLink(lost_link).behaviour !== GO_ON;
-
-/** "R2", as on the map. @param {number} index */
-export const rallyName = (index) => `R${index + 1}`;
 
 /** @param {number} hold_s */
 const holdText = (hold_s) => (hold_s < 100 ? `${numberText(hold_s)}\u00a0s` : durationText(hold_s));

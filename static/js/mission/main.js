@@ -2,6 +2,8 @@
 
 import { ApiError, get } from "../api.js";
 import { byId } from "../dom.js";
+import { readBriefing } from "../offline/briefing.js";
+import { copiedAt } from "../offline_copy.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { mountPlannedStarts } from "../page/planned_starts.js";
 import { KEEP_NO_MORE, KEEP_NOW } from "../page/signing_out.js";
@@ -328,7 +330,10 @@ async function load() {
     store.update({ ground: /** @type {Answer<Ground>} */ (await get("/ground")).data });
     store.update({ fleet: await fleet });
     if (page.mission) await actions.open(page.mission);
-    else if (page.canPlan) actions.openDraft();
+    if (page.mission && copiedAt !== null) {
+      const { element } = await readBriefing(page.mission, (position) => map.showPoint(position));
+      byId("notices").after(element);
+    } else if (page.canPlan) actions.openDraft();
     isLoaded = true;
     void actions.resume();
   } catch (error) {

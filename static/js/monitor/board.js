@@ -3,9 +3,12 @@
 import { inAir } from "../domain/in_air.js";
 import { routeLetter } from "../domain/palette.js";
 import { t } from "../text.js";
+import { prefixOf } from "./call_signs.js";
 import { isHeld } from "./uav_words.js";
 
 /** @import { LiveMission, LiveTarget, LiveUav, Mission, TargetState } from "../api_types.d.ts" */
+
+/** @import { MissionNumbers } from "./call_signs.js" */
 
 /**
  * A target on the board.
@@ -67,9 +70,10 @@ export function numbersOf(detail) {
  *
  * @param {Pick<LiveTarget, "place" | "uav">} target
  * @param {Map<number, number>} numbers
+ * @param {string} [prefix] of its mission's letters
  */
-export const pillOf = (target, numbers) =>
-  target.uav === null ? `${target.place + 1}` : `${routeLetter(target.uav)}${numbers.get(target.place) ?? ""}`;
+export const pillOf = (target, numbers, prefix = "") =>
+  target.uav === null ? `${target.place + 1}` : `${prefix}${routeLetter(target.uav)}${numbers.get(target.place) ?? ""}`;
 
 /**
  * Rows: [{ key, mission, place, uav, pill, label, state, at, isExpected, reason }], what goes on first, what is done last.
@@ -77,16 +81,20 @@ export const pillOf = (target, numbers) =>
  * @param {LiveMission[]} missions
  * @param {LiveUav[]} uavs
  * @param {Map<string, Mission>} details
+ * @param {MissionNumbers} [order] on a page of several missions, whose targets stand together
  * @returns {BoardRow[]}
  */
-export function boardRows(missions, uavs, details) {
+export function boardRows(missions, uavs, details, order = new Map()) {
   const rows = missions.flatMap((mission) => {
     const numbers = numbersOf(details.get(mission.id));
     const flying = new Map(uavs.filter((uav) => uav.mission === mission.id).map((uav) => [uav.place, uav]));
-    return mission.targets.map((target) => rowOf(mission, target, numbers, flying.get(target.uav ?? -1)));
+    return mission.targets.map((target) =>
+      rowOf(mission, target, numbers, flying.get(target.uav ?? -1), prefixOf(mission.id, order)),
+    );
   });
   return rows.sort(
     (a, b) =>
+      (order.get(a.mission) ?? 0) - (order.get(b.mission) ?? 0) ||
       STATES[a.state].rank - STATES[b.state].rank ||
       later(a, b) ||
       a.pill.localeCompare(b.pill, undefined, { numeric: true }),
@@ -105,9 +113,10 @@ function later(a, b) {
  * @param {LiveTarget} target
  * @param {Map<number, number>} numbers
  * @param {LiveUav | undefined} uav
+ * @param {string} prefix
  * @returns {BoardRow}
  */
-function rowOf(mission, target, numbers, uav) {
+function rowOf(mission, target, numbers, uav, prefix) {
   const arrivals = uav?.estimated?.arrivals ?? [];
   const arrival = arrivals.find((entry) => entry.target === target.place);
   const isToCome = target.state === "pending" || target.state === "in-progress";
@@ -124,7 +133,7 @@ function rowOf(mission, target, numbers, uav) {
     mission: mission.id,
     place: target.place,
     uav: target.uav,
-    pill: pillOf(target, numbers),
+    pill: pillOf(target, numbers, prefix),
     label: target.label,
     state,
     at: isToCome ? (state === "held" ? null : (arrival?.at ?? null)) : target.state_at,

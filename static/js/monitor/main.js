@@ -1,26 +1,30 @@
 /** What flies now: composes the page, listens to the feed, keeps the time. */
 
 import { ApiError, get } from "../api.js";
-import { inOrder } from "../domain/order.js";
 import { openFeed } from "../live/feed.js";
 import { KINDS } from "../live/shown.js";
 import { staleWords } from "../live/stale.js";
+import { copiedAt } from "../offline_copy.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { mountPlannedStarts } from "../page/planned_starts.js";
 import { mountWorkbench } from "../page/workbench.js";
 import { mountSceneOpener } from "../scene/opener.js";
 import { createStore } from "../store.js";
 import { t } from "../text.js";
+import { missionNumbers } from "./call_signs.js";
 import { createCommanding } from "./commanding.js";
+import { EVERYTHING, isHead, listed } from "./fleet_groups.js";
 import { mountMonitorMap } from "./map/monitor_map.js";
 import { createMissionDetails } from "./mission_details.js";
 import { mountNarrow } from "./narrow.js";
+import { showCopy, silentFeed } from "./offline_copy.js";
 import { mountAbortMission } from "./panels/abort_mission.js";
 import { mountAlerts } from "./panels/alerts.js";
 import { mountBoard } from "./panels/board.js";
 import { mountCards } from "./panels/cards.js";
 import { mountCloseMission } from "./panels/close_mission.js";
 import { mountCommandBar } from "./panels/command_bar.js";
+import { mountFleetFilter } from "./panels/fleet_filter.js";
 import { mountHead } from "./panels/head.js";
 import { mountOffers } from "./panels/offers.js";
 import { mountPreflight } from "./panels/preflight.js";
@@ -50,6 +54,8 @@ const store = createStore(
     flown: new Map(),
     offered: [],
     ground: null,
+    numbers: new Map(),
+    filter: EVERYTHING,
     chosen: null,
     isFollowing: false,
     showsLog: false,
@@ -76,9 +82,12 @@ const commanding = page.canFly ? createCommanding(store, page) : null;
 const narrow = mountNarrow();
 createMissionDetails(store);
 mountHead(store, page);
+const fleetFilter = page.mission === null ? mountFleetFilter(store) : null;
 mountCards(store, {
   isOfOne: page.mission !== null,
   pick,
+  close: () => store.update({ chosen: null, isFollowing: false }),
+  tellShown: (shown, all) => fleetFilter?.tell(shown, all),
   jumpTo: (id) => map.jumpTo(id),
   follow: () => store.update({ isFollowing: !store.state.isFollowing }),
   commanding,
@@ -120,10 +129,9 @@ function followFeed(stage) {
 
 /** @param {number} by 1 or -1 */
 function step(by) {
-  const { uavs, missions, chosen } = store.state;
-  const order = inOrder(uavs, missions);
+  const order = listed(store.state, page.mission !== null).flatMap((entry) => (isHead(entry) ? [] : entry));
   if (!order.length) return;
-  const at = order.findIndex(({ id }) => id === chosen);
+  const at = order.findIndex(({ id }) => id === store.state.chosen);
   pick(order[at < 0 ? 0 : (at + by + order.length) % order.length].id);
 }
 
@@ -131,7 +139,8 @@ const byNumber = Array.from({ length: 8 }, (_, place) => ({
   keys: [`${place + 1}`],
   words: place === 0 ? t("Choose UAV A; 2 to 8: B to H") : "",
   act() {
-    const uav = store.state.uavs.find((entry) => entry.place === place);
+    const mission = missionSeen(store.state); // several have a UAV A
+    const uav = store.state.uavs.find((entry) => entry.place === place && entry.mission === mission);
     if (!uav) return false;
     pick(uav.id);
     return true;
@@ -193,15 +202,22 @@ function show() {
     told.uavs = ofPage(placed([...feed.shown.uavs.values()], [...feed.shown.missions.values()]), page.mission);
   }
   waiting = null;
-  store.update({ ...told, ...timesOf() });
+  const numbers =
+    page.mission === null
+      ? missionNumbers(store.state.numbers, [...feed.shown.missions.values()])
+      : store.state.numbers;
+  store.update({ ...told, numbers, ...timesOf() });
   store.update({ isWhole: true }); // from here on what comes is news
 }
 
-const feed = openFeed({
-  mission: page.mission,
-  onChange: take,
-  onState: ({ state, since_ms }) => store.update({ link: state, since_ms }),
-});
+const feed =
+  copiedAt === null
+    ? openFeed({
+        mission: page.mission,
+        onChange: take,
+        onState: ({ state, since_ms }) => store.update({ link: state, since_ms }),
+      })
+    : silentFeed(copiedAt);
 /** What is shown is of `now_ms`: it stands still while the device has no data. */
 const timesOf = () => ({ now_ms: feed.shown_ms(), heard_ms: feed.heard_ms, silent_ms: feed.silent_ms() });
 setInterval(() => store.update(timesOf()), TICK_MS);
@@ -213,7 +229,15 @@ async function load() {
   } catch (error) {
     if (!(error instanceof ApiError)) throw error; // the map says itself that it cannot be read
   }
+  const approved =
+    copiedAt !== null && page.mission
+      ? await showCopy(store, page.mission, (position) => map.showPlace(position))
+      : null;
   await map.ready;
+  if (approved) {
+    map.showApproved(approved);
+    if (!map.opensAtPlace) map.fit({ animate: false });
+  }
   document.documentElement.dataset.loaded = "true";
   let wasFitted = map.opensAtPlace;
   store.listen(["details", "uavs"], ({ details, uavs, missions }) => {

@@ -16,6 +16,8 @@ import type { AskedKind } from "../domain/command_questions.js";
 import type { FeedState } from "../live/feed.js";
 import type { Box, Geometry, Ground, MapPage } from "../map/types.d.ts";
 import type { Store } from "../store.js";
+import type { MissionNumbers } from "./call_signs.js";
+import type { FleetFilter } from "./fleet_groups.js";
 
 /** What the server writes into the page. */
 export interface MonitorPage extends MapPage {
@@ -60,6 +62,10 @@ export interface MonitorState extends Live {
   flown: Map<number, number[][][]>;
   offered: OfferedRoute[];
   ground: Ground | null;
+  /** of missions, on the page of all: from two on they stand before the letters */
+  numbers: MissionNumbers;
+  /** of the fleet's list, on the page of all */
+  filter: FleetFilter;
   /** id of a UAV */
   chosen: number | null;
   isFollowing: boolean;

@@ -3,7 +3,7 @@
 import { ESTIMATED, hasFix, isLate, LOST, MEASURED, reportAge_s, withinOf_m } from "../domain/certainty.js";
 import { inAir } from "../domain/in_air.js";
 import { t } from "../text.js";
-import { durationText, exactClockText, heightText, lengthText, numberText } from "../units.js";
+import { durationText, exactClockText, heightText, lengthText, numberText, speedText } from "../units.js";
 
 /** @import { LiveUav } from "../api_types.d.ts" */
 /** @import { Certainty } from "../domain/certainty.js" */
@@ -69,6 +69,25 @@ export function estimateWords(uav, certainty, now_ms) {
     strong: t("Estimated, within {distance}", { distance: lengthText(withinOf_m(estimated)) }),
     rest: `${t("(95 of 100 times).")} ${contact}`.trim(),
   };
+}
+
+const MIN_WIND_MPS = 0.5; // below, it comes from nowhere
+
+/** "Wind 5 m/s from 240°, reported by the autopilot 4 s ago"; empty where it reports none. @param {LiveUav} uav @param {number} now_ms */
+export function windWords({ measured, link }, now_ms) {
+  const speed_mps = measured?.wind_speed_mps;
+  if (!measured || typeof speed_mps !== "number") return "";
+  const from_deg = measured.wind_from_deg;
+  const from =
+    typeof from_deg === "number" && speed_mps >= MIN_WIND_MPS
+      ? ` ${t("from {degrees}°", { degrees: Math.round(from_deg) })}`
+      : "";
+  const age_s = Math.max(0, (now_ms - Date.parse(measured.measured_at_of.wind ?? measured.measured_at)) / 1000);
+  const by =
+    link?.kind === "http"
+      ? t("reported by its companion computer {age} s ago", { age: numberText(age_s) })
+      : t("reported by its autopilot {age} s ago", { age: numberText(age_s) });
+  return `${t("Wind {speed}", { speed: speedText(speed_mps) })}${from}, ${by}`;
 }
 
 /** One fact beside its name on the map. @param {LiveUav} uav @param {Certainty | null} certainty */

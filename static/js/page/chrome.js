@@ -1,6 +1,9 @@
 /** The bar around every page: theme, keys, account. */
 
 import { byId, find, h, icon } from "../dom.js";
+import { showCopyBanner } from "../offline/banner.js";
+import { keepForOffline } from "../offline/keeping.js";
+import { copiedAt } from "../offline_copy.js";
 import { t } from "../text.js";
 import { startBell } from "./bell.js";
 import { listenToKeys, showKeys } from "./keyboard.js";
@@ -11,9 +14,13 @@ import { chosenTheme, nextTheme, onTheme, THEME_ICONS } from "./theme.js";
 /** @type {Record<string, string>} */
 const THEME_WORDS = { system: t("as the system"), light: t("light"), dark: t("dark") };
 
+/** In an offline copy nobody can act. */
+const NO_RIGHTS = { canPlan: false, canFly: false, canCurate: false };
+
 /** @returns {any} what the server has written into the page for its script */
 export function readPage() {
-  return JSON.parse(byId("page").textContent ?? "");
+  const page = JSON.parse(byId("page").textContent ?? "");
+  return copiedAt === null ? page : { ...page, ...NO_RIGHTS };
 }
 
 /** @import { Binding } from "./keyboard.js" */
@@ -53,7 +60,10 @@ export function startChrome({ bindings = [] } = {}) {
   startBell();
   const account = byId("open-account");
   account.addEventListener("click", () => toggleMenu(account, () => accountMenu(all)));
-  watchSessionEnd(readPage().sessionEndsIn_s);
+  if (copiedAt === null) {
+    watchSessionEnd(readPage().sessionEndsIn_s);
+    keepForOffline(readPage());
+  } else showCopyBanner(copiedAt);
   byId("open-more").addEventListener("click", () => toggleMenu(account, () => accountMenu(all)));
 }
 

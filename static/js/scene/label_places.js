@@ -22,17 +22,18 @@ const TRIES = [
  * @param {{ width: number, height: number }} size of the picture
  * @param {LabelPlaces} [before] the last answer: a label stays where it stood, if it can
  * @param {readonly ScreenBox[]} [covered] what stands over the picture
+ * @param {readonly number[][]} [tries] places round a point, the best first
  */
-export function placeLabels(items, { width, height }, before = new Map(), covered = []) {
+export function placeLabels(items, { width, height }, before = new Map(), covered = [], tries = TRIES) {
   /** @type {LabelPlaces} */
   const placed = new Map();
   const taken = [...covered];
   for (const item of [...items].sort((a, b) => b.weight - a.weight)) {
     const last = before.get(item.key)?.tried;
     const order =
-      last === undefined ? [...TRIES.keys()] : [last, ...[...TRIES.keys()].filter((number) => number !== last)];
+      last === undefined ? [...tries.keys()] : [last, ...[...tries.keys()].filter((number) => number !== last)];
     for (const number of order) {
-      const [across, down, right_px, down_px] = TRIES[number];
+      const [across, down, right_px, down_px] = tries[number];
       const left = item.x + across * item.width + right_px;
       const top = item.y + down * item.height + down_px;
       if (left < 2 || top < 2 || left + item.width > width - 2 || top + item.height > height - 2) continue;

@@ -1,14 +1,8 @@
 /** Rally points and ways back on the mission's map, as the store has them: quietly, and where they fail not so. */
 
+import { rallyName } from "../../domain/palette.js";
 import * as layer from "../../map/layers/lost_link.js";
-import {
-  checkStateOf,
-  quietReturnsOf,
-  rallyName,
-  returnLinesOf,
-  usesRallyPoints,
-  wholeLostLink,
-} from "../lost_link.js";
+import { checkStateOf, quietReturnsOf, returnLinesOf, usesRallyPoints, wholeLostLink } from "../lost_link.js";
 import { isPlanCurrent } from "../plan_view.js";
 
 /** @import { MapLibreMap } from "../../map/types.d.ts" */

@@ -2,10 +2,13 @@
 
 import { byId } from "../../dom.js";
 import { certaintyOf, LOST, MEASURED, standsAt } from "../../domain/certainty.js";
+import { inAir } from "../../domain/in_air.js";
 import { alarmOf } from "../../domain/order.js";
-import { routeLetter, routeNumber } from "../../domain/palette.js";
+import { rallyName, routeLetter, routeNumber } from "../../domain/palette.js";
 import { mountControls } from "../../map/controls.js";
 import { createTip } from "../../map/furniture.js";
+import * as fenceLayer from "../../map/layers/fences.js";
+import { createRallyPoints } from "../../map/layers/lost_link.js";
 import * as routesLayer from "../../map/layers/routes.js";
 import { rememberedUnder } from "../../map/look/under.js";
 import { boxAround, createMap } from "../../map/map_view.js";
@@ -13,6 +16,7 @@ import { showTipsOnly } from "../../map/tips_only.js";
 import { t, tn } from "../../text.js";
 import { exactClockText } from "../../units.js";
 import { numbersOf, pillOf } from "../board.js";
+import { letterOf, prefixOf } from "../call_signs.js";
 import { mapFact } from "../uav_words.js";
 import { createCloseUp } from "./close_up.js";
 import * as flightLayers from "./flight_layers.js";
@@ -21,6 +25,7 @@ import { createUavMarkers } from "./uav_markers.js";
 
 /** @import { LiveUav } from "../../api_types.d.ts" */
 /** @import { FeatureCollection } from "../../map/types.d.ts" */
+/** @import { MissionNumbers } from "../call_signs.js" */
 /** @import { DrawnUav, FlownLine, MonitorPage, MonitorState, MonitorStore, PlannedLine } from "../types.d.ts" */
 
 const NEAR_ZOOM = 13.5;
@@ -34,9 +39,10 @@ const calm = matchMedia("(prefers-reduced-motion: reduce)");
  * @param {LiveUav} uav
  * @param {number} now_ms
  * @param {number | null} chosen
+ * @param {MissionNumbers} [numbers] on the page of all missions
  * @returns {DrawnUav | null}
  */
-export function drawnUav(uav, now_ms, chosen) {
+export function drawnUav(uav, now_ms, chosen, numbers = new Map()) {
   const certainty = certaintyOf(uav, now_ms);
   const at = standsAt(uav, certainty);
   if (!at || !certainty) return null;
@@ -46,7 +52,7 @@ export function drawnUav(uav, now_ms, chosen) {
     id: uav.id,
     name: uav.name,
     place: uav.place,
-    letter: uav.place === null ? "" : routeLetter(uav.place),
+    letter: letterOf(uav, numbers),
     certainty,
     fact: mapFact(uav, certainty),
     isChosen: uav.id === chosen,
@@ -58,8 +64,22 @@ export function drawnUav(uav, now_ms, chosen) {
   };
 }
 
-/** @param {Pick<MonitorState, "uavs" | "now_ms" | "chosen">} state */
-const drawnUavs = ({ uavs, now_ms, chosen }) => uavs.flatMap((uav) => drawnUav(uav, now_ms, chosen) ?? []);
+/** @param {Pick<MonitorState, "uavs" | "now_ms" | "chosen" | "numbers">} state */
+const drawnUavs = ({ uavs, now_ms, chosen, numbers }) =>
+  uavs.flatMap((uav) => drawnUav(uav, now_ms, chosen, numbers) ?? []);
+
+/** Where UAVs are in the air, and the routes of their missions; everything that is planned where none is. @param {MonitorState} state */
+function placesToFit(state) {
+  const flying = new Set(state.uavs.filter((uav) => inAir(uav) === true).map(({ id }) => id));
+  const drawn = drawnUavs(state);
+  const missions = state.missions.filter(({ uavs }) => uavs.some(({ uav }) => uav !== null && flying.has(uav)));
+  const lines = plannedLines(missions.length ? { ...state, missions } : state);
+  const inTheAir = drawn.filter(({ id }) => flying.has(id));
+  return [
+    ...lines.flatMap(({ geometry }) => (geometry?.type === "LineString" ? geometry.coordinates : [])),
+    ...(inTheAir.length ? inTheAir : drawn).map(({ position }) => position),
+  ];
+}
 
 /** @param {Pick<MonitorState, "missions" | "details">} state @returns {PlannedLine[]} */
 const plannedLines = ({ missions, details }) =>
@@ -80,9 +100,10 @@ const collection = (routes) => ({
   ),
 });
 
-/** @param {Pick<MonitorState, "missions" | "details">} state */
-const pillsOf = ({ missions, details }) =>
+/** @param {Pick<MonitorState, "missions" | "details" | "numbers">} state */
+const pillsOf = ({ missions, details, numbers: order }) =>
   missions.flatMap((mission) => {
+    const prefix = prefixOf(mission.id, order);
     const detail = details.get(mission.id);
     const numbers = numbersOf(detail);
     return mission.targets.flatMap((target) => {
@@ -92,9 +113,9 @@ const pillsOf = ({ missions, details }) =>
         key: `${mission.id} ${target.place}`,
         position,
         sequence: target.uav,
-        letter: target.uav === null ? "" : routeLetter(target.uav),
+        letter: target.uav === null ? "" : `${prefix}${routeLetter(target.uav)}`,
         number: numbers.get(target.place) ?? target.place + 1,
-        name: `${pillOf(target, numbers)} ${target.label}`,
+        name: `${pillOf(target, numbers, prefix)} ${target.label}`,
         state: target.state,
         isMissed: false,
       };
@@ -135,6 +156,7 @@ class MonitorMap {
       fit: () => this.fit(),
       recoloured: (palette) => {
         flightLayers.recolour(map, palette);
+        fenceLayer.recolour(map);
         this.#parts?.closeUp.recolour();
       },
     });
@@ -157,12 +179,7 @@ class MonitorMap {
   /** @param {{ animate?: boolean }} [how] */
   fit(how) {
     this.#view.map.resize();
-    const { state } = this.#store;
-    const lines = plannedLines(state).flatMap(({ geometry }) => (geometry?.type === "LineString" ? geometry : []));
-    const places = [
-      ...lines.flatMap(({ coordinates }) => coordinates),
-      ...drawnUavs(state).map(({ position }) => position),
-    ];
+    const places = placesToFit(this.#store.state);
     const box = boxAround(places);
     this.#view.fit(places.length > 1 ? box : (this.#page.extent ?? box), how);
   }
@@ -184,16 +201,26 @@ class MonitorMap {
     });
   }
 
+  /** Rally points and fences of what was approved. @param {{ rally: number[][], fences: number[][][] }} approved */
+  showApproved({ rally, fences }) {
+    const { map } = this.#view;
+    createRallyPoints(map, { onMove: () => {} }).update(
+      rally.map((position, place) => ({ position, name: rallyName(place) })),
+      false,
+    );
+    fenceLayer.show(map, fences);
+  }
+
   #start() {
     const [store, { map }] = [this.#store, this.#view];
     flightLayers.addTo(map, this.#view.palette());
     const pills = createTargetPills(map);
     this.#parts = {
-      markers: createUavMarkers(map, { onPick: this.#pick }),
+      markers: createUavMarkers(map, { onPick: this.#pick, spreads: true }),
       pills,
       closeUp: createCloseUp(this.#view, this.#frame, this.#page),
     };
-    store.listen(["missions", "details"], (state) => {
+    store.listen(["missions", "details", "numbers"], (state) => {
       routesLayer.update(map, plannedLines(state));
       pills.update(pillsOf(state));
     });

@@ -6,6 +6,7 @@ import { maplibre } from "../../map/maplibre.js";
 import { markSimulated } from "../../simulated.js";
 import { t } from "../../text.js";
 import { between, GLIDE_MS } from "./glide.js";
+import { createSpread } from "./spread_markers.js";
 
 /** @import { Marker } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
 /** @import { Certainty } from "../../domain/certainty.js" */
@@ -29,6 +30,8 @@ function drawMarker(onPick) {
   const certainty = h("span", { class: "unseen" });
   const alarm = h("span", { class: "flyer-alarm", hidden: true });
   const fact = h("span", {});
+  const label = h("span", { class: "flyer-label" }, alarm, letter, name, certainty, fact);
+  const leader = h("span", { class: "flyer-leader", hidden: true });
   /** @param {Event} event */
   const onclick = (event) => {
     event.stopPropagation();
@@ -37,10 +40,11 @@ function drawMarker(onPick) {
   const element = h(
     "button",
     { type: "button", tabindex: "-1", class: "map-flyer", onclick },
+    leader,
     h("span", { class: "flyer-mark" }, dart),
-    h("span", { class: "flyer-label" }, alarm, letter, name, certainty, fact),
+    label,
   );
-  return { element, dart, letter, name, certainty, fact, alarm };
+  return { element, dart, letter, name, certainty, fact, alarm, label, leader };
 }
 
 /** @param {string} words */
@@ -83,12 +87,21 @@ const lngLatOf = ([longitude, latitude]) => [longitude, latitude];
  *
  * @template {number | string} Id
  * @param {MapLibreMap} map
- * @param {{ onPick: (id: Id) => void, glide_ms?: number }} options glide_ms: between two places; 0 where they follow each other as frames do
+ * @param {{ onPick: (id: Id) => void, glide_ms?: number, spreads?: boolean }} options glide_ms: between two places; 0 where they follow each
+ *   other as frames do; spreads: no label covers another one, and a count stands for many that stand on each other
  */
-export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS }) {
+export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS, spreads = false }) {
   /** @type {Map<Id, Flyer>} */
   const flyers = new Map();
+  const spread = spreads ? createSpread(map) : null;
+  /** @type {MarkedBy<Id>[]} */
+  let latest = [];
   let frame = 0;
+
+  function layOut() {
+    spread?.(latest.flatMap((uav) => ({ uav, .../** @type {Flyer} */ (flyers.get(uav.id)).parts })));
+  }
+  if (spread) for (const moved of /** @type {const} */ (["zoom", "moveend", "resize"])) map.on(moved, layOut);
 
   /** @param {number} now_ms */
   function glide(now_ms) {
@@ -112,6 +125,7 @@ export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS }) {
   /** @param {MarkedBy<Id>} uav @returns {Flyer} */
   function added(uav) {
     const parts = drawMarker(() => onPick(uav.id));
+    parts.element.classList.toggle("spread", spreads);
     const look = { element: parts.element, anchor: /** @type {const} */ ("left"), subpixelPositioning: true };
     const marker = new maplibre.Marker({ ...look, offset: [-20, 0] }).setLngLat(lngLatOf(uav.position)).addTo(map);
     const flyer = { marker, parts, from: uav.position, to: uav.position, began_ms: 0 };
@@ -133,6 +147,8 @@ export function createUavMarkers(map, { onPick, glide_ms = GLIDE_MS }) {
         dress(flyer.parts, uav);
         place(flyer, uav.position);
       }
+      latest = shown;
+      layOut();
     },
   };
 }

@@ -34,6 +34,35 @@ const tableOf = (body) =>
     body,
   );
 
+/** The mission of the targets below, on a page of several. @param {HTMLTableRowElement} row @param {LiveMission} mission @param {number | undefined} number */
+function refreshGroup(row, { id, name, counts: { complete: done, all } }, number) {
+  const key = JSON.stringify([name, number, done, all]);
+  if (row.dataset.key === key) return;
+  row.dataset.key = key;
+  setChildren(
+    row.cells[0],
+    h("span", { class: "mission-number" }, `${number ?? ""}`),
+    h("a", { href: `/missions/${id}/fly` }, name),
+    h("span", { class: "quiet-text" }, t("{done} of {all} complete", { done, all })),
+  );
+}
+
+/** @typedef {{ key: string, group: LiveMission }} GroupRow */
+/** @param {BoardRow | GroupRow} row @returns {row is GroupRow} */
+const isGroup = (row) => "group" in row;
+
+/** Each mission's row before its targets, where there are several. @param {BoardRow[]} rows @param {LiveMission[]} missions */
+function withGroups(rows, missions) {
+  /** @type {(BoardRow | GroupRow)[]} */
+  const all = [];
+  for (const [index, row] of rows.entries()) {
+    const group = missions.find(({ id }) => id === row.mission);
+    if (group && rows[index - 1]?.mission !== row.mission) all.push({ key: `of ${group.id}`, group });
+    all.push(row);
+  }
+  return all;
+}
+
 /** @param {BoardRow} row @param {ShowTarget} show */
 function makeRow({ mission, place }, show) {
   const name = h("button", { type: "button", class: "text-button", onclick: () => show(mission, place) });
@@ -88,8 +117,10 @@ export function mountBoard(store, { show }) {
   const drawRows = keyedList(
     body,
     ({ key }) => key,
-    (/** @type {BoardRow} */ row) => makeRow(row, show),
-    refreshRow,
+    (/** @type {BoardRow | GroupRow} */ row) =>
+      isGroup(row) ? h("tr", { class: "board-group" }, h("th", { scope: "rowgroup", colspan: 3 })) : makeRow(row, show),
+    (element, row) =>
+      isGroup(row) ? refreshGroup(element, row.group, store.state.numbers.get(row.group.id)) : refreshRow(element, row),
   );
   const drawLog = keyedList(
     log,
@@ -99,16 +130,19 @@ export function mountBoard(store, { show }) {
   );
 
   /** @param {MonitorState} state */
-  function draw({ showsLog, missions, uavs, details, alerts, commands }) {
+  function draw({ showsLog, missions, uavs, details, alerts, commands, numbers }) {
     byId("board-count").textContent = countWords(missions);
     button.setAttribute("aria-pressed", `${showsLog}`);
     button.textContent = showsLog ? t("Back to the board") : t("Event log");
     board.hidden = showsLog;
     log.hidden = !showsLog;
     if (showsLog) drawLog(eventsOf({ commands, alerts, missions }));
-    else drawRows(boardRows(missions, uavs, details));
+    else {
+      const rows = boardRows(missions, uavs, details, numbers);
+      drawRows(numbers.size > 1 ? withGroups(rows, missions) : rows);
+    }
   }
 
   button.addEventListener("click", () => store.update({ showsLog: !store.state.showsLog }));
-  store.listen(["showsLog", "missions", "uavs", "details", "alerts", "commands"], draw);
+  store.listen(["showsLog", "missions", "uavs", "details", "alerts", "commands", "numbers"], draw);
 }

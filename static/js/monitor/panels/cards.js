@@ -3,20 +3,26 @@
 import { byId, h, icon, keyedList, refill } from "../../dom.js";
 import { certaintyOf } from "../../domain/certainty.js";
 import { commandWords, isOpen, KINDS, timesOf } from "../../domain/flying.js";
-import { alarmOf, alertsInOrder, inOrder, isOpenAlert } from "../../domain/order.js";
-import { routeLetter, routeNumber } from "../../domain/palette.js";
+import { alarmOf, alertsInOrder, isOpenAlert } from "../../domain/order.js";
+import { routeNumber } from "../../domain/palette.js";
 import { profileOf } from "../../domain/route_profile.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, lengthText, numberText } from "../../units.js";
 import { numbersOf, pillOf } from "../board.js";
+import { letterOf, prefixOf } from "../call_signs.js";
 import { batteryWords, figuresOf } from "../card_figures.js";
 import { rateOf, rateWords } from "../clock_rate.js";
+import { isHead, listed } from "../fleet_groups.js";
 import { liveStrip, progressOf } from "../live_strip.js";
-import { estimateWords, stateOf } from "../uav_words.js";
+import { estimateWords, stateOf, windWords } from "../uav_words.js";
+import { makeHead, refreshHead } from "./group_head.js";
+import { UavRow } from "./uav_row.js";
 
 /** @import { AlertLevel, Mission } from "../../api_types.d.ts" */
 /** @import { Certainty } from "../../domain/certainty.js" */
+/** @import { Beside, Figure } from "../card_figures.js" */
+/** @import { GroupHead } from "../fleet_groups.js" */
 /** @import { Alert, Command, Commanding, LiveMission, LiveUav, MonitorState, MonitorStore, SendingCommand, UnsentCommand } from "../types.d.ts" */
 
 /**
@@ -24,13 +30,16 @@ import { estimateWords, stateOf } from "../uav_words.js";
  * @property {boolean} isOfOne the page is one mission's, which then need not be named
  * @property {(uav: number) => void} pick
  * @property {(uav: number) => void} jumpTo
+ * @property {() => void} close nothing is chosen any more
  * @property {() => void} follow
+ * @property {(shown: number, all: number) => void} tellShown how many the filter lets through
  * @property {Commanding | null} commanding null for who cannot fly
  */
 /** What is known of a card's UAV beside itself. @typedef {{ mission: LiveMission | null, detail: Mission | undefined, certainty: Certainty | null }} Known */
 
 const SAID_FOR_MS = 60_000; // a command that is over stays on the card
 const STRIP_MARGIN_PX = 32;
+const narrow = matchMedia("(max-width: 720px)"); // there, and where several missions fly, a UAV is a row until it is chosen
 const STRIP_STEP_M = 5; // a UAV that has moved less is drawn where it was
 const FIGURES = ["battery", "height", "speed", "home", "next", "age"]; // in the order of figuresOf
 /** @type {Record<AlertLevel, string>} */
@@ -72,9 +81,10 @@ export function mountCards(store, acts) {
   /** @type {WeakMap<HTMLElement, Card>} */
   const cards = new WeakMap();
 
-  /** @param {LiveUav} uav */
-  function make(uav) {
-    const card = new Card(uav.id, acts);
+  /** @param {LiveUav | GroupHead} entry */
+  function make(entry) {
+    if (isHead(entry)) return makeHead();
+    const card = new Card(entry.id, acts);
     cards.set(card.element, card);
     return card.element;
   }
@@ -83,11 +93,33 @@ export function mountCards(store, acts) {
     list,
     ({ id }) => id,
     make,
-    (element, uav) => cards.get(element)?.show(uav, store.state, list.clientWidth - STRIP_MARGIN_PX),
+    (element, entry) => {
+      if (isHead(entry)) refreshHead(element, entry, store.state.numbers);
+      else cards.get(element)?.show(entry, store.state, list.clientWidth - STRIP_MARGIN_PX);
+    },
   );
-  const draw = () => drawList(inOrder(store.state.uavs, store.state.missions));
+  const draw = () => {
+    const { state } = store;
+    list.classList.toggle("compact", narrow.matches || !acts.isOfOne);
+    const entries = listed(state, acts.isOfOne);
+    acts.tellShown(entries.filter((entry) => !isHead(entry)).length, state.uavs.length);
+    drawList(entries);
+  };
   store.listen(
-    ["uavs", "missions", "details", "alerts", "commands", "chosen", "now_ms", "isFollowing", "unsent", "sending"],
+    [
+      "uavs",
+      "missions",
+      "details",
+      "alerts",
+      "commands",
+      "chosen",
+      "now_ms",
+      "isFollowing",
+      "unsent",
+      "sending",
+      "filter",
+      "numbers",
+    ],
     ({ uavs }) => {
       byId("no-uavs").hidden = uavs.length > 0;
       draw();
@@ -97,8 +129,24 @@ export function mountCards(store, acts) {
   new ResizeObserver(draw).observe(list);
 }
 
+/** @param {LiveUav} uav @param {Known} known @param {Readonly<MonitorState>} state @returns {Beside} */
+function besideOf(uav, { mission, detail }, { now_ms, numbers }) {
+  const targets = numbersOf(detail);
+  const place = uav.place ?? -1;
+  return {
+    now_ms,
+    home: detail?.uavs[place]?.position ?? null,
+    route: detail?.plan?.routes[place] ?? null,
+    targetOf(sequence) {
+      const target = mission?.targets[sequence];
+      return target ? { pill: pillOf(target, targets, prefixOf(uav.mission, numbers)), label: target.label } : null;
+    },
+  };
+}
+
 class Card {
   #acts;
+  #isChosen = false;
   #letter = h("span", { class: "letter" });
   #name = h("strong", {});
   #chip = h("span", { class: "chip" });
@@ -112,8 +160,10 @@ class Card {
   #unsent = h("div", { class: "card-unsent", role: "alert", hidden: true });
   #alerts = h("ul", { class: "card-alerts" });
   #follow;
+  #wind = h("p", { class: "caption card-wind" });
   #buttons;
   #head;
+  #row;
 
   /** @param {number} id of the UAV @param {CardActs} acts */
   constructor(id, acts) {
@@ -130,9 +180,11 @@ class Card {
     const onclick = ({ target }) => {
       if (target instanceof Element && !target.closest("button, a")) acts.pick(id);
     };
+    this.#row = new UavRow(() => (this.#isChosen ? acts.close() : acts.pick(id)));
     this.element = h(
       "li",
       { class: "card", onclick },
+      this.#row.element,
       h("div", { class: "card-top" }, this.#head, this.#alarm),
       this.#about,
       this.#figures,
@@ -141,6 +193,7 @@ class Card {
       this.#command,
       this.#estimate,
       this.#battery,
+      this.#wind,
       this.#alerts,
       this.#buttons,
     );
@@ -155,13 +208,20 @@ class Card {
       certainty: certaintyOf(uav, now_ms),
     };
     const isChosen = uav.id === state.chosen;
+    this.#isChosen = isChosen;
     const alarm = alarmOf(uav.id, alerts);
-    this.#drawHead(uav, isChosen, alarm);
+    this.#drawHead(uav, isChosen, alarm, letterOf(uav, state.numbers));
+    this.#drawUnsent(uav, state.unsent.get(uav.id) ?? null);
+    const figures = figuresOf(uav, known.certainty, besideOf(uav, known, state));
+    if (narrow.matches || !this.#acts.isOfOne) {
+      this.#row.show(uav, state, figures);
+      if (!isChosen) return;
+    }
     this.#drawAbout(uav, known.mission);
     this.#drawEstimate(uav, known.certainty, now_ms);
-    this.#drawFigures(uav, known, now_ms);
+    this.#drawFigures(figures);
     this.#drawBattery(uav);
-    this.#drawUnsent(uav, state.unsent.get(uav.id) ?? null);
+    this.#drawWind(uav, now_ms);
     this.#drawStrip(uav, known, Math.round(this.#strip.clientWidth || width_px));
     this.#drawCommand(commandOf(uav, commands, now_ms), state.sending.get(uav.id) ?? null);
     this.#drawAlerts(alerts.filter((alert) => alert.uav === uav.id && isOpenAlert(alert)));
@@ -171,14 +231,14 @@ class Card {
     this.#follow.textContent = isFollowed ? t("Following") : t("Follow");
   }
 
-  /** An alert marks the card in its place. @param {LiveUav} uav @param {boolean} isChosen @param {AlertLevel | null} alarm */
-  #drawHead(uav, isChosen, alarm) {
+  /** An alert marks the card in its place. @param {LiveUav} uav @param {boolean} isChosen @param {AlertLevel | null} alarm @param {string} letter */
+  #drawHead(uav, isChosen, alarm, letter) {
     const route = uav.place === null ? "" : `route-${routeNumber(uav.place)}`;
     this.element.className = `card ${route} ${isChosen ? "chosen" : ""} ${alarm ? `alarm-${alarm}` : ""}`;
     this.#alarm.hidden = alarm === null;
     refill(this.#alarm, alarm ?? "", () => (alarm ? [icon(LEVEL_ICONS[alarm]), unseen(LEVEL_WORDS[alarm])] : []));
     this.#head.setAttribute("aria-pressed", `${isChosen}`);
-    this.#letter.textContent = uav.place === null ? "–" : routeLetter(uav.place);
+    this.#letter.textContent = letter || "–";
     this.#name.textContent = uav.name;
     const { words, level } = stateOf(uav);
     this.#chip.textContent = words;
@@ -208,19 +268,8 @@ class Card {
     ]);
   }
 
-  /** @param {LiveUav} uav @param {Known} known @param {number} now_ms */
-  #drawFigures(uav, { mission, detail, certainty }, now_ms) {
-    const numbers = numbersOf(detail);
-    const place = uav.place ?? -1;
-    const figures = figuresOf(uav, certainty, {
-      now_ms,
-      home: detail?.uavs[place]?.position ?? null,
-      route: detail?.plan?.routes[place] ?? null,
-      targetOf(sequence) {
-        const target = mission?.targets[sequence];
-        return target ? { pill: pillOf(target, numbers), label: target.label } : null;
-      },
-    });
+  /** @param {Figure[]} figures */
+  #drawFigures(figures) {
     refill(this.#figures, JSON.stringify(figures), () =>
       figures.map(({ figure, unit, words, level, title }, number) =>
         h(
@@ -294,6 +343,13 @@ class Card {
       length: lengthText(route.length_m),
     });
     this.#strip.replaceChildren(liveStrip({ route, width_px, label, states, progress, certainty }));
+  }
+
+  /** As the UAV reports it. @param {LiveUav} uav @param {number} now_ms */
+  #drawWind(uav, now_ms) {
+    const words = windWords(uav, now_ms);
+    this.#wind.hidden = !words;
+    refill(this.#wind, words, () => [words]);
   }
 
   /** One line: what is on its way to the server, else the last command, its times in the tooltip. @param {Command | null} command @param {SendingCommand | null} sending */

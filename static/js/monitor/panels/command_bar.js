@@ -2,10 +2,11 @@
 
 import { byId, h, icon } from "../../dom.js";
 import { KINDS } from "../../domain/flying.js";
-import { routeLetter, routeNumber } from "../../domain/palette.js";
+import { routeNumber } from "../../domain/palette.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { t } from "../../text.js";
 import { batchScopes, whyNot } from "../batch.js";
+import { letterOf } from "../call_signs.js";
 import { uavMenu } from "../uav_menu.js";
 import { isHeld } from "../uav_words.js";
 
@@ -105,7 +106,7 @@ export function mountCommandBar(store, commanding) {
     bar.setAttribute("aria-label", t("Commands to {name}", { name: uav.name }));
     letter.hidden = uav.place === null;
     if (uav.place !== null) {
-      letter.textContent = routeLetter(uav.place);
+      letter.textContent = letterOf(uav, state.numbers);
       letter.className = `letter route-${routeNumber(uav.place)}`;
     }
     name.textContent = uav.name;

@@ -101,7 +101,7 @@ export function mountHead(store, page) {
     drawState(chip, mission);
     const iso = new Date(now_ms).toISOString(); // stands still while the device has no data
     const facts = byId("live-facts");
-    const said = [exactClockText(iso), windWords(uavs), countWords(uavs, missions, mission)];
+    const said = [exactClockText(iso), page.mission && windWords(uavs), countWords(uavs, missions, mission)];
     facts.textContent = said.filter(Boolean).join(" · ");
     facts.title = zoneText(iso);
   });

@@ -1,6 +1,7 @@
 /** The rally points of a mission as a list: put on the map, typed, moved, removed. */
 
 import { find, h, icon, keyedList } from "../../../dom.js";
+import { rallyName } from "../../../domain/palette.js";
 import { positionIn } from "../../../map/coordinates_read.js";
 import { toast } from "../../../page/toast.js";
 import { t } from "../../../text.js";
@@ -135,12 +136,12 @@ function createRows(store, actions, { showPlaces, focusElsewhere }) {
     if (button)
       button.focus(); // no field: there, undo is of typing
     else focusElsewhere();
-    toast(t("{name} is removed.", { name: link.rallyName(index) }), { label: t("Undo"), act: actions.undo });
+    toast(t("{name} is removed.", { name: rallyName(index) }), { label: t("Undo"), act: actions.undo });
   }
 
   /** @param {number} index */
   function field(index) {
-    const name = link.rallyName(index);
+    const name = rallyName(index);
     const fault = faultPlace(`rally-${index}-fault`);
     const input = coordinatesInput({
       "aria-label": t("Latitude and longitude of {name}", { name }),
@@ -162,7 +163,7 @@ function createRows(store, actions, { showPlaces, focusElsewhere }) {
 
   /** @param {RallyPoint} point */
   function make({ index }) {
-    const name = link.rallyName(index);
+    const name = rallyName(index);
     const { input, fault } = field(index);
     /** @param {string} image @param {string} label @param {string} title @param {() => unknown} act */
     const button = (image, label, title, act) =>

@@ -1,0 +1,69 @@
+/** A UAV in one row of 56 px: call sign, state, battery, height, age, what is next and when. */
+
+import { h, icon, refill } from "../../dom.js";
+import { alarmOf } from "../../domain/order.js";
+import { t } from "../../text.js";
+import { letterOf } from "../call_signs.js";
+import { stateOf } from "../uav_words.js";
+
+/** @import { AlertLevel } from "../../api_types.d.ts" */
+/** @import { Figure } from "../card_figures.js" */
+/** @import { LiveUav, MonitorState } from "../types.d.ts" */
+
+/** @type {Record<AlertLevel, { image: string, words: string }>} */
+const LEVELS = {
+  critical: { image: "octagon-alert", words: t("Critical alert") },
+  warning: { image: "triangle-alert", words: t("Warning") },
+  advisory: { image: "info", words: t("Advisory") },
+};
+
+export class UavRow {
+  #letter = h("span", { class: "letter" });
+  #name = h("strong", {});
+  #alarm = h("span", { class: "row-alarm" });
+  #state = h("span", { class: "row-state" });
+  #age = h("span", { class: "age" });
+  #figures = h("span", { class: "row-figures" });
+  #next = h("span", { class: "row-next" });
+
+  /** @param {() => void} onclick */
+  constructor(onclick) {
+    this.element = h(
+      "button",
+      { type: "button", class: "card-row", "aria-pressed": "false", onclick },
+      h("span", { class: "row-line" }, this.#letter, this.#name, this.#alarm, this.#state, this.#age),
+      h("span", { class: "row-line row-facts" }, this.#figures, this.#next),
+    );
+  }
+
+  /**
+   * @param {LiveUav} uav
+   * @param {Readonly<MonitorState>} state
+   * @param {Figure[]} figures of its card
+   */
+  show(uav, { alerts, chosen, numbers }, [battery, height, , , next, age]) {
+    this.element.setAttribute("aria-pressed", `${uav.id === chosen}`);
+    this.#letter.textContent = letterOf(uav, numbers) || "–";
+    this.#name.textContent = uav.name;
+    const level = alarmOf(uav.id, alerts);
+    this.#alarm.className = `row-alarm ${level ?? ""}`;
+    refill(this.#alarm, `${level}`, () =>
+      level ? [icon(LEVELS[level].image, "small"), h("span", { class: "unseen" }, LEVELS[level].words)] : [],
+    );
+    const said = stateOf(uav);
+    this.#state.textContent = said.words;
+    this.#state.className = `row-state ${said.level ?? ""}`;
+    this.#age.textContent = age.figure;
+    this.#age.classList.toggle("late", age.level !== "");
+    this.#age.title = age.title;
+    refill(this.#figures, JSON.stringify([battery, height]), () =>
+      [battery, height].map(({ figure, unit, words, level: own }) =>
+        h("span", { class: own || null }, h("span", { class: "unseen" }, `${words} `), `${figure} ${unit}`.trim()),
+      ),
+    );
+    refill(this.#next, JSON.stringify(next), () => [
+      `${next.words} `,
+      h("strong", {}, `${next.figure} ${next.unit}`.trim()),
+    ]);
+  }
+}

@@ -1,0 +1,70 @@
+/** Hands the approved missions to the service worker, which keeps them for when the server cannot be reached. */
+
+import { ApiError, get } from "../api.js";
+import { isKept, placesOf, startsOf, tilesOf, wholeOf } from "./addresses.js";
+
+/** @import { Answer } from "../api.js" */
+/** @import { Mission, MissionPage } from "../api_types.d.ts" */
+
+/** @typedef {{ userId: number, organisationId: number, mission?: string | null }} KeptPage what the server wrote into the page */
+
+const WORKER = "/service-worker.js";
+const AFTER_LOAD_MS = 1_500; // the page itself comes first
+const MAX_MISSIONS = 10;
+const ALL_INTERVAL_MS = 600_000;
+
+/** On every page of somebody who has signed in. @param {KeptPage} page */
+export function keepForOffline(page) {
+  const workers = globalThis.navigator?.serviceWorker;
+  if (!workers) return; // http to another host than this one, or a browser without it
+  addEventListener("load", () => setTimeout(() => void keep(workers, page).catch(forgive), AFTER_LOAD_MS));
+}
+
+/** @param {unknown} error */
+function forgive(error) {
+  if (error instanceof ApiError || error instanceof TypeError || error instanceof DOMException) return; // the server is away, storage closed
+  throw error;
+}
+
+/** @param {ServiceWorkerContainer} workers @param {KeptPage} page */
+async function keep(workers, page) {
+  await workers.register(WORKER);
+  const { active } = await workers.ready;
+  const fleet = await fleetAddresses();
+  for (const id of await missionsOf(page)) {
+    const { data: mission } = /** @type {Answer<Mission>} */ (await get(`/missions/${id}`));
+    active?.postMessage(
+      isKept(mission)
+        ? {
+            type: "keep",
+            owner: `${page.userId}@${page.organisationId}`,
+            whole: wholeOf(id, fleet),
+            map: tilesOf(placesOf(mission)),
+          }
+        : { type: "drop", starts: startsOf(id) },
+    );
+  }
+}
+
+/** The page's own mission; on other pages, now and then, the newest that are approved. @param {KeptPage} page */
+async function missionsOf({ mission, userId }) {
+  if (mission) return [mission];
+  const key = `spanwise.offline-asked.${userId}`;
+  if (Date.now() - Number(localStorage.getItem(key)) < ALL_INTERVAL_MS) return [];
+  localStorage.setItem(key, `${Date.now()}`);
+  const { data } = /** @type {Answer<MissionPage>} */ (
+    await get(`/missions?state=approved,dispatched,active&limit=${MAX_MISSIONS}`)
+  );
+  return data.results.map(({ id }) => id);
+}
+
+/** As the page of a mission asks for UAVs, page by page. */
+async function fleetAddresses() {
+  const addresses = ["/api/v1/uavs?limit=100"];
+  for (;;) {
+    const { data } = /** @type {Answer<{ next: string | null }>} */ (await get(addresses[addresses.length - 1]));
+    if (!data.next) return addresses;
+    const { pathname, search } = new URL(data.next, location.origin);
+    addresses.push(pathname + search);
+  }
+}
