@@ -28,10 +28,9 @@ def page_module(name: str) -> SafeString:
 def _texts() -> tuple[str, ...]:
     """Modules of the page's language, which its scripts import by name."""
     language = (get_language() or "").split("-")[0]
-    name = f"js/locale/{language}.js"
-    if language == settings.LANGUAGE_CODE.split("-")[0] or not staticfiles_storage.exists(staticfiles_storage.stored_name(name)):
+    if language == settings.LANGUAGE_CODE.split("-")[0]:
         return ()
-    address = staticfiles_storage.url(name)
+    address = staticfiles_storage.url(f"js/locale/{language}.js")
     return (*imported_by(address), address)
 
 
