@@ -8,11 +8,14 @@ import fcntl
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
 import urllib.error
 import urllib.request
+from collections.abc import Callable, Iterable
+from pathlib import Path
 from types import FrameType
 from typing import Any, NoReturn
 
@@ -26,6 +29,7 @@ from scripts.supervision import ProgramState, Supervisor
 READY_TIMEOUT_S = 120.0
 EXIT_NOT_RUNNING = 3
 FIRST_PROGRAMS = (*WEB_PROGRAMS, "proxy")
+LINK_PROGRAMS = ("live", "uav-link")  # of pages and of UAVs
 
 
 def address(port: int) -> str:
@@ -63,6 +67,11 @@ def reasons_not_ready(port: int) -> list[str]:
             return [f"/readyz answers {error.code}"]
     except OSError as error:
         return [f"no answer: {error}"]
+
+
+def _is_listening(path: Path) -> bool:
+    with socket.socket(socket.AF_UNIX) as connection:
+        return connection.connect_ex(str(path)) == 0
 
 
 class Installation:
@@ -170,18 +179,23 @@ class Installation:
         began = time.monotonic()
         print("Programs … ", end="", flush=True)
         self.supervisor.start_programs(FIRST_PROGRAMS)
-        web_sockets = [self.sockets / f"{name}.sock" for name in WEB_PROGRAMS]
-        while reasons := (
-            reasons_not_ready(self.options.port)
-            if all(socket.exists() for socket in web_sockets)
-            else ["the web programs have not started"]
-        ):
-            if time.monotonic() - began > READY_TIMEOUT_S:
+        self._wait_until_none(lambda: self._not_listening(WEB_PROGRAMS) or reasons_not_ready(self.options.port))
+        self.supervisor.start_programs(name for name in self.program_names if name not in FIRST_PROGRAMS)
+        self._wait_until_none(lambda: self._not_listening(LINK_PROGRAMS))
+        print(f"{time.monotonic() - began:.1f} s", flush=True)
+
+    def _wait_until_none(self, reasons_of: Callable[[], list[str]]) -> None:
+        """Wait until nothing is missing any more. Raises CannotStart with what still is."""
+        until = time.monotonic() + READY_TIMEOUT_S
+        while reasons := reasons_of():
+            if time.monotonic() > until:
                 print("failed", flush=True)
                 raise CannotStart(f"not ready after {READY_TIMEOUT_S:.0f} s: {'; '.join(reasons)}. The logs are in {self.places.logs}")
             time.sleep(0.05)
-        self.supervisor.start_programs(name for name in self.program_names if name not in FIRST_PROGRAMS)
-        print(f"{time.monotonic() - began:.1f} s", flush=True)
+
+    def _not_listening(self, names: Iterable[str]) -> list[str]:
+        """A program listens once its application is loaded."""
+        return [f"{name} has not started" for name in names if not _is_listening(self.sockets / f"{name}.sock")]
 
     def _greet(self) -> None:
         print(f"\nSpanwise is at {address(self.options.port)}", flush=True)
