@@ -62,6 +62,7 @@ def test_limits_of_a_type_are_stated_with_their_units_and_a_wrong_figure_says_wh
     expect(details(page)).to_contain_text("They begin where they usually do.")
 
 
+@pytest.mark.long
 def test_a_mission_states_its_own_and_viewers_only_read(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     mission = stores_mission(page, "Close to the road")

@@ -56,6 +56,7 @@ def test_a_uav_that_is_heard_over_http_says_so_in_its_panel(site: Site, visitor:
     picture(page, "uav-link-light")
 
 
+@pytest.mark.long
 def test_only_an_administrator_says_that_a_uav_is_simulated_or_needs_no_signature(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     uav = writes(page, "POST", "/uavs", {"name": "Stint", "position": YARD})["id"]

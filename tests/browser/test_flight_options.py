@@ -13,6 +13,7 @@ from tests.browser.regions import HELIPORT, region
 from tests.browser.test_accessibility import faults
 from tests.browser.test_planning import opens_mission
 from tests.browser.test_planning_options import PHONE, route
+from tests.cases import long
 
 pytestmark = pytest.mark.browser
 
@@ -83,7 +84,7 @@ def test_departure_air_and_batteries_are_saved_and_undone_and_the_plan_shows_wha
     assert mission_of(page)["departs_at"] is None
 
 
-@pytest.mark.parametrize("how", [{}, PHONE], ids=["desk", "phone"])
+@pytest.mark.parametrize("how", [PHONE, *long({})], ids=["phone", "desk"])
 def test_the_bar_of_legal_times_takes_a_departure_from_keys_and_from_a_click(
     visitor: Visitor, picture: Picture, how: dict[str, Any]
 ) -> None:
@@ -111,6 +112,7 @@ def test_the_bar_of_legal_times_takes_a_departure_from_keys_and_from_a_click(
     expect(departure(page)).not_to_have_value("")
 
 
+@pytest.mark.long
 def test_the_ways_of_planning_stand_side_by_side_and_one_click_takes_one(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "Four ways", targets=5)

@@ -150,7 +150,10 @@ def test_what_is_refused_is_said_with_every_reason(visitor: Visitor, mission: st
     visitor.complaints.clear()  # the refusal itself, which the browser writes into its log
 
 
-@pytest.mark.parametrize(("theme", "size", "name"), [("dark", (1440, 900), "flying-dark"), ("light", (390, 844), "flying-phone")])
+@pytest.mark.parametrize(
+    ("theme", "size", "name"),
+    [("light", (390, 844), "flying-phone"), pytest.param("dark", (1440, 900), "flying-dark", marks=pytest.mark.long)],
+)
 def test_a_mission_on_its_way_fits_every_window(
     visitor: Visitor, mission: str, picture: Callable[[Page, str], None], theme: str, size: tuple[int, int], name: str
 ) -> None:

@@ -127,6 +127,7 @@ def test_no_english_is_left_on_the_pages_of_an_operator(visitor: Visitor, pictur
     assert reader.found == {}
 
 
+@pytest.mark.long
 def test_no_english_is_left_on_the_pages_of_a_curator_and_an_administrator(visitor: Visitor) -> None:
     reader = Reader()
     page = _german(visitor, "cora")

@@ -111,6 +111,7 @@ def test_the_way_back_is_chosen_rally_points_are_placed_dragged_and_undone_and_t
     assert stored_wish(page) == {"behaviour": "hold", "rally_points": dragged["rally_points"], "hold_s": 90.0}
 
 
+@pytest.mark.long
 def test_on_a_phone_a_rally_point_is_placed_by_keys_and_flights_end_as_set_beside_it(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal", **PHONE)
     opens_mission(page, "Link lost on a phone", targets=3)
@@ -134,6 +135,7 @@ def test_on_a_phone_a_rally_point_is_placed_by_keys_and_flights_end_as_set_besid
     assert len(stored["lost_link"]["rally_points"]) == 1
 
 
+@pytest.mark.long
 def test_a_viewer_reads_what_is_done_without_a_link_and_cannot_change_it(visitor: Visitor) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "Link lost to be read", targets=3)

@@ -9,6 +9,7 @@ from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, at_zoom, look_at, place_of, stores_mission, wait_for_map
 from tests.browser.pictures import colours_of
 from tests.browser.regions import region
+from tests.cases import long
 
 pytestmark = pytest.mark.browser
 
@@ -61,7 +62,7 @@ def test_the_network_and_the_zones_are_drawn(visitor: Visitor, theme: str) -> No
     assert with_zone != empty
 
 
-@pytest.mark.parametrize("size", [(1440, 900), (390, 844)])
+@pytest.mark.parametrize("size", [(390, 844), *long((1440, 900))])
 def test_a_mission_opens_at_its_routes_whatever_far_view_its_address_names(visitor: Visitor, size: tuple[int, int]) -> None:
     page = visitor.signs_in("opal", size=size, touch=size[0] < 721)
     stores_mission(page, f"Seen at {size[0]}")

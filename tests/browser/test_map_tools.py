@@ -93,6 +93,7 @@ def test_a_zone_under_the_pointer_tells_its_heights_times_source_and_whether_it_
         removes_zone(curator, number)
 
 
+@pytest.mark.long
 def test_layers_go_by_kind_and_voltage_and_it_is_said_that_some_are_hidden(operator: Page, picture: Callable[[Page, str], None]) -> None:
     line = asks(operator, f"/assets?kind=line&text={region.voltage_kv}&limit=1")["features"][0]
     look_at(operator, line["properties"]["centre"], 13)

@@ -98,6 +98,7 @@ def test_a_mission_is_planned_and_saved_with_the_keyboard_alone(visitor: Visitor
     expect(page.get_by_role("dialog")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_a_mission_is_planned_and_saved_on_a_phone_alone(visitor: Visitor, picture: Picture) -> None:
     page = visitor.opens(**PHONE)
     page.get_by_label("User name").tap()

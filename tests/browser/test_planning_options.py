@@ -176,6 +176,7 @@ def test_wishes_of_targets_and_uavs_are_saved_undone_and_seen_on_a_phone(visitor
     expect(rows).to_contain_text("only Kite")
 
 
+@pytest.mark.long
 def test_a_large_plan_is_seen_while_it_is_made_comes_back_after_a_reload_and_can_be_stopped(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "In the making", targets=60)

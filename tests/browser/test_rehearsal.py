@@ -16,6 +16,7 @@ from tests.browser.regions import region
 from tests.browser.test_accessibility import faults
 from tests.browser.test_fleet import writes
 from tests.browser.test_report import VIEWS, posts
+from tests.cases import long
 
 pytestmark = pytest.mark.browser
 
@@ -113,7 +114,7 @@ def test_a_plan_is_rehearsed_and_its_verdict_read(visitor: Visitor, planned: str
     picture(page, "rehearsal-limits")
 
 
-@pytest.mark.parametrize("view", [*VIEWS] if HAS_PICTURES else ["dark", "phone-light"])
+@pytest.mark.parametrize("view", [*VIEWS] if HAS_PICTURES else ["phone-light", *long("dark")])
 def test_the_verdict_fits_every_window(visitor: Visitor, rehearsed: str, picture: Picture, view: str) -> None:
     page = opened(visitor.signs_in("vera", **VIEWS[view]), rehearsed)
     panel = page.locator("#rehearsal")
@@ -124,6 +125,7 @@ def test_the_verdict_fits_every_window(visitor: Visitor, rehearsed: str, picture
     assert faults(page) == []
 
 
+@pytest.mark.long
 def test_what_its_rehearsal_failed_is_not_approved_where_a_rehearsal_is_asked_for(
     visitor: Visitor, rehearsed: str, picture: Picture
 ) -> None:
@@ -137,6 +139,7 @@ def test_what_its_rehearsal_failed_is_not_approved_where_a_rehearsal_is_asked_fo
     assert asks(page, f"/missions/{rehearsed}")["state"] == "planned"
 
 
+@pytest.mark.long
 def test_a_mission_into_14_mps_of_wind_is_refused_with_the_reason(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("ada")
     strong = {"wind": [{"altitude_agl_m": 10, "speed_mps": 14.0, "from_deg": 0.0}]}

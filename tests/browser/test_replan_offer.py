@@ -141,6 +141,7 @@ def accepts(page: Page) -> None:
     raise AssertionError("no offer could be taken")
 
 
+@pytest.mark.long
 def test_what_one_uav_leaves_is_offered_taken_by_one_operator_and_seen_by_the_other(
     visitor: Visitor, flight: Flight, picture: Picture
 ) -> None:

@@ -89,6 +89,7 @@ def test_a_rehearsal_is_seen_in_space_kept_as_a_picture_and_linked(visitor: Visi
     expect(other.get_by_role("radio", name="Target")).to_be_checked()
 
 
+@pytest.mark.long
 def test_over_the_map_of_a_mission(visitor: Visitor, rehearsed: tuple[str, str]) -> None:
     page = visitor.signs_in("opal")
     page.goto(f"/missions/{rehearsed[0]}")

@@ -259,6 +259,7 @@ def test_several_targets_are_chosen_by_keyboard_and_removed_and_everything_is_un
     expect(undo).to_be_disabled()
 
 
+@pytest.mark.long
 def test_a_selection_is_kept_loaded_renamed_deleted_and_brought_back(visitor: Visitor) -> None:
     page = opens_new_mission(visitor)
     count = adds_all(page, str(region.voltage_kv))

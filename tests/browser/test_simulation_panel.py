@@ -44,6 +44,7 @@ def simulation_of(page: Page, mission: str) -> dict:
     return asks(page, f"/missions/{mission}/simulated-flights?state=all")["results"][0]
 
 
+@pytest.mark.long
 def test_simulated_uavs_are_started_changed_and_ended_one_by_one(visitor: Visitor, mission: str, picture: Picture) -> None:
     page = opened(visitor.signs_in("opal"), f"/missions/{mission}/fly")
     expect(page.get_by_role("region", name="Before start").get_by_role("button", name="Fly in simulation")).to_be_enabled()

@@ -10,6 +10,7 @@ from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, at_zoom, stores_mission, targets, wait_for_map
 from tests.browser.regions import region
 from tests.browser.test_unsaved_changes import forgives, opens_mission, picks_from_the_search, removes_first_target
+from tests.cases import long
 
 pytestmark = pytest.mark.browser
 
@@ -63,7 +64,7 @@ def test_changes_of_different_parts_at_the_same_time_come_together(visitor: Visi
     visitor.complaints.clear()  # of the requests that were cut
 
 
-@pytest.mark.parametrize("way", [*(pytest.param(way, marks=pytest.mark.long) for way in ("top", "theirs")), "copy", "both"])
+@pytest.mark.parametrize("way", ["both", *long("top", "theirs", "copy")])
 def test_where_both_changed_the_same_the_operator_sees_both_and_decides(
     visitor: Visitor, picture: Callable[[Page, str], None], way: str
 ) -> None:
@@ -110,6 +111,7 @@ def test_where_both_changed_the_same_the_operator_sees_both_and_decides(
     visitor.complaints.clear()
 
 
+@pytest.mark.long
 def test_a_mission_that_somebody_deletes_can_be_brought_back_from_the_open_page(visitor: Visitor) -> None:
     address = stores_mission(visitor.signs_in("opal"), "Deleted by another")
     mine, theirs = both_open(visitor, address)
@@ -128,6 +130,7 @@ def test_a_mission_that_somebody_deletes_can_be_brought_back_from_the_open_page(
     visitor.complaints.clear()
 
 
+@pytest.mark.long
 def test_the_history_says_in_words_who_did_what(visitor: Visitor, picture: Callable[[Page, str], None]) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, stores_mission(page, "Told later"))

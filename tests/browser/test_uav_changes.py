@@ -30,6 +30,7 @@ def waits_for_changes(page: Page, mission: dict[str, Any], count: int) -> None:
     )
 
 
+@pytest.mark.long
 def test_a_battery_that_has_shrunk_is_told_taken_and_given_back(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     battery = {"battery_wh": 700.0, "mass_kg": 4.0, "max_airspeed_mps": 15.0}

@@ -82,7 +82,7 @@ def test_nepal_has_its_long_spans(shared_data):
 
 @pytest.mark.parametrize(
     ("name", "without_support", "all_nodes", "excused_ends", "lines"),
-    [("quillmoor.osm.pbf", 118, 576, 6, 12), ("columbus-ohio.osm.pbf", 156, 731, 17, 14)],
+    [("quillmoor.osm.pbf", 118, 576, 6, 12), pytest.param("columbus-ohio.osm.pbf", 156, 731, 17, 14, marks=pytest.mark.long)],
 )
 def test_a_region_has_its_untagged_vertices(name, without_support, all_nodes, excused_ends, lines, region_file):
     """README of the real data: 156 of the 731 nodes of its lines are no support, 21 %. Some are ends in substations."""

@@ -114,7 +114,10 @@ def test_a_curators_change_of_a_line_or_support_numbers_again():
     assert places() == {1: (20, 1, 2), 2: None, 3: None}
 
 
-@pytest.mark.parametrize(("name", "supports"), [("elme-valley.osm.pbf", 3_065), ("quillmoor.osm.pbf", 457), ("columbus-ohio.osm.pbf", 500)])
+@pytest.mark.parametrize(
+    ("name", "supports"),
+    [("elme-valley.osm.pbf", 3_065), ("quillmoor.osm.pbf", 457), pytest.param("columbus-ohio.osm.pbf", 500, marks=pytest.mark.long)],
+)
 def test_supports_have_a_place_on_a_line_that_runs_over_them(name, supports, region_file):
     import_osm(path=region_file(name))
     on_lines = Asset.objects.filter(line__isnull=False).select_related("line")

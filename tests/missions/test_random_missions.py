@@ -24,6 +24,7 @@ from missions.services.assignment import route_end
 from missions.services.places import Place, places_of
 from missions.services.refusals import Scene
 from missions.services.scenes import current_scene, scene_on
+from tests.cases import long
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.random_missions import Region, put_random_zones
 from tests.missions.routing.random_problems import best_merit
@@ -37,7 +38,7 @@ NETWORKX_EVERY = 12  # of so many missions one is checked against networkx
 Rings = list[list[tuple[float, float]]]
 
 
-@pytest.mark.parametrize("file_name", ["elme-valley.osm.pbf", "quillmoor.osm.pbf"])
+@pytest.mark.parametrize("file_name", ["quillmoor.osm.pbf", *long("elme-valley.osm.pbf")])
 def test_random_missions_keep_every_promise(region_file: Any, file_name: str) -> None:
     _fly(region_file(file_name), missions=67, seed=1)
 

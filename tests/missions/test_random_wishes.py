@@ -31,6 +31,7 @@ MISSIONS = 90
 ENDS = {EndAction.RETURN: End.RETURN, EndAction.BASE: End.ANY_BASE}
 
 
+@pytest.mark.long
 def test_random_missions_keep_every_wish() -> None:
     here = world()
     island(10.05)

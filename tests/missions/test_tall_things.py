@@ -17,6 +17,7 @@ from inspection.services import build_graph, import_osm, import_terrain, mark_gr
 from missions.flight_plan.performance import Performance
 from missions.models import EndAction
 from missions.services import TargetRequest, make_plan
+from tests.cases import long
 from tests.inspection import ground
 from tests.inspection.terrain.tiffs import write_geotiff
 from tests.missions.ground_judge import Hills
@@ -32,7 +33,7 @@ AMPLE = Performance(battery_wh=2_000.0)
 A_TUESDAY = datetime(2026, 11, 24, 9, tzinfo=UTC)
 
 
-@pytest.mark.parametrize("file_name", ["elme-valley.osm.pbf", "quillmoor.osm.pbf"])
+@pytest.mark.parametrize("file_name", ["elme-valley.osm.pbf", *long("quillmoor.osm.pbf")])
 def test_random_missions_pass_no_tower_and_no_wire_too_near(region_file: Any, file_name: str, tmp_path: Path) -> None:
     _fly(region_file(file_name), tmp_path, missions=60, seed=3)
 

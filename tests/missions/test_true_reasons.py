@@ -14,6 +14,7 @@ from missions.models import EndAction
 from missions.routing.problem import Objective
 from missions.services import LockRequest, PlanRequest, TargetRequest, make_plan
 from missions.services.scenes import current_scene, scene_on
+from tests.cases import long
 from tests.missions.random_missions import Region, put_random_zones
 from tests.missions.reason_oracle import ReasonOracle
 from tests.missions.test_random_missions import MissionModel
@@ -69,7 +70,7 @@ def test_no_charging_is_spoken_of_where_nobody_charges(here: World) -> None:
     assert message_of(plan).endswith(" Other UAVs: range too short (Osprey).")
 
 
-@pytest.mark.parametrize("file_name", ["elme-valley.osm.pbf", "quillmoor.osm.pbf"])
+@pytest.mark.parametrize("file_name", ["quillmoor.osm.pbf", *long("elme-valley.osm.pbf")])
 def test_an_oracle_finds_the_same_reason_for_every_uav(region_file: Any, file_name: str) -> None:
     import_osm(path=region_file(file_name))
     put_random_zones(7)

@@ -98,6 +98,7 @@ def planned_all(job: Job) -> None:
     work_until(job, Simulation.objects.exists)
 
 
+@pytest.mark.long
 def test_a_simulation_that_is_ended_by_hand_is_not_begun_again(job: Job, administrator: User) -> None:
     planned_all(job)
     end_simulation(simulation=Simulation.objects.get(), actor=administrator)
@@ -114,6 +115,7 @@ def test_a_command_that_fails_ends_the_job_with_the_reason(job: Job) -> None:
     assert job.error == {"code": "command_failed", "message": "Osprey 1 did not take a command."}
 
 
+@pytest.mark.long
 def test_a_simulator_that_never_comes_ends_the_job(job: Job) -> None:
     planned_all(job)
     Simulation.objects.update(created_at=timezone.now() - timedelta(hours=1))
@@ -122,6 +124,7 @@ def test_a_simulator_that_never_comes_ends_the_job(job: Job) -> None:
     assert job.error is not None and job.error["code"] == "took_too_long"
 
 
+@pytest.mark.long
 def test_a_mission_deleted_meanwhile_is_not_planned_again(job: Job) -> None:
     work_until(job, lambda: Mission.objects.filter(name=_planned_only).exists())
     Mission.objects.filter(name=_planned_only).update(deleted_at=timezone.now())
@@ -129,6 +132,7 @@ def test_a_mission_deleted_meanwhile_is_not_planned_again(job: Job) -> None:
     assert Mission.objects.filter(name=_planned_only).count() == 1
 
 
+@pytest.mark.long
 def test_looks_are_no_lost_attempts(job: Job) -> None:
     """A worker that is killed after many looks has lost the job once."""
     planned_all(job)
@@ -139,6 +143,7 @@ def test_looks_are_no_lost_attempts(job: Job) -> None:
     assert work(job).state == JobState.QUEUED
 
 
+@pytest.mark.long
 def test_removed_data_ends_the_job_between_two_looks(job: Job, administrator: User) -> None:
     planned_all(job)
     remove_demo_data(organisation=administrator.organisation, actor=administrator)

@@ -100,6 +100,7 @@ def test_only_administrators_make_and_remove_them(administrator: User, client: C
     assert client.get("/api/v1/demo-data").status_code == 401
 
 
+@pytest.mark.long
 @pytest.mark.usefixtures("planned_only")
 def test_once_removed_they_can_be_made_again_with_their_uavs(administrator: User) -> None:
     make(administrator)

@@ -116,6 +116,7 @@ def listed(text: str) -> list[str]:
     return found
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("flavour", Flavour)
 def test_mavproxy_loads_lists_sets_and_flies(flavour, tmp_path):
     port = free_port()

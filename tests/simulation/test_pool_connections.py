@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from mavsdk import ComponentType, Configuration, Mavsdk
 from mavsdk.plugins.action import Action
 from mavsdk.plugins.telemetry import Telemetry
@@ -22,6 +23,7 @@ def told(port: int) -> dict[str, str]:
     return {example["program"]: example["command"] for example in connection_json(HOST, port)["examples"]}
 
 
+@pytest.mark.long
 def test_mavproxy_connects_and_arms(tmp_path):
     port = free_port()
     program, *words = shlex.split(told(port)["MAVProxy"])

@@ -88,6 +88,7 @@ def told(simulation: Simulation, name: str) -> object:
     return simulation.vehicles.get().told.get(name)
 
 
+@pytest.mark.long
 def test_a_mission_is_flown_by_its_stand_in_and_a_lost_link_comes_back(mission, tmp_path):
     uav, port = Uav.objects.get(), free_port()
     simulation = stand_ins(mission, mission.author, speed=10.0)

@@ -53,7 +53,8 @@ def fresh(mission: Mission) -> Mission:
     return mission
 
 
-@pytest.mark.parametrize("flavour", [Flavour.PX4, pytest.param(Flavour.ARDUPILOT, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("flavour", list(Flavour))
 def test_a_mission_is_flown_to_its_end(flavour, uav_and_key, mission, tmp_path):
     uav, key = uav_and_key
     port = free_port()

@@ -200,6 +200,7 @@ def test_a_file_with_a_fault_is_refused_and_the_place_is_one_click_away(curator:
     page.get_by_role("button", name="Discard").click()
 
 
+@pytest.mark.long
 def test_somebody_slower_hears_who_decided(curator: Page, visitor: Visitor, tmp_path: Path) -> None:
     sends(curator, written(tmp_path, "works.geojson", zone_file(NORTH)), set_name="Works")
     expect(curator.get_by_role("button", name="Apply 1 change")).to_be_visible()
@@ -325,6 +326,7 @@ def test_only_curators_have_the_tools_the_others_a_sentence(visitor: Visitor) ->
     expect(page.locator("#choose-file")).to_have_count(0)
 
 
+@pytest.mark.long
 def test_a_phone_has_it_all_in_the_sheet(visitor: Visitor, curator: Page, tmp_path: Path, picture: Callable[[Page, str], None]) -> None:
     sends(curator, written(tmp_path, "works.geojson", zone_file(NORTH, EAST)), set_name="Phone works")
     expect(sentence(curator)).to_be_visible(timeout=FIRST_MS)

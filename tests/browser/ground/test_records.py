@@ -90,6 +90,7 @@ def test_the_second_of_two_curators_is_asked_and_overwrites_nothing_unseen(visit
     visitor.complaints.clear()  # the browser tells of the answer 412, which is meant
 
 
+@pytest.mark.long
 def test_what_is_stored_over_a_change_of_others_leaves_their_other_facts(visitor: Visitor) -> None:
     page = opens(visitor, "/assets")
     finds(page, VOLTAGE, VOLTAGE)

@@ -164,6 +164,7 @@ def test_ones_own_jobs_are_listed_and_one_that_waits_is_cancelled(visitor: Visit
     assert faults(page) == []
 
 
+@pytest.mark.long
 def test_whoever_may_not_cancel_a_job_is_not_offered_it(visitor: Visitor) -> None:
     """An operator who has become a viewer: what they had started still runs."""
     page = newcomer(visitor, "vito", role="viewer")

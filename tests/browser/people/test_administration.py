@@ -10,6 +10,7 @@ from playwright.sync_api import Locator, Page, expect
 from tests.browser.conftest import PASSWORD, Visitor
 from tests.browser.pictures import HAS_PICTURES
 from tests.browser.test_accessibility import faults
+from tests.cases import long
 
 pytestmark = pytest.mark.browser
 VIEWS: dict[str, dict[str, Any]] = {
@@ -138,6 +139,7 @@ def test_whoever_is_kept_out_is_out_at_once_and_let_in_again(visitor: Visitor) -
     visitor.signs_in("kept")
 
 
+@pytest.mark.long
 def test_of_two_administrators_the_later_one_is_told(visitor: Visitor) -> None:
     page = administration(visitor.signs_in("ada"))
     comes_in(visitor, invites(page, "Operator"), "twice")
@@ -226,7 +228,7 @@ def test_only_administrators_find_the_administration(visitor: Visitor) -> None:
     visitor.complaints[:] = [words for words in visitor.complaints if "403" not in words]
 
 
-@pytest.mark.parametrize("view", VIEWS if HAS_PICTURES else ["light", "phone-dark"])
+@pytest.mark.parametrize("view", VIEWS if HAS_PICTURES else ["phone-dark", *long("light")])
 def test_axe_finds_nothing_serious_on_any_tab_or_behind_a_link(visitor: Visitor, picture: Callable[[Page, str], None], view: str) -> None:
     page = visitor.signs_in("ada", **VIEWS[view])
     for tab in ("invitations", "sign-ins"):

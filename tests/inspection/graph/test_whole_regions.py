@@ -25,8 +25,8 @@ from tests.exact_geometry import segment_meets_polygon
 
 RULES = LinkingRules()
 REGIONS = [
-    "elme-valley.osm.pbf", "quillmoor.osm.pbf", "columbus-ohio.osm.pbf",
-    *long("nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf", "copenhagen-rail-2015.osm.gz"),
+    "elme-valley.osm.pbf", "quillmoor.osm.pbf",
+    *long("columbus-ohio.osm.pbf", "nepal-power-2025.osm.pbf", "liechtenstein-2021-infra.osm.pbf", "copenhagen-rail-2015.osm.gz"),
 ]  # fmt: skip
 
 

@@ -222,7 +222,11 @@ def test_an_area_across_the_antimeridian_is_two_either_side() -> None:
     "names",
     [
         pytest.param(["ed318-collection", "ed269-features", "ed269-zone-list", "enaire"], id="own"),
-        pytest.param(["ed318-Example_Collection", "switzerland-ed269-test-che-1", "ed318-Example_GeoZone_2_Layers"], id="real"),
+        pytest.param(
+            ["ed318-Example_Collection", "switzerland-ed269-test-che-1", "ed318-Example_GeoZone_2_Layers"],
+            id="real",
+            marks=pytest.mark.long,
+        ),
     ],
 )
 def test_mutated_feeds_raise_nothing_but_the_named_error(names: list[str], zone_file: Callable[[str], Path]) -> None:

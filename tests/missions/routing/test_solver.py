@@ -13,6 +13,7 @@ from missions.routing.problem import End, Objective, Problem, Reason, Routes, Ua
 from missions.routing.progress import Progress
 from missions.routing.reach import needed_range_m, reachable
 from missions.routing.solver import never, no_report, searched_plan, solve
+from tests.cases import long
 from tests.missions.routing.random_problems import BY_WAYS, best_merit, mixed_problem, random_problem
 
 
@@ -46,6 +47,7 @@ def test_a_small_plan_is_the_best_of_all_plans(stretches: int, returns: bool, ob
         assert found[:2] == pytest.approx(best[:2], rel=1e-9)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("returns", [False, True])
 @pytest.mark.parametrize(("objective", "tolerance"), [(Objective.TOTAL, 1.02), (Objective.MAKESPAN, 1.06)])
 def test_the_search_for_large_problems_comes_close_to_the_best_plan_of_a_small_one(
@@ -58,7 +60,7 @@ def test_the_search_for_large_problems_comes_close_to_the_best_plan_of_a_small_o
         assert best[1] - 1e-6 <= found[1] <= tolerance * best[1]
 
 
-@pytest.mark.parametrize("objective", BY_WAYS)
+@pytest.mark.parametrize("objective", [Objective.TOTAL, *long(Objective.MAKESPAN, Objective.TIME)])
 @pytest.mark.parametrize("returns", [False, True])
 def test_range_is_never_exceeded_and_as_many_targets_are_visited_as_can_be(objective: Objective, returns: bool) -> None:
     left_out = 0
@@ -179,7 +181,7 @@ def test_same_problem_and_seed_give_the_same_plan() -> None:
     assert solve(problem, seed=11).routes == solve(problem, seed=11).routes
 
 
-@pytest.mark.parametrize("objective", BY_WAYS)
+@pytest.mark.parametrize("objective", [Objective.MAKESPAN, *long(Objective.TOTAL, Objective.TIME)])
 def test_a_large_plan_keeps_every_range_and_leaves_out_only_what_does_not_fit(objective: Objective) -> None:
     problem = random_problem(9, uavs=4, targets=40, stretches=5, range_m=60_000.0, returns=True, objective=objective)
     solution = solve(problem)
@@ -218,7 +220,7 @@ def test_the_search_keeps_every_limit_whatever_the_problem_holds(seed: int, uavs
     assert missed > least_missed or (missed == least_missed and value >= least * (1 - 1e-9))
 
 
-@pytest.mark.parametrize("objective", BY_WAYS)
+@pytest.mark.parametrize("objective", [Objective.TOTAL, *long(Objective.MAKESPAN, Objective.TIME)])
 def test_the_search_finds_the_best_plan_of_nearly_all_small_problems(objective: Objective) -> None:
     problems = [random_problem(seed, uavs=3, targets=12, stretches=4, objective=objective) for seed in range(6)]
     exact = [merit(problem, best_plan(problem))[1] for problem in problems]

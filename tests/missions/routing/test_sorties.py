@@ -14,6 +14,7 @@ from missions.routing.reach import needed_range_m, reachable
 from missions.routing.search import best_found
 from missions.routing.solver import never, solve
 from missions.routing.sorties import by_uav, merit_of, unfolded
+from tests.cases import long
 from tests.missions.routing.random_problems import best_merit, windy_problem
 
 seeds = st.integers(0, 1_000_000)
@@ -131,7 +132,7 @@ def test_a_uav_that_does_not_return_flies_once() -> None:
         on_a_road([1], (UavStart(sorties=2),))
 
 
-@pytest.mark.parametrize("objective", [Objective.TOTAL, Objective.MAKESPAN, Objective.TIME])
+@pytest.mark.parametrize("objective", [Objective.TOTAL, *long(Objective.MAKESPAN, Objective.TIME)])
 def test_many_targets_are_shared_out_among_sorties(objective: Objective) -> None:
     """Twenty places on a circle of 10 km: two UAVs of 50 km range reach all in several sorties, which one each does not allow."""
     angle = np.linspace(0.0, 2.0 * math.pi, 20, endpoint=False)

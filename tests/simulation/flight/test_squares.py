@@ -26,9 +26,9 @@ def judged(flight: RouteFlight, route: RouteFile) -> np.ndarray:
 @pytest.mark.parametrize(
     ("weather", "most_rms_m", "most_m", "seed"),
     [
-        pytest.param(Weather(), 0.3, 2.0, 1, id="calm"),
-        pytest.param(wind(8.0, 270.0), 0.4, 2.0, 2, id="wind"),
-        pytest.param(wind(8.0, 200.0, turbulence_mps_at_20ft=8.0), 0.5, 2.0, 3, id="turbulence"),
+        pytest.param(Weather(), 0.3, 2.0, 1, id="calm", marks=pytest.mark.long),
+        pytest.param(wind(8.0, 270.0), 0.4, 2.0, 2, id="wind", marks=pytest.mark.long),
+        pytest.param(wind(8.0, 200.0, turbulence_mps_at_20ft=8.0), 0.5, 2.0, 3, id="turbulence", marks=pytest.mark.long),
         pytest.param(wind(8.0, 45.0, gusts_mps=2.0), 1.0, 3.0, 4, id="gusts"),
     ],
 )
@@ -59,6 +59,7 @@ def test_gusts_from_any_side_are_borne(seed: int) -> None:
     assert off_m(touched_down_at, HOME) < 1.0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("physics_hz", [125, 100])
 def test_coarser_steps_fly_the_same_square(physics_hz: int) -> None:
     route = square(60.0)

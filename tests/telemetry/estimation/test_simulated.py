@@ -21,6 +21,7 @@ def test_a_simulated_flight_passes_its_waypoints_and_is_heard_of_as_a_vehicle_is
     assert list(truth.reached.values()) == sorted(truth.reached.values())
 
 
+@pytest.mark.long
 def test_a_few_simulated_flights_are_estimated_well() -> None:
     for every_s, score in score_simulated(range(6), intervals_s=(10.0,), physics_hz=100).items():
         assert len(score.error_m) > 1_500

@@ -17,6 +17,7 @@ from telemetry.ground_station.flavour import Flavour
 from telemetry.ground_station.wire import held_list
 from telemetry.models import Alert, UavLink
 from telemetry.services.command_alerts import settle_command_alerts
+from tests.cases import long
 from tests.missions.flights import ground
 from tests.missions.replanning.in_flight import Flight, planned_over_a_line
 from tests.telemetry.gateway.flyer import Flyer
@@ -92,7 +93,7 @@ def in_the_air(mission: Mission, flying: list[InAir]) -> Flight:
     return flight
 
 
-@pytest.mark.parametrize("flavour", FLAVOURS)
+@pytest.mark.parametrize("flavour", [Flavour.ARDUPILOT, *long(Flavour.PX4)])
 def test_what_one_uav_leaves_is_flown_by_the_other(flavour, mission, tmp_path):
     vehicles = [FLAVOURS[flavour](system=7), FLAVOURS[flavour](system=8)]
     with (

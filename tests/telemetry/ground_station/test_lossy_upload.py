@@ -11,6 +11,7 @@ from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState
 from telemetry.ground_station.mission_keeper import MissionKeeper
 from telemetry.ground_station.rules import TransferRules
 from telemetry.ground_station.wire import held_list
+from tests.cases import long
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon, rally
 from tests.telemetry.vehicles.vehicle import Vehicle
@@ -18,7 +19,7 @@ from tests.telemetry.vehicles.vehicle import Vehicle
 ITEMS = 200
 NEW = load(ITEMS, fence=polygon(0, 5), rally=rally())
 OLD = load(50, east=40_000, fence=polygon(9_000))
-SEEDS = [*range(20), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(20, 100))]
+SEEDS = [*range(8), *long(*range(8, 100))]
 
 
 @dataclass(frozen=True)
