@@ -22,7 +22,7 @@ MISSIONS, UAVS_EACH = 6, 10
 BESIDE_DEG = 0.0006  # some 50 m from its tower, so that routes keep clear of each other
 COVERED = """() => {
     const shown = [...document.querySelectorAll(".flyer-label, .map-cluster")]
-        .filter((element) => element.checkVisibility({ visibilityProperty: true }));
+        .filter((element) => element.checkVisibility({ visibilityProperty: true, opacityProperty: true }));
     const boxes = shown.map((element) => [element.textContent, element.getBoundingClientRect()]);
     return boxes.flatMap(([words, a], index) => boxes.slice(index + 1)
         .filter(([, b]) => a.left < b.right - 1 && b.left < a.right - 1 && a.top < b.bottom - 1 && b.top < a.bottom - 1)
