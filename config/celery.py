@@ -1,4 +1,8 @@
-"""The Celery application: queues `data` (imports, graph), `planning` (large plans) and `simulation` (rehearsals)."""
+"""The Celery application, whose queues are
+
+`data` (imports, graph), `flight` (what UAVs on a mission wait for: starts, ends of commands, alerts about them), `planning` (large plans)
+and `simulation` (rehearsals).
+"""
 
 import os
 
@@ -19,7 +23,7 @@ app.steps["worker"].update({LoopPulse, SoftEnd})
 watch_tasks()
 
 
-MAKES_NO_PLANS = {"data", "simulation"}
+MAKES_NO_PLANS = {"data", "flight", "simulation"}
 
 
 @worker_before_create_process.connect

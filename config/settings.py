@@ -285,9 +285,10 @@ CELERY_BROKER_TRANSPORT_OPTIONS = {
 }
 CELERY_TASK_DEFAULT_QUEUE = "data"
 CELERY_TASK_ROUTES = {
-    "missions.tasks.expire_commands": {"queue": "data"},
+    "missions.tasks.expire_commands": {"queue": "flight"},
+    "missions.tasks.start_in_planned_order": {"queue": "flight"},
+    "telemetry.tasks.settle_command_alerts": {"queue": "flight"},
     "missions.tasks.look_after_offers": {"queue": "data"},
-    "missions.tasks.start_in_planned_order": {"queue": "data"},
     "missions.tasks.*": {"queue": "planning"},
     "simulation.tasks.make_demo_missions": {"queue": "planning"},
     "simulation.tasks.*": {"queue": "simulation"},

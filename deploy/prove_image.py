@@ -46,7 +46,18 @@ PATIENCE_S = 900.0  # after which there is nothing to be proven
 USER = 10001  # of the image
 SERVICES = "spanwise.svc.cluster.local"
 BACKUP = "/var/lib/spanwise-files/backups/proof"
-PROGRAMS = ("live", "uav-link", "gateway", "estimator", "simulator", "worker-data", "worker-planning", "worker-simulation", "beat")
+PROGRAMS = (
+    "live",
+    "uav-link",
+    "gateway",
+    "estimator",
+    "simulator",
+    "worker-data",
+    "worker-flight",
+    "worker-planning",
+    "worker-simulation",
+    "beat",
+)
 NETWORK = "podman-default-kube-network"  # what podman play kube puts pods into
 DEMO = [
     ["make_demo_region", "/var/lib/spanwise/demo"],

@@ -8,7 +8,7 @@ from scripts.places import PROJECT_DIR
 
 GRANIAN_LOG = PROJECT_DIR / "operation" / "granian_log.json"
 BACKLOG = "4096"  # connections that wait for a program: as many as Linux allows unless told (net.core.somaxconn)
-QUEUES = ("data", "planning", "simulation")
+QUEUES = ("data", "flight", "planning", "simulation")
 
 # The C library gives each thread a pool of its own, up to eight a core, and returns little of what a pool has held once. Python's
 # threads take turns, so that two pools do.

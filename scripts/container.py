@@ -1,7 +1,7 @@
 """Become one of the programs, in a container: spanwise NAME [ARGUMENT...]
 
 web live uav-link proxy
-gateway estimator simulator · worker-data worker-planning worker-simulation beat · migrate · manage ARGUMENT... · healthy
+gateway estimator simulator · worker-data worker-flight worker-planning worker-simulation beat · migrate · manage ARGUMENT... · healthy
 backup [FOLDER] · restore FOLDER [--replace]     (of the database and the flights' logs; the key is the site's to keep)
 
 The image's entry point. Everything comes from the environment: docs/deployment.md. SIGTERM ends each of them softly.

@@ -18,7 +18,8 @@ DEMO_USER = "demo"
 WEB_PROGRAMS = ("web-1", "web-2")  # pages and API, each with a socket of its own
 SERVING_PROGRAMS = (*WEB_PROGRAMS, "uav-link", "live")  # that the proxy asks
 TELLING_PROGRAMS = (  # that tell how they do, each at a socket of its own
-    *WEB_PROGRAMS, "uav-link", "live", "worker-data", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat",
+    *WEB_PROGRAMS, "uav-link", "live", "worker-data", "worker-flight", "worker-planning", "worker-simulation", "gateway", "estimator",
+    "simulator", "beat",
 )  # fmt: skip
 
 

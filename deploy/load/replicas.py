@@ -9,7 +9,19 @@ from scripts import commands
 from scripts.places import Places, telling_socket
 from scripts.programs import Program, web_programs
 
-KINDS = ("web", "uav-link", "live", "worker-data", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat")
+KINDS = (
+    "web",
+    "uav-link",
+    "live",
+    "worker-data",
+    "worker-flight",
+    "worker-planning",
+    "worker-simulation",
+    "gateway",
+    "estimator",
+    "simulator",
+    "beat",
+)
 PORTS_OF_SIMULATIONS = 200
 
 

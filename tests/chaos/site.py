@@ -28,7 +28,9 @@ DEMO = (
     ["build_graph"],
 )
 PATIENCE_S = 300.0
-ONLY_WEB = dict.fromkeys(("worker-data", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat"), 0)
+ONLY_WEB = dict.fromkeys(
+    ("worker-data", "worker-flight", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat"), 0
+)
 KEEPS = "SPANWISE_CHAOS_KEEPS"  # set: logs and data stay for whoever looks for a reason
 
 

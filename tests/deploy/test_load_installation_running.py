@@ -17,7 +17,9 @@ from deploy.load.installation import Installation
 pytestmark = pytest.mark.long
 
 PATIENCE_S = 300.0
-WITHOUT = dict.fromkeys(("live", "worker-data", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat"), 0)
+WITHOUT = dict.fromkeys(
+    ("live", "worker-data", "worker-flight", "worker-planning", "worker-simulation", "gateway", "estimator", "simulator", "beat"), 0
+)
 
 
 @pytest.fixture(params=[False, True], ids=["sockets", "names"])

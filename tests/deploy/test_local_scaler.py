@@ -30,7 +30,7 @@ def test_rules_are_those_of_the_shipped_objects() -> None:
         assert (rules.up, rules.up_window_s, rules.down_window_s) == ((Policy(15.0, percent=100),), 0.0, 300.0)
 
 
-@pytest.mark.parametrize("program", ["worker-data", "worker-planning", "worker-simulation"])
+@pytest.mark.parametrize("program", ["worker-data", "worker-flight", "worker-planning", "worker-simulation"])
 def test_keda_has_the_same_rules_as_the_metrics_adapter(program: str) -> None:
     text = (PROGRAMS.parents[1] / "components" / "keda" / "scaled-objects.yaml").read_text()
     spec = next(one["spec"] for one in yaml.safe_load_all(text) if one and one["metadata"]["name"] == program)

@@ -80,7 +80,7 @@ def test_beat_tells_of_jobs_by_queue_and_of_a_graph_that_is_behind() -> None:
     assert told[state_figures.JOBS]["simulation", "queued"] == 1
     assert told[state_figures.JOBS]["data", "queued"] == 0
     assert 89 <= told[state_figures.JOB_AGE]["planning", "queued"] < 500
-    assert told[state_figures.QUEUE].keys() == {("data",), ("planning",), ("simulation",)}
+    assert told[state_figures.QUEUE].keys() == {("data",), ("flight",), ("planning",), ("simulation",)}
     assert told[state_figures.GRAPH_BEHIND][()] >= 699
     assert told.keys() == {one.name for one in state_figures.DESCRIBED}
 

@@ -16,7 +16,19 @@ from tests.chaos.pages import Pages
 from tests.chaos.probes import is_ready
 from tests.chaos.site import wait_until
 
-KILLED = ("web-1", "web-2", "live", "gateway", "estimator", "worker-data", "worker-planning", "worker-simulation", "simulator", "beat")
+KILLED = (
+    "web-1",
+    "web-2",
+    "live",
+    "gateway",
+    "estimator",
+    "worker-data",
+    "worker-flight",
+    "worker-planning",
+    "worker-simulation",
+    "simulator",
+    "beat",
+)
 KILLS, SHORT_KILLS = 50, 10
 BETWEEN_S = 6.0
 P95_S, MOST_S = 15.0, 30.0

@@ -27,7 +27,7 @@ OPEN_WITHIN_S = 240.0
 MOST_AHEAD = 2**16  # bytes that come in before a page that reads nothing takes no more
 AT_ONCE = 20  # pages that open at the same time
 MOST_GROWTH = 0.05
-COUNTS = {"worker-data": 0, "worker-planning": 0, "worker-simulation": 0, "simulator": 0, "beat": 0}
+COUNTS = {"worker-data": 0, "worker-flight": 0, "worker-planning": 0, "worker-simulation": 0, "simulator": 0, "beat": 0}
 
 
 @dataclass

@@ -28,7 +28,7 @@ SMALL = ("+5s", "-5s")
 JOBS = 3
 JOBS_END_WITHIN_S = 300.0
 LOOKED_S = 10.0
-COUNTS = {"worker-planning": 0, "worker-data": 0, "worker-simulation": 0, "simulator": 0, "gateway": 0, "estimator": 0}
+COUNTS = {"worker-planning": 0, "worker-flight": 0, "worker-data": 0, "worker-simulation": 0, "simulator": 0, "gateway": 0, "estimator": 0}
 
 
 def run(course: Course) -> None:
