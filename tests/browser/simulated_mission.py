@@ -6,6 +6,7 @@ from typing import Any
 
 from playwright.sync_api import Page, expect
 
+from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.regions import region
 from tests.browser.test_fleet import writes
@@ -14,6 +15,7 @@ APART_M, FROM_M = (150.0, 900.0), 250.0  # of the two towers; of a UAV from the 
 FLIGHT_MS = 240_000  # a machine that has much else to do flies slower than it was told
 SOON_MS = 60_000
 DEGREE_M = 111_195.0
+CONFLICT = 409
 
 
 def away_m(a: list[float], b: list[float]) -> float:
@@ -99,3 +101,17 @@ def flies_in_simulation(page: Page, pace: str) -> None:
 
 def card(page: Page, name: str) -> Any:
     return page.locator("#uav-cards .card").filter(has=page.get_by_role("button", name=re.compile(name)))
+
+
+def starts(visitor: Visitor, page: Page, name: str) -> None:
+    """Alone, by the menu of its commands; also where its slot is later, or a UAV of an earlier test was last heard in the air nearby."""
+    card(page, name).get_by_role("button", name=re.compile(name)).click()
+    page.get_by_role("group", name=f"Commands to {name}").get_by_role("button", name="More").click()
+    page.locator(".menu").get_by_role("button", name="Start", exact=True).click()
+    with page.expect_response(lambda response: response.request.method == "POST") as answered:
+        page.get_by_role("dialog").get_by_role("button", name=f"Start {name}").click()
+    if answered.value.status == CONFLICT:
+        visitor.complaints[:] = [words for words in visitor.complaints if "409 (Conflict)" not in words]
+        outside = page.get_by_role("dialog", name=f"Start {name} outside its slot?")
+        outside.get_by_role("button", name=f"Start {name} all the same").click()
+    expect(page.get_by_role("dialog")).to_have_count(0)

@@ -9,9 +9,10 @@ from playwright.sync_api import Page, expect
 
 from examples.companion.link import HttpLink
 from tests.browser.conftest import Site, Visitor
-from tests.browser.operator_map import TOO_WIDE, asks, wait_for_map
+from tests.browser.operator_map import TOO_WIDE, asks
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.regions import region
+from tests.browser.simulated_mission import card, opened, starts
 from tests.browser.test_accessibility import faults
 from tests.browser.test_fleet import writes
 from tests.browser.uav_over_http import Flyer
@@ -21,7 +22,6 @@ pytestmark = [pytest.mark.browser, pytest.mark.long]  # UAVs fly in real time
 STARTS = {"Kite": region.east, "Tern": [region.east[0] + 0.015, region.east[1] - 0.005]}
 STEP_M = 9.0
 MOST_STEPS = 30
-CONFLICT = 409
 
 
 @pytest.fixture
@@ -61,26 +61,6 @@ def flight(visitor: Visitor, site: Site) -> Iterator[tuple[str, list[Flyer]]]:
         writes(page, "PATCH", f"/uavs/{uav}", {"state": "retired", "name": f"Flown {uav}"})
 
 
-def opened(page: Page, path: str) -> Page:
-    page.goto(path)
-    wait_for_map(page)
-    return page
-
-
-def card(page: Page, name: str) -> Any:
-    return page.locator("#uav-cards .card").filter(has=page.get_by_role("button", name=re.compile(name)))
-
-
-def starts(page: Page, name: str) -> int:
-    """Alone, by the menu of its commands. Returns the status of the answer."""
-    card(page, name).get_by_role("button", name=re.compile(name)).click()
-    page.get_by_role("group", name=f"Commands to {name}").get_by_role("button", name="More").click()
-    page.locator(".menu").get_by_role("button", name="Start", exact=True).click()
-    with page.expect_response(lambda response: response.request.method == "POST") as answered:
-        page.get_by_role("dialog").get_by_role("button", name=f"Start {name}").click()
-    return answered.value.status
-
-
 def flies_until(page: Page, fact: Any, flyers: list[Flyer], along_m: float, *, drifts_m: float = 0.0, most: int = MOST_STEPS) -> float:
     """A report a second of each until the page shows what is waited for; the first drifts aside. Returns how far they have come."""
     for step in range(most):
@@ -102,12 +82,8 @@ def test_one_operator_starts_a_flight_and_another_sees_it_move_an_alert_and_an_a
     watcher = opened(visitor.signs_in("rory"), f"/missions/{mission}/fly")
     expect(watcher.locator("#mission-state")).to_have_text("Dispatched")
     first, second = (uav["name"] for uav in asks(pilot, f"/missions/{mission}")["uavs"])
-    starts(pilot, first)
-    if starts(pilot, second) == CONFLICT:  # its slot is later
-        visitor.complaints[:] = [words for words in visitor.complaints if "409 (Conflict)" not in words]
-        outside = pilot.get_by_role("dialog", name=f"Start {second} outside its slot?")
-        outside.get_by_role("button", name=f"Start {second} all the same").click()
-    expect(pilot.get_by_role("dialog")).to_have_count(0)
+    for name in (first, second):
+        starts(visitor, pilot, name)  # the second one's slot is later
 
     kite = card(watcher, "Kite")
     along_m = flies_until(watcher, lambda: watcher.locator("#mission-state").inner_text() == "Active", flyers, 0.0)

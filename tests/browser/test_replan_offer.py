@@ -15,6 +15,7 @@ from tests.browser.conftest import Site, Visitor
 from tests.browser.operator_map import asks, wait_for_map
 from tests.browser.pictures import Picture, in_both_themes
 from tests.browser.regions import region
+from tests.browser.simulated_mission import card, opened, starts
 from tests.browser.test_accessibility import faults
 from tests.browser.test_fleet import writes
 from tests.browser.uav_by_mavlink import Autopilot
@@ -84,31 +85,12 @@ def _in_a_row(supports: list[dict[str, Any]]) -> list[dict[str, Any]]:
     return sorted(sorted(towers, key=far_deg)[: 2 * TOWERS : 2], key=lambda tower: tower["geometry"]["coordinates"][0])
 
 
-def opened(page: Page, path: str) -> Page:
-    page.goto(path)
-    wait_for_map(page)
-    return page
-
-
-def starts(page: Page, name: str) -> None:
-    """Alone, by the menu of its commands."""
-    card(page, name).get_by_role("button", name=re.compile(name)).click()
-    page.get_by_role("group", name=f"Commands to {name}").get_by_role("button", name="More").click()
-    page.locator(".menu").get_by_role("button", name="Start", exact=True).click()
-    page.get_by_role("dialog").get_by_role("button", name=f"Start {name}").click()
-    expect(page.get_by_role("dialog")).to_have_count(0)
-
-
-def card(page: Page, name: str) -> Any:
-    return page.locator("#uav-cards .card").filter(has=page.get_by_role("button", name=re.compile(name)))
-
-
 def drops_out(visitor: Visitor, flight: Flight) -> tuple[Page, Page]:
     """The pages of who started the flight and of who watches it, once another plan is offered on both."""
     pilot = opened(visitor.signs_in("opal"), f"/missions/{flight.mission}/fly")
     watcher = opened(visitor.signs_in("rory"), f"/missions/{flight.mission}/fly")
     for name in NAMES:
-        starts(pilot, name)
+        starts(visitor, pilot, name)
     expect(watcher.locator("#mission-state")).to_have_text("Active")
     expect(watcher.locator(".map-flyer.measured")).to_have_count(2)
     expect(card(watcher, "Dunlin").locator("[data-figure=height]")).to_contain_text(
