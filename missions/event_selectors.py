@@ -13,7 +13,7 @@ from django.utils import timezone
 
 from missions.event_hooks import EventKind, MissionEvent, Place, Source, registered_sources
 from missions.models import InspectionTarget, Mission, MissionState, TargetState, Uav, UavCommand
-from missions.stored_outcomes import outcome_in_words
+from missions.stored_outcomes import command_outcome_in_words
 from workspace.models import AuditEntry, Organisation
 
 SHOWN_AFTER_END = timedelta(hours=1)  # as live pages show missions
@@ -173,9 +173,11 @@ def _of_command(command: UavCommand, step: str) -> MissionEvent:
     done = kind.removeprefix("command-") + (f" by {who}" if who else "")
     why = f": {command.outcome}" if is_bad and command.outcome else f": {command.why}" if command.why and who else ""
     values = {"command": str(command.pk), "command_kind": command.kind, "why": command.why}
+    if is_bad:
+        values["outcome"] = command_outcome_in_words(command.outcome_code, command.outcome)
     return MissionEvent(
         kind, f"{command.uav.name}: {command.get_kind_display()}, {done}{why}", command.uav_id, command.uav.name, command.uav.is_simulated,
-        who, "warning" if is_bad else None, values | ({"outcome": outcome_in_words(command.outcome)} if is_bad else {}),
+        who, "warning" if is_bad else None, values,
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from uuid import UUID
 from django.db.models import QuerySet
 
 from missions.event_hooks import EventKind, MissionEvent, Place, Source
+from simulation.end_reasons import reason_words
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange
 from workspace.models import Organisation
 
@@ -64,7 +65,8 @@ def _read_simulations(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
 def _of_simulation(simulation: Simulation, step: str) -> MissionEvent:
     if step == "ended":
         words = "The simulation has ended" + (f": {simulation.reason}" if simulation.reason else "")
-        return MissionEvent(EventKind.SIMULATION_ENDED, words, is_simulated=True, values={"reason": simulation.reason})
+        values = {"reason": simulation.reason, "message": reason_words(simulation.reason)}
+        return MissionEvent(EventKind.SIMULATION_ENDED, words, is_simulated=True, values=values)
     who = simulation.created_by.display_name if simulation.created_by else None
     words = "Simulated UAVs started" + (f" by {who}" if who else "")
     return MissionEvent(EventKind.SIMULATION_STARTED, words, is_simulated=True, who=who)

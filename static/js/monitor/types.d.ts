@@ -10,6 +10,7 @@ import type {
   LiveOffer,
   LiveUav,
   Mission,
+  MissionEvent,
 } from "../api_types.d.ts";
 import type { Certainty } from "../domain/certainty.js";
 import type { AskedKind } from "../domain/command_questions.js";
@@ -70,6 +71,10 @@ export interface MonitorState extends Live {
   chosen: number | null;
   isFollowing: boolean;
   showsLog: boolean;
+  /** what has happened, the newest first; null until it is read */
+  events: MissionEvent[] | null;
+  /** where the next page of older ones is; null: there is none */
+  olderEvents: string | null;
   link: FeedState | null;
   /** since when `link` is so, by the server's clock */
   since_ms: number;
