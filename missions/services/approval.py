@@ -51,7 +51,8 @@ def approve_mission(
 ) -> Approval:
     """Freeze a planned mission as it is. Raises MissionChanged, or Refused with every reason why it may not be flown so.
 
-    What later apps ask for is not asked of one that takes over while UAVs are in the air: they cannot wait for a rehearsal.
+    What later apps ask for is not asked of one that takes over while UAVs are in the air, which cannot wait for a rehearsal, nor of a copy
+    that is flown in simulation: it is one.
 
     With `longest_leg_m` autopilots are given points on each leg that is longer; they fly the same lines.
     """
@@ -63,7 +64,7 @@ def approve_mission(
             raise refuse("not_planned", _("Only a planned mission can be approved."))
         checked_revision = held_ground_revision()
         loaded = mission_of_organisation(held.organisation, held.pk)
-        refuse_for([*reasons_against(loaded, now=timezone.now()), *([] if is_under_way else further_reasons(loaded))])
+        refuse_for([*reasons_against(loaded, now=timezone.now()), *([] if is_under_way or held.simulates_id else further_reasons(loaded))])
         document = approval_document(loaded, longest_leg_m=longest_leg_m)
         if document["ground"]["revision"] != checked_revision:
             raise refuse("ground_changed", _("Zones, assets or terrain were changed in this moment. Approve it again."))

@@ -26,6 +26,8 @@ export interface MonitorPage extends MapPage {
   mission: string | null;
   canFly: boolean;
   hasSimulated: boolean;
+  /** of the only mission: a UAV of it is real, and is flown in simulation by a twin, in a copy of the mission */
+  hasReal?: boolean;
   /** of the only mission; the page's title until the feed tells it */
   missionName?: string;
   bounds: Box | null;
