@@ -2741,6 +2741,11 @@ export interface components {
              * @description planned take-off; null: at any time
              */
             departs_at: string | null;
+            /**
+             * Format: uuid
+             * @description the mission of which it is a copy that simulated twins fly
+             */
+            simulates: string | null;
             conditions: components["schemas"]["ConditionsOutput"];
             /** Format: double */
             charging_w: number | null;
@@ -6895,6 +6900,8 @@ export interface components {
             attributes?: {
                 [key: string]: string | number | boolean;
             };
+            /** @description the UAV that it is the simulated twin of */
+            readonly twin_of: number | null;
             readonly type_name: string;
             /** @description its own and its type's */
             readonly sensors: string[];
