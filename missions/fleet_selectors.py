@@ -39,9 +39,12 @@ def uavs_that_match(
     uav_type: int | None = None,
     sensor: str = "",
     external_id: str = "",
+    twins: bool = False,
 ) -> QuerySet[Uav]:
-    """Without a state all but the retired ones."""
+    """Without a state all but the retired ones; simulated twins of other UAVs only where they are asked for."""
     uavs = uavs_of_organisation(organisation)
+    if not twins:
+        uavs = uavs.filter(twin_of=None)
     if text:
         of_the_uav = Q(name__icontains=text) | Q(base_name__icontains=text) | Q(serial_number__icontains=text)
         uavs = uavs.filter(of_the_uav | Q(uav_type__name__icontains=text))

@@ -16,6 +16,7 @@ from missions.models import EndAction, Mission, MissionState, Route, Waypoint, W
 
 FLYING_STATES = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
 STILL_FLOWN: dict[str, Any] = {"geometry__isnull": False, "continued_by": None}  # of routes; the rest of others is another mission's
+NO_TWIN: dict[str, Any] = {"mission_uav__uav__twin_of": None}  # twins fly copies of missions, in simulation: they are in nobody's way
 COLUMNS = ("position", "altitude_amsl_m", "altitude_agl_m", "arrival_s", "task", "kind")
 _SECOND = Value(timedelta(seconds=1))
 _FLOWN = ExpressionWrapper((F("departs_s") + F("duration_s")) * _SECOND, output_field=DurationField())
@@ -41,7 +42,7 @@ def flights_at_the_same_time(organisation_id: int, from_s: float, to_s: float, *
     longest = timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s)
     missions = Mission.objects.filter(organisation=organisation_id, deleted_at=None, state__in=FLYING_STATES, departs_at__lt=window_to)
     routes = (
-        Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), **STILL_FLOWN)
+        Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), **STILL_FLOWN, **NO_TWIN)
         .alias(ends_at=_ENDS_AT)
         .filter(ends_at__gt=window_from - longest)  # who hovers stays for so long
         .select_related("mission", "mission_uav")
@@ -73,7 +74,7 @@ def flights_at_the_same_time(organisation_id: int, from_s: float, to_s: float, *
 
 def _routes_without_departure(organisation_id: int, but: UUID | str | None) -> list[Route]:
     missions = Mission.objects.filter(organisation=organisation_id, deleted_at=None, state__in=FLYING_STATES, departs_at=None)
-    routes = Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), **STILL_FLOWN)
+    routes = Route.objects.filter(mission__in=missions if but is None else missions.exclude(pk=but), **STILL_FLOWN, **NO_TWIN)
     return list(routes.select_related("mission_uav").order_by("mission_id", "mission_uav__sequence"))
 
 

@@ -153,6 +153,22 @@ def outcome_in_words(stored: str) -> str:
     return " ".join(found)
 
 
+# What the outbox itself ends commands with; a link says in its own words why a command failed.
+_BY_OUTBOX = {
+    "superseded": gettext_noop("A later command took its place."),
+    "not-delivered": gettext_noop("It could not be delivered in time."),
+    "unconfirmed": gettext_noop("It was sent; whether it was done is not known."),
+    "unheard": gettext_noop("Sent again and again; nothing is heard from the UAV, and whether it does it is not known."),
+    "withdrawn": gettext_noop("It was withdrawn before it was sent."),
+    "revoked": gettext_noop("The approval was revoked."),
+}
+
+
+def command_outcome_in_words(code: str, stored: str) -> str:
+    """What became of a command, by its code where the outbox itself ended it."""
+    return _(_BY_OUTBOX[code]) if code in _BY_OUTBOX else outcome_in_words(stored)
+
+
 def is_foreseen(stored: str) -> bool:
     """Whether all of it is made of known sentences."""
     rest = stored.lstrip()

@@ -6,6 +6,7 @@ from missions import views
 from missions.views.approvals import MissionAbort, MissionApproval, MissionApprove, MissionClose, MissionDispatch, MissionRevoke
 from missions.views.by_hand import LegChecks, RouteWaypoints, RouteWaypointsLook, RouteWaypointsUndo
 from missions.views.commands import CommandDetail, MissionCommands, MissionsCommands, UavCommands
+from missions.views.events import LiveEvents, MissionEvents
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
 from missions.views.reachability import Reachability
@@ -46,6 +47,8 @@ urlpatterns = [
     path("missions/<uuid:mission_id>/planned-starts", MissionPlannedStarts.as_view(), name="api-mission-planned-starts"),
     path("planned-starts", PlannedStartsList.as_view(), name="api-planned-starts"),
     path("missions/<uuid:mission_id>/returns", MissionReturns.as_view(), name="api-mission-returns"),
+    path("missions/<uuid:mission_id>/events", MissionEvents.as_view(), name="api-mission-events"),
+    path("live/events", LiveEvents.as_view(), name="api-live-events"),
     path("missions/<uuid:mission_id>/commands", MissionCommands.as_view(), name="api-mission-commands"),
     path("missions/<uuid:mission_id>/replan-offers", MissionReplanOffers.as_view(), name="api-mission-replan-offers"),
     path("replan-offers/<uuid:offer_id>", ReplanOfferDetail.as_view(), name="api-replan-offer"),

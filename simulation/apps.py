@@ -1,4 +1,4 @@
-"""Registers the app with Django, and what it asks of a mission before it is approved."""
+"""Registers the app with Django, what it asks of a mission before it is approved, and what it adds to event logs."""
 
 from django.apps import AppConfig
 
@@ -8,5 +8,7 @@ class SimulationConfig(AppConfig):
 
     def ready(self) -> None:
         from missions.approval_hooks import register_check  # noqa: PLC0415 (models are there by then)
+        from missions.event_hooks import register_sources  # noqa: PLC0415
 
         register_check("simulation.services.green_verdict.reasons_without_rehearsal")
+        register_sources("simulation.simulation_selectors.EVENT_SOURCES")

@@ -1,10 +1,14 @@
 """Reads of simulated UAVs in real time, always within one organisation."""
 
+from collections.abc import Mapping, Sequence
+from typing import Any
 from uuid import UUID
 
 from django.db.models import QuerySet
 
-from simulation.models import SimulatedVehicle, Simulation
+from missions.event_hooks import EventKind, MissionEvent, Place, Source
+from simulation.end_reasons import reason_words
+from simulation.models import SimulatedVehicle, Simulation, SimulationChange
 from workspace.models import Organisation
 
 
@@ -19,3 +23,53 @@ def simulations_of_mission(organisation: Organisation, mission_id: UUID) -> Quer
 
 def vehicles_of_organisation(organisation: Organisation) -> QuerySet[SimulatedVehicle]:
     return SimulatedVehicle.objects.filter(simulation__organisation=organisation).select_related("simulation__organisation", "uav")
+
+
+_CHANGES = """
+SELECT change.id::text, CASE WHEN change.faults IS NULL THEN 'changed' ELSE 'faults' END, change.created_at, simulation.mission_id
+FROM simulation_simulation simulation JOIN simulation_simulationchange change ON change.simulation_id = simulation.id
+WHERE simulation.mission_id = ANY(%(missions)s)
+"""
+_SIMULATIONS = """
+SELECT id::text, 'started', created_at, mission_id FROM simulation_simulation WHERE mission_id = ANY(%(missions)s)
+UNION ALL
+SELECT id::text, 'ended', ended_at, mission_id FROM simulation_simulation
+WHERE mission_id = ANY(%(missions)s) AND ended_at IS NOT NULL
+"""
+
+
+def _read_changes(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
+    rows = SimulationChange.objects.select_related("vehicle", "created_by").in_bulk([int(place.row) for place in places])
+    return {place: _of_change(row) for place in places if (row := rows.get(int(place.row))) is not None}
+
+
+def _of_change(change: SimulationChange) -> MissionEvent:
+    who = change.created_by.display_name if change.created_by else None
+    vehicle, by = change.vehicle, f" by {who}" if who else ""
+    name, uav_id = ("All simulated UAVs", None) if vehicle is None else (vehicle.name, vehicle.uav_id)
+    told = {"speed": change.speed, "conditions": change.conditions, "faults": change.faults}
+    values: dict[str, Any] = {field: value for field, value in told.items() if value is not None}
+    if change.faults is None:
+        kind, words = EventKind.SIMULATION_CHANGED, f"{name}: {' and '.join(values)} changed{by}"
+    else:
+        faults = ", ".join(f"{fault} {value}" for fault, value in change.faults.items())
+        kind, words = EventKind.FAULT_INJECTED, f"{name}: fault injected{by}: {faults}"
+    return MissionEvent(kind, words, uav_id, "" if vehicle is None else vehicle.name, is_simulated=True, who=who, values=values)
+
+
+def _read_simulations(places: Sequence[Place]) -> Mapping[Place, MissionEvent]:
+    rows = Simulation.objects.select_related("created_by").in_bulk([UUID(place.row) for place in places])
+    return {place: _of_simulation(row, place.step) for place in places if (row := rows.get(UUID(place.row))) is not None}
+
+
+def _of_simulation(simulation: Simulation, step: str) -> MissionEvent:
+    if step == "ended":
+        words = "The simulation has ended" + (f": {simulation.reason}" if simulation.reason else "")
+        values = {"reason": simulation.reason, "message": reason_words(simulation.reason)}
+        return MissionEvent(EventKind.SIMULATION_ENDED, words, is_simulated=True, values=values)
+    who = simulation.created_by.display_name if simulation.created_by else None
+    words = "Simulated UAVs started" + (f" by {who}" if who else "")
+    return MissionEvent(EventKind.SIMULATION_STARTED, words, is_simulated=True, who=who)
+
+
+EVENT_SOURCES = (Source("simulated", _CHANGES, _read_changes), Source("simulation", _SIMULATIONS, _read_simulations))

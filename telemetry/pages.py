@@ -28,16 +28,19 @@ class MissionStagePage(SignedInPage):
         mission_id: UUID = kwargs["mission_id"]
         user = self.request.user
         own = Mission.objects.filter(organisation=user.organisation_id, deleted_at=None, pk=mission_id)
-        name = own.values_list("name", flat=True).first()
-        if name is None:
+        mission = own.select_related("simulates").first()
+        if mission is None:
             raise Http404
+        original = mission.simulates
         simulated = MissionUav.objects.filter(mission=mission_id).values_list("uav__is_simulated", flat=True)
         return {
             "hasSimulated": any(simulated),
+            "hasReal": not all(simulated),
             "isSimulated": bool(simulated) and all(simulated),
             "canFly": user.can_plan,
             "mission": str(mission_id),
-            "missionName": name,
+            "missionName": mission.name,
+            "simulates": None if original is None else {"id": str(original.pk), "name": original.name},
             "extent": ground_extent(),
             "bounds": mission_bounds(mission_id),
         } | raster_maps()

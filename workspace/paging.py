@@ -3,7 +3,7 @@
 import base64
 import binascii
 import json
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from datetime import UTC, datetime, time, timedelta
 from typing import Any, Generic, TypeVar
@@ -19,6 +19,7 @@ from workspace.errors import ApiProblem
 from workspace.whole_numbers import WholeNumber
 
 Row = TypeVar("Row", bound=Model)
+Item = TypeVar("Item")
 EARLIEST = datetime(2, 1, 1, tzinfo=UTC)  # before it nothing was changed, and less than a year is taken from a time
 LIMIT = WholeNumber("limit", "rows a page; 100 unless told, 1,000 at most")
 
@@ -46,6 +47,43 @@ def page_of(
     query = request.query_params.copy()
     query["cursor"] = _cursor_of(queryset, rows[-1], order)
     return Page(rows, f"{request.path}?{query.urlencode()}")
+
+
+@dataclass(frozen=True)
+class Slice(Generic[Item]):
+    items: list[Item]
+    next: str | None  # path and query of the next page
+
+
+def slice_of(
+    request: Request, read: Callable[[tuple[datetime, str] | None, int], list[Item]], place: Callable[[Item], tuple[datetime, str]]
+) -> Slice[Item]:
+    """The page that `?limit=` and `?cursor=` ask for, of what is no queryset: `read` returns so many items that come after a place.
+
+    A place is the time and the key of an item; no two are the same. Raises ApiProblem 400.
+    """
+    limit = _limit(request, 100, 1000)
+    items = read(_place_of(request.query_params.get("cursor", "")), limit + 1)
+    if len(items) <= limit:
+        return Slice(items, None)
+    items = items[:limit]
+    at, key = place(items[-1])
+    query = request.query_params.copy()
+    query["cursor"] = _encoded([at.isoformat(), key])
+    return Slice(items, f"{request.path}?{query.urlencode()}")
+
+
+def _place_of(cursor: str) -> tuple[datetime, str] | None:
+    if not cursor:
+        return None
+    try:
+        at, key = _decoded(cursor)
+        found = datetime.fromisoformat(at)
+    except (binascii.Error, ValueError, TypeError, RecursionError) as error:
+        raise _wrong_cursor() from error
+    if found.tzinfo is None or not isinstance(key, str) or "\0" in key:
+        raise _wrong_cursor()
+    return found, key
 
 
 def changed_since(request: Request, queryset: QuerySet[Any, Row]) -> QuerySet[Any, Row]:
@@ -108,16 +146,28 @@ def _cursor_of(queryset: QuerySet[Any], row: Model, order: tuple[str, ...]) -> s
     for name in order:
         field = _field(queryset, name)
         values.append(str(getattr(row, name.removeprefix("-"))) if field.name is None else field.value_to_string(row))
+    return _encoded(values)
+
+
+def _encoded(values: list[str]) -> str:
     return base64.urlsafe_b64encode(json.dumps(values).encode()).decode().rstrip("=")
+
+
+def _decoded(cursor: str) -> Any:
+    return json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
+
+
+def _wrong_cursor() -> ApiProblem:
+    return ApiProblem(400, "invalid_cursor", _("The cursor is not one that this address gave."))
 
 
 def _rows_after(queryset: QuerySet[Any], order: tuple[str, ...], cursor: str) -> Q:
     """(a, b) > (x, y) written as a > x or (a = x and b > y), each column in its own direction."""
     try:
-        texts = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
+        texts = _decoded(cursor)
         values = [_field(queryset, name).to_python(str(text)) for name, text in zip(order, texts, strict=True)]
     except (binascii.Error, ValueError, TypeError, OverflowError, RecursionError, DjangoValidationError) as error:
-        raise ApiProblem(400, "invalid_cursor", _("The cursor is not one that this address gave.")) from error
+        raise _wrong_cursor() from error
     after = Q()
     equal = Q()
     for name, value in zip(order, values, strict=True):

@@ -112,6 +112,14 @@ class Uav(models.Model):
         default=False, db_default=False, help_text="MAVLink without a signature is taken for this UAV's: only on a closed network"
     )
     is_simulated = models.BooleanField(default=False, db_default=False, help_text="no real aircraft; may fly without terrain data")
+    twin_of = models.OneToOneField(
+        "self",
+        on_delete=models.CASCADE,
+        null=True,
+        blank=True,
+        related_name="twin",
+        help_text="the UAV that it is the simulated twin of: it flies copies of that one's missions",
+    )
     is_demo = models.BooleanField(default=False, db_default=False, help_text="made with the demo data, and goes with them")
     location = models.PointField(srid=4326)
     located_at = models.DateTimeField(null=True, blank=True, help_text="when the location was set or reported")
@@ -144,6 +152,7 @@ class Uav(models.Model):
         constraints = [
             models.UniqueConstraint(fields=["organisation", "name"], name="uav_name_unique"),
             models.UniqueConstraint(fields=["organisation", "external_id"], condition=~Q(external_id=""), name="uav_external_id_unique"),
+            models.CheckConstraint(condition=Q(twin_of=None) | Q(is_simulated=True), name="uav_twin_is_simulated"),
             models.CheckConstraint(condition=Q(max_range_m=None) | Q(max_range_m__gt=0), name="uav_range_positive"),
             models.CheckConstraint(condition=Q(cruise_speed_mps__gt=0), name="uav_speed_positive"),
             models.CheckConstraint(condition=Q(battery_wh=None) | Q(battery_wh__gt=0), name="uav_battery_positive"),

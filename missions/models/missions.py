@@ -88,6 +88,14 @@ class Mission(models.Model):
         related_name="continued_by",
         help_text="the mission whose rest this one flies",
     )
+    simulates = models.ForeignKey(
+        "self",
+        on_delete=models.CASCADE,
+        null=True,
+        blank=True,
+        related_name="simulated_copies",
+        help_text="the mission of which this is a copy with simulated twins of its UAVs",
+    )
     alert_limits = models.JSONField(
         default=dict,
         db_default={},

@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from django.utils.translation import gettext_lazy
 from drf_spectacular.utils import extend_schema_field
 
 from missions.models import Approval, CommandKind, CommandState, LinkKind, UavCommand
@@ -11,21 +10,12 @@ from missions.serializers.limits import LONGEST_LEG_M, SHORTEST_LEG_M
 from missions.services.batch_commands import BATCH_KINDS, UavAnswer
 from missions.services.closing import MAX_REASON_LENGTH
 from missions.services.steering import MAX_WAIT_S
-from missions.stored_outcomes import outcome_in_words
+from missions.stored_outcomes import command_outcome_in_words
 from workspace import strict_serializers as serializers
 
 LONGEST_WHY = 300
 MOST_FLIGHTS = 100
 MAX_UAVS = 1_000
-# What the outbox itself ends commands with; a link says in its own words why a command failed.
-OUTCOMES = {
-    "superseded": gettext_lazy("A later command took its place."),
-    "not-delivered": gettext_lazy("It could not be delivered in time."),
-    "unconfirmed": gettext_lazy("It was sent; whether it was done is not known."),
-    "unheard": gettext_lazy("Sent again and again; nothing is heard from the UAV, and whether it does it is not known."),
-    "withdrawn": gettext_lazy("It was withdrawn before it was sent."),
-    "revoked": gettext_lazy("The approval was revoked."),
-}
 PAUSE_IS_DEPRECATED = "pause is deprecated: hold does the same, and resume goes on from both"
 PRIORITIES = ("safety", "pause", "mission", "parameter")
 
@@ -304,7 +294,7 @@ def command_json(command: UavCommand) -> dict[str, Any]:
         "finished_at": command.finished_at,
         "progress": command.progress,
         "outcome_code": command.outcome_code,
-        "outcome": str(OUTCOMES.get(command.outcome_code) or outcome_in_words(command.outcome)),
+        "outcome": command_outcome_in_words(command.outcome_code, command.outcome),
     }
 
 

@@ -353,6 +353,7 @@ class MissionSerializer(serializers.Serializer):
     objective = serializers.ChoiceField(choices=Objective.choices)
     return_to_start = serializers.BooleanField()
     departs_at = serializers.DateTimeField(allow_null=True, help_text="planned take-off; null: at any time")
+    simulates = serializers.UUIDField(allow_null=True, help_text="the mission of which it is a copy that simulated twins fly")
     conditions = ConditionsOutputSerializer()
     charging_w = serializers.FloatField(allow_null=True)
     lost_link = LostLinkOutputSerializer()

@@ -68,6 +68,7 @@ class UavPropertiesSerializer(KnownFieldsSerializer):
     end_action = serializers.ChoiceField(choices=EndAction.choices, required=False)
     external_id = ExternalIdField(help_text="another system's id of it, one UAV each; empty: none")
     attributes = AttributesField(help_text="of other systems; a change replaces all of them")
+    twin_of = serializers.IntegerField(read_only=True, allow_null=True, help_text="the UAV that it is the simulated twin of")
     type_name = serializers.CharField(read_only=True)
     sensors = serializers.ListField(child=serializers.CharField(), read_only=True, help_text="its own and its type's")
     from_type = serializers.ListField(child=serializers.CharField(), read_only=True, help_text="which values are the type's")
@@ -154,6 +155,7 @@ def uav_feature(uav: UavWithUse) -> dict[str, Any]:
         "from_type": [
             field for field in FROM_TYPE if uav.uav_type and getattr(uav, field) is None and getattr(uav.uav_type, field) is not None
         ],
+        "twin_of": uav.twin_of_id,
         "located_at": uav.located_at,
         "mission_count": uav.mission_count,
         "credentials": [credential.kind for credential in uav.credentials_in_force],

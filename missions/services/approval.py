@@ -51,7 +51,8 @@ def approve_mission(
 ) -> Approval:
     """Freeze a planned mission as it is. Raises MissionChanged, or Refused with every reason why it may not be flown so.
 
-    What later apps ask for is not asked of one that takes over while UAVs are in the air: they cannot wait for a rehearsal.
+    What later apps ask for is not asked of one that takes over while UAVs are in the air, which cannot wait for a rehearsal, nor of one
+    that simulated twins alone fly.
 
     With `longest_leg_m` autopilots are given points on each leg that is longer; they fly the same lines.
     """
@@ -63,7 +64,9 @@ def approve_mission(
             raise refuse("not_planned", _("Only a planned mission can be approved."))
         checked_revision = held_ground_revision()
         loaded = mission_of_organisation(held.organisation, held.pk)
-        refuse_for([*reasons_against(loaded, now=timezone.now()), *([] if is_under_way else further_reasons(loaded))])
+        refuse_for(
+            [*reasons_against(loaded, now=timezone.now()), *([] if is_under_way or _is_flown_by_twins(held) else further_reasons(loaded))]
+        )
         document = approval_document(loaded, longest_leg_m=longest_leg_m)
         if document["ground"]["revision"] != checked_revision:
             raise refuse("ground_changed", _("Zones, assets or terrain were changed in this moment. Approve it again."))
@@ -75,6 +78,11 @@ def approve_mission(
         facts |= {} if longest_leg_m is None else {"longest_leg_m": longest_leg_m}
         change_state(held, MissionState.APPROVED, actor, "approve", facts)
     return approval
+
+
+def _is_flown_by_twins(mission: Mission) -> bool:
+    """Whether it is a simulated copy as it was made: whoever gives it another UAV since has a mission like any other."""
+    return mission.simulates_id is not None and not mission.mission_uavs.filter(Q(uav=None) | Q(uav__twin_of=None)).exists()
 
 
 def revoke_approval(*, mission: Mission, actor: User, reason: str, expected_revision: int | None = None) -> Approval:

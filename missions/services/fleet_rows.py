@@ -76,7 +76,7 @@ def locked(row: Row, expected_revision: int | None) -> Row:
     return held
 
 
-def stored(row: Row, *, actor: User, action: str, before: dict[str, Any] | None, facts: Facts) -> Row:
+def stored(row: Row, *, actor: User | None, action: str, before: dict[str, Any] | None, facts: Facts) -> Row:
     """Save a row that is new, changed or brought back, with its entry in the history.
 
     Raises NameTaken, ExternalIdTaken or SystemIdTaken.

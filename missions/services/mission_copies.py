@@ -23,16 +23,16 @@ NOT_FLOWN: dict[str, Any] = {
 }  # fmt: skip
 
 
-def duplicate_mission(*, mission: Mission, author: User, name: str = "") -> Mission:
+def duplicate_mission(*, mission: Mission, author: User, name: str = "", **other: Any) -> Mission:
     """A copy of its own: targets are pending again, and a mission that was on its way is merely planned.
 
-    It is compared with what is approved by now, the mission itself among it.
+    It is compared with what is approved by now, the mission itself among it. `other` are values that differ from the mission's.
     """
     with transaction.atomic():
         mission = Mission.objects.select_for_update(no_key=True).get(
             pk=mission.pk
         )  # as it is now: never half of one plan and half of the next
-        values = {field: getattr(mission, field) for field in COPIED}
+        values = {field: getattr(mission, field) for field in COPIED} | other
         if values["state"] != MissionState.DRAFT:
             values["state"] = MissionState.PLANNED
         copy = Mission.objects.create(author=author, name=(name or _free_name(mission))[:LONGEST_NAME], **values)

@@ -89,10 +89,15 @@ def _in_the_air(
     flight is known, by their names, with where they were last: flown by hand, say.
     """
     since = now - timedelta(seconds=settings.FLIGHT_RULES.longest_flight_s)
+    is_real = uav.twin_of_id is None  # twins and other UAVs are in nobody's way of each other
     waits = Q(state=CommandState.QUEUED) if given_at is None else Q(state=CommandState.QUEUED, created_at__lt=given_at)
     starts = list(
         UavCommand.objects.filter(
-            waits | Q(sent_at__gt=since), organisation=uav.organisation_id, kind=CommandKind.START, mission__isnull=False
+            waits | Q(sent_at__gt=since),
+            organisation=uav.organisation_id,
+            kind=CommandKind.START,
+            mission__isnull=False,
+            uav__twin_of__isnull=is_real,
         )
         .exclude(uav=uav)
         .select_related("mission")
@@ -102,7 +107,8 @@ def _in_the_air(
     uav_ids = [start.uav_id for start in starts]
     later = UavCommand.objects.filter(uav__in=uav_ids, sent_at__gt=since, axis__in=[CommandAxis.FLIGHT, CommandAxis.SPEED])
     last = dict(later.values_list("uav_id").annotate(Max("sequence")))
-    names = dict(Uav.objects.filter(organisation=uav.organisation_id).exclude(pk=uav.pk).values_list("pk", "name"))
+    others = Uav.objects.filter(organisation=uav.organisation_id, twin_of__isnull=is_real).exclude(pk=uav.pk)
+    names = dict(others.values_list("pk", "name"))
     in_the_air = places_in_the_air(names)
     planned = Route.objects.filter(mission__in=[start.mission_id for start in starts], mission_uav__uav__in=uav_ids)
     routes = {(route.mission_id, route.mission_uav.uav_id): route for route in planned.select_related("mission", "mission_uav")}

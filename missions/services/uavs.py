@@ -35,7 +35,9 @@ def create_uav(*, organisation: Organisation, actor: User, position: LonLat | No
         return stored(uav, actor=actor, action="create", before=None, facts=_facts)
 
 
-def change_uav(*, uav: Uav, actor: User, position: LonLat | None, values: dict[str, Any], expected_revision: int | None = None) -> Uav:
+def change_uav(
+    *, uav: Uav, actor: User | None, position: LonLat | None, values: dict[str, Any], expected_revision: int | None = None
+) -> Uav:
     """Retired, it gives its MAVLink system id back.
 
     Raises FleetChanged, what create_uav raises, or Refused for another link or system id while anything is on its way.

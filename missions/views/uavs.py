@@ -20,7 +20,7 @@ from workspace.errors import ApiProblem
 from workspace.external_data import EXTERNAL_ID, asked_external_id
 from workspace.idempotency import idempotent
 from workspace.models import User
-from workspace.paging import asked_choice, changed_since, page_of
+from workspace.paging import asked_choice, asked_flag, changed_since, page_of
 from workspace.permissions import ADMINISTRATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, etag_of, expected_revision
 from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS
@@ -67,6 +67,8 @@ def _values(request: SignedInRequest, uav: Uav | None = None) -> dict[str, Any]:
     changed = [name for name in WAIVES_SAFETY if values.get(name, getattr(uav, name, False)) != getattr(uav, name, False)]
     if changed and request.user.role not in ADMINISTRATORS:
         raise ApiProblem(403, "permission_denied", _("Only administrators say that a UAV is simulated, or needs no signature."))
+    if uav is not None and uav.twin_of_id is not None and not values.get("is_simulated", True):
+        raise ApiProblem(409, "simulated_twin", _("%(uav)s is the simulated twin of another UAV.") % {"uav": uav.name})
     return values
 
 
@@ -75,7 +77,7 @@ def _filters(request: Request) -> dict[str, Any]:
     words = {name: request.query_params.get(name, "").strip()[:100].replace("\0", "") for name in ("text", "state", "sensor")}
     asked_choice(request, "state", STATES)
     ids = {"base": BASE.asked(request), "uav_type": TYPE.asked(request)}
-    return words | ids | {"external_id": asked_external_id(request)}
+    return words | ids | {"external_id": asked_external_id(request), "twins": bool(asked_flag(request, "twins"))}
 
 
 class UavList(APIView):
@@ -88,6 +90,7 @@ class UavList(APIView):
             BASE.documented,
             TYPE.documented,
             OpenApiParameter("sensor", str, description="part of the name of one of its sensors"),
+            OpenApiParameter("twins", bool, description="also the simulated twins that fly copies of missions"),
             EXTERNAL_ID,
             CHANGED_SINCE,
             *PAGE_PARAMETERS,

@@ -9,6 +9,7 @@ from drf_spectacular.utils import extend_schema_field
 
 from missions.fields import PositionField
 from missions.serializers.known_fields import KnownFieldsSerializer
+from simulation.end_reasons import reason_words
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults_told import WrongFaults, faults_told
 from simulation.models import SimulatedVehicle, Simulation, SimulationState, VehicleFlavour
@@ -19,21 +20,6 @@ SPEEDS = (1, 2, 5, 10)
 MOST_POOL_UAVS = 100
 HIGHEST_SYSTEM = 250
 SHORTEST_LIFETIME_S, USUAL_LIFETIME_S, LONGEST_TOLD_S = 60, 3_600, 7 * 86_400
-REASONS = {
-    "": "",
-    "ended-by-hand": gettext_lazy("Somebody ended it."),
-    "lifetime-over": gettext_lazy("Its lifetime is over."),
-    "mission-over": gettext_lazy("The mission is over."),
-    "uav-changed": gettext_lazy("A UAV that it stood in for is no longer marked as simulated, or is reached in another way."),
-    "simulator-lost": gettext_lazy("The simulator was lost while the UAV was in the air: the UAV is lost with it."),
-    "simulator-fault": gettext_lazy("It failed inside Spanwise; the error is in the simulator's log."),
-    "no-gateway": gettext_lazy("No gateway listens for MAVLink: SPANWISE_GATEWAY_UDP is empty, and SPANWISE_SIMULATOR_GATEWAY names none."),
-    "no-socket": gettext_lazy("The simulator could not listen at its port."),
-    "port-taken": gettext_lazy(
-        "Another program on the simulator's machine has its port, such as another installation of Spanwise. Start it again, or give this "
-        "installation ports of its own (SPANWISE_SIMULATOR_PORTS)."
-    ),
-}
 
 
 NOT_OF_THE_FLEET = gettext_lazy(
@@ -232,7 +218,7 @@ def simulation_json(simulation: Simulation) -> dict[str, Any]:
         "mission": None if simulation.mission_id is None else str(simulation.mission_id),
         "state": simulation.state,
         "reason": simulation.reason,
-        "message": str(REASONS.get(simulation.reason, simulation.reason)),
+        "message": reason_words(simulation.reason),
         "speed": simulation.speed,
         "seed": simulation.seed,
         "created_at": simulation.created_at,
@@ -263,7 +249,7 @@ def vehicle_json(vehicle: SimulatedVehicle) -> dict[str, Any]:
         "position": list(vehicle.position.coords),
         "state": vehicle.state,
         "reason": vehicle.reason,
-        "message": str(REASONS.get(vehicle.reason, vehicle.reason)),
+        "message": reason_words(vehicle.reason),
         "restarts": vehicle.restarts,
         "conditions": vehicle.conditions,
         "told": {"at": vehicle.told_at, **told} if told else None,

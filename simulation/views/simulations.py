@@ -1,5 +1,6 @@
 """Simulated UAVs in real time: those of missions and those of the pool, started, changed in flight, ended."""
 
+from collections.abc import Callable
 from typing import Any
 from uuid import UUID
 
@@ -15,10 +16,12 @@ from rest_framework.views import APIView
 
 from inspection.views.parameters import invalid
 from missions.flight_plan.conditions import Conditions, conditions_from_json
+from missions.models import Mission
 from missions.views.missions import mission_or_404
-from missions.views.problems import refusals
+from missions.views.problems import api_problems, refusals
 from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
 from simulation.serializers import simulations as shapes
+from simulation.services.simulated_copies import fly_simulated_copy
 from simulation.services.simulated_flights import start_simulated_flights
 from simulation.services.simulations import (
     IsOver,
@@ -50,6 +53,7 @@ OVER = {409: OpenApiResponse(description="The simulation has ended.")}
 FLIGHT_REFUSED = {
     409: OpenApiResponse(description="The mission is not approved, or one of its UAVs is real: `details.reasons` has each reason.")
 }
+COPY_REFUSED = {409: OpenApiResponse(description="It cannot be flown so now: `details.reasons` has each reason.")}
 STATE = OpenApiParameter("state", str, enum=WHICH, description="those that wait or fly (present, unless told), or also those that are over")
 
 
@@ -79,24 +83,46 @@ class MissionSimulatedFlights(APIView):
     )
     @idempotent
     def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
-        mission = mission_or_404(request.user, mission_id)
-        body = shapes.SimulatedFlightsInputSerializer(data=request.data)
-        body.is_valid(raise_exception=True)
-        values = body.validated_data
-        try:
-            with refusals(), transaction.atomic():
-                simulation = start_simulated_flights(
-                    mission=mission,
-                    actor=request.user,
-                    sky=sky_of(values["conditions"], conditions_from_json(mission.conditions or None)),
-                    speed=float(values["speed"]),
-                    flavour=VehicleFlavour(values["flavour"]),
-                    seed=values["seed"],
-                    faults=values.get("faults"),
-                )
-        except QuotaReached as error:
-            raise _too_many(error) from error
-        return _answer(request.user, simulation.pk, status=201)
+        return _flown(request, mission_or_404(request.user, mission_id), start_simulated_flights)
+
+
+class MissionSimulatedCopy(APIView):
+    write_scopes = FLYING
+
+    @extend_schema(
+        operation_id="fly_simulated_copy",
+        summary="Fly an approved mission by simulated twins of its UAVs",
+        description=(
+            "`mission` of the answer is a copy of the mission, with the same routes and without a departure, approved by the caller; its "
+            "UAVs are simulated twins, made once and used again. The mission itself and its UAVs stay as they are. A copy of the present "
+            "plan that is flown already is answered as it is."
+        ),
+        request=shapes.SimulatedFlightsInputSerializer,
+        responses={201: shapes.SimulationSerializer, **COPY_REFUSED, **QUOTA},
+    )
+    @idempotent
+    def post(self, request: SignedInRequest, mission_id: UUID) -> Response:
+        return _flown(request, mission_or_404(request.user, mission_id), fly_simulated_copy)
+
+
+def _flown(request: SignedInRequest, mission: Mission, fly: Callable[..., Simulation]) -> Response:
+    body = shapes.SimulatedFlightsInputSerializer(data=request.data)
+    body.is_valid(raise_exception=True)
+    values = body.validated_data
+    try:
+        with api_problems(), refusals(), transaction.atomic():
+            simulation = fly(
+                mission=mission,
+                actor=request.user,
+                sky=sky_of(values["conditions"], conditions_from_json(mission.conditions or None)),
+                speed=float(values["speed"]),
+                flavour=VehicleFlavour(values["flavour"]),
+                seed=values["seed"],
+                faults=values.get("faults"),
+            )
+    except QuotaReached as error:
+        raise _too_many(error) from error
+    return _answer(request.user, simulation.pk, status=201)
 
 
 class Simulations(APIView):

@@ -1269,6 +1269,10 @@ export interface components {
             /** Format: double */
             height_rms_m: number | null;
         };
+        EventUav: {
+            id: number;
+            name: string;
+        };
         Example: {
             program: string;
             /** @description or what to enter */
@@ -2737,6 +2741,11 @@ export interface components {
              * @description planned take-off; null: at any time
              */
             departs_at: string | null;
+            /**
+             * Format: uuid
+             * @description the mission of which it is a copy that simulated twins fly
+             */
+            simulates: string | null;
             conditions: components["schemas"]["ConditionsOutput"];
             /** Format: double */
             charging_w: number | null;
@@ -2797,6 +2806,77 @@ export interface components {
         MissionCopyRequest: {
             /** @description without one: the name with (copy) */
             name?: string;
+        };
+        MissionEvent: {
+            /** @description the same whenever it is read */
+            key: string;
+            /** Format: date-time */
+            at: string;
+            /** Format: uuid */
+            mission: string;
+            kind: components["schemas"]["MissionEventKindEnum"];
+            uav: components["schemas"]["EventUav"] | null;
+            /** @description the user who did it; null: no user did, or one who has left */
+            who: string | null;
+            level: (components["schemas"]["MissionEventLevelEnum"] | components["schemas"]["NullEnum"]) | null;
+            /** @description of a UAV that is no real aircraft, or of a simulation */
+            is_simulated: boolean;
+            /** @description in English */
+            message: string;
+            /** @description by kind; see docs/live.md */
+            values: {
+                [key: string]: unknown;
+            };
+        };
+        /**
+         * @description * `mission-approved` - mission-approved
+         *     * `approval-revoked` - approval-revoked
+         *     * `mission-started` - mission-started
+         *     * `mission-aborted` - mission-aborted
+         *     * `mission-closed` - mission-closed
+         *     * `mission-ended` - mission-ended
+         *     * `starts-begun` - starts-begun
+         *     * `starts-stopped` - starts-stopped
+         *     * `take-off` - take-off
+         *     * `landing` - landing
+         *     * `crash` - crash
+         *     * `drop-out` - drop-out
+         *     * `command-given` - command-given
+         *     * `command-sent` - command-sent
+         *     * `command-acknowledged` - command-acknowledged
+         *     * `command-done` - command-done
+         *     * `command-failed` - command-failed
+         *     * `command-expired` - command-expired
+         *     * `alert-opened` - alert-opened
+         *     * `alert-raised` - alert-raised
+         *     * `alert-acknowledged` - alert-acknowledged
+         *     * `alert-resolved` - alert-resolved
+         *     * `target-started` - target-started
+         *     * `target-complete` - target-complete
+         *     * `target-skipped` - target-skipped
+         *     * `target-failed` - target-failed
+         *     * `offer-made` - offer-made
+         *     * `offer-accepted` - offer-accepted
+         *     * `offer-declined` - offer-declined
+         *     * `offer-expired` - offer-expired
+         *     * `offer-impossible` - offer-impossible
+         *     * `simulation-started` - simulation-started
+         *     * `simulation-changed` - simulation-changed
+         *     * `simulation-ended` - simulation-ended
+         *     * `fault-injected` - fault-injected
+         * @enum {string}
+         */
+        MissionEventKindEnum: "mission-approved" | "approval-revoked" | "mission-started" | "mission-aborted" | "mission-closed" | "mission-ended" | "starts-begun" | "starts-stopped" | "take-off" | "landing" | "crash" | "drop-out" | "command-given" | "command-sent" | "command-acknowledged" | "command-done" | "command-failed" | "command-expired" | "alert-opened" | "alert-raised" | "alert-acknowledged" | "alert-resolved" | "target-started" | "target-complete" | "target-skipped" | "target-failed" | "offer-made" | "offer-accepted" | "offer-declined" | "offer-expired" | "offer-impossible" | "simulation-started" | "simulation-changed" | "simulation-ended" | "fault-injected";
+        /**
+         * @description * `critical` - critical
+         *     * `warning` - warning
+         *     * `advisory` - advisory
+         * @enum {string}
+         */
+        MissionEventLevelEnum: "critical" | "warning" | "advisory";
+        MissionEventPage: {
+            results: components["schemas"]["MissionEvent"][];
+            next: string | null;
         };
         MissionExplanation: {
             /** @description that are flown */
@@ -6820,6 +6900,8 @@ export interface components {
             attributes?: {
                 [key: string]: string | number | boolean;
             };
+            /** @description the UAV that it is the simulated twin of */
+            readonly twin_of: number | null;
             readonly type_name: string;
             /** @description its own and its type's */
             readonly sensors: string[];
@@ -7741,6 +7823,7 @@ export type EstimateFeature = components['schemas']['EstimateFeature'];
 export type EstimateProperties = components['schemas']['EstimateProperties'];
 export type EstimateShape = components['schemas']['EstimateShape'];
 export type Estimates = components['schemas']['Estimates'];
+export type EventUav = components['schemas']['EventUav'];
 export type Example = components['schemas']['Example'];
 export type ExplainedRoute = components['schemas']['ExplainedRoute'];
 export type FailedReturn = components['schemas']['FailedReturn'];
@@ -7860,6 +7943,10 @@ export type Mission = components['schemas']['Mission'];
 export type MissionApproval = components['schemas']['MissionApproval'];
 export type MissionAuthor = components['schemas']['MissionAuthor'];
 export type MissionCopyRequest = components['schemas']['MissionCopyRequest'];
+export type MissionEvent = components['schemas']['MissionEvent'];
+export type MissionEventKindEnum = components['schemas']['MissionEventKindEnum'];
+export type MissionEventLevelEnum = components['schemas']['MissionEventLevelEnum'];
+export type MissionEventPage = components['schemas']['MissionEventPage'];
 export type MissionExplanation = components['schemas']['MissionExplanation'];
 export type MissionFilters = components['schemas']['MissionFilters'];
 export type MissionFleet = components['schemas']['MissionFleet'];

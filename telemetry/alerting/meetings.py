@@ -34,7 +34,8 @@ class Moving:
 
     `height_m` counts from sea level, None: not known; `heights_m` has it for each step, where it is not just `climb_mps` from now on.
 
-    Bounds hold 95 of 100 times. UAVs of different `organisation`s are told of each other nothing; nor are those whose clocks run at
+    Bounds hold 95 of 100 times. UAVs of different `organisation`s are told of each other nothing; nor are simulated twins and others, nor
+    those whose clocks run at
     different rates, which are not in the air at the same time: seconds are the UAVs' own.
     """
 
@@ -50,6 +51,7 @@ class Moving:
     heights_m: tuple[float, ...] | None = None
     velocity_mps: tuple[float, float] = (0.0, 0.0)  # to east and north
     here: tuple[float, float] | None = None  # lon/lat of now, where `ahead` begins elsewhere
+    is_twin: bool = False
 
     def heights_at(self, steps: int) -> FloatArray:
         """At each of so many steps (steps,); NaN: not known."""
@@ -115,6 +117,7 @@ def moving_of(situation: Situation, within_s: float) -> Moving | None:
         uav_id=uav.uav_id,
         name=uav.name,
         organisation=uav.organisation_id,
+        is_twin=uav.is_twin,
         ahead=tuple(ahead),
         height_m=told.altitude_amsl_m if estimate is None or estimate.altitude_amsl_m is None else estimate.altitude_amsl_m,
         climb_mps=-(told.velocity_down_mps or 0.0),
@@ -142,7 +145,8 @@ def meetings(moving: Sequence[Moving], within_s: float) -> dict[int, list[Meetin
     ones, others = _pairs(way)
     rate, key = np.array([one.clock_rate for one in moving]), np.array([one.uav_id for one in moving])
     near = (group[ones] == group[others]) & (np.abs(rate[ones] - rate[others]) <= SAME_RATE * np.maximum(rate[ones], rate[others]))
-    near &= key[ones] != key[others]
+    twin = np.array([one.is_twin for one in moving])
+    near &= (key[ones] != key[others]) & (twin[ones] == twin[others])
     near &= ~(_least_apart_m(heights, ones, others) > NEAR_HEIGHT_M)  # NaN: not known
     ones, others = ones[near], others[near]
     lateral_m, height_m, in_s = _closest(way[ones] - way[others], heights[ones] - heights[others])
@@ -232,7 +236,9 @@ def _flying(uav: Moving, origin: tuple[float, float]) -> Flying:
     return Flying(east_m, (lat - origin[1]) * DEGREE_M, height_m, *uav.velocity_mps, uav.climb_mps)
 
 
-def elsewhere(uav_id: int, name: str, organisation: int, estimated: dict[str, Any], within_s: float, clock_rate: float = 1.0) -> Moving:
+def elsewhere(
+    uav_id: int, name: str, organisation: int, estimated: dict[str, Any], within_s: float, clock_rate: float = 1.0, *, is_twin: bool = False
+) -> Moving:
     """One that another watch estimates, as estimation/as_json.py writes it: straight on."""
     lon, lat = estimated["position"]
     heading_rad, speed_mps = math.radians(estimated["heading_deg"] or 0.0), estimated["speed_mps"]
@@ -250,4 +256,5 @@ def elsewhere(uav_id: int, name: str, organisation: int, estimated: dict[str, An
         bound_height_m=estimated["bound"]["height_m"],
         clock_rate=clock_rate,
         velocity_mps=(speed_mps * math.sin(heading_rad), speed_mps * math.cos(heading_rad)),
+        is_twin=is_twin,
     )

@@ -24,3 +24,4 @@ class WatchedUav:
     flight: int = 1
     newest: Report | None = None
     estimate: Estimate | None = None
+    is_twin: bool = False  # simulated, beside the UAV that it is the twin of

@@ -1,6 +1,7 @@
 """What happens in the air."""
 
 from telemetry.models.alerts import Alert, AlertLevel, AlertNote
+from telemetry.models.flights import FlightEvent, FlightEventKind
 from telemetry.models.links import FlightLog, UavLink, UnknownVehicle, UnknownVehicleState, VehicleText
 from telemetry.models.records import InspectionResult, TelemetryRecord, TelemetryStream
 from telemetry.models.watching import PositionEstimate, UavWatch
@@ -9,6 +10,8 @@ __all__ = [
     "Alert",
     "AlertLevel",
     "AlertNote",
+    "FlightEvent",
+    "FlightEventKind",
     "FlightLog",
     "InspectionResult",
     "PositionEstimate",

@@ -125,19 +125,22 @@ def stated_limits(pairs: Collection[tuple[int, UUID]]) -> dict[int, tuple[Mappin
 
 
 _OTHERS = """
-SELECT watch.uav_id, uav.name, watch.organisation_id, watch.estimated, CASE WHEN uav.is_simulated THEN link.clock_rate END
+SELECT watch.uav_id, uav.name, watch.organisation_id, watch.estimated, CASE WHEN uav.is_simulated THEN link.clock_rate END,
+    uav.twin_of_id IS NOT NULL
 FROM telemetry_uavwatch watch JOIN missions_uav uav ON uav.id = watch.uav_id LEFT JOIN telemetry_uavlink link ON link.uav_id = uav.id
 WHERE watch.organisation_id = ANY(%s) AND NOT watch.uav_id = ANY(%s) AND watch.estimated IS NOT NULL AND watch.lease_expires_at > now()
 """
 
 
-def estimated_by_other_watches(organisations: Collection[int], uav_ids: Collection[int]) -> dict[int, list[tuple[int, str, Any, float]]]:
-    """By organisation: UAVs, their names, estimates as stored (estimation/as_json.py), and how fast their clocks run."""
+def estimated_by_other_watches(
+    organisations: Collection[int], uav_ids: Collection[int]
+) -> dict[int, list[tuple[int, str, Any, float, bool]]]:
+    """By organisation: UAVs, their names, estimates as stored (estimation/as_json.py), how fast their clocks run, and which are twins."""
     with connection.cursor() as cursor:
         cursor.execute(_OTHERS, [sorted(organisations), sorted(uav_ids)])
         rows = cursor.fetchall()
-    found: dict[int, list[tuple[int, str, Any, float]]] = defaultdict(list)
-    for uav_id, name, organisation_id, estimated, clock_rate in rows:
+    found: dict[int, list[tuple[int, str, Any, float, bool]]] = defaultdict(list)
+    for uav_id, name, organisation_id, estimated, clock_rate, is_twin in rows:
         read = json.loads(estimated) if isinstance(estimated, str) else estimated
-        found[organisation_id].append((uav_id, name, read, believed_rate(clock_rate)))
+        found[organisation_id].append((uav_id, name, read, believed_rate(clock_rate), is_twin))
     return found

@@ -41,6 +41,7 @@ class WatchedFlight:
     is_in_air: bool | None
     waypoint_sequence: int | None
     clock_rate: float | None
+    is_twin: bool
 
 
 _FLYING = f"""
@@ -48,7 +49,8 @@ SELECT DISTINCT ON (place.uav_id) place.uav_id, mission.organisation_id, uav.nam
     CASE WHEN link.loaded_approval = approval.id AND link.loaded_flight IS NOT NULL THEN link.loaded_flight
         ELSE route.flights_flown + 1 END,
     ST_X(link.home), ST_Y(link.home), CASE WHEN link.autopilot <> '' THEN link.heard_at END,
-    coalesce(link.mode, ''), link.is_armed, link.is_in_air, link.waypoint_sequence, CASE WHEN uav.is_simulated THEN link.clock_rate END
+    coalesce(link.mode, ''), link.is_armed, link.is_in_air, link.waypoint_sequence, CASE WHEN uav.is_simulated THEN link.clock_rate END,
+    uav.twin_of_id IS NOT NULL
 FROM missions_mission mission
 JOIN missions_missionuav place ON place.mission_id = mission.id AND place.uav_id IS NOT NULL
 JOIN missions_uav uav ON uav.id = place.uav_id
@@ -106,10 +108,24 @@ def watched_flights() -> list[WatchedFlight]:
 def _flight(
     uav_id: int, organisation_id: int, name: str, mission_id: UUID, approval_id: UUID, flight: int, lon: float | None, lat: float | None,
     heard_at: datetime | None, mode: str, is_armed: bool | None, is_in_air: bool | None, waypoint: int | None, clock_rate: float | None,
+    is_twin: bool,
 ) -> WatchedFlight:  # fmt: skip
     home = None if lon is None or lat is None else LonLat(lon, lat)
     return WatchedFlight(
-        uav_id, organisation_id, name, mission_id, approval_id, flight, home, heard_at, mode, is_armed, is_in_air, waypoint, clock_rate
+        uav_id,
+        organisation_id,
+        name,
+        mission_id,
+        approval_id,
+        flight,
+        home,
+        heard_at,
+        mode,
+        is_armed,
+        is_in_air,
+        waypoint,
+        clock_rate,
+        is_twin,
     )
 
 

@@ -132,9 +132,9 @@ def _with_meetings(situations: list[Situation]) -> list[Situation]:
     organisations = {situation.uav.organisation_id for situation in situations}
     others = estimated_by_other_watches(organisations, [situation.uav.uav_id for situation in situations])
     moving += [
-        elsewhere(uav_id, name, organisation_id, estimated, within_s, clock_rate)
+        elsewhere(uav_id, name, organisation_id, estimated, within_s, clock_rate, is_twin=is_twin)
         for organisation_id, of_organisation in others.items()
-        for uav_id, name, estimated, clock_rate in of_organisation
+        for uav_id, name, estimated, clock_rate, is_twin in of_organisation
     ]
     met = meetings(moving, within_s)
     return [

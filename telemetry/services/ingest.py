@@ -15,6 +15,7 @@ from missions.command_selectors import SENT_LAST
 from missions.models import MissionState
 from missions.services.reports import ReportedPosition, note_reported_positions
 from telemetry.decoding.measurement import Measurement, believable
+from telemetry.services.flight_events import note_take_offs_and_landings
 from telemetry.services.latest import note_latest
 from telemetry.services.waypoints import LoadedList, lists_on
 from workspace.live import publish_live
@@ -70,7 +71,9 @@ def store_records(records: Sequence[NewRecord]) -> StoredCount:
     rows = _flagged(_with_heights_above_ground(kept), _newest_measured(kept))
     stored = _insert(rows)
     note_reported_positions(reports=_newest_positions(stored))
-    note_latest(row.record for row in stored if not row.is_from_future)
+    told = [row.record for row in stored if not row.is_from_future]
+    note_take_offs_and_landings(told)
+    note_latest(told)
     for organisation_id in organisations:
         transaction.on_commit(partial(publish_live, organisation_id))
     return StoredCount(

@@ -15,6 +15,7 @@ from missions.services.flying import FlightEnd, mark_flight_ended, mark_target
 from missions.services.replanning import suggest
 from telemetry.models import InspectionResult, TelemetryStream
 from telemetry.services.down_alerts import tell_of_failed_flight
+from telemetry.services.flight_events import note_landing
 from telemetry.services.heard import note_on_ground_over_http
 from telemetry.services.replan_hooks import UAV_OUT
 
@@ -72,6 +73,7 @@ def take_results(
         approval = given[flight.approval_id]
         if not is_end_known(uav_id, approval, flight.flight):
             note_on_ground_over_http(uav_id=uav_id)
+            note_landing(mission_id=approval.mission_id, uav_id=uav_id, at=received_at)
         if approval.revoked_at is None:
             mission_id = approval.mission_id
             mark_flight_ended(mission_id=mission_id, uav_id=uav_id, flight=flight.flight, end=flight.end)

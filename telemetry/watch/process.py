@@ -252,6 +252,7 @@ def _seen(watched: Watched, made: Made | None) -> WatchedUav:
         flight=flight.flight,
         newest=watched.newest,
         estimate=None if made is None else made.estimate,
+        is_twin=flight.is_twin,
     )
 
 

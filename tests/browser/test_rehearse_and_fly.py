@@ -56,6 +56,7 @@ def test_a_mission_is_picked_planned_rehearsed_approved_flown_in_simulation_and_
     wait_for_map(live)
     flies(page, live, picture)
     loses_the_link_and_finds_it_again(live, picture)
+    reads_the_log(live, picture)
     comes_home_at_10x(live, picture)
     live.get_by_role("link", name="Report", exact=True).click()
     reads_the_record(live, picture)
@@ -153,6 +154,20 @@ def loses_the_link_and_finds_it_again(page: Page, picture: Picture) -> None:
     is_told(page, "Resume")
 
 
+def reads_the_log(page: Page, picture: Picture) -> None:
+    """Who did what, as the server keeps it; what is new comes by itself."""
+    page.get_by_role("button", name="Event log").click()
+    log = page.get_by_role("list", name="Event log")
+    for words in (f"{NAME} took off", f"{NAME}: link lost for 3,600 s of the flight, injected by opal", f"{NAME}: Hold, given by opal"):
+        expect(log.get_by_text(words)).to_be_visible(timeout=SOON_MS)
+    expect(log.get_by_text(re.compile("^Acknowledged by opal: ")).first).to_be_visible()
+    expect(log.get_by_text(re.compile("^Resolved: ")).first).to_be_visible(timeout=SOON_MS)
+    expect(log.get_by_text(f"{NAME}: Resume, done")).to_be_visible(timeout=SOON_MS)
+    picture(page, "flow-7-event-log")
+    assert faults(page) == []
+    page.get_by_role("button", name="Back to the board").click()
+
+
 def is_told(page: Page, act: str) -> None:
     """By the button over the map, once the question is answered."""
     bar = page.get_by_role("group", name=f"Commands to {NAME}")
@@ -170,6 +185,9 @@ def comes_home_at_10x(page: Page, picture: Picture) -> None:
     picture(page, "flow-6-flying")
     expect(page.locator("#mission-state")).to_have_text("Completed", timeout=FLIGHT_MS)
     expect(page.locator("#board .complete")).to_have_count(2)
+    page.get_by_role("button", name="Event log").click()
+    expect(page.get_by_role("list", name="Event log").get_by_text(f"{NAME} landed")).to_be_visible(timeout=SOON_MS)
+    page.get_by_role("button", name="Back to the board").click()
     assert faults(page) == []
     assert page.evaluate(TOO_WIDE) == []
     picture(page, "flow-8-completed")

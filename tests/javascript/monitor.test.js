@@ -5,7 +5,6 @@ import { distance_m } from "../../static/js/domain/geodesy.js";
 import { flyingUavs, inAir } from "../../static/js/domain/in_air.js";
 import { alertsInOrder, inOrder, newAlerts } from "../../static/js/domain/order.js";
 import { boardRows } from "../../static/js/monitor/board.js";
-import { eventsOf } from "../../static/js/monitor/event_log.js";
 import { progressOf } from "../../static/js/monitor/live_strip.js";
 import { ellipseRing, metresPerPixel } from "../../static/js/monitor/map/ellipse.js";
 import { between } from "../../static/js/monitor/map/glide.js";
@@ -187,26 +186,6 @@ test("the board shows what goes on before what is to come and what is done", () 
     ["A3 next", "A4 pending", "A5 failed", "A2 complete", "A1 complete"],
   );
   assert.equal(boardRows(missions, [uav({ mode: "Hold", estimated: estimate() })], details)[0].state, "held");
-});
-
-test("the log has every step of a command and of an alert, the newest first", () => {
-  const command = {
-    id: "c",
-    uav: { id: 1, name: "Kite" },
-    kind: "hold",
-    created_by: "opal",
-    state: "failed",
-    outcome: "no answer",
-    created_at: ago(20),
-    sent_at: ago(19),
-    acknowledged_at: null,
-    finished_at: ago(5),
-  };
-  const events = eventsOf({ commands: [command], alerts: [alert(9, "warning", { closed_at: ago(1) })], missions: [] });
-  assert.deepEqual(
-    events.map(({ words }) => words),
-    ["Resolved: alert 9", "Kite: Hold, failed – no answer", "alert 9", "Kite: Hold, sent", "Kite: Hold, given by opal"],
-  );
 });
 
 test("a ring is as large as its bound and lies along its bearing", () => {

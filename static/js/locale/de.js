@@ -6,6 +6,7 @@ import administration from "./de/administration.js";
 import alertLimits from "./de/alert_limits.js";
 import assets from "./de/assets.js";
 import draw from "./de/draw.js";
+import eventLog from "./de/event_log.js";
 import fleet from "./de/fleet.js";
 import flight from "./de/flight.js";
 import flying from "./de/flying.js";
@@ -35,6 +36,7 @@ export default {
   ...alertLimits,
   ...assets,
   ...draw,
+  ...eventLog,
   ...fleet,
   ...flight,
   ...flying,

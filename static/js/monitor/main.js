@@ -13,6 +13,7 @@ import { createStore } from "../store.js";
 import { t } from "../text.js";
 import { missionNumbers } from "./call_signs.js";
 import { createCommanding } from "./commanding.js";
+import { createEventReading } from "./event_reading.js";
 import { EVERYTHING, isHead, listed } from "./fleet_groups.js";
 import { mountMonitorMap } from "./map/monitor_map.js";
 import { createMissionDetails } from "./mission_details.js";
@@ -59,6 +60,8 @@ const store = createStore(
     chosen: null,
     isFollowing: false,
     showsLog: false,
+    events: null,
+    olderEvents: null,
     link: null,
     since_ms: 0,
     heard_ms: null,
@@ -99,6 +102,7 @@ mountBoard(store, {
     const position = store.state.details.get(mission)?.targets[place]?.position;
     if (position) map.showPlace(position);
   },
+  readOlder: createEventReading(store, page).readOlder,
 });
 mountSimulation(page);
 mountPlannedStarts({ mission: page.mission, canFly: page.canFly });

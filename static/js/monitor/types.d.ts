@@ -10,6 +10,7 @@ import type {
   LiveOffer,
   LiveUav,
   Mission,
+  MissionEvent,
 } from "../api_types.d.ts";
 import type { Certainty } from "../domain/certainty.js";
 import type { AskedKind } from "../domain/command_questions.js";
@@ -25,6 +26,8 @@ export interface MonitorPage extends MapPage {
   mission: string | null;
   canFly: boolean;
   hasSimulated: boolean;
+  /** of the only mission: a UAV of it is real, and is flown in simulation by a twin, in a copy of the mission */
+  hasReal?: boolean;
   /** of the only mission; the page's title until the feed tells it */
   missionName?: string;
   bounds: Box | null;
@@ -70,6 +73,10 @@ export interface MonitorState extends Live {
   chosen: number | null;
   isFollowing: boolean;
   showsLog: boolean;
+  /** what has happened, the newest first; null until it is read */
+  events: MissionEvent[] | null;
+  /** where the next page of older ones is; null: there is none */
+  olderEvents: string | null;
   link: FeedState | null;
   /** since when `link` is so, by the server's clock */
   since_ms: number;

@@ -1,6 +1,7 @@
 """Two UAVs that come too near each other: told before they meet, by one alert for the pair."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -183,6 +184,13 @@ def test_one_that_takes_off_under_the_others_way_is_seen_to_come_up_to_it():
     above = ways(2, told(at(-110.0, 0.0), LEVEL_M), a_line(from_east_m=-200.0, arrives_s=0.0))
     nearest = meetings([*climbing, *above], LIMITS.converging_s)[1][0]
     assert (nearest.in_s, nearest.lateral_m) == (pytest.approx(11.0, abs=2.0), pytest.approx(0.0, abs=3.0)) and nearest.height_m < 8.0
+
+
+def test_simulated_twins_are_in_no_other_uavs_way():
+    near = [ways(1, told(at(0.0, 0.0), 29.0), None)[0], ways(2, told(at(5.0, 3.0), 29.0), None)[0]]
+    assert meetings(near, LIMITS.converging_s)[1]
+    assert not meetings([near[0], replace(near[1], is_twin=True)], LIMITS.converging_s)[1]
+    assert meetings([replace(one, is_twin=True) for one in near], LIMITS.converging_s)[1]
 
 
 def test_a_pair_with_several_ways_has_one_alert():

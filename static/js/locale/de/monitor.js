@@ -88,8 +88,6 @@ export default {
   "{name}: {act}, {state}": "{name}: {act}, {state}",
   "{name}: {act}, given by {who}": "{name}: {act}, gegeben von {who}",
   "Acknowledged by {who}: {message}": "Bestätigt von {who}: {message}",
-  "“{name}” has begun": "„{name}“ hat begonnen",
-  "“{name}” has ended": "„{name}“ ist zu Ende",
   "Choose UAV A; 2 to 8: B to H": "UAV A wählen; 2 bis 8: B bis H",
   "Next UAV": "Nächstes UAV",
   "Previous UAV": "Voriges UAV",

@@ -6,7 +6,7 @@ import { simulatedMark } from "../../simulated.js";
 import { t } from "../../text.js";
 import { clockText, exactClockText, exactText } from "../../units.js";
 import { boardRows, STATES } from "../board.js";
-import { eventsOf } from "../event_log.js";
+import { lineOf } from "../event_log.js";
 
 /** @import { BoardRow } from "../board.js" */
 /** @import { LoggedEvent } from "../event_log.js" */
@@ -109,10 +109,10 @@ function countWords(missions) {
   return all ? t("{done} of {all} complete", { done, all }) : "";
 }
 
-/** @param {MonitorStore} store @param {{ show: ShowTarget }} on */
-export function mountBoard(store, { show }) {
+/** @param {MonitorStore} store @param {{ show: ShowTarget, readOlder: () => Promise<void> }} on */
+export function mountBoard(store, { show, readOlder }) {
   const body = h("tbody", {});
-  const [board, log, button] = [byId("board"), byId("event-log"), byId("switch-log")];
+  const [board, log, button, older] = [byId("board"), byId("event-log"), byId("switch-log"), byId("older-events")];
   board.append(tableOf(body));
   const drawRows = keyedList(
     body,
@@ -129,14 +129,24 @@ export function mountBoard(store, { show }) {
     refreshEvent,
   );
 
-  /** @param {MonitorState} state */
-  function draw({ showsLog, missions, uavs, details, alerts, commands, numbers }) {
+  /** @param {Readonly<MonitorState>} state */
+  function drawEvents({ events, olderEvents, missions }) {
+    const names = new Map(missions.map(({ id, name }) => [id, name]));
+    drawLog((events ?? []).map((event) => lineOf(event, names)));
+    byId("no-events").textContent = events === null ? t("Reading…") : t("Nothing has happened yet.");
+    byId("no-events").hidden = Boolean(events?.length);
+    older.hidden = olderEvents === null;
+  }
+
+  /** @param {Readonly<MonitorState>} state */
+  function draw(state) {
+    const { showsLog, missions, uavs, details, numbers } = state;
     byId("board-count").textContent = countWords(missions);
     button.setAttribute("aria-pressed", `${showsLog}`);
     button.textContent = showsLog ? t("Back to the board") : t("Event log");
     board.hidden = showsLog;
-    log.hidden = !showsLog;
-    if (showsLog) drawLog(eventsOf({ commands, alerts, missions }));
+    byId("log").hidden = !showsLog;
+    if (showsLog) drawEvents(state);
     else {
       const rows = boardRows(missions, uavs, details, numbers);
       drawRows(numbers.size > 1 ? withGroups(rows, missions) : rows);
@@ -144,5 +154,6 @@ export function mountBoard(store, { show }) {
   }
 
   button.addEventListener("click", () => store.update({ showsLog: !store.state.showsLog }));
-  store.listen(["showsLog", "missions", "uavs", "details", "alerts", "commands", "numbers"], draw);
+  older.addEventListener("click", () => void readOlder());
+  store.listen(["showsLog", "missions", "uavs", "details", "numbers", "events", "olderEvents"], draw);
 }

@@ -10,7 +10,7 @@ import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { heightText } from "../../units.js";
 
-import { beginSimulation } from "./simulation.js";
+import { beginSimulation, flyCopy } from "./simulation.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { Mission, MissionStarts, Preflight, PreflightCheck, Rehearsal, UavPreflight } from "../../api_types.d.ts" */
@@ -83,8 +83,8 @@ function heightButton({ uav, name }, { safe_height_m }) {
  * The panel's elements. draw: what was read; drawStep: the button alone.
  *
  * @param {HTMLElement} place
- * @param {{ act: (button: HTMLElement) => unknown, tick: (isDone: boolean) => void, simulate: (() => unknown) | null }} on simulate: null
- *   where no UAV of the mission is simulated
+ * @param {{ act: (button: HTMLElement) => unknown, tick: (isDone: boolean) => void, simulate: (() => unknown) | null, isCopied: boolean }} on
+ *   simulate: null where it cannot be flown in simulation; isCopied: a copy of it is, as its UAVs are real
  */
 function createPanel(place, on) {
   let drawn = "";
@@ -140,7 +140,7 @@ function createPanel(place, on) {
     drawStep({ act, words, image, why: reason, left }, isActing) {
       button.disabled = isActing || act === "connect" || act === "wait" || reason !== "";
       button.dataset.act = act ?? "";
-      simulate.hidden = act !== "connect" || on.simulate === null;
+      simulate.hidden = on.simulate === null || (act !== "connect" && !on.isCopied);
       simulate.disabled = isActing;
       if (button.dataset.words !== words) {
         button.dataset.words = words;
@@ -225,7 +225,8 @@ export function mountPreflight(store, page) {
       isPilotDone = isDone;
       draw();
     },
-    simulate: page.hasSimulated ? simulate : null,
+    simulate: page.hasReal ? simulateCopy : page.hasSimulated ? simulate : null,
+    isCopied: page.hasReal === true,
   });
   const isBeforeFlight = () => BEFORE_FLIGHT.has(store.state.missions.find(({ id }) => id === mission)?.state ?? "");
 
@@ -266,6 +267,21 @@ export function mountPreflight(store, page) {
     } finally {
       isActing = false;
       void read();
+    }
+  }
+
+  /** One click: to the page of a copy that simulated twins fly. */
+  async function simulateCopy() {
+    isActing = true;
+    draw();
+    try {
+      location.assign(`/missions/${await flyCopy(mission)}/fly`);
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      toast(error.message);
+    } finally {
+      isActing = false;
+      draw();
     }
   }
 

@@ -69,7 +69,7 @@ const group = (words, id, ...parts) =>
 
 /** @param {MonitorPage} page */
 export function mountSimulation(page) {
-  if (page.hasSimulated) new SimulationPanel(page).open();
+  if (page.hasSimulated && !page.hasReal) new SimulationPanel(page).open();
 }
 
 class SimulationPanel {
@@ -177,6 +177,20 @@ class SimulationPanel {
  */
 export const beginSimulation = (mission, speed = 1, conditions = AIRS[0][0]) =>
   post(`/missions/${mission}/simulated-flights`, { speed, conditions }, { headers: { "Idempotency-Key": freshKey() } });
+
+/**
+ * Simulated twins fly a copy of a mission of real UAVs, which stays as it is. Rejects with ApiError.
+ *
+ * @param {string | null} mission
+ * @returns {Promise<string>} the copy
+ */
+export async function flyCopy(mission) {
+  const headers = { "Idempotency-Key": freshKey() };
+  const { data } = /** @type {Answer<Simulation>} */ (
+    await post(`/missions/${mission}/simulated-copy`, { speed: 1, conditions: AIRS[0][0] }, { headers })
+  );
+  return data.mission ?? "";
+}
 
 /** What a simulation is begun with. @param {MonitorPage} page @param {Do} act */
 function startForm(page, act) {

@@ -1,0 +1,59 @@
+"""The event log: of one mission, and of all that live pages show."""
+
+from collections.abc import Collection
+from datetime import datetime
+from uuid import UUID
+
+from django.http import Http404
+from drf_spectacular.utils import extend_schema
+from rest_framework.response import Response
+from rest_framework.views import APIView
+
+from missions.event_selectors import LoggedEvent, events_of_missions, missions_with_live_events
+from missions.models import Mission
+from missions.selectors import mission_alone
+from missions.serializers.events import MissionEventPageSerializer, event_json
+from workspace.paging import slice_of
+from workspace.schema import PAGE_PARAMETERS
+from workspace.signed_in import SignedInRequest
+
+WHAT = (
+    "Take-offs, landings, crashes, drop-outs, commands step by step, alerts, targets, offers of another plan, and what was done to a "
+    "simulation: who and when."
+)
+
+
+class MissionEvents(APIView):
+    @extend_schema(
+        operation_id="list_mission_events",
+        summary="What happened in a mission, the newest first",
+        description=WHAT,
+        parameters=PAGE_PARAMETERS,
+        responses=MissionEventPageSerializer,
+    )
+    def get(self, request: SignedInRequest, mission_id: UUID) -> Response:
+        try:
+            mission = mission_alone(request.user.organisation, mission_id)
+        except Mission.DoesNotExist as error:
+            raise Http404 from error
+        return _page(request, [mission.pk])
+
+
+class LiveEvents(APIView):
+    @extend_schema(
+        operation_id="list_live_events",
+        summary="What happened in missions that are on their way or ended within the hour, the newest first",
+        description=WHAT,
+        parameters=PAGE_PARAMETERS,
+        responses=MissionEventPageSerializer,
+    )
+    def get(self, request: SignedInRequest) -> Response:
+        return _page(request, missions_with_live_events(request.user.organisation))
+
+
+def _page(request: SignedInRequest, mission_ids: Collection[UUID]) -> Response:
+    def place(logged: LoggedEvent) -> tuple[datetime, str]:
+        return logged.place.at, logged.place.key
+
+    page = slice_of(request, lambda before, limit: events_of_missions(mission_ids, before=before, limit=limit), place)
+    return Response({"results": [event_json(logged) for logged in page.items], "next": page.next})

@@ -1,0 +1,69 @@
+"""Take-offs and landings: noted as reports come in, each once."""
+
+from collections.abc import Iterable, Sequence
+from datetime import datetime
+from typing import Protocol
+from uuid import UUID
+
+from telemetry.decoding.measurement import Measurement
+from telemetry.models import FlightEvent, FlightEventKind, TelemetryRecord, UavWatch
+
+
+class Report(Protocol):
+    """One stored report of a UAV."""
+
+    @property
+    def uav_id(self) -> int: ...
+    @property
+    def mission_id(self) -> UUID | None: ...
+    @property
+    def measured_at(self) -> datetime: ...
+    @property
+    def measurement(self) -> Measurement: ...
+
+
+def note_take_offs_and_landings(reports: Iterable[Report]) -> None:
+    """Of reports that are not from the future; called before they are noted as the latest. What comes late changes nothing."""
+    told = sorted((report for report in reports if report.measurement.is_in_air is not None), key=lambda report: report.measured_at)
+    if not told:
+        return
+    before = _in_air_before({report.uav_id for report in told})
+    for report in told:
+        is_in_air, since = before.get(report.uav_id, (None, None))
+        if since is not None and report.measured_at <= since:
+            continue
+        now_in_air = report.measurement.is_in_air
+        before[report.uav_id] = (now_in_air, report.measured_at)
+        if now_in_air == is_in_air or (is_in_air is None and not now_in_air):
+            continue
+        kind = FlightEventKind.TAKE_OFF if now_in_air else FlightEventKind.LANDING
+        mission_id = report.mission_id or (None if now_in_air else _flown_last(report.uav_id, report.measured_at))
+        if mission_id is not None:
+            _note(mission_id, report.uav_id, kind, report.measured_at)
+
+
+def note_landing(*, mission_id: UUID, uav_id: int, at: datetime) -> None:
+    """A flight that was told to be over, of a UAV that was seen to take off and not to land."""
+    if _last_of(mission_id, uav_id) == FlightEventKind.TAKE_OFF:
+        _note(mission_id, uav_id, FlightEventKind.LANDING, at)
+
+
+def _note(mission_id: UUID, uav_id: int, kind: FlightEventKind, at: datetime) -> None:
+    if _last_of(mission_id, uav_id) != kind:
+        FlightEvent.objects.bulk_create([FlightEvent(mission_id=mission_id, uav_id=uav_id, kind=kind, at=at)], ignore_conflicts=True)
+
+
+def _last_of(mission_id: UUID, uav_id: int) -> str | None:
+    return FlightEvent.objects.filter(mission=mission_id, uav=uav_id).order_by("-at", "-pk").values_list("kind", flat=True).first()
+
+
+def _in_air_before(uav_ids: Sequence[int] | set[int]) -> dict[int, tuple[bool | None, datetime | None]]:
+    """Whether each was in the air by its newest report that says so, and when that was measured."""
+    rows = UavWatch.objects.filter(uav__in=uav_ids, measured__has_key="state").values_list("uav_id", "measured__state")
+    return {uav_id: (state.get("is_in_air"), datetime.fromisoformat(state["measured_at"])) for uav_id, state in rows}
+
+
+def _flown_last(uav_id: int, at: datetime) -> UUID | None:
+    """The mission of its last report in the air: of the last UAV a mission may have ended before the landing is stored."""
+    records = TelemetryRecord.objects.filter(uav=uav_id, measured_at__lt=at, is_from_future=False, is_in_air=True)
+    return records.order_by("-measured_at").values_list("mission_id", flat=True).first()

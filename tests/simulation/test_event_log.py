@@ -1,0 +1,234 @@
+"""The event log over the API: what happened, who and when, of one mission and of all that fly."""
+
+from datetime import timedelta
+
+import pytest
+from django.db import connection
+from django.test import Client
+from django.test.utils import CaptureQueriesContext
+from django.utils import timezone
+
+from missions.models import CommandKind, LinkKind, Mission, MissionState, TargetState, Uav
+from missions.services.flying import FlightEnd, mark_flight_ended, mark_started, mark_target
+from missions.services.replanning import decline_offer, suggest
+from missions.services.replanning.offers import settle_offers
+from missions.services.steering import command_uav
+from telemetry.decoding.measurement import Measurement
+from telemetry.models import AlertLevel, FlightEvent, VehicleText
+from telemetry.services import NewRecord, store_records
+from telemetry.services.alerts import acknowledge_alert, close_alert, open_alert
+from tests.missions.api import patch, post
+from tests.missions.flights import carry, dispatched, fleet
+from tests.missions.worlds import world
+from tests.simulation.simulations import stand_ins
+from tests.workspace.people import client_of, somebody
+from workspace.models import Organisation, Role, User
+
+pytestmark = pytest.mark.django_db
+LATE = "%(uav)s is late: nothing has been heard of it for %(seconds)s s."
+
+
+@pytest.fixture
+def person() -> User:
+    user = somebody()
+    user.first_name, user.last_name = "Ada", "Marsh"
+    user.save()
+    return user
+
+
+@pytest.fixture
+def client(person: User) -> Client:
+    return client_of(person)
+
+
+@pytest.fixture
+def mission(person: User) -> Mission:
+    """On its way, with its route on board."""
+    uavs = fleet("Tern")
+    found = dispatched(person, uavs, world().towers[:1])
+    carry(*uavs)
+    return found
+
+
+@pytest.fixture
+def tern(mission: Mission) -> Uav:
+    return Uav.objects.get(name="Tern")
+
+
+def events(client: Client, mission: Mission, query: str = "", language: str = "en") -> list[dict]:
+    answer = client.get(f"/api/v1/missions/{mission.pk}/events{query}", headers={"Accept-Language": language})
+    assert answer.status_code == 200, answer.content
+    return answer.json()["results"]
+
+
+def of_kind(client: Client, mission: Mission, kind: str) -> list[dict]:
+    return [event for event in events(client, mission) if event["kind"] == kind]
+
+
+def report(uav: Uav, second: int, *, is_in_air: bool | None, boot: str = "boot", mission: Mission | None = None) -> None:
+    at = timezone.now() + timedelta(seconds=second)
+    told = Measurement(longitude_deg=10.0, latitude_deg=55.0, mode="Mission", is_in_air=is_in_air)
+    store_records([NewRecord(uav.pk, LinkKind.MAVLINK, boot, second, at, at, told, mission_id=mission and mission.pk)])
+
+
+def test_an_injected_fault_names_the_person_and_the_uav(client, mission, person):
+    simulation = stand_ins(mission, person)
+    (vehicle,) = simulation.vehicles.all()
+    assert patch(client, f"simulated-vehicles/{vehicle.pk}", {"faults": {"motor_failed": 1}}).status_code == 200
+    (fault,) = of_kind(client, mission, "fault-injected")
+    assert (fault["who"], fault["uav"]["name"], fault["is_simulated"]) == ("Ada Marsh", "Tern", True)
+    assert fault["values"] == {"faults": {"motor_failed": 1}}
+    assert fault["message"] == "Tern: fault injected by Ada Marsh: motor_failed 1"
+    patch(client, f"simulations/{simulation.pk}", {"speed": 2})
+    client.delete(f"/api/v1/simulations/{simulation.pk}")
+    kinds = [event["kind"] for event in events(client, mission) if event["kind"].startswith("simulation")]
+    assert kinds == ["simulation-ended", "simulation-changed", "simulation-started"]
+
+
+def test_take_off_and_landing_are_told_once_each(client, mission, tern):
+    for second, is_in_air in enumerate([False, True, True, None, True, False, False]):
+        report(tern, second, is_in_air=is_in_air)
+    report(tern, 2, is_in_air=True)  # a record that comes again
+    told = [event for event in events(client, mission) if event["kind"] in ("take-off", "landing")]
+    assert [(event["kind"], event["message"]) for event in told] == [("landing", "Tern landed"), ("take-off", "Tern took off")]
+    report(tern, 10, is_in_air=True)
+    assert len(of_kind(client, mission, "take-off")) == 2
+
+
+def test_reports_in_one_batch_and_late_ones_tell_the_same(client, mission, tern):
+    begin = timezone.now()
+    told = [
+        NewRecord(
+            tern.pk, LinkKind.MAVLINK, "boot", second, begin + timedelta(seconds=second), begin + timedelta(seconds=9),
+            Measurement(is_in_air=second in (2, 3, 4)),
+        )
+        for second in range(8)
+    ]  # fmt: skip
+    store_records(told[5:] + told[:5])
+    assert [kind for (kind,) in FlightEvent.objects.order_by("at").values_list("kind")] == ["take-off", "landing"]
+
+
+def test_a_landing_that_is_stored_after_its_mission_has_ended_belongs_to_it(client, mission, tern):
+    report(tern, 0, is_in_air=False)
+    report(tern, 1, is_in_air=True)
+    mark_started(mission_id=mission.pk, uav_id=tern.pk)
+    mark_flight_ended(mission_id=mission.pk, uav_id=tern.pk, flight=1, end=FlightEnd.FLOWN)
+    report(tern, 2, is_in_air=False)
+    assert len(of_kind(client, mission, "landing")) == 1
+    assert [event["values"]["state"] for event in of_kind(client, mission, "mission-ended")] == ["completed"]
+
+
+def test_a_uav_that_flies_for_no_mission_is_in_no_log(tern, mission):
+    Mission.objects.filter(pk=mission.pk).update(state=MissionState.PLANNED)
+    report(tern, 0, is_in_air=False)
+    report(tern, 1, is_in_air=True)
+    report(tern, 2, is_in_air=False)
+    assert not FlightEvent.objects.exists()
+
+
+def test_commands_are_told_step_by_step_and_who_gave_them(client, mission, tern, person):
+    command_uav(uav=tern, kind=CommandKind.START, actor=person, why="Weather is fine")
+    carry(tern)
+    told = [event for event in events(client, mission) if event["values"].get("command_kind") == "start"]
+    assert [event["kind"] for event in told] == ["command-done", "command-sent", "command-given"]
+    assert (told[-1]["who"], told[0]["who"]) == ("Ada Marsh", None)
+    assert told[-1]["message"] == "Tern: Start the mission, given by Ada Marsh: Weather is fine"
+    uploads = [event["kind"] for event in events(client, mission) if event["values"].get("command_kind") == "upload-mission"]
+    assert uploads == ["command-done", "command-sent", "command-given"]
+
+
+def test_an_alert_is_opened_raised_acknowledged_and_resolved(client, mission, tern, person):
+    about = {"uav": tern, "code": "link-lost", "message": LATE, "mission": mission}
+    open_alert(level=AlertLevel.WARNING, values={"uav": "Tern", "seconds": 12}, **about)
+    alert = open_alert(level=AlertLevel.CRITICAL, values={"uav": "Tern", "seconds": 30}, **about)
+    acknowledge_alert(alert=alert, actor=person)
+    close_alert(uav=tern, code="link-lost")
+    told = [event for event in events(client, mission) if event["kind"].startswith("alert-")]
+    assert [(event["kind"], event["level"], event["who"]) for event in told] == [
+        ("alert-resolved", None, None),
+        ("alert-acknowledged", None, "Ada Marsh"),
+        ("alert-raised", "critical", None),
+        ("alert-opened", "warning", None),
+    ]
+    assert told[0]["message"] == "Resolved: Tern is late: nothing has been heard of it for 30 s."
+    german = [event for event in events(client, mission, language="de") if event["kind"] == "alert-resolved"]
+    assert german[0]["message"] == told[0]["message"]
+    assert german[0]["values"]["message"] != told[0]["values"]["message"]
+
+
+def test_targets_the_mission_and_a_crash_are_told(client, mission, tern):
+    mark_started(mission_id=mission.pk, uav_id=tern.pk)
+    mark_target(mission_id=mission.pk, target=0, state=TargetState.FAILED)
+    VehicleText.objects.create(uav=tern, severity=2, text="Crash: Disarming", received_at=timezone.now() + timedelta(seconds=1))
+    VehicleText.objects.create(uav=tern, severity=2, text="Crash: long ago", received_at=timezone.now() - timedelta(hours=1))
+    Mission.objects.filter(pk=mission.pk).update(ended_at=timezone.now() + timedelta(seconds=2))
+    assert [event["message"] for event in of_kind(client, mission, "crash")] == ["Tern has crashed: Crash: Disarming"]
+    assert len(of_kind(client, mission, "mission-started")) == 1
+    (approved,) = of_kind(client, mission, "mission-approved")
+    assert approved["who"] == "Ada Marsh"
+    (failed,) = of_kind(client, mission, "target-failed")
+    assert failed["values"]["target"] == 0
+
+
+def test_a_uav_drops_out_once_and_offers_that_are_worked_out_again_are_not_told(client, mission, tern, person):
+    mark_started(mission_id=mission.pk, uav_id=tern.pk)
+    suggest(mission_id=mission.pk, code="uav-out", cause={"uav": tern.pk, "alert": "link-lost"})
+    later = timezone.now() + timedelta(minutes=10)
+    assert settle_offers(now=later) == 1
+    assert mission.replan_offers.count() == 2
+    (out,) = of_kind(client, mission, "drop-out")
+    assert (out["uav"]["name"], out["values"], out["message"]) == ("Tern", {"cause": "link-lost"}, "Tern has dropped out")
+    (made,) = of_kind(client, mission, "offer-made")
+    assert made["values"]["code"] == "uav-out"
+    assert of_kind(client, mission, "offer-expired") == []
+    decline_offer(offer=mission.replan_offers.get(state="computing"), actor=person)
+    (declined,) = of_kind(client, mission, "offer-declined")
+    assert declined["who"] == "Ada Marsh"
+    post(client, f"missions/{mission.pk}/replan-offers")
+    Mission.objects.filter(pk=mission.pk).update(state=MissionState.COMPLETED)
+    assert settle_offers(now=later) == 1
+    assert len(of_kind(client, mission, "offer-expired")) == 1
+    assert len(of_kind(client, mission, "offer-made")) == 2
+
+
+def test_the_log_is_paged_newest_first_without_a_gap(client, mission, tern, person):
+    for number in range(4):
+        open_alert(uav=tern, level=AlertLevel.WARNING, code=f"code-{number}", message="Same", mission=mission)
+    mission.alerts.update(opened_at=timezone.now())  # equal times, too
+    whole = events(client, mission)
+    assert [event["at"] for event in whole] == sorted((event["at"] for event in whole), reverse=True)
+    assert len({event["key"] for event in whole}) == len(whole)
+    paged, address = [], f"/api/v1/missions/{mission.pk}/events?limit=3"
+    while address:
+        page = client.get(address).json()
+        paged += page["results"]
+        address = page["next"]
+    assert [event["key"] for event in paged] == [event["key"] for event in whole]
+    for wrong in ("x", "WzFd", "WyJ5ZXN0ZXJkYXkiLCJrIl0"):
+        assert client.get(f"/api/v1/missions/{mission.pk}/events?cursor={wrong}").status_code == 400
+
+
+def test_as_many_queries_for_many_events_as_for_few(client, mission, tern):
+    def queries() -> int:
+        with CaptureQueriesContext(connection) as found:
+            events(client, mission)
+        return len(found)
+
+    open_alert(uav=tern, level=AlertLevel.WARNING, code="first", message="Same", mission=mission)
+    queries()
+    few = queries()
+    for number in range(20):
+        open_alert(uav=tern, level=AlertLevel.WARNING, code=f"code-{number}", message="Same", mission=mission)
+    assert queries() == few
+
+
+def test_viewers_read_it_and_others_organisations_do_not(client, mission):
+    assert client_of(somebody(Role.VIEWER)).get(f"/api/v1/missions/{mission.pk}/events").status_code == 200
+    stranger = client_of(somebody(Role.ADMINISTRATOR, organisation=Organisation.objects.create(name="Others")))
+    assert stranger.get(f"/api/v1/missions/{mission.pk}/events").status_code == 404
+    assert stranger.get("/api/v1/live/events").json()["results"] == []
+    assert Client().get(f"/api/v1/missions/{mission.pk}/events").status_code == 401
+    live = client.get("/api/v1/live/events").json()["results"]
+    assert {event["mission"] for event in live} == {str(mission.pk)}
+    Mission.objects.filter(pk=mission.pk).update(deleted_at=timezone.now())
+    assert client.get(f"/api/v1/missions/{mission.pk}/events").status_code == 404
