@@ -137,7 +137,7 @@ test("wind is told with who reports it and how old it is", () => {
     wind_from_deg: 240,
   };
   const words = (kind) => windWords({ measured, link: { kind } }, NOW_MS).replaceAll("\u00a0", " ");
-  assert.equal(words("mavlink"), "Wind 5 m/s from 240°, reported by its autopilot 4 s ago");
+  assert.equal(words("mavlink"), "Wind 5 m/s from 240°, reported by its autopilot 4.0 s ago");
   assert.match(words("http"), /companion computer/);
   assert.equal(windWords({ measured: { ...measured, wind_speed_mps: null }, link: {} }, NOW_MS), "");
 });

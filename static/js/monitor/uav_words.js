@@ -41,8 +41,13 @@ export const isHeld = (uav) => stateOf(uav).words === t("Holding");
 export function ageWords(uav, now_ms) {
   const age_s = reportAge_s(uav, now_ms);
   if (age_s === null) return { figure: null, isLate: false };
+  return { figure: agoText(age_s), isLate: isLate(uav, now_ms) };
+}
+
+/** "0.7 s", "42 s", "14 h 18 min" @param {number} age_s */
+function agoText(age_s) {
   const short = age_s < 10 ? numberText(age_s, 1) : `${Math.floor(age_s)}`;
-  return { figure: age_s < 100 ? `${short}\u00a0s` : durationText(age_s), isLate: isLate(uav, now_ms) };
+  return age_s < 100 ? `${short}\u00a0s` : durationText(age_s);
 }
 
 /** When it is expected to be heard again: a time that has passed is overdue. @param {string} at @param {number} now_ms */
@@ -85,8 +90,8 @@ export function windWords({ measured, link }, now_ms) {
   const age_s = Math.max(0, (now_ms - Date.parse(measured.measured_at_of.wind ?? measured.measured_at)) / 1000);
   const by =
     link?.kind === "http"
-      ? t("reported by its companion computer {age} s ago", { age: numberText(age_s) })
-      : t("reported by its autopilot {age} s ago", { age: numberText(age_s) });
+      ? t("reported by its companion computer {age} ago", { age: agoText(age_s) })
+      : t("reported by its autopilot {age} ago", { age: agoText(age_s) });
   return `${t("Wind {speed}", { speed: speedText(speed_mps) })}${from}, ${by}`;
 }
 

@@ -22,7 +22,7 @@ export function showCopyBanner(keptAt) {
 
 /** Buttons that the server wrote into the page for acts, which its script would have made work. @param {string} why */
 function disableActs(why) {
-  const acts = document.querySelectorAll(".side-foot button");
+  const acts = document.querySelectorAll(".side .foot-buttons button");
   for (const button of /** @type {NodeListOf<HTMLButtonElement>} */ (acts)) {
     button.disabled = true;
     button.title = why;

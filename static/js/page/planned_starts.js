@@ -19,6 +19,7 @@ import { toast } from "./toast.js";
 const POLL_MS = 2000;
 const TICK_MS = 500;
 const SHOWN_AFTER_MS = 300_000; // as the server lists them
+const DONE_SHOWN_AFTER_MS = 30_000; // where nothing is left to be done about it
 
 /** @type {Record<string, string>} */
 const ENDS = {
@@ -30,7 +31,10 @@ const ENDS = {
 };
 
 /** Those that go on, or ended a moment ago. @param {PlannedStarts} starts @param {number} now_ms */
-const isShown = ({ ended_at }, now_ms) => !ended_at || now_ms - Date.parse(ended_at) < SHOWN_AFTER_MS;
+export const isShown = ({ ended_at, end, uavs }, now_ms) =>
+  !ended_at ||
+  now_ms - Date.parse(ended_at) <
+    (end === "done" && uavs.every(({ state }) => state === "started") ? DONE_SHOWN_AFTER_MS : SHOWN_AFTER_MS);
 
 /** What is said of one UAV's start. @param {PlannedStart} start @param {boolean} goesOn @param {number} now_ms */
 export function startWords({ state, due_at, why }, goesOn, now_ms) {

@@ -148,7 +148,6 @@ export default {
   "{name}: {done} of {targets}, {flown} of {length} flown":
     "{name}: {done} von {targets}, {flown} von {length} geflogen",
   "from {degrees}°": "aus {degrees}°",
-  "wind {speed}": "Wind {speed}",
   "You are signed out: nothing comes in any more.": "Sie sind abgemeldet: Es kommt nichts mehr herein.",
   "This mission has been deleted.": "Diese Mission ist gelöscht.",
   "Too many live pages are open.": "Zu viele Live-Seiten sind offen.",

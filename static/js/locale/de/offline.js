@@ -29,7 +29,7 @@ export default {
   "{shown} of {all} UAVs shown.": "{shown} von {all} UAVs angezeigt.",
   "{flying} of {uavs} in the air": "{flying} von {uavs} in der Luft",
   "Not in a mission": "In keiner Mission",
-  "reported by its companion computer {age} s ago": "vom Begleitrechner gemeldet vor {age} s",
-  "reported by its autopilot {age} s ago": "vom Autopiloten gemeldet vor {age} s",
+  "reported by its companion computer {age} ago": "vor {age} vom Begleitrechner gemeldet",
+  "reported by its autopilot {age} ago": "vor {age} vom Autopiloten gemeldet",
   "Wind {speed}": "Wind {speed}",
 };

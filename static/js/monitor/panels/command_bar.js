@@ -62,11 +62,14 @@ function makeMore(store, commanding) {
   more.addEventListener("click", async () => {
     const uav = chosenUav(store.state);
     if (!uav?.mission) return;
+    more.setAttribute("aria-busy", "true");
     const items = await uavMenu(
       { mission: uav.mission, uav: uav.id, silent: whyNot(uav) },
       { opener: more, ask: (kind) => commanding.ask(uav.id, kind, more) },
     );
-    if (items) toggleMenu(more, () => menuOf(t("Commands to {name}", { name: uav.name }), items));
+    more.removeAttribute("aria-busy");
+    const isStillAsked = chosenUav(store.state)?.id === uav.id && more.checkVisibility();
+    if (items && isStillAsked) toggleMenu(more, () => menuOf(t("Commands to {name}", { name: uav.name }), items));
   });
   return more;
 }

@@ -6,7 +6,7 @@ import { ASKED, CROWDED, LIVE } from "../../live/feed.js";
 import { staleWords } from "../../live/stale.js";
 import { say } from "../../page/toast.js";
 import { t, tn } from "../../text.js";
-import { exactClockText, speedText, zoneText } from "../../units.js";
+import { exactClockText, zoneText } from "../../units.js";
 
 /** @import { LiveMission, LiveUav, MissionState } from "../../api_types.d.ts" */
 /** @import { MonitorPage, MonitorState, MonitorStore } from "../types.d.ts" */
@@ -31,23 +31,6 @@ const IMAGES = {
   aborted: "octagon-alert",
   failed: "circle-x",
 };
-const LEAST_WIND_MPS = 0.5; // below, it comes from nowhere
-
-/** Wind as the newest report has it: "wind 5 m/s from 240°", or "". @param {Pick<LiveUav, "measured">[]} uavs */
-export function windWords(uavs) {
-  const told = uavs.flatMap(({ measured }) => {
-    const speed_mps = measured?.wind_speed_mps;
-    return measured && typeof speed_mps === "number" ? [{ measured, speed_mps }] : [];
-  });
-  const [newest] = told.sort((a, b) => Date.parse(b.measured.measured_at) - Date.parse(a.measured.measured_at));
-  if (!newest) return "";
-  const { wind_from_deg } = newest.measured;
-  const from =
-    typeof wind_from_deg === "number" && newest.speed_mps >= LEAST_WIND_MPS
-      ? t("from {degrees}°", { degrees: Math.round(wind_from_deg) })
-      : "";
-  return `${t("wind {speed}", { speed: speedText(newest.speed_mps) })} ${from}`.trim();
-}
 
 /** @param {LiveUav[]} uavs @param {LiveMission[]} missions @param {LiveMission | null} mission the page's only one */
 function countWords(uavs, missions, mission) {
@@ -101,7 +84,7 @@ export function mountHead(store, page) {
     drawState(chip, mission);
     const iso = new Date(now_ms).toISOString(); // stands still while the device has no data
     const facts = byId("live-facts");
-    const said = [exactClockText(iso), page.mission && windWords(uavs), countWords(uavs, missions, mission)];
+    const said = [exactClockText(iso), countWords(uavs, missions, mission)];
     facts.textContent = said.filter(Boolean).join(" · ");
     facts.title = zoneText(iso);
   });
