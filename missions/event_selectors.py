@@ -210,7 +210,7 @@ def _uav_of(entry: AuditEntry) -> int | None:
 def _of_entry(entry: AuditEntry, step: str, uavs: Mapping[int, Uav]) -> MissionEvent:
     facts: dict[str, Any] = entry.after or {}
     uav = uavs.get(_uav_of(entry) or 0)
-    about = {} if uav is None else {"uav_id": uav.pk, "uav_name": uav.name, "is_simulated": uav.is_simulated}
+    about: dict[str, Any] = {} if uav is None else {"uav_id": uav.pk, "uav_name": uav.name, "is_simulated": uav.is_simulated}
     if step == _OUT:
         cause = (facts.get("cause") or {}).get("alert", "") if entry.action == "replan" else "flight-failed"
         name = "A UAV" if uav is None else uav.name
