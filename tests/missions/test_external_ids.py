@@ -119,7 +119,7 @@ def test_copies_and_follow_ups_keep_them(client: Client) -> None:
     [
         ({"external_id": "x" * 201}, "external_id"),
         ({"external_id": "line\nline"}, "external_id"),
-        ({"external_id": 7.5e300}, None),
+        ({"external_id": 7.5e300}, "external_id"),
         ({"attributes": {f"name{number}": 1 for number in range(51)}}, "attributes"),
         ({"attributes": {"long": "x" * 8_000}}, "attributes"),
         ({"attributes": {"list": [1]}}, "attributes"),
@@ -131,11 +131,8 @@ def test_copies_and_follow_ups_keep_them(client: Client) -> None:
         ({"attributes": None}, "attributes"),
     ],
 )
-def test_what_is_out_of_bounds_is_refused_by_its_field(client: Client, given: dict[str, Any], field: str | None) -> None:
+def test_what_is_out_of_bounds_is_refused_by_its_field(client: Client, given: dict[str, Any], field: str) -> None:
     answer = post(client, "uavs", KITE | given)
-    if field is None:
-        assert answer.status_code == 201  # a number is taken as its text
-        return
     assert answer.status_code == 400, answer.content
     assert field in answer.json()["error"]["details"]
 
