@@ -113,10 +113,10 @@ WHERE entry.subject_type = 'mission' AND entry.subject_id = ANY(%(names)s) AND e
 
 @dataclass(frozen=True, slots=True)
 class LoggedEvent:
-    """One line of the log."""
+    """One line of the log. No event: it was gone when its words were to be read."""
 
     place: Place
-    event: MissionEvent
+    event: MissionEvent | None
 
 
 def missions_with_live_events(organisation: Organisation) -> list[UUID]:
@@ -138,7 +138,7 @@ def events_of_missions(mission_ids: Collection[UUID], *, before: tuple[datetime,
     read: dict[Place, MissionEvent] = {}
     for name, of_source in by_source.items():
         read.update(sources[name].read(of_source))
-    return [LoggedEvent(place, read[place]) for place in places if place in read]
+    return [LoggedEvent(place, read.get(place)) for place in places]
 
 
 def _places(sources: Sequence[Source], mission_ids: Collection[UUID], before: tuple[datetime, str] | None, limit: int) -> list[Place]:

@@ -154,7 +154,10 @@ def _encoded(values: list[str]) -> str:
 
 
 def _decoded(cursor: str) -> Any:
-    return json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
+    """Raises ValueError, binascii.Error among them, or RecursionError; also for half of a surrogate pair, which is no text."""
+    found = json.loads(base64.urlsafe_b64decode(cursor + "=" * (-len(cursor) % 4)))
+    json.dumps(found, ensure_ascii=False).encode()
+    return found
 
 
 def _wrong_cursor() -> ApiProblem:

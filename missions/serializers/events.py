@@ -2,8 +2,7 @@
 
 from typing import Any
 
-from missions.event_hooks import EventKind
-from missions.event_selectors import LoggedEvent
+from missions.event_hooks import EventKind, MissionEvent, Place
 from workspace import strict_serializers as serializers
 
 LEVELS = ("critical", "warning", "advisory")
@@ -32,8 +31,7 @@ class MissionEventPageSerializer(serializers.Serializer):
     next = serializers.CharField(allow_null=True)
 
 
-def event_json(logged: LoggedEvent) -> dict[str, Any]:
-    place, event = logged.place, logged.event
+def event_json(place: Place, event: MissionEvent) -> dict[str, Any]:
     return {
         "key": place.key,
         "at": place.at,

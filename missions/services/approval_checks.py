@@ -32,9 +32,19 @@ def reasons_against(mission: Mission, *, now: datetime, is_under_way: bool = Fal
         return [Reason("no_routes", _("The plan reaches no target, so no UAV flies."))]
     return [
         *([] if is_under_way else [*_departure(mission, now), *_separation(mission)]),
+        *_twins(mission),
         *_height_references(mission, flown),
         *_ground(mission),
     ]
+
+
+def _twins(mission: Mission) -> list[Reason]:
+    """Separation leaves simulated twins out, so they fly the copies that were made for them and nothing else."""
+    if mission.simulates_id is not None:
+        return []
+    twins = mission.mission_uavs.filter(uav__twin_of__isnull=False).values_list("sequence", "name")
+    words = _("%(uav)s is a simulated twin, which flies simulated copies of missions alone. Choose another UAV.")
+    return [Reason("simulated_twin", words % {"uav": name}, sequence) for sequence, name in twins]
 
 
 @dataclass(frozen=True)

@@ -72,6 +72,8 @@ def begin_planned_starts(
     pilot_checked: the actor has said that what only a pilot can see was looked at; it stays in the history.
     Raises Refused, also where one of them does not have its route as approved.
     """
+    # before the row is held, as it may take seconds, for which no abort shall wait
+    against = [] if uavs is None else reasons_against_starts(mission, uavs)
     with transaction.atomic():
         held = held_mission(mission.pk, None)
         approval = approval_in_force(held)
@@ -84,8 +86,7 @@ def begin_planned_starts(
             routes = _chosen(routes, uavs)
         if not routes:
             raise refuse("nothing_to_start", _("No UAV of this mission waits for its first start."))
-        if uavs is not None:
-            refuse_for(reasons_against_starts(held, uavs))
+        refuse_for(against)
         refuse_for(_not_loaded(routes, approval))
         first_s = routes[0].departs_s
         begin = timezone.now() + timedelta(seconds=LEAD_S)

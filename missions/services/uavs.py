@@ -7,12 +7,13 @@ from django.conf import settings
 from django.contrib.gis.geos import Point
 from django.db import transaction
 from django.utils import timezone
+from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from missions.models import Base, Uav, UavState, UavType
 from missions.services.fleet_rows import SystemIdQuota, deleted, facts_to_restore, locked, stored
 from missions.services.link_changes import refuse_to_cut_off, removal_reasons
-from missions.services.refused import refuse_for
+from missions.services.refused import Refused, refuse, refuse_for
 from workspace.models import Organisation, User
 
 FIELDS = (
@@ -20,6 +21,9 @@ FIELDS = (
     "cruise_speed_mps", "battery_wh", "mass_kg", "reserve_percent", "max_airspeed_mps", "heading_deg", "battery_percent", "sensor",
     "end_action", "external_id", "attributes",
 )  # fmt: skip
+
+
+OF_LINK = ("link", "mavlink_system_id", "is_simulated", "allows_unsigned")
 
 
 def create_uav(*, organisation: Organisation, actor: User, position: LonLat | None, values: dict[str, Any]) -> Uav:
@@ -36,15 +40,24 @@ def create_uav(*, organisation: Organisation, actor: User, position: LonLat | No
 
 
 def change_uav(
-    *, uav: Uav, actor: User | None, position: LonLat | None, values: dict[str, Any], expected_revision: int | None = None
+    *,
+    uav: Uav,
+    actor: User | None,
+    position: LonLat | None,
+    values: dict[str, Any],
+    expected_revision: int | None = None,
+    by_simulation: bool = False,
 ) -> Uav:
     """Retired, it gives its MAVLink system id back.
 
-    Raises FleetChanged, what create_uav raises, or Refused for another link or system id while anything is on its way.
+    Raises FleetChanged, what create_uav raises, or Refused for another link or system id while anything is on its way. Those of a
+    simulated twin, which no real aircraft may answer for, change `by_simulation` alone.
     """
     with transaction.atomic():
         held = locked(uav, expected_revision)
         before = _facts(held)
+        if held.twin_of_id is not None and not by_simulation and any(values.get(name, before[name]) != before[name] for name in OF_LINK):
+            raise refuse_twin(held)
         _put(held, values)
         refuse_to_cut_off(held, before)
         if held.mavlink_system_id != before["mavlink_system_id"]:
@@ -58,11 +71,19 @@ def change_uav(
 def delete_uav(*, uav: Uav, actor: User, expected_revision: int | None = None) -> None:
     """Its credentials go with it.
 
-    Raises FleetChanged, FleetRowInUse where a mission points at it, or Refused while it flies or a command to it is on its way.
+    Raises FleetChanged, FleetRowInUse where a mission points at it, or Refused while it flies or a command to it is on its way, and of a
+    simulated twin, which goes with its UAV.
     """
+    if uav.twin_of_id is not None:
+        raise refuse_twin(uav)
     with transaction.atomic():
         refuse_for(removal_reasons(locked(uav, expected_revision)))
         deleted(uav, actor=actor, expected_revision=expected_revision, facts=_facts)
+
+
+def refuse_twin(uav: Uav) -> Refused:
+    """What is not done with the simulated twin of another UAV."""
+    return refuse("simulated_twin", _("%(uav)s is the simulated twin of another UAV.") % {"uav": uav.name})
 
 
 def restore_uav(*, organisation: Organisation, actor: User, key: int) -> Uav:

@@ -59,6 +59,8 @@ class UavCredentials(APIView):
     def post(self, request: SignedInRequest, uav_id: int) -> Response:
         require_proof(request)
         uav = uav_or_404(request.user, uav_id)
+        if uav.twin_of_id is not None:
+            raise ApiProblem(409, "simulated_twin", _("The key of a simulated twin is made by the simulation that flies it."))
         serializer = CredentialInputSerializer(data=request.data)
         serializer.is_valid(raise_exception=True)
         values = serializer.validated_data

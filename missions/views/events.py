@@ -56,4 +56,5 @@ def _page(request: SignedInRequest, mission_ids: Collection[UUID]) -> Response:
         return logged.place.at, logged.place.key
 
     page = slice_of(request, lambda before, limit: events_of_missions(mission_ids, before=before, limit=limit), place)
-    return Response({"results": [event_json(logged) for logged in page.items], "next": page.next})
+    results = [event_json(logged.place, logged.event) for logged in page.items if logged.event is not None]
+    return Response({"results": results, "next": page.next})

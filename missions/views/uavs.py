@@ -67,8 +67,6 @@ def _values(request: SignedInRequest, uav: Uav | None = None) -> dict[str, Any]:
     changed = [name for name in WAIVES_SAFETY if values.get(name, getattr(uav, name, False)) != getattr(uav, name, False)]
     if changed and request.user.role not in ADMINISTRATORS:
         raise ApiProblem(403, "permission_denied", _("Only administrators say that a UAV is simulated, or needs no signature."))
-    if uav is not None and uav.twin_of_id is not None and not values.get("is_simulated", True):
-        raise ApiProblem(409, "simulated_twin", _("%(uav)s is the simulated twin of another UAV.") % {"uav": uav.name})
     return values
 
 

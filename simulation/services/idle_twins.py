@@ -1,26 +1,40 @@
-"""Simulated twins that fly nothing are retired: an installation has few MAVLink system ids."""
+"""What is done once the simulation of a copy is over: the copy ends, and twins that fly nothing are retired, as system ids are few."""
 
 from collections.abc import Collection
 
+from django.db import transaction
 from django.db.models import Exists, OuterRef, Q
 
-from missions.models import MissionState, MissionUav, Uav, UavState
+from missions.models import Mission, MissionState, MissionUav, Uav, UavCommand, UavState
+from missions.services.approval import change_state
+from missions.services.fleet_rows import FleetChanged
+from missions.services.flying import ON_ITS_WAY, UNDECIDED
+from missions.services.outbox import end_commands
 from missions.services.refused import Refused
 from missions.services.uavs import change_uav
 from simulation.models import SimulatedVehicle
 from simulation.vehicle_models import PRESENT
 from workspace.models import Organisation, User
 
-MAY_FLY = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
+
+def end_copy(mission: Mission) -> None:
+    """End a simulated copy that was sent to twins which are gone; any other mission stays as it is."""
+    with transaction.atomic():
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
+        if held.simulates_id is None or held.state not in ON_ITS_WAY:
+            return
+        end_commands(UavCommand.objects.filter(mission=held), code="simulation_ended", words="The simulation has ended.")
+        is_open = held.targets.filter(state__in=UNDECIDED).exists()
+        change_state(held, MissionState.ABORTED if is_open else MissionState.COMPLETED, None, "close", {"why": "The simulation has ended."})
 
 
 def retire_idle_twins(*, organisation: Organisation, actor: User | None, but: Collection[int] = ()) -> None:
     """Twins of which no copy is to be flown any more give their MAVLink system ids back. They come back with the next copy."""
-    flown = MissionUav.objects.filter(uav=OuterRef("pk"), mission__state__in=MAY_FLY, mission__deleted_at=None)
+    flown = MissionUav.objects.filter(uav=OuterRef("pk"), mission__state__in=ON_ITS_WAY, mission__deleted_at=None)
     present = SimulatedVehicle.objects.filter(uav=OuterRef("pk"), state__in=PRESENT)
     idle = Uav.objects.filter(~Exists(flown), ~Exists(present), organisation=organisation, twin_of__isnull=False)
     for twin in idle.exclude(Q(state=UavState.RETIRED) | Q(pk__in=but)):
         try:
             change_uav(uav=twin, actor=actor, position=None, values={"state": UavState.RETIRED})
-        except Refused:  # something is on its way to it
+        except (Refused, FleetChanged):  # something is on its way to it, or it was deleted meanwhile
             continue

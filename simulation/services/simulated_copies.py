@@ -57,6 +57,7 @@ def fly_simulated_copy(
             present = copy.simulations.filter(state__in=PRESENT).first()
             if present is not None:
                 return present
+            _bring_back_twins(held, copy, actor)
         else:
             copy = _make_copy(held, actor)
         loaded = mission_of_organisation(copy.organisation, copy.pk)
@@ -69,9 +70,23 @@ def _copy_in_use(mission: Mission) -> Mission | None:
     return copies.order_by("-created_at").first()
 
 
-def _make_copy(mission: Mission, actor: User) -> Mission:
+def _bring_back_twins(mission: Mission, copy: Mission, actor: User) -> None:
+    """Of a copy whose simulation has ended before it was sent to them."""
+    _places_of(mission)
+    for place in copy.mission_uavs.filter(uav__state=UavState.RETIRED).select_related("uav"):
+        assert place.uav is not None  # noqa: S101 - of the filter
+        change_uav(uav=place.uav, actor=actor, position=None, values={"state": UavState.ACTIVE})
+
+
+def _places_of(mission: Mission) -> list[MissionUav]:
+    """Raises Refused where one has no twin that could fly now."""
     places = list(mission.mission_uavs.select_related("uav__uav_type"))
     refuse_for([reason for place in places if (reason := _why_not(place)) is not None])
+    return places
+
+
+def _make_copy(mission: Mission, actor: User) -> Mission:
+    places = _places_of(mission)
     twins = {place.sequence: _twin(place, actor) for place in places}
     retire_idle_twins(organisation=mission.organisation, actor=actor, but=[twin.pk for twin in twins.values()])
     name = _("{name} (simulated)").format(name=mission.name[: LONGEST_NAME - 20])

@@ -71,7 +71,7 @@ def reachable(uav: Uav, actor: User) -> Uav:
         if free is None:
             raise refuse("no_system_id", _("All MAVLink system ids are taken."))
         try:
-            uav = change_uav(uav=uav, actor=actor, position=None, values={"mavlink_system_id": free})
+            uav = change_uav(uav=uav, actor=actor, position=None, values={"mavlink_system_id": free}, by_simulation=True)
         except SystemIdQuota as error:
             raise refuse("no_system_id", _("Your organisation has no MAVLink system id left. Retire a UAV to free its id.")) from error
     has_key = uav.credentials.filter(kind=CredentialKind.MAVLINK_KEY, revoked_at=None).exists()

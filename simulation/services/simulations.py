@@ -17,7 +17,7 @@ from django.utils import timezone
 from inspection.geodesy import LonLat
 from simulation.models import SimulatedVehicle, Simulation, SimulationChange, SimulationState, VehicleFlavour
 from simulation.rehearsing.sky import Sky, sky_to_json
-from simulation.services.idle_twins import retire_idle_twins
+from simulation.services.idle_twins import end_copy, retire_idle_twins
 from simulation.vehicle_models import PRESENT
 from workspace.models import Organisation, User
 from workspace.services import record_change
@@ -171,6 +171,8 @@ def end_now(simulation: Simulation, reason: str, *, state: SimulationState = Sim
     Simulation.objects.filter(pk=simulation.pk, state__in=PRESENT).update(
         state=state, reason=reason, ended_at=timezone.now(), holder="", lease_expires_at=None
     )
+    if simulation.mission is not None:
+        end_copy(simulation.mission)
     retire_idle_twins(organisation=simulation.organisation, actor=None)
 
 

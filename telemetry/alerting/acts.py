@@ -18,5 +18,5 @@ def acts(*kinds: str, uav_id: int) -> list[dict[str, Any]]:
 def acts_of(code: str, uav_id: int | None, details: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Return the acts of an alert, the best first; empty for one that is answered by no command."""
     if ACTS in details:
-        return list(details[ACTS])
+        return [act | {"kind": HOLD} if act["kind"] == "pause" else act for act in details[ACTS]]  # of before there was one Hold
     return acts(_OF_CODE[code], uav_id=uav_id) if uav_id is not None and code in _OF_CODE else []

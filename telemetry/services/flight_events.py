@@ -34,11 +34,14 @@ def note_take_offs_and_landings(reports: Iterable[Report]) -> None:
             continue
         now_in_air = report.measurement.is_in_air
         before[report.uav_id] = (now_in_air, report.measured_at)
-        if now_in_air == is_in_air or (is_in_air is None and not now_in_air):
+        if now_in_air == is_in_air:
             continue
         kind = FlightEventKind.TAKE_OFF if now_in_air else FlightEventKind.LANDING
         mission_id = report.mission_id or (None if now_in_air else _flown_last(report.uav_id, report.measured_at))
-        if mission_id is not None:
+        if is_in_air is None and not now_in_air:  # a report between said nothing of it: it has landed if it had taken off
+            if mission_id is not None:
+                note_landing(mission_id=mission_id, uav_id=report.uav_id, at=report.measured_at)
+        elif mission_id is not None:
             _note(mission_id, report.uav_id, kind, report.measured_at)
 
 

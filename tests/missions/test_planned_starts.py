@@ -15,6 +15,7 @@ from tests.missions.api import post
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet
 from tests.missions.outbox import claim, fence
 from tests.missions.worlds import world
+from tests.telemetry.records import heard
 from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role, User
 
@@ -199,6 +200,9 @@ def test_over_the_api(crossing, person) -> None:
     told = client.get(f"/api/v1/{path}").json()
     assert (told["starts"], [entry["name"] for entry in told["waiting"]]) == (None, [first.name, second.name])
     assert told["waiting"][1]["after_s"] == pytest.approx(second.route.departs_s - first.route.departs_s)
+    unheard = post(client, path)  # without `uavs` all are meant, and checked as those that are named
+    assert (unheard.status_code, [reason["code"] for reason in unheard.json()["error"]["details"]["reasons"]]) == (409, ["link", "link"])
+    heard(first.uav, second.uav)
     begun = post(client, path)
     assert begun.status_code == 201, begun.content
     assert [entry["name"] for entry in begun.json()["uavs"]] == [first.name, second.name]

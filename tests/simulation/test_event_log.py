@@ -1,5 +1,7 @@
 """The event log over the API: what happened, who and when, of one mission and of all that fly."""
 
+import base64
+import json
 from datetime import timedelta
 
 import pytest
@@ -93,6 +95,22 @@ def test_take_off_and_landing_are_told_once_each(client, mission, tern):
     assert [(event["kind"], event["message"]) for event in told] == [("landing", "Tern landed"), ("take-off", "Tern took off")]
     report(tern, 10, is_in_air=True)
     assert len(of_kind(client, mission, "take-off")) == 2
+
+
+def test_a_landing_is_told_though_a_report_before_it_said_nothing_of_it(client, mission, tern):
+    for second, is_in_air in enumerate([False, True, True, None, False]):
+        report(tern, second, is_in_air=is_in_air)
+    report(tern, 5, is_in_air=True)
+    assert [event["kind"] for event in events(client, mission) if event["kind"] in ("take-off", "landing")] == [
+        "take-off", "landing", "take-off",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("key", ["\ud800", "\0", 7, None])
+def test_a_cursor_that_nobody_gave_is_refused(client, mission, key):
+    cursor = base64.urlsafe_b64encode(json.dumps(["2026-01-01T00:00:00+00:00", key]).encode()).decode()
+    answer = client.get(f"/api/v1/missions/{mission.pk}/events?cursor={cursor}")
+    assert (answer.status_code, answer.json()["error"]["code"]) == (400, "invalid_cursor")
 
 
 def test_reports_in_one_batch_and_late_ones_tell_the_same(client, mission, tern):

@@ -8,9 +8,22 @@ from django.test import Client
 from django.utils import timezone
 
 from missions.flight_selectors import flights_at_the_same_time
-from missions.models import Approval, Mission, MissionState, MissionUav, Route, Uav, UavCommand, UavCredential, UavState, Waypoint
+from missions.models import (
+    Approval,
+    CommandState,
+    Mission,
+    MissionState,
+    MissionUav,
+    Route,
+    Uav,
+    UavCommand,
+    UavCredential,
+    UavState,
+    Waypoint,
+)
 from missions.services.approval import approve_mission
 from missions.services.dispatch import dispatch_mission
+from missions.services.mission_copies import duplicate_mission
 from missions.services.refused import Refused
 from missions.services.start_slots import reasons_to_wait
 from simulation.models import SimulatedVehicle, Simulation
@@ -136,8 +149,41 @@ def test_twins_are_not_offered_among_the_fleet_and_stay_simulated(real, client):
     assert listed["numbers"]["active"] == 2
     twins = [uav for uav in administrator.get("/api/v1/uavs?twins=true").json()["features"] if uav["properties"]["twin_of"]]
     assert len(twins) == 2
-    answer = patch(administrator, f"uavs/{twins[0]['id']}", {"is_simulated": False})
+    for change in ({"is_simulated": False}, {"link": "http"}, {"mavlink_system_id": 77}, {"allows_unsigned": True}):
+        answer = patch(administrator, f"uavs/{twins[0]['id']}", change)
+        assert (answer.status_code, answer.json()["error"]["code"]) == (409, "simulated_twin"), change
+    answer = post(administrator, f"uavs/{twins[0]['id']}/credentials", {"kind": "mavlink-key"})
     assert (answer.status_code, answer.json()["error"]["code"]) == (409, "simulated_twin")
+
+
+def test_a_twin_flies_in_copies_alone(client, person, real):
+    """Separation leaves twins out: whatever else they are planned in is not approved, a duplicate of their copy neither."""
+    copy = flies_copy(client, real)
+    mission = planned(person, [place.uav for place in copy.mission_uavs.select_related("uav")], world().towers[:2], name="Another")
+    for other in (mission, duplicate_mission(mission=copy, author=person)):
+        with pytest.raises(Refused) as refused:
+            approve_mission(mission=other, actor=person)
+        assert "simulated_twin" in [reason.code for reason in refused.value.reasons]
+
+
+def test_a_copy_ends_with_its_simulation(client, person, real):
+    copy = flies_copy(client, real)
+    dispatch_mission(mission=copy, actor=person)
+    end_now(Simulation.objects.get(), "ended-by-hand")
+    copy.refresh_from_db()
+    assert copy.state == MissionState.ABORTED
+    assert not UavCommand.objects.filter(mission=copy, state=CommandState.QUEUED).exists()
+    assert set(Uav.objects.filter(twin_of__isnull=False).values_list("state", "mavlink_system_id")) == {(UavState.RETIRED, None)}
+    real.refresh_from_db()
+    assert real.state == MissionState.APPROVED
+
+
+def test_a_copy_that_was_not_sent_is_flown_again_by_twins_that_come_back(client, person, real):
+    copy = flies_copy(client, real)
+    end_now(Simulation.objects.get(), "ended-by-hand")
+    assert set(Uav.objects.filter(twin_of__isnull=False).values_list("state", flat=True)) == {UavState.RETIRED}
+    assert flies_copy(client, real) == copy
+    assert set(Uav.objects.filter(twin_of__isnull=False).values_list("state", flat=True)) == {UavState.ACTIVE}
 
 
 def test_a_copy_is_in_nobodys_way(client, person, real):

@@ -3,9 +3,13 @@
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
+from django.utils import timezone
+
 from missions.models import LinkKind, Uav
 from telemetry.decoding.measurement import Measurement
+from telemetry.models import UavLink
 from telemetry.services import NewRecord
+from telemetry.services.ingest import store_records
 
 START = datetime(2026, 11, 22, 12, tzinfo=UTC)
 
@@ -21,3 +25,12 @@ def record(uav: Uav, sequence: int, *, measured_s: float | None = None, received
     measurement = Measurement(**{"longitude_deg": 10.0, "latitude_deg": 55.0, **values})
     received_s = measured_s if received_s is None else received_s
     return NewRecord(uav.pk, LinkKind.MAVLINK, stream, sequence, at(measured_s), at(received_s), measurement)
+
+
+def heard(*uavs: Uav, **measured: Any) -> None:
+    """Each of these stands at its take-off place and is connected: a link, and a report of now."""
+    for uav in uavs:
+        UavLink.objects.update_or_create(uav=uav, defaults={"heard_at": timezone.now(), "is_in_air": False})
+        start = uav.mission_uavs.get().start
+        values = {"longitude_deg": start.x, "latitude_deg": start.y, "gps_fix": 3, "battery_percent": 98.0} | measured
+        store_records([record(uav, 1, measured_s=(timezone.now() - START).total_seconds(), **values)])

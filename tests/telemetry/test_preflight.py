@@ -12,13 +12,12 @@ from missions.services.dispatch import dispatch_mission
 from missions.services.outbox import note_failed
 from missions.services.steering import command_uav
 from telemetry.models import UavLink
-from telemetry.services.ingest import store_records
 from telemetry.services.preflight import CheckState, NextAct, Preflight, preflight_of
 from tests.missions.api import post
 from tests.missions.flights import an_operator, approved, carry, fleet
 from tests.missions.outbox import claim, fence
 from tests.missions.worlds import world, zone_around
-from tests.telemetry.records import START, record
+from tests.telemetry.records import heard
 from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Organisation, Role, User
 
@@ -36,14 +35,6 @@ def two(person: User) -> tuple[Mission, Uav, Uav]:
     uavs = fleet("Tern", "Kite")
     mission, _approval = approved(person, uavs, world().towers[4:6])
     return mission, *uavs
-
-
-def heard(*uavs: Uav, **measured: Any) -> None:
-    for uav in uavs:
-        UavLink.objects.update_or_create(uav=uav, defaults={"heard_at": timezone.now(), "is_in_air": False})
-        start = uav.mission_uavs.get().start
-        values = {"longitude_deg": start.x, "latitude_deg": start.y, "gps_fix": 3, "battery_percent": 98.0} | measured
-        store_records([record(uav, 1, measured_s=(timezone.now() - START).total_seconds(), **values)])
 
 
 def checks(mission: Mission) -> Preflight:

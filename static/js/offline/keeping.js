@@ -9,6 +9,8 @@ import { isKept, placesOf, startsOf, tilesOf, wholeOf } from "./addresses.js";
 /** @typedef {{ userId: number, organisationId: number, mission?: string | null }} KeptPage what the server wrote into the page */
 
 const WORKER = "/service-worker.js";
+const COPIES = "spanwise-copy-"; // caches of the worker
+const NOT_FOUND = 404;
 const AFTER_LOAD_MS = 1_500; // the page itself comes first
 const MAX_MISSIONS = 10;
 const ALL_INTERVAL_MS = 600_000;
@@ -32,9 +34,9 @@ async function keep(workers, page) {
   const { active } = await workers.ready;
   const fleet = await fleetAddresses();
   for (const id of await missionsOf(page)) {
-    const { data: mission } = /** @type {Answer<Mission>} */ (await get(`/missions/${id}`));
+    const mission = await missionNow(id);
     active?.postMessage(
-      isKept(mission)
+      mission && isKept(mission)
         ? {
             type: "keep",
             owner: `${page.userId}@${page.organisationId}`,
@@ -46,7 +48,24 @@ async function keep(workers, page) {
   }
 }
 
-/** The page's own mission; on other pages, now and then, the newest that are approved. @param {KeptPage} page */
+/** null: there is none any more. @param {string} id */
+async function missionNow(id) {
+  try {
+    return /** @type {Answer<Mission>} */ (await get(`/missions/${id}`)).data;
+  } catch (error) {
+    if (error instanceof ApiError && error.status === NOT_FOUND) return null;
+    throw error;
+  }
+}
+
+/** Missions of which the worker keeps a page. */
+async function heldMissions() {
+  const names = (await caches.keys()).filter((name) => name.startsWith(COPIES));
+  const requests = await Promise.all(names.map(async (name) => (await caches.open(name)).keys()));
+  return requests.flat().flatMap(({ url }) => /^\/missions\/([0-9a-f-]{36})$/.exec(new URL(url).pathname)?.[1] ?? []);
+}
+
+/** The page's own mission; on other pages, now and then, the newest that are approved and those that are kept. @param {KeptPage} page */
 async function missionsOf({ mission, userId }) {
   if (mission) return [mission];
   const key = `spanwise.offline-asked.${userId}`;
@@ -55,7 +74,7 @@ async function missionsOf({ mission, userId }) {
   const { data } = /** @type {Answer<MissionPage>} */ (
     await get(`/missions?state=approved,dispatched,active&limit=${MAX_MISSIONS}`)
   );
-  return data.results.map(({ id }) => id);
+  return [...new Set([...data.results.map(({ id }) => id), ...(await heldMissions())])];
 }
 
 /** As the page of a mission asks for UAVs, page by page. */

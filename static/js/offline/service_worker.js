@@ -28,7 +28,8 @@ const STATIC_FILE = /(?:href|src|content)="(\/static\/[^"?#]+\.[a-z0-9]+)"/g;
 const PAGE_DATA = /<script id="page" type="application\/json">(.*?)<\/script>/s;
 const MAX_AGE_MS = 7 * 86_400_000;
 const MAP_RENEWED_MS = 86_400_000;
-const NETWORK_TIMEOUT_MS = 5_000; // for a page of which there is a copy
+const NETWORK_TIMEOUT_MS = 20_000; // for a page of which there is a copy: a slow server still answers with commands, a copy has none
+const WIPE_TIMEOUT_MS = 5_000;
 const AT_ONCE = 6;
 const GATEWAY_FAULTS = new Set([502, 503, 504]);
 
@@ -146,8 +147,17 @@ async function keepMap(addresses) {
 /** @param {Response} answer */
 const age_ms = (answer) => Date.now() - Date.parse(answer.headers.get(KEPT_AT) ?? "");
 
+async function forgetOld() {
+  const cache = await caches.open(COPY);
+  for (const request of await cache.keys()) {
+    const answer = await cache.match(request);
+    if (answer?.headers.has(KEPT_AT) && age_ms(answer) > MAX_AGE_MS) await cache.delete(request);
+  }
+}
+
 /** @param {Order} order */
 async function obey(order) {
+  await forgetOld();
   if (order.type === "drop") {
     const cache = await caches.open(COPY);
     for (const { url } of await cache.keys())
@@ -169,30 +179,28 @@ async function marked(answer) {
   return new Response(html.replace("<html ", `<html data-offline-copy="${keptAt}" `), { headers: answer.headers });
 }
 
-/** @param {Request} request */
-async function copyOf(request) {
-  const address = new URL(request.url).pathname;
-  const answer = await find(address);
-  if (!answer || age_ms(answer) > MAX_AGE_MS) return null;
-  return marked(answer);
+/** What is kept of a page, as far as it is not too old; null. @param {Request} request */
+async function keptPage(request) {
+  const answer = await find(new URL(request.url).pathname);
+  return answer && age_ms(answer) <= MAX_AGE_MS ? answer : null;
 }
 
 /** @param {AskedEvent} event @returns {Promise<Response>} */
 async function page(event) {
   const { request } = event;
-  const hasCopy = (await find(new URL(request.url).pathname)) !== undefined;
+  const kept = await keptPage(request);
   const stop = new AbortController();
-  const timer = hasCopy ? setTimeout(() => stop.abort(), NETWORK_TIMEOUT_MS) : 0;
+  const timer = kept ? setTimeout(() => stop.abort(), NETWORK_TIMEOUT_MS) : 0;
   try {
-    const answer = await (hasCopy ? fetch(request, { signal: stop.signal }) : fetch(request));
-    clearTimeout(timer);
-    if (GATEWAY_FAULTS.has(answer.status) && hasCopy) return (await copyOf(request)) ?? answer;
+    const answer = await (kept ? fetch(request, { signal: stop.signal }) : fetch(request));
+    if (GATEWAY_FAULTS.has(answer.status) && kept) return marked(kept);
     event.waitUntil(checkOwner(answer.clone()));
     return answer;
   } catch {
+    if (kept) return marked(kept);
+    return (await find(NO_CONNECTION, SHELL)) ?? Response.error();
+  } finally {
     clearTimeout(timer);
-    const copy = hasCopy ? await copyOf(request) : null;
-    return copy ?? (await find(NO_CONNECTION, SHELL)) ?? Response.error();
   }
 }
 
@@ -223,7 +231,7 @@ async function fromCopy(request) {
 async function signOut(request) {
   const emptied = wipe().catch(() => {});
   try {
-    await Promise.race([emptied, new Promise((resolve) => setTimeout(resolve, NETWORK_TIMEOUT_MS))]);
+    await Promise.race([emptied, new Promise((resolve) => setTimeout(resolve, WIPE_TIMEOUT_MS))]);
     return await fetch(request);
   } catch {
     return (await find(NO_CONNECTION, SHELL)) ?? Response.error();
@@ -248,6 +256,23 @@ worker.addEventListener("message", (/** @type {WorkerEvent & { data: Order }} */
 
 // --- a new version
 
+/** Addresses of each mission, with those that all of them share. @param {string[]} addresses */
+function byMission(addresses) {
+  const missionOf = (/** @type {string} */ address) => /^(?:\/api\/v1)?\/missions\/([^/?]+)/.exec(address)?.[1];
+  const shared = addresses.filter((address) => missionOf(address) === undefined);
+  const missions = new Set(addresses.flatMap((address) => missionOf(address) ?? []));
+  return [...missions].map((mission) => [...addresses.filter((address) => missionOf(address) === mission), ...shared]);
+}
+
+/** What the server answers otherwise by now is not kept; without a network nothing is given up. @param {Promise<unknown>} work */
+async function unlessGone(work) {
+  try {
+    await work;
+  } catch (error) {
+    if (error instanceof TypeError) throw error; // of fetch: no network
+  }
+}
+
 /** What the version before kept is fetched anew before it goes: the copy is never without its files. */
 async function takeOver() {
   await keepNoConnectionPage();
@@ -255,11 +280,10 @@ async function takeOver() {
     const before = await caches.open(name);
     const owner = await (await before.match(OWNER))?.text();
     const kept = (await before.keys()).map(({ url }) => new URL(url)).map(({ pathname, search }) => pathname + search);
+    if (!owner) continue;
     const whole = kept.filter((address) => address !== OWNER && !address.startsWith(TILES));
-    if (owner && whole.length) {
-      await keepWhole(owner, whole);
-      await keepMap(kept.filter((address) => address.startsWith(TILES)));
-    }
+    for (const addresses of byMission(whole)) await unlessGone(keepWhole(owner, addresses));
+    await unlessGone(keepMap(kept.filter((address) => address.startsWith(TILES))));
   }
 }
 

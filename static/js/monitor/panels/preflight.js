@@ -17,6 +17,7 @@ import { beginSimulation, flyCopy } from "./simulation.js";
 /** @import { NextStep } from "../../domain/preflight_step.js" */
 /** @import { MonitorPage, MonitorStore } from "../types.d.ts" */
 
+const SEEN_AFTER_MS = 1_000; // what appears under the pointer is not sent by the press that was on its way
 const POLL_MS = 2500;
 const BEFORE_FLIGHT = new Set(["approved", "dispatched", "active"]);
 
@@ -112,8 +113,9 @@ function createPanel(place, on) {
   return {
     /** What is to be set with the upload. */
     heights: () =>
-      [...heights.querySelectorAll("input:checked")].map((input) => {
+      [...heights.querySelectorAll("input:checked")].flatMap((input) => {
         const { value, dataset } = /** @type {HTMLInputElement} */ (input);
+        if (Date.now() - Number(dataset.since_ms) < SEEN_AFTER_MS) return [];
         return { uav: Number(value), name: dataset.name ?? "", height_m: Number(dataset.height) };
       }),
     /** @param {Preflight} preflight @param {PreflightCheck | null} rehearsal */
@@ -158,6 +160,9 @@ function drawHeights(place, { next_act, uavs }) {
   const unticked = new Set(
     [...place.querySelectorAll("input")].filter(({ checked }) => !checked).map(({ value }) => value),
   );
+  const since_ms = new Map(
+    [...place.querySelectorAll("input")].map(({ value, dataset }) => [`${value} ${dataset.height}`, dataset.since_ms]),
+  );
   const rows = next_act === "upload" ? uavs.filter(({ is_loaded }) => !is_loaded) : [];
   const wanted = rows.flatMap(({ uav, name, checks }) => {
     const height_m = checks.find(({ safe_height_m }) => safe_height_m !== null)?.safe_height_m ?? null;
@@ -174,6 +179,7 @@ function drawHeights(place, { next_act, uavs }) {
           checked: !unticked.has(`${uav}`),
           "data-name": name,
           "data-height": `${height_m}`,
+          "data-since_ms": since_ms.get(`${uav} ${height_m}`) ?? `${Date.now()}`,
         }),
         h(
           "span",
