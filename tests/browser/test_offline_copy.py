@@ -192,3 +192,14 @@ def test_a_line_that_stands_still_ends_in_the_copy_and_not_in_waiting(visitor: V
         expect(page.locator(".copy-banner")).to_contain_text(COPY_FROM)
         line.mend()
         page.close()
+
+
+def test_what_is_not_approved_any_more_is_not_kept_after_the_next_page(visitor: Visitor, mission: str) -> None:
+    context = with_a_worker(visitor)
+    page = signed_in(visitor, context)
+    visits(page, mission)
+    other = visitor.signs_in("ada")
+    writes(other, "POST", f"/missions/{mission}/revoke", {"reason": "the line is being worked on"})
+    page.evaluate("() => localStorage.clear()")  # when it was asked last: ten minutes have passed
+    page.goto("/missions")
+    waits_until(page, f"async (mission) => !(await ({KEPT_OF_USERS})()).some((address) => address.includes(mission))", mission)
