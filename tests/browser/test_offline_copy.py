@@ -201,5 +201,5 @@ def test_what_is_not_approved_any_more_is_not_kept_after_the_next_page(visitor: 
     other = visitor.signs_in("ada")
     writes(other, "POST", f"/missions/{mission}/revoke", {"reason": "the line is being worked on"})
     page.evaluate("() => localStorage.clear()")  # when it was asked last: ten minutes have passed
-    page.goto("/missions")
+    page.goto("/")
     waits_until(page, f"async (mission) => !(await ({KEPT_OF_USERS})()).some((address) => address.includes(mission))", mission)
