@@ -22,7 +22,7 @@ import { ageWords, isHeld } from "./uav_words.js";
  * @property {(target: number) => { pill: string, label: string } | null} targetOf
  */
 
-const UNKNOWN = "—";
+export const UNKNOWN = "—";
 const NO_REPORT = () => t("It has not reported this.");
 const NO_MISSION = () => t("It flies no mission.");
 

@@ -4,6 +4,7 @@ import { h, icon, refill } from "../../dom.js";
 import { alarmOf } from "../../domain/order.js";
 import { t } from "../../text.js";
 import { letterOf } from "../call_signs.js";
+import { UNKNOWN } from "../card_figures.js";
 import { stateOf } from "../uav_words.js";
 
 /** @import { AlertLevel } from "../../api_types.d.ts" */
@@ -16,6 +17,9 @@ const LEVELS = {
   warning: { image: "triangle-alert", words: t("Warning") },
   advisory: { image: "info", words: t("Advisory") },
 };
+
+/** @param {Pick<Figure, "figure" | "unit">} figure */
+const inOneLine = ({ figure, unit }) => (unit ? `${figure}\u00a0${unit}` : figure);
 
 export class UavRow {
   #letter = h("span", { class: "letter" });
@@ -53,17 +57,16 @@ export class UavRow {
     const said = stateOf(uav);
     this.#state.textContent = said.words;
     this.#state.className = `row-state ${said.level ?? ""}`;
-    this.#age.textContent = age.figure;
+    this.#age.textContent = inOneLine(age);
     this.#age.classList.toggle("late", age.level !== "");
     this.#age.title = age.title;
     refill(this.#figures, JSON.stringify([battery, height]), () =>
       [battery, height].map(({ figure, unit, words, level: own }) =>
-        h("span", { class: own || null }, h("span", { class: "unseen" }, `${words} `), `${figure} ${unit}`.trim()),
+        h("span", { class: own || null }, h("span", { class: "unseen" }, `${words} `), inOneLine({ figure, unit })),
       ),
     );
-    refill(this.#next, JSON.stringify(next), () => [
-      `${next.words} `,
-      h("strong", {}, `${next.figure} ${next.unit}`.trim()),
-    ]);
+    refill(this.#next, JSON.stringify(next), () =>
+      next.figure === UNKNOWN ? [] : [`${next.words} `, h("strong", {}, inOneLine(next))],
+    );
   }
 }
