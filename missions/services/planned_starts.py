@@ -66,14 +66,14 @@ def begin_planned_starts(
 ) -> PlannedStarts:
     """Plan the first starts of the UAVs that have their route and did not start yet; the first one in LEAD_S seconds.
 
-    uavs: ids of those to start, the others wait on the ground; None: all of them. Those that are named are checked once more by what
-    later apps know of them: link, position, battery.
+    uavs: ids of those to start, the others wait on the ground; None: all of them. Each is checked once more by what later apps know of
+    it: link, position, battery.
 
     pilot_checked: the actor has said that what only a pilot can see was looked at; it stays in the history.
     Raises Refused, also where one of them does not have its route as approved.
     """
-    # before the row is held, as it may take seconds, for which no abort shall wait
-    against = [] if uavs is None else reasons_against_starts(mission, uavs)
+    wanted = {route.mission_uav.uav_id for route in waiting_for_start(mission)} if uavs is None else uavs
+    against = reasons_against_starts(mission, wanted)  # before the row is held: it may take seconds, for which no abort shall wait
     with transaction.atomic():
         held = held_mission(mission.pk, None)
         approval = approval_in_force(held)
@@ -81,13 +81,11 @@ def begin_planned_starts(
             raise refuse("not_on_its_way", _("Only a mission that was sent to its UAVs can be started."))
         if held.planned_starts.filter(ended_at=None).exists():
             raise refuse("already_starting", _("Its UAVs are being started in planned order already."))
-        routes = _routes_to_start(held, approval)
-        if uavs is not None:
-            routes = _chosen(routes, uavs)
+        routes = _chosen(_routes_to_start(held, approval), wanted)
         if not routes:
             raise refuse("nothing_to_start", _("No UAV of this mission waits for its first start."))
-        refuse_for(against)
         refuse_for(_not_loaded(routes, approval))
+        refuse_for(against)
         first_s = routes[0].departs_s
         begin = timezone.now() + timedelta(seconds=LEAD_S)
         if held.departs_at is not None:
@@ -106,7 +104,7 @@ def begin_planned_starts(
     return starts
 
 
-def _chosen(routes: Sequence[Route], uavs: Collection[int]) -> list[Route]:
+def _chosen(routes: Sequence[Route], uavs: Collection[int | None]) -> list[Route]:
     """Raises Refused where one of these UAVs does not wait for its first start."""
     chosen = [route for route in routes if route.mission_uav.uav_id in uavs]
     if len(chosen) < len(set(uavs)):

@@ -77,10 +77,7 @@ class MissionPlannedStarts(APIView):
         asked = StartsInputSerializer(data=request.data)
         asked.is_valid(raise_exception=True)
         with api_problems(), refusals():
-            uavs = asked.validated_data.get("uavs")
-            if uavs is None:  # all of them, and by the same checks
-                uavs = [uav_id for route in waiting_for_start(mission) if (uav_id := route.mission_uav.uav_id) is not None]
-            starts = begin_planned_starts(mission=mission, actor=request.user, **asked.validated_data | {"uavs": uavs or None})
+            starts = begin_planned_starts(mission=mission, actor=request.user, **asked.validated_data)
         return Response(planned_starts_json(starts), status=201)
 
     @extend_schema(

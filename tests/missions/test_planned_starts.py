@@ -11,6 +11,7 @@ from missions.services.dispatch import abort_mission
 from missions.services.planned_starts import LEAD_S, MAX_GAP_S, begin_planned_starts, carry_on_planned_starts, stop_planned_starts
 from missions.services.refused import Refused
 from missions.services.steering import command_uav
+from telemetry.models import UavLink, UavWatch
 from tests.missions.api import post
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet
 from tests.missions.outbox import claim, fence
@@ -33,6 +34,7 @@ def crossing(person: User) -> tuple[Mission, MissionUav, MissionUav]:
     here, uavs = world(), fleet("Tern", "Kite")
     mission = dispatched(person, uavs, here.towers[4:6])
     carry(*uavs)
+    heard(*uavs)
     first, second = mission.mission_uavs.select_related("uav", "route").order_by("route__departs_s")
     assert second.route.departs_s - first.route.departs_s > 20.0
     return mission, first, second
@@ -194,15 +196,22 @@ def test_nothing_begins_before_each_has_its_route(person) -> None:
     assert [reason.code for reason in error.value.reasons] == ["not_loaded", "not_loaded"]
 
 
+@pytest.mark.parametrize("names_uavs", [False, True])
+def test_none_is_started_that_nobody_hears(crossing, person, names_uavs) -> None:
+    mission, *places = crossing
+    for told in (UavLink, UavWatch):
+        told.objects.all().delete()
+    with pytest.raises(Refused) as error:
+        begin_planned_starts(mission=mission, actor=person, uavs=[place.uav_id for place in places] if names_uavs else None)
+    assert [reason.code for reason in error.value.reasons] == ["link", "link"]
+
+
 def test_over_the_api(crossing, person) -> None:
     mission, first, second = crossing
     client, path = client_of(person), f"missions/{mission.pk}/planned-starts"
     told = client.get(f"/api/v1/{path}").json()
     assert (told["starts"], [entry["name"] for entry in told["waiting"]]) == (None, [first.name, second.name])
     assert told["waiting"][1]["after_s"] == pytest.approx(second.route.departs_s - first.route.departs_s)
-    unheard = post(client, path)  # without `uavs` all are meant, and checked as those that are named
-    assert (unheard.status_code, [reason["code"] for reason in unheard.json()["error"]["details"]["reasons"]]) == (409, ["link", "link"])
-    heard(first.uav, second.uav)
     begun = post(client, path)
     assert begun.status_code == 201, begun.content
     assert [entry["name"] for entry in begun.json()["uavs"]] == [first.name, second.name]
