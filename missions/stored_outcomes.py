@@ -161,6 +161,7 @@ _BY_OUTBOX = {
     "unheard": gettext_noop("Sent again and again; nothing is heard from the UAV, and whether it does it is not known."),
     "withdrawn": gettext_noop("It was withdrawn before it was sent."),
     "revoked": gettext_noop("The approval was revoked."),
+    "simulation-ended": gettext_noop("The simulation has ended."),
 }
 
 

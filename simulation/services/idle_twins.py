@@ -16,6 +16,8 @@ from simulation.models import SimulatedVehicle
 from simulation.vehicle_models import PRESENT
 from workspace.models import Organisation, User
 
+SIMULATION_ENDED = "simulation-ended"  # what commands to twins that are gone end with
+
 
 def end_copy(mission: Mission) -> None:
     """End a simulated copy that was sent to twins which are gone; any other mission stays as it is."""
@@ -23,7 +25,7 @@ def end_copy(mission: Mission) -> None:
         held = Mission.objects.select_for_update(no_key=True).get(pk=mission.pk)
         if held.simulates_id is None or held.state not in ON_ITS_WAY:
             return
-        end_commands(UavCommand.objects.filter(mission=held), code="simulation_ended", words="The simulation has ended.")
+        end_commands(UavCommand.objects.filter(mission=held), code=SIMULATION_ENDED, words="The simulation has ended.")
         is_open = held.targets.filter(state__in=UNDECIDED).exists()
         change_state(held, MissionState.ABORTED if is_open else MissionState.COMPLETED, None, "close", {"why": "The simulation has ended."})
 
