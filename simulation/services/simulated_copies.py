@@ -4,7 +4,7 @@ The mission itself, its UAVs and its approval are read and not written. What is 
 system id and a key of its own.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from django.db import transaction
@@ -53,13 +53,15 @@ def fly_simulated_copy(
         if held.state not in FLOWN or approval_in_force(held) is None:
             raise refuse("not_approved", _("Only an approved mission is flown in simulation. Approve it first, or rehearse it."))
         copy = _copy_in_use(held)
-        if copy is not None:
-            present = copy.simulations.filter(state__in=PRESENT).first()
-            if present is not None:
-                return present
-            _bring_back_twins(held, copy, actor)
+        present = None if copy is None else copy.simulations.filter(state__in=PRESENT).first()
+        if present is not None:
+            return present
+        places = list(held.mission_uavs.select_related("uav__uav_type"))
+        refuse_for([reason for place in places if (reason := _why_not(place)) is not None])
+        if copy is None:
+            copy = _make_copy(held, places, actor)
         else:
-            copy = _make_copy(held, actor)
+            _bring_back_twins(copy, actor)
         loaded = mission_of_organisation(copy.organisation, copy.pk)
         return start_simulated_flights(mission=loaded, actor=actor, sky=sky, speed=speed, flavour=flavour, seed=seed, faults=faults)
 
@@ -70,23 +72,14 @@ def _copy_in_use(mission: Mission) -> Mission | None:
     return copies.order_by("-created_at").first()
 
 
-def _bring_back_twins(mission: Mission, copy: Mission, actor: User) -> None:
+def _bring_back_twins(copy: Mission, actor: User) -> None:
     """Of a copy whose simulation has ended before it was sent to them."""
-    _places_of(mission)
     for place in copy.mission_uavs.filter(uav__state=UavState.RETIRED).select_related("uav"):
         assert place.uav is not None  # noqa: S101 - of the filter
         change_uav(uav=place.uav, actor=actor, position=None, values={"state": UavState.ACTIVE})
 
 
-def _places_of(mission: Mission) -> list[MissionUav]:
-    """Raises Refused where one has no twin that could fly now."""
-    places = list(mission.mission_uavs.select_related("uav__uav_type"))
-    refuse_for([reason for place in places if (reason := _why_not(place)) is not None])
-    return places
-
-
-def _make_copy(mission: Mission, actor: User) -> Mission:
-    places = _places_of(mission)
+def _make_copy(mission: Mission, places: Sequence[MissionUav], actor: User) -> Mission:
     twins = {place.sequence: _twin(place, actor) for place in places}
     retire_idle_twins(organisation=mission.organisation, actor=actor, but=[twin.pk for twin in twins.values()])
     name = _("{name} (simulated)").format(name=mission.name[: LONGEST_NAME - 20])
