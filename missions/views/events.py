@@ -17,7 +17,7 @@ from workspace.paging import slice_of
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
-WHAT = (
+DESCRIPTION = (
     "Take-offs, landings, crashes, drop-outs, commands step by step, alerts, targets, offers of another plan, and what was done to a "
     "simulation: who and when."
 )
@@ -27,7 +27,7 @@ class MissionEvents(APIView):
     @extend_schema(
         operation_id="list_mission_events",
         summary="What happened in a mission, the newest first",
-        description=WHAT,
+        description=DESCRIPTION,
         parameters=PAGE_PARAMETERS,
         responses=MissionEventPageSerializer,
     )
@@ -43,7 +43,7 @@ class LiveEvents(APIView):
     @extend_schema(
         operation_id="list_live_events",
         summary="What happened in missions that are on their way or ended within the hour, the newest first",
-        description=WHAT,
+        description=DESCRIPTION,
         parameters=PAGE_PARAMETERS,
         responses=MissionEventPageSerializer,
     )
