@@ -16,8 +16,7 @@ import { rateOf, rateWords } from "../clock_rate.js";
 import { isHead, listed } from "../fleet_groups.js";
 import { liveStrip, progressOf } from "../live_strip.js";
 import { estimateWords, stateOf, windWords } from "../uav_words.js";
-import { makeHead, refreshHead } from "./group_head.js";
-import { UavRow } from "./uav_row.js";
+import { makeHead, refreshHead, UavRow } from "./list_rows.js";
 
 /** @import { AlertLevel, Mission } from "../../api_types.d.ts" */
 /** @import { Certainty } from "../../domain/certainty.js" */

@@ -1,4 +1,4 @@
-/** A UAV in one row of 56 px: call sign, state, battery, height, age, what is next and when. */
+/** Rows of the list: the head of a mission's UAVs, and a UAV in one row of 56 px: call sign, state, battery, height, age, what is next and when. */
 
 import { h, icon, refill } from "../../dom.js";
 import { alarmOf } from "../../domain/order.js";
@@ -9,6 +9,8 @@ import { stateOf } from "../uav_words.js";
 
 /** @import { AlertLevel } from "../../api_types.d.ts" */
 /** @import { Figure } from "../card_figures.js" */
+/** @import { MissionNumbers } from "../call_signs.js" */
+/** @import { GroupHead } from "../fleet_groups.js" */
 /** @import { LiveUav, MonitorState } from "../types.d.ts" */
 
 /** @type {Record<AlertLevel, { image: string, words: string }>} */
@@ -69,4 +71,17 @@ export class UavRow {
       next.figure === UNKNOWN ? [] : [`${next.words} `, h("strong", {}, inOneLine(next))],
     );
   }
+}
+
+export const makeHead = () => h("li", { class: "group-head" });
+
+/** @param {HTMLElement} element @param {GroupHead} head @param {MissionNumbers} numbers */
+export function refreshHead(element, { mission, uavs, flying }, numbers) {
+  const number = mission && numbers.size > 1 ? `${numbers.get(mission.id) ?? ""}` : "";
+  const words = t("{flying} of {uavs} in the air", { flying, uavs });
+  refill(element, JSON.stringify([mission?.name, number, words]), () => [
+    number && h("span", { class: "mission-number" }, number),
+    mission ? h("a", { href: `/missions/${mission.id}/fly` }, mission.name) : h("span", {}, t("Not in a mission")),
+    h("span", { class: "quiet-text" }, words),
+  ]);
 }
