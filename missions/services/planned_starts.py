@@ -72,7 +72,7 @@ def begin_planned_starts(
     pilot_checked: the actor has said that what only a pilot can see was looked at; it stays in the history.
     Raises Refused, also where one of them does not have its route as approved.
     """
-    wanted = {route.mission_uav.uav_id for route in waiting_for_start(mission)} if uavs is None else uavs
+    wanted = [uav_id for route in waiting_for_start(mission) if (uav_id := route.mission_uav.uav_id)] if uavs is None else uavs
     against = reasons_against_starts(mission, wanted)  # before the row is held: it may take seconds, for which no abort shall wait
     with transaction.atomic():
         held = held_mission(mission.pk, None)
@@ -104,7 +104,7 @@ def begin_planned_starts(
     return starts
 
 
-def _chosen(routes: Sequence[Route], uavs: Collection[int | None]) -> list[Route]:
+def _chosen(routes: Sequence[Route], uavs: Collection[int]) -> list[Route]:
     """Raises Refused where one of these UAVs does not wait for its first start."""
     chosen = [route for route in routes if route.mission_uav.uav_id in uavs]
     if len(chosen) < len(set(uavs)):
