@@ -2,6 +2,7 @@
 
 import base64
 import json
+from dataclasses import replace
 from datetime import timedelta
 
 import pytest
@@ -17,6 +18,7 @@ from missions.services.replanning.offers import settle_offers
 from missions.services.steering import command_uav
 from telemetry.decoding.measurement import Measurement
 from telemetry.models import AlertLevel, FlightEvent, VehicleText
+from telemetry.selectors import events as telemetry_events
 from telemetry.services import NewRecord, store_records
 from telemetry.services.alerts import acknowledge_alert, close_alert, open_alert
 from tests.missions.api import patch, post
@@ -224,6 +226,25 @@ def test_the_log_is_paged_newest_first_without_a_gap(client, mission, tern, pers
     assert [event["key"] for event in paged] == [event["key"] for event in whole]
     for wrong in ("x", "WzFd", "WyJ5ZXN0ZXJkYXkiLCJrIl0"):
         assert client.get(f"/api/v1/missions/{mission.pk}/events?cursor={wrong}").status_code == 400
+
+
+def test_rows_that_go_while_a_page_is_read_do_not_end_the_log(client, mission, tern, monkeypatch):
+    for number in range(4):
+        open_alert(uav=tern, level=AlertLevel.WARNING, code=f"code-{number}", message="Same", mission=mission)
+    whole = events(client, mission)
+    newest = mission.alerts.order_by("-opened_at").values_list("pk", flat=True)[0]
+    (read,) = [source.read for source in telemetry_events.SOURCES if source.name == "alert"]
+
+    def reads_too_late(places):
+        mission.alerts.filter(pk=newest).delete()
+        return read(places)
+
+    sources = [replace(source, read=reads_too_late) if source.name == "alert" else source for source in telemetry_events.SOURCES]
+    monkeypatch.setattr(telemetry_events, "SOURCES", sources)
+    page = client.get(f"/api/v1/missions/{mission.pk}/events?limit=2").json()
+    assert [event["key"] for event in page["results"]] == [whole[1]["key"]]
+    rest = client.get(page["next"]).json()["results"]
+    assert rest[0]["key"] == whole[2]["key"]
 
 
 def test_as_many_queries_for_many_events_as_for_few(client, mission, tern):

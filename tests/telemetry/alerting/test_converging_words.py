@@ -115,3 +115,7 @@ def _crossing(random: np.random.Generator):
     east, north = speed * math.sin(course), speed * math.cos(course)
     aside = random.uniform(-8, 8, 2)
     return lambda second: (float(aside[0] + east * (second - 8)), float(aside[1] + north * (second - 8)))
+
+
+def test_an_alert_of_before_there_was_one_hold_is_answered_by_hold() -> None:
+    assert acts_of(CODE, 1, {"acts": [{"kind": "pause", "uav": 1}]}) == [{"kind": "hold", "uav": 1}]
