@@ -17,7 +17,7 @@ from missions.flight_plan.rules import SeparationRules
 from missions.flight_plan.separation import TimedRoute, conflicts, keep_apart
 from missions.flight_selectors import STILL_FLOWN, route_in_time
 from missions.in_air_hooks import places_in_the_air
-from missions.models import CommandAxis, CommandKind, CommandState, Route, Uav, UavCommand
+from missions.models import CommandAxis, CommandKind, CommandState, Route, Uav, UavCommand, UavState
 from missions.services.flying import ON_ITS_WAY
 from missions.services.refused import Reason
 
@@ -108,7 +108,8 @@ def _in_the_air(
     later = UavCommand.objects.filter(uav__in=uav_ids, sent_at__gt=since, axis__in=[CommandAxis.FLIGHT, CommandAxis.SPEED])
     last = dict(later.values_list("uav_id").annotate(Max("sequence")))
     others = Uav.objects.filter(organisation=uav.organisation_id, twin_of__isnull=is_real).exclude(pk=uav.pk)
-    names = dict(others.values_list("pk", "name"))
+    gone = {"is_simulated": True, "state": UavState.RETIRED}  # in the middle of a flight, say; real ones are not retired in the air
+    names = dict(others.exclude(**gone).values_list("pk", "name"))
     in_the_air = places_in_the_air(names)
     planned = Route.objects.filter(mission__in=[start.mission_id for start in starts], mission_uav__uav__in=uav_ids)
     routes = {(route.mission_id, route.mission_uav.uav_id): route for route in planned.select_related("mission", "mission_uav")}

@@ -6,7 +6,7 @@ import pytest
 from django.utils import timezone
 
 from missions.given_selectors import given_to
-from missions.models import CommandKind, Mission, MissionUav, Route, Uav, UavCommand
+from missions.models import CommandKind, Mission, MissionUav, Route, Uav, UavCommand, UavState
 from missions.services.flying import FlightEnd, mark_flight_ended
 from missions.services.refused import Refused
 from missions.services.start_slots import reasons_to_carry_later, reasons_to_wait
@@ -115,6 +115,15 @@ def test_one_that_is_flown_by_hand_near_the_route_is_waited_for(crossing, person
     reasons = reasons_to_wait(uav=first.uav, route=first.route, flight=1, now=timezone.now())
     assert [reason.code for reason in reasons] == (["start_slot"] if place in ("near", "untold") else [])
     assert all("Gull is in the air without a flight of a mission" in reason.message for reason in reasons)
+
+
+@pytest.mark.parametrize("is_simulated", [True, False])
+def test_a_simulated_uav_that_was_retired_in_the_air_is_in_nobodys_way(crossing, person, is_simulated: bool) -> None:
+    _, (first, _second) = crossing
+    (gone,) = fleet("Gull", is_simulated=is_simulated, state=UavState.RETIRED)
+    UavLink.objects.create(uav=gone, is_in_air=True, heard_at=timezone.now())
+    reasons = reasons_to_wait(uav=first.uav, route=first.route, flight=1, now=timezone.now())
+    assert [reason.code for reason in reasons] == ([] if is_simulated else ["start_slot"])
 
 
 def test_a_start_that_was_sent_is_not_taken_back_for_its_slot(crossing, person) -> None:
