@@ -264,10 +264,11 @@ test("an offer is said in a sentence, and target by target", () => {
 test("of an offer that is over it is said what became of it, and by whom or why", () => {
   const { strong, rest } = overWords({ state: "accepted", outcome: "", decided_by: "opal", decided_at: ago(0) });
   assert.match(`${strong} ${rest}`, /^The other plan is flown\. Decided by opal, /);
-  assert.equal(
-    overWords({ state: "impossible", outcome: "Kite has no range left.", decided_by: null, decided_at: null }).rest,
-    "Kite has no range left. What is left stays open: plan a follow-up when the mission is closed.",
-  );
+  const none = { state: "impossible", outcome: "Kite has no range left.", decided_by: null, decided_at: null };
+  assert.equal(overWords(none).rest, "Kite has no range left.");
+  assert.equal(overWords(none, ["E402-2"]).rest, "Kite has no range left. E402-2 stays open: plan a follow-up.");
+  const many = ["1", "2", "3", "4", "5", "6"];
+  assert.match(overWords(none, many).rest, /1, 2, 3, 4 and 2 more stay open: plan a follow-up\.$/);
 });
 
 test("the time that is left to take an offer counts down to zero", () => {

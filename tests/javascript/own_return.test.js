@@ -154,6 +154,17 @@ test("what meets less than a straight return at once is offered in its place", (
   assert.equal(questionOf("return", { name: "Tern", returns: check("clear") }).act, "Return Tern");
 });
 
+test("an abort offers what meets less than its straight returns", () => {
+  const returns = check("in_the_way", ["…"], { uav: 1, name: "Tern", safest: way({ along_route: true }) });
+  const one = questionOf("abort", { name: "Tern", returns });
+  assert.deepEqual([one.safer.words, one.act, one.isDanger], ["Return along the route", "Abort Tern", true]);
+  assert.equal(questionOf("abort", { name: "Tern", returns: check("clear") }).safer, null);
+  const asked = (found) => abortQuestion({ name: "South", isActive: true, uavs: [{ name: "Tern", check: found }] });
+  assert.deepEqual([...asked(returns).safer.parameters.ways], [[1, { along_route: true }]]);
+  assert.ok(asked(returns).lines.includes("The mission then stays open: close it once all UAVs are down."));
+  assert.equal(asked(check("clear")).safer, null);
+});
+
 test("a return along the route says to where, how long, and with what it lands", () => {
   const along = { waypoint: 8, length_m: 1240, duration_s: 150, targets: 1, landing_percent: 34.4 };
   const said = returnLines(check("in_the_way", ["…"], { safest: way({ along_route: true }), along })).join(" ");

@@ -2,7 +2,15 @@
 
 import { t } from "../text.js";
 import { durationText, lengthText, speedText } from "../units.js";
-import { holdLine, landingLines, returnLines, returnLinesOfAll, saferReturn, togetherLine } from "./own_return.js";
+import {
+  holdLine,
+  landingLines,
+  returnLines,
+  returnLinesOfAll,
+  saferReturn,
+  separateReturns,
+  togetherLine,
+} from "./own_return.js";
 
 /** @import { CommandKind, LandingHere, PresentReturn, ReturnCheck, Route } from "../api_types.d.ts" */
 
@@ -156,6 +164,7 @@ const ASKED = {
     ],
     keep: t("Keep flying"),
     act: t("Abort {name}", { name }),
+    safer: returns && saferReturn(returns),
     isDanger: true,
     field: WHY,
     image: "octagon-alert",
@@ -204,24 +213,29 @@ export const outOfSlotQuestion = (name, why) => ({
  * @param {{ name: string, isActive: boolean, uavs: { name: string, check: PresentReturn | null | undefined }[] }} mission
  * @returns {Omit<Question, "opener">}
  */
-export const abortQuestion = ({ name, isActive, uavs }) => ({
-  title: t("Abort “{name}”?", { name }),
-  lines: [
-    t(
-      "{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.",
-      { names: uavs.map((uav) => uav.name).join(", ") },
-    ),
-    ABORT_DOES,
-    togetherLine(uavs.map(({ check }) => check)),
-    ...returnLinesOfAll(uavs),
-    LATE,
-  ],
-  field: WHY,
-  keep: isActive ? t("Keep flying") : t("Keep it"),
-  act: t("Abort the mission"),
-  isDanger: true,
-  image: "octagon-alert",
-});
+export const abortQuestion = ({ name, isActive, uavs }) => {
+  const separate = separateReturns(uavs.flatMap(({ check }) => check ?? []));
+  return {
+    title: t("Abort “{name}”?", { name }),
+    lines: [
+      t(
+        "{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.",
+        { names: uavs.map((uav) => uav.name).join(", ") },
+      ),
+      ABORT_DOES,
+      togetherLine(uavs.map(({ check }) => check)),
+      ...returnLinesOfAll(uavs),
+      ...(separate ? [...separate.lines, t("The mission then stays open: close it once all UAVs are down.")] : []),
+      LATE,
+    ],
+    field: WHY,
+    keep: isActive ? t("Keep flying") : t("Keep it"),
+    act: t("Abort the mission"),
+    safer: separate && { words: t("Return on separate ways"), kind: "return", parameters: { ways: separate.ways } },
+    isDanger: true,
+    image: "octagon-alert",
+  };
+};
 
 /**
  * What confirmAct asks.

@@ -268,7 +268,7 @@ export function whyNoStart(mission, flyer, commands) {
       parameters.flight === flight &&
       approval === mission.approval?.id,
   );
-  return started ? t("{name} is flying.", { name }) : "";
+  return started ? t("{name} has already been started.", { name }) : "";
 }
 
 /**

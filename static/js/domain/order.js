@@ -14,6 +14,13 @@ export const isEndedUnseen = (alert) =>
 /** @param {Pick<Alert, "closed_at" | "acknowledged_at" | "level">} alert */
 export const isUnanswered = (alert) => alert.acknowledged_at === null && (isOpenAlert(alert) || isEndedUnseen(alert));
 
+/** Where a UAV is down away from its plan: [longitude, latitude] in degrees, or null. @param {Pick<Alert, "code" | "details">} alert @returns {[number, number] | null} */
+export function downAt({ code, details }) {
+  const { position } = /** @type {{ position?: unknown }} */ (details ?? {});
+  const isPlace = Array.isArray(position) && position.length === 2 && position.every(Number.isFinite);
+  return code === "down-off-plan" && isPlace ? /** @type {[number, number]} */ (position) : null;
+}
+
 /**
  * What somebody has to see: open ones, and critical ones that ended; of one cause the newest.
  *
@@ -33,9 +40,15 @@ export function pinnedAlerts(alerts) {
   return [...newest.values()];
 }
 
-/** The worst level of a UAV's open alerts; null. @param {number} uav @param {Pick<Alert, "uav" | "level" | "closed_at">[]} alerts */
+/**
+ * The worst level of a UAV's alerts that are pinned: open, or critical and not acknowledged; null.
+ *
+ * @param {number} uav
+ * @param {Pick<Alert, "uav" | "level" | "closed_at" | "acknowledged_at">[]} alerts
+ */
 export function alarmOf(uav, alerts) {
-  const levels = alerts.filter((alert) => alert.uav === uav && isOpenAlert(alert)).map(({ level }) => level);
+  const own = alerts.filter((alert) => alert.uav === uav && (isOpenAlert(alert) || isEndedUnseen(alert)));
+  const levels = own.map(({ level }) => level);
   return levels.sort((a, b) => RANKS[a] - RANKS[b])[0] ?? null;
 }
 

@@ -41,7 +41,7 @@ const ALL = {
  * @param {BatchScope[]} scopes
  * @param {Map<number, Record<string, any>> | null} [ways] how each returns
  */
-async function tellBatch(store, kind, scopes, ways = null) {
+export async function tellBatch(store, kind, scopes, ways = null) {
   const { path, body } = batchRequest(kind, scopes, ways);
   const ids = scopes.flatMap(({ uavs }) => uavs.map(({ id }) => id));
   markSending(store, ids, kind);

@@ -131,6 +131,12 @@ function followFeed(stage) {
   });
 }
 
+/** The UAV that the address names, as links of alerts do: ?uav=12. */
+function pickNamed() {
+  const named = Number(new URLSearchParams(location.search).get("uav"));
+  if (store.state.uavs.some(({ id }) => id === named)) pick(named);
+}
+
 /** @param {number} by 1 or -1 */
 function step(by) {
   const order = listed(store.state, page.mission !== null).flatMap((entry) => (isHead(entry) ? [] : entry));
@@ -211,6 +217,7 @@ function show() {
       ? missionNumbers(store.state.numbers, [...feed.shown.missions.values()])
       : store.state.numbers;
   store.update({ ...told, numbers, ...timesOf() });
+  if (!store.state.isWhole) pickNamed();
   store.update({ isWhole: true }); // from here on what comes is news
 }
 

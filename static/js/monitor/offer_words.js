@@ -37,18 +37,29 @@ export const differenceOf = ({ difference }) => /** @type {OfferDifference} */ (
 /** @param {Pick<LiveOffer, "cause">} offer */
 const causeOf = ({ cause }) => /** @type {OfferCause} */ (cause ?? {});
 
+const MAX_NAMED = 4;
+
+/** "E402-2 stays open: plan a follow-up."; "" where nothing is known to be open. @param {readonly string[]} open labels of targets */
+function openWords(open) {
+  const more = open.length - MAX_NAMED;
+  const named = open.slice(0, MAX_NAMED).join(", ");
+  const names = more > 0 ? t("{names} and {count} more", { names: named, count: more }) : named;
+  return open.length
+    ? tn(open.length, "{names} stays open: plan a follow-up.", "{names} stay open: plan a follow-up.", { names })
+    : "";
+}
+
 /**
  * Of an offer that is over: { strong, rest }.
  *
  * @param {Pick<LiveOffer, "state" | "outcome" | "decided_by" | "decided_at">} offer
+ * @param {readonly string[]} [open] labels of targets that no plan reaches
  */
-export const overWords = ({ state, outcome, decided_by, decided_at }) => ({
+export const overWords = ({ state, outcome, decided_by, decided_at }, open = []) => ({
   strong: OUTCOMES[state] ?? "",
   rest: decided_by
     ? t("Decided by {who}, {time}.", { who: decided_by, time: decided_at ? clockText(decided_at) : "" })
-    : [outcome, state === "impossible" && t("What is left stays open: plan a follow-up when the mission is closed.")]
-        .filter(Boolean)
-        .join(" "),
+    : [outcome, state === "impossible" && openWords(open)].filter(Boolean).join(" "),
 });
 
 /** @param {Pick<LiveOffer, "state">} offer */

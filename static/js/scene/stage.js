@@ -82,13 +82,13 @@ function pictureIn(holder, options) {
 
 const MAX_ALERTS = 3;
 
-/** @param {Alert} alert @param {string} address */
-const alertLine = ({ level, message, closed_at }, address) =>
+/** @param {Alert} alert @param {string} address of the page of the flight, which then selects its UAV */
+const alertLine = ({ uav, level, message, closed_at }, address) =>
   h(
     "li",
     { class: closed_at ? "known" : level },
     icon(level === "critical" ? "octagon-alert" : level === "warning" ? "triangle-alert" : "info", "small"),
-    h("a", { href: address }, message),
+    h("a", { href: uav === null ? address : `${address}?uav=${uav}` }, message),
     closed_at && h("small", {}, t("Ended {time}.", { time: exactClockText(closed_at) })),
   );
 

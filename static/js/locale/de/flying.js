@@ -53,7 +53,7 @@ export default {
   "{kind}: reading back what is on board, {done} of {total} items":
     "{kind}: liest zurück, was an Bord ist, {done} von {total} Punkten",
   "{name} has flown this flight.": "{name} hat diesen Flug schon geflogen.",
-  "{name} is flying.": "{name} fliegt.",
+  "{name} has already been started.": "{name} wurde schon gestartet.",
   "Flown to its end. Save a copy to fly it again.":
     "Zu Ende geflogen. Sichern Sie eine Kopie, um sie wieder zu fliegen.",
   "Aborted. Save a copy to fly it again.": "Abgebrochen. Sichern Sie eine Kopie, um sie wieder zu fliegen.",

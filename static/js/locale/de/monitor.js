@@ -167,8 +167,18 @@ export default {
   "Can be taken for {time}. Dashed on the map.": "Noch {time} annehmbar. Auf der Karte gestrichelt.",
   "Nothing was sent. Look at the plan that is offered now.":
     "Es wurde nichts gesendet. Sehen Sie sich den Plan an, der jetzt angeboten wird.",
-  "What is left stays open: plan a follow-up when the mission is closed.":
-    "Was übrig ist, bleibt offen: Planen Sie beim Abschließen der Mission einen Folgeauftrag.",
+  "{names} stays open: plan a follow-up.": [
+    "{names} bleibt offen: Folgemission planen.",
+    "{names} bleiben offen: Folgemission planen.",
+  ],
+  "{names} and {count} more": "{names} und {count} weitere",
+  "Plan a follow-up": "Folgemission planen",
+  "Copy position": "Position kopieren",
+  "Navigate to it": "Dorthin navigieren",
+  "Position copied (latitude, longitude): {position}": "Position kopiert (Breite, Länge): {position}",
+  "Latitude, longitude: {position}": "Breite, Länge: {position}",
+  "The mission then stays open: close it once all UAVs are down.":
+    "Die Mission bleibt dann offen: Schließen Sie sie ab, sobald alle UAVs am Boden sind.",
   "Accept": "Annehmen",
   "Declined: the plan stays as it is.": "Abgelehnt: Der Plan bleibt, wie er ist.",
   "Decline": "Ablehnen",

@@ -7,6 +7,8 @@ import { confirmAct } from "../../page/confirm.js";
 import { CHECKING_HOME, returnsNow } from "../../page/present_returns.js";
 import { toast } from "../../page/toast.js";
 import { t } from "../../text.js";
+import { batchScopes } from "../batch.js";
+import { tellBatch } from "../batch_commanding.js";
 
 /** @import { LiveMission } from "../../api_types.d.ts" */
 /** @import { MonitorPage, MonitorState, MonitorStore } from "../types.d.ts" */
@@ -28,7 +30,8 @@ export function mountAbortMission(store, page) {
 }
 
 /** @param {LiveMission} mission @param {HTMLElement} opener @param {MonitorStore} store */
-async function abort({ id, name, state }, opener, store) {
+async function abort(mission, opener, store) {
+  const { id, name, state } = mission;
   const told = { name, isActive: state === "active" };
   const flyers = store.state.uavs.filter(({ mission }) => mission === id);
   const first = abortQuestion({ ...told, uavs: flyers.map((flyer) => ({ name: flyer.name, check: null })) });
@@ -37,6 +40,11 @@ async function abort({ id, name, state }, opener, store) {
   );
   const asked = await confirmAct({ ...first, lines: [...first.lines.slice(0, 2), CHECKING_HOME], later, opener });
   if (!asked) return;
+  if (asked.safer) {
+    const scopes = batchScopes(flyers, [mission]);
+    if (scopes.length) await tellBatch(store, "return", scopes, asked.safer.parameters.ways);
+    return;
+  }
   try {
     // what stops UAVs is not held up by what somebody else has changed meanwhile
     const headers = { "If-Match": "*", "Idempotency-Key": freshKey() };

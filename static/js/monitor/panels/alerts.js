@@ -2,8 +2,9 @@
 
 import { ApiError, get, post } from "../../api.js";
 import { byId, h, icon, keyedList, setChildren } from "../../dom.js";
-import { alertsInOrder, isEndedUnseen, isOpenAlert, isUnanswered, pinnedAlerts } from "../../domain/order.js";
+import { alertsInOrder, downAt, isEndedUnseen, isOpenAlert, isUnanswered, pinnedAlerts } from "../../domain/order.js";
 import { feedBell, showAlertCount } from "../../page/bell.js";
+import { copyText } from "../../page/clipboard.js";
 import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { simulatedMark } from "../../simulated.js";
@@ -106,6 +107,32 @@ const closeButton = (alert) =>
     { type: "button", class: "button small quiet", "data-act": "close", onclick: () => void close(alert) },
     t("Close"),
   );
+
+/** @param {string} position latitude first, as map programs take it */
+async function copyPosition(position) {
+  const said = (await copyText(position))
+    ? t("Position copied (latitude, longitude): {position}", { position })
+    : t("Latitude, longitude: {position}", { position });
+  toast(said);
+}
+
+/** To whoever fetches the UAV: copies its position, and hands it to a phone's navigation or to a map. @param {Alert} alert */
+function positionActs(alert) {
+  const position = downAt(alert);
+  if (!position) return [];
+  const [longitude, latitude] = position.map((degrees) => degrees.toFixed(6));
+  const address = matchMedia("(pointer: coarse)").matches
+    ? `geo:${latitude},${longitude}?q=${latitude},${longitude}`
+    : `https://www.openstreetmap.org/?mlat=${latitude}&mlon=${longitude}#map=18/${latitude}/${longitude}`;
+  return [
+    h(
+      "button",
+      { type: "button", class: "button small quiet", onclick: () => void copyPosition(`${latitude}, ${longitude}`) },
+      t("Copy position"),
+    ),
+    h("a", { class: "button small quiet", href: address, target: "_blank", rel: "noreferrer" }, t("Navigate to it")),
+  ];
+}
 
 /** What has become of an alert. @param {Alert} alert */
 function historyWords(alert) {
@@ -268,6 +295,7 @@ class AlertPanel {
     const answers = this.#actButtons(alert);
     const known = this.#page.canFly && isUnanswered(alert) && acknowledgeButton(alert, answers.length > 0);
     const closing = this.#page.canFly && alert.code === "down-off-plan" && isOpenAlert(alert) && closeButton(alert);
+    const fetching = positionActs(alert);
     const past = historyWords(alert);
     const pick = () => uav && this.#acts.pick(uav.id);
     return h(
@@ -282,7 +310,8 @@ class AlertPanel {
         alert.is_simulated && [" ", simulatedMark()],
       ),
       past && h("p", { class: "caption" }, past),
-      (answers.length > 0 || known || closing) && h("div", { class: "alert-acts" }, answers, known, closing),
+      (answers.length > 0 || known || closing || fetching.length > 0) &&
+        h("div", { class: "alert-acts" }, answers, known, closing, fetching),
     );
   }
 

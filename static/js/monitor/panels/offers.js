@@ -3,6 +3,7 @@
 import { ApiError, get, post } from "../../api.js";
 import { byId, h, icon, setChildren } from "../../dom.js";
 import { routeNumber } from "../../domain/palette.js";
+import { askToClose } from "../../page/close_mission.js";
 import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
@@ -132,9 +133,16 @@ function count(now_ms) {
     line.textContent = validWords(line.dataset.until ?? "", now_ms);
 }
 
-/** What became of an offer, and where the flight goes on. @param {LiveOffer} offer @param {string | null} goesOn address @param {() => void} onPutAway */
-function overCard(offer, goesOn, onPutAway) {
-  const { strong, rest } = overWords(offer);
+/**
+ * What became of an offer, and where the flight goes on.
+ *
+ * @param {LiveOffer} offer
+ * @param {{ goesOn: string | null, open: string[], canFly: boolean, onPutAway: () => void }} more `goesOn` is an address, `open` are
+ *   targets that no plan reaches
+ */
+function overCard(offer, { goesOn, open, canFly, onPutAway }) {
+  const { strong, rest } = overWords(offer, open);
+  const isLeft = offer.state === "impossible" && open.length > 0 && canFly;
   const words = t("Put away");
   const image = icon(offer.state === "accepted" ? "circle-check" : "info", "small");
   const put = { type: "button", class: "icon-button tight", "aria-label": words, title: words, onclick: onPutAway };
@@ -144,8 +152,21 @@ function overCard(offer, goesOn, onPutAway) {
     h("p", {}, image, h("span", {}, h("strong", {}, strong), rest && ` ${rest}`)),
     h("button", put, icon("x", "small")),
     goesOn && h("a", { class: "button primary", href: goesOn }, t("Watch it go on")),
+    isLeft && h("button", { type: "button", class: "button", onclick: followUp(offer.mission) }, t("Plan a follow-up")),
   );
 }
+
+/** Closes the mission, which asks for reasons and offers the follow-up. @param {string} mission */
+const followUp =
+  (mission) =>
+  (/** @type {Event} */ { currentTarget }) =>
+    askToClose({ mission, opener: /** @type {HTMLElement} */ (currentTarget) });
+
+/** Labels of the targets that are still open. @param {MonitorState["missions"]} missions @param {string} id of one of them */
+const openTargets = (missions, id) =>
+  (missions.find((mission) => mission.id === id)?.targets ?? [])
+    .filter(({ state }) => state === "pending" || state === "in-progress")
+    .map(({ label }) => label);
 
 /** Routes of the plan that is offered, by the UAVs that would fly them; none where it cannot be read. @param {LiveOffer} offer @returns {Promise<OfferedRoute[]>} */
 async function readRoutes(offer) {
@@ -177,12 +198,17 @@ export function mountOffers(store, page) {
     if (routesOf === wanted) store.update({ offered });
   }
 
-  /** The newest that is over stands until somebody puts it away. @param {LiveOffer} offer */
-  function over(offer) {
+  /** The newest that is over stands until somebody puts it away. @param {LiveOffer} offer @param {string[]} open */
+  function over(offer, open) {
     const isFollowed = offer.state === "accepted" && page.mission === offer.mission;
-    return overCard(offer, isFollowed ? `/missions/${offer.continuation}/fly` : null, () => {
-      putAway.add(offer.id);
-      draw(store.state);
+    return overCard(offer, {
+      goesOn: isFollowed ? `/missions/${offer.continuation}/fly` : null,
+      open,
+      canFly: page.canFly,
+      onPutAway() {
+        putAway.add(offer.id);
+        draw(store.state);
+      },
     });
   }
 
@@ -195,17 +221,18 @@ export function mountOffers(store, page) {
       .sort((a, b) => Date.parse(b.created_at) - Date.parse(a.created_at));
     const last = undecided.length === 0 && newest && !putAway.has(newest.id) ? newest : null;
     const whyNot = new Map(undecided.map((offer) => [offer.id, whyNotDecided(offer, state)]));
-    const key = JSON.stringify([undecided, last, [...whyNot], [...deciding]]);
+    const open = last?.state === "impossible" ? openTargets(state.missions, last.mission) : [];
+    const key = JSON.stringify([undecided, last, open, [...whyNot], [...deciding]]);
     if (key === drawn) return count(state.now_ms);
     drawn = key;
     byId("offers").hidden = undecided.length === 0 && last === null;
     setChildren(
       byId("offer-list"),
-      last ? over(last) : undecided.map((offer) => card(store, offer, page.canFly, whyNot.get(offer.id) ?? "")),
+      last ? over(last, open) : undecided.map((offer) => card(store, offer, page.canFly, whyNot.get(offer.id) ?? "")),
     );
     count(state.now_ms);
     void drawRoutes(undecided.find(({ state }) => state === "open"));
   }
 
-  store.listen(["offers", "now_ms", "silent_ms"], draw);
+  store.listen(["offers", "missions", "now_ms", "silent_ms"], draw);
 }
