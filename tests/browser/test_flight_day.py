@@ -107,7 +107,8 @@ def day(visitor: Visitor) -> Iterator[dict[str, Flown]]:
 
 def in_flight(page: Page, flown: Flown) -> None:
     for name in flown.uavs:
-        expect(card(page, name).locator(".figures")).to_contain_text(re.compile(r"over take-off\s*[1-9]\d"), timeout=FLIES_MS)
+        height = card(page, name).locator("[data-figure=height]")
+        expect(height).to_contain_text(re.compile(r"(AGL|above take-off)\s*[1-9]\d"), timeout=FLIES_MS)
 
 
 def flies_away(page: Page, flown: Flown, name: str) -> bool:
@@ -139,6 +140,7 @@ def test_a_flight_day_of_two_missions(visitor: Visitor, site: Site, day: dict[st
     batch_reaches_one_mission(page, south, north)
     faults_are_told(page, south, north)
     blind_pages_blame_no_uav(visitor, site, north)
+    returning_and_abort_reach_one_mission(page, south, north)
     page.context.close()
 
 
@@ -174,8 +176,8 @@ def faults_are_told(page: Page, south: Flown, north: Flown) -> None:
     gps = open_alert(page, tern, "gps")
     assert "GPS" in gps["message"] or "where it is" in gps["message"]
     assert [act["kind"] for act in gps["acts"]][:1] in (["land"], ["take-over"]), gps
-    link = open_alert(page, kite, "link-lost")
-    assert re.search("late|lost", link["message"])
+    link = open_alert(page, kite, "link-lost", level="critical")
+    assert re.search("lost|no message", link["message"], re.IGNORECASE), link
     battery = open_alert(page, gull, "battery-short", level="critical")
     assert battery["acts"] and battery["acts"][0]["kind"] in {"return", "land"}, battery
     down = open_alert(page, north.uavs["Crow"], "down-off-plan", level="critical")
@@ -183,13 +185,34 @@ def faults_are_told(page: Page, south: Flown, north: Flown) -> None:
     writes(page, "PATCH", f"/simulated-vehicles/{south.vehicles['Gull']}", {"conditions": "strong-wind"})
     expect(page.locator(".alert").filter(has_text="battery").first).to_be_visible(timeout=60_000)
     breaks(page, south, "Tern", gps_lost_for_s=0)
-    critical_is_acknowledged(page, battery["id"])
+    critical_stays_until_acknowledged(page, gps)
 
 
-def critical_is_acknowledged(page: Page, alert: int) -> None:
-    assert any(one["id"] == alert for one in asks(page, "/alerts?state=open&limit=200")["results"])
-    writes(page, "POST", f"/alerts/{alert}/acknowledge", {})
-    assert asks(page, f"/alerts/{alert}")["acknowledged_at"]
+def critical_stays_until_acknowledged(page: Page, alert: dict[str, Any]) -> None:
+    """Also once its cause has gone."""
+    key = f"/alerts/{alert['id']}"
+    until(page, lambda: asks(page, key)["closed_at"], f"the cause of {alert['message']} has gone", within_s=180.0)
+    shown = page.locator("#alert-list .alert").filter(has_text=alert["message"])
+    expect(shown).to_contain_text(re.compile("ended", re.IGNORECASE))
+    writes(page, "POST", f"{key}/acknowledge", {})
+    expect(shown).to_have_count(0)
+
+
+def returning_and_abort_reach_one_mission(page: Page, south: Flown, north: Flown) -> None:
+    """Return of all by the page, then landing and abort by the API."""
+    opened(page, f"/missions/{north.mission}/fly")
+    before = {name: commands_of(page, uav) for name, uav in south.uavs.items()}
+    page.get_by_role("button", name="Return all").click()
+    question = page.get_by_role("dialog", name=re.compile(r"^Return all \d UAVs\?$"))
+    for name in south.uavs:
+        expect(question).not_to_contain_text(name)
+    question.locator(".acts button").last.click()  # the return, or what is safer than it
+    for name in ("Rook", "Swift"):
+        until(page, lambda name=name: commands_of(page, north.uavs[name])[-1] != "start", f"{name} is given its return")
+    writes(page, "POST", f"/missions/{north.mission}/commands", {"kind": "land"})
+    writes(page, "POST", f"/missions/{north.mission}/abort", {"why": "The day is over."})
+    assert asks(page, f"/missions/{north.mission}")["state"] == "aborted"
+    assert {name: commands_of(page, uav) for name, uav in south.uavs.items()} == before
 
 
 def blind_pages_blame_no_uav(visitor: Visitor, site: Site, north: Flown) -> None:
