@@ -52,6 +52,11 @@ def in_time(records: QuerySet[TelemetryRecord]) -> QuerySet[TelemetryRecord]:
     return records.filter(is_from_future=False)
 
 
+def on_track(records: QuerySet[TelemetryRecord]) -> QuerySet[TelemetryRecord]:
+    """Those that say where a UAV was at a time that can have been (LoggedRecord.is_on_track)."""
+    return in_time(records).filter(position__isnull=False)
+
+
 def latest_record(uav: Uav) -> TelemetryRecord | None:
     """What the UAV measured last, with its UAV and stream; never from the future."""
     return newest_of(uav.pk, "uav", "stream")

@@ -23,7 +23,7 @@ from telemetry.exports.kml_file import kml_pieces
 from telemetry.exports.logged_record import LoggedRecord
 from telemetry.exports.thinning import EVERY_S, for_files
 from telemetry.models import TelemetryRecord
-from telemetry.selectors.log import LogFilter, logged, records_that_match
+from telemetry.selectors.log import LogFilter, logged, on_track, records_that_match
 from telemetry.views.log_filters import TIMES, time_of
 from workspace.errors import ApiProblem
 from workspace.negotiation import OneAnswer
@@ -35,15 +35,20 @@ UNSAFE = re.compile(r"[^A-Za-z0-9]+")  # in names of files: other programs stumb
 
 
 class FileKind(NamedTuple):
+    """`is_track`: it has the records with a place and a time that can have been, and no others."""
+
     media_type: str
     order: tuple[str, ...]
     pieces: Callable[[Iterable[LoggedRecord], str], Iterator[str]]
+    is_track: bool = False
 
 
 KINDS = {
     "csv": FileKind("text/csv; charset=utf-8", BY_TIME, lambda records, name: csv_pieces(records)),
-    "gpx": FileKind("application/gpx+xml", BY_STREAM, lambda records, name: gpx_pieces(records, name=name)),
-    "kml": FileKind("application/vnd.google-earth.kml+xml", BY_STREAM, lambda records, name: kml_pieces(records, name=name)),
+    "gpx": FileKind("application/gpx+xml", BY_STREAM, lambda records, name: gpx_pieces(records, name=name), is_track=True),
+    "kml": FileKind(
+        "application/vnd.google-earth.kml+xml", BY_STREAM, lambda records, name: kml_pieces(records, name=name), is_track=True
+    ),
     "geojson": FileKind("application/geo+json", BY_TIME, lambda records, name: geojson_pieces(records)),
 }
 ABOUT = (
@@ -59,7 +64,7 @@ EVERY = OpenApiParameter(
     default=EVERY_S,
 )
 KIND = OpenApiParameter("kind", str, OpenApiParameter.PATH, enum=[*KINDS], description="how the file ends")
-NOTHING = {409: OpenApiResponse(description="Nothing was recorded: there is no file.")}
+NOTHING = {409: OpenApiResponse(description="Nothing was recorded, or no position for GPX and KML: there is no file.")}
 FILES: dict[Any, Any] = {(200, kind.media_type.partition(";")[0]): OpenApiTypes.STR for kind in KINDS.values()} | NOTHING
 
 
@@ -111,9 +116,11 @@ def _every_s(request: SignedInRequest) -> float:
 
 
 def _file(records: QuerySet[TelemetryRecord], kind: str, name: str, every_s: float) -> StreamingHttpResponse:
+    wanted, words = KINDS[kind], _("No telemetry was recorded: there is nothing to export.")
+    if wanted.is_track:
+        records, words = on_track(records), _("No position was recorded: there is no track to export.")
     if not records.exists():
-        raise ApiProblem(409, "nothing_recorded", _("No telemetry was recorded: there is nothing to export."))
-    wanted = KINDS[kind]
+        raise ApiProblem(409, "nothing_recorded", words)
     chosen = for_files(logged(records, *wanted.order), every_s=every_s)
     response = StreamingHttpResponse(wanted.pieces(chosen, name), content_type=wanted.media_type)
     response["Content-Disposition"] = f'attachment; filename="{file_stem(name)}-telemetry.{kind}"'

@@ -100,3 +100,12 @@ def test_nothing_is_exported_empty(client: Client, mission: Mission, kind: str) 
     assert client.get(f"/api/v1/uavs/{silent.pk}/telemetry.{kind}").status_code == 409
     assert client.get(f"/api/v1/missions/{mission.pk}/results.{kind if kind != 'gpx' else 'xlsx'}").status_code == 409
     assert client.get(f"/api/v1/missions/{mission.pk}/record.zip").status_code == 409
+
+
+@pytest.mark.parametrize("kind", ["gpx", "kml"])
+def test_a_log_without_places_has_no_track(client: Client, mission: Mission, kind: str) -> None:
+    TelemetryRecord.objects.filter(mission=mission).exclude(sequence=0).update(position=None)
+    TelemetryRecord.objects.filter(mission=mission, sequence=0).update(is_from_future=True)
+    answer = client.get(f"/api/v1/missions/{mission.pk}/telemetry.{kind}")
+    assert (answer.status_code, answer.json()["error"]["code"]) == (409, "nothing_recorded")
+    assert client.get(f"/api/v1/missions/{mission.pk}/telemetry.csv").status_code == 200
