@@ -7096,7 +7096,7 @@ export interface components {
             sensors?: string[];
         };
         UavWriteRequest: components["schemas"]["UavFlatRequest"] | components["schemas"]["UavFeatureRequest"];
-        /** @description Alerts that nobody has acknowledged: open ones, and critical ones that ended within a day. */
+        /** @description Alerts that nobody has acknowledged: open ones, and critical ones that have ended. */
         UnansweredAlerts: {
             critical: number;
             warning: number;

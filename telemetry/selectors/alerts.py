@@ -3,18 +3,16 @@
 from collections import defaultdict
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import datetime
 from typing import TYPE_CHECKING, Any, TypedDict
 from uuid import UUID
 
 from django.db.models import Count, Q, QuerySet
-from django.utils import timezone
 
 from telemetry.models import Alert, AlertLevel
 from workspace.models import Organisation
 
 MIXED, OTHER_LIST = "mission-mixed", "other-list-on-board"  # codes
-WAITS_TO_BE_SEEN = timedelta(days=1)  # later it is in the history alone
 WORST = "worst"  # in the details of an alert: the worst that it has said
 BY_PERSON = "by-person"  # why an alert is closed
 
@@ -42,14 +40,17 @@ def open_alerts_of(uav_ids: Collection[int], codes: Collection[str]) -> dict[int
     return found
 
 
-def waiting_to_be_seen(now: datetime) -> Q:
-    """Critical alerts that have ended and that nobody has acknowledged (ANSI/ISA-18.2: unacknowledged, returned to normal)."""
-    return Q(level=AlertLevel.CRITICAL, acknowledged_at=None, closed_at__gt=now - WAITS_TO_BE_SEEN)
+def waiting_to_be_seen() -> Q:
+    """Critical alerts that have ended and that nobody has acknowledged (ANSI/ISA-18.2: unacknowledged, returned to normal), however old.
+
+    Its terms are those of the index alert_waits_to_be_seen_idx.
+    """
+    return Q(level=AlertLevel.CRITICAL, acknowledged_at=None, closed_at__isnull=False)
 
 
 def unanswered_counts(organisation: Organisation) -> dict[str, int]:
     """By level, alerts that nobody has acknowledged: open ones, and critical ones that have ended."""
-    rows = Alert.objects.filter(Q(closed_at=None, acknowledged_at=None) | waiting_to_be_seen(timezone.now()), organisation=organisation)
+    rows = Alert.objects.filter(Q(closed_at=None, acknowledged_at=None) | waiting_to_be_seen(), organisation=organisation)
     return dict.fromkeys(AlertLevel.values, 0) | dict(rows.order_by().values_list("level").annotate(Count("pk")))
 
 

@@ -27,9 +27,9 @@ class Shown:
 
 
 MOST_CLOSED = 100
-# UAVs that fly a mission or were heard within a day; missions on their way or ended within the hour; alerts that are open, critical ones
-# that ended within a day and that nobody has acknowledged, and the newest that were closed within the hour, of the organisation and of
-# each mission asked for; commands and offers that are open or ended within ten minutes. And all of it that belongs to the missions asked
+# UAVs that fly a mission or were heard within a day; missions on their way or ended within the hour; alerts that are open, the newest
+# critical ones that have ended and that nobody has acknowledged, and the newest that were closed within the hour, of the organisation and
+# of each mission asked for; commands and offers that are open or ended within ten minutes. And all of it that belongs to the missions asked
 # for: to these belong UAVs with a route of theirs that fly no other mission. A UAV flies the mission of which it was sent a route last
 # (missions/command_selectors.py).
 _LOOK = f"""
@@ -63,7 +63,7 @@ told AS (
         SELECT waits.id, true FROM asked, LATERAL (
             SELECT alert.id FROM telemetry_alert alert
             WHERE alert.organisation_id = asked.organisation_id AND alert.level = 'critical' AND alert.acknowledged_at IS NULL
-                AND alert.closed_at > now() - interval '1 day'
+                AND alert.closed_at IS NOT NULL  -- by alert_waits_to_be_seen_idx
             ORDER BY alert.closed_at DESC LIMIT {MOST_CLOSED}
         ) waits
         UNION ALL

@@ -23,7 +23,7 @@ class AlertWorstSerializer(serializers.Serializer):
 
 
 class UnansweredAlertsSerializer(serializers.Serializer):
-    """Alerts that nobody has acknowledged: open ones, and critical ones that ended within a day."""
+    """Alerts that nobody has acknowledged: open ones, and critical ones that have ended."""
 
     critical = serializers.IntegerField()
     warning = serializers.IntegerField()

@@ -91,7 +91,7 @@ def acknowledge_alert(*, alert: Alert, actor: User, note: str = "") -> Alert:
         if held.acknowledged_at is None:
             _acknowledge(held, actor, now)
             same = Alert.objects.filter(organisation=held.organisation_id, uav=held.uav_id, code=held.code, subject=held.subject)
-            for ended in same.filter(waiting_to_be_seen(now)).exclude(pk=held.pk).select_for_update().order_by("pk"):
+            for ended in same.filter(waiting_to_be_seen()).exclude(pk=held.pk).select_for_update().order_by("pk"):
                 _acknowledge(ended, actor, now)
             after = {"code": held.code, "level": held.level, "uav": held.uav_id, "note": note}
             _record(held, actor, "acknowledge", after)
