@@ -642,6 +642,11 @@ export interface components {
              * @description that it can stay where it is and still return and land with its reserve; null: not known
              */
             hold_s: number | null;
+            /**
+             * Format: double
+             * @description that it has when it is down as it flies now: by its route, home or here; below 0 it does not last; null: not known
+             */
+            lands_percent: number | null;
         };
         /**
          * @description * `` -

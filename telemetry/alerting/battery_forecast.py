@@ -28,6 +28,7 @@ class BatteryForecast:
     reserve_in_s      until the reserve is reached, flying on as on the way home
     drain_per_s       now, in the kind of flight that it is in
     hold_s            it can stay where it is, and then still return and land with the reserve
+    lands_percent     it has when it is down as it flies now: by its route, home or here; below 0 it does not last so long
     """
 
     left_percent: float
@@ -41,6 +42,7 @@ class BatteryForecast:
     rest_percent: float | None = None
     down_percent: float | None = None
     hold_s: float | None = None
+    lands_percent: float | None = None
 
     def as_json(self, level: str) -> dict[str, float | str | None]:
         """As live pages show it; times in the UAV's own seconds."""
@@ -53,6 +55,7 @@ class BatteryForecast:
             "home_s": None if home_s is None else round(home_s),
             "reserve_in_s": round(self.reserve_in_s),
             "hold_s": None if home_s is None or self.hold_s is None else round(self.hold_s),
+            "lands_percent": None if self.lands_percent is None else round(self.lands_percent, 1),
         }
 
 
@@ -86,7 +89,15 @@ def battery_forecast(situation: Situation, fresh: Report, left_percent: float) -
         rest_percent=rest_percent,
         down_percent=ways.down_percent,
         hold_s=None if spare_percent is None else spare_percent / max(still_per_s, 1e-6),
+        lands_percent=_lands_percent(situation, left_percent, rest_percent, ways),
     )
+
+
+def _lands_percent(situation: Situation, left_percent: float, rest_percent: float | None, ways: "_Ways") -> float | None:
+    """None for one that is held or flown by hand: it does not land as it flies now."""
+    needs = {ModeKind.RETURN: ways.home_percent, ModeKind.LAND: ways.down_percent}
+    need = rest_percent if situation.flies_mission or situation.mode is None else needs.get(situation.mode)
+    return None if need is None or not math.isfinite(need) else left_percent - need
 
 
 def _lands_at_end(situation: Situation) -> bool:

@@ -110,6 +110,10 @@ class BatteryForecastSerializer(serializers.Serializer):
     hold_s = serializers.FloatField(
         allow_null=True, help_text="that it can stay where it is and still return and land with its reserve; null: not known"
     )
+    lands_percent = serializers.FloatField(
+        allow_null=True,
+        help_text="that it has when it is down as it flies now: by its route, home or here; below 0 it does not last; null: not known",
+    )
 
 
 class EstimateShapeSerializer(serializers.Serializer):

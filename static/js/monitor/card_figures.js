@@ -46,12 +46,15 @@ export function batteryWords(uav) {
 }
 
 /**
- * Percent that its battery has at the end of its route, by what the plan takes for the rest of it; null where that is not known.
+ * Percent that its battery has when it is down: by its own drain as it flies now, else at the end of its route by what the plan takes for
+ * the rest of it; null where neither is known.
  *
  * @param {LiveUav} uav
  * @param {Beside["route"]} route
  */
 export function landingPercent({ measured, estimated }, route) {
+  const forecast = estimated?.battery?.lands_percent ?? null;
+  if (forecast !== null) return forecast;
   const percent = measured?.battery_percent ?? null;
   if (percent === null || !route || route.battery_percent === null || !route.length_m) return null;
   const to_go_m = estimated?.to_go_m ?? null;
@@ -66,18 +69,25 @@ function batteryFigure(uav, { route }, mark) {
   const level = battery?.level ?? "";
   const lands = landingPercent(uav, route);
   const levels = { critical: t("Battery critical"), warning: t("Battery low"), "": "" };
+  const isForecast = typeof battery?.lands_percent === "number";
+  const percentAtLanding = lands === null ? "" : percentText(Math.max(0, Math.round(lands)));
   const atLanding =
     lands === null
       ? t("At landing: not known")
-      : t("At landing about {percent}, by the plan", { percent: percentText(Math.max(0, Math.round(lands))) });
-  const reserve = battery ? t("Reserve {percent}", { percent: percentText(battery.reserve_percent) }) : "";
+      : isForecast
+        ? t("At landing about {percent}, by its own drain", { percent: percentAtLanding })
+        : t("At landing about {percent}, by the plan", { percent: percentAtLanding });
+  const reserveText = typeof battery?.reserve_percent === "number" ? percentText(battery.reserve_percent) : "";
+  const reserve = reserveText && t("Reserve {percent}", { percent: reserveText });
   return known(`${mark}${percentText(percent)}`, t("battery"), {
     level,
     title: [levels[level], atLanding, reserve, batteryWords(uav)].filter(Boolean).join(". "),
     words:
       lands === null || inAir(uav) === false
         ? t("battery")
-        : t("lands {percent}", { percent: percentText(Math.max(0, Math.round(lands))) }),
+        : reserveText
+          ? t("lands {percent}, reserve {reserve}", { percent: percentAtLanding, reserve: reserveText })
+          : t("lands {percent}", { percent: percentAtLanding }),
   });
 }
 

@@ -148,6 +148,19 @@ def test_a_hold_lasts_as_long_as_more_is_left_than_the_way_home_and_the_reserve_
     assert battery_now["hold_s"] == pytest.approx(spare / flight.model.consumption.percent_per_s(wind_mps), rel=0.02)
 
 
+def test_pages_are_told_what_is_left_at_landing_by_the_way_that_it_flies_now(flight):
+    second, left = far_from_home(flight), 80.0
+    lands = {}
+    for mode in ("AUTO", "RTL", "LOITER"):
+        watch = Watch()
+        found(flight, told(flight, second, left, mode), watch)
+        lands[mode] = watch.memory.battery["lands_percent"]
+    rest = flight.model.energy.rest_at(watch.memory.place, flight.model.energy.used_at(watch.memory.place, 1.0))
+    assert lands["AUTO"] == pytest.approx(left - rest, abs=1.0)
+    assert lands["RTL"] == pytest.approx(left - watch.memory.battery["home_percent"], abs=0.1) != lands["AUTO"]
+    assert lands["LOITER"] is None, "it is held"
+
+
 def test_a_hold_that_drains_more_than_planned_lasts_less(flight):
     watch, second = Watch(), far_from_home(flight)
     per_s, left = flight.model.consumption.percent_per_s(math.hypot(*flight.conditions.wind_at(60.0))), 95.0

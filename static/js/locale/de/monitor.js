@@ -262,8 +262,10 @@ export default {
   "It does not report its battery.": "Es meldet seinen Akku nicht.",
   "At landing: not known": "Bei der Landung: nicht bekannt",
   "At landing about {percent}, by the plan": "Bei der Landung etwa {percent}, nach Plan",
+  "At landing about {percent}, by its own drain": "Bei der Landung etwa {percent}, nach eigenem Verbrauch",
   "Reserve {percent}": "Reserve {percent}",
   "lands {percent}": "landet {percent}",
+  "lands {percent}, reserve {reserve}": "landet {percent}, Reserve {reserve}",
   "AGL": "AGL",
   "Height above ground not known: it does not report it, and there is no terrain data here.":
     "Höhe über Grund nicht bekannt: Es meldet sie nicht, und hier gibt es keine Geländedaten.",
