@@ -46,7 +46,7 @@ def test_a_uav_that_is_heard_over_http_says_so_in_its_panel(site: Site, visitor:
     uav = writes(page, "POST", "/uavs", {"name": "Sandpiper", "position": YARD, "link": "http"})["id"]
     token = writes(page, "POST", f"/uavs/{uav}/credentials", {"kind": "link-token"})["secret"]
     fleet(page, f"?id={uav}")
-    expect(details(page).get_by_text("It has never been heard.")).to_be_visible()
+    expect(details(page).get_by_text("Never connected.")).to_be_visible()
     expect(details(page).get_by_text("a companion computer over HTTP")).to_be_visible()
     measured_at = page.evaluate("new Date().toISOString()")
     reports(site, token, sequence=1, measured_at=measured_at, position=YARD, mode="Mission", is_in_air=True, battery_percent=64.0)
@@ -71,7 +71,7 @@ def test_only_an_administrator_says_that_a_uav_is_simulated_or_needs_no_signatur
     page.get_by_role("button", name="Edit", exact=True).click()
     page.get_by_role("switch", name="MAVLink without a signature").check()
     page.get_by_role("switch", name="Simulated").check()
-    page.get_by_label("Told what to do by").select_option("a companion computer over HTTP")
+    page.get_by_label("Command link").select_option("a companion computer over HTTP")
     assert faults(page) == []
     page.get_by_role("button", name="Save", exact=True).click()
     expect(page.get_by_text("Stint is saved.")).to_be_visible()

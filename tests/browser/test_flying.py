@@ -96,7 +96,7 @@ def test_a_mission_is_approved_frozen_sent_and_revoked(visitor: Visitor, mission
     expect(page.get_by_role("button", name=re.compile("^Send|^Upload|^Start|^Hold|^Abort"))).to_have_count(0)
     expect(page.get_by_role("link", name="Fly: Connect 2 UAVs")).to_have_class(re.compile("primary"))
     assert posts(page, f"/missions/{mission.split('/')[-1]}/dispatch", {}).ok  # before they are switched on
-    expect(state).to_have_text("Dispatched")
+    expect(state).to_have_text("Uploaded")
     uavs = page.get_by_role("list", name="UAVs of this mission").get_by_role("listitem")
     expect(uavs).to_have_count(2)
     for number in range(2):

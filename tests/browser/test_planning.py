@@ -212,7 +212,7 @@ def test_a_fleet_is_narrowed_by_sensor_and_base_and_several_are_chosen_at_once(v
     page.get_by_role("combobox", name="Base", exact=True).select_option("Gate west")
     expect(fleet.get_by_role("listitem")).to_have_count(1)
     page.get_by_role("combobox", name="Base", exact=True).select_option("Every base")
-    page.get_by_role("button", name="Choose all 2").click()
+    page.get_by_role("button", name="Select the remaining 2").click()
     expect(box).to_be_checked()
     expect(fleet.get_by_role("checkbox", name="Sparrow 2")).to_be_checked()
     page.locator("#map canvas").focus()

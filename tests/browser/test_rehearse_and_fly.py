@@ -120,9 +120,9 @@ def flies(plan: Page, live: Page, picture: Picture) -> None:
     flies_in_simulation(live, "Real time")
     panel = live.get_by_role("region", name="Before start")
     panel.get_by_role("button", name="Upload to 1 UAV").click(timeout=SOON_MS)
-    expect(live.locator("#mission-state")).to_have_text("Dispatched", timeout=SOON_MS)
+    expect(live.locator("#mission-state")).to_have_text("Uploaded", timeout=SOON_MS)
     expect(card(live, NAME).locator(".simulated-mark").first).to_be_visible(timeout=SOON_MS)
-    expect(plan.locator("#flyers")).to_contain_text("On the UAV: what was approved", timeout=SOON_MS)
+    expect(plan.locator("#flyers")).to_contain_text("Uploaded", timeout=SOON_MS)
     expect(plan.get_by_role("link", name="Fly: Start 1 UAV")).to_be_visible(timeout=SOON_MS)
     picture(plan, "flow-5-on-board")
     panel.get_by_role("checkbox", name=re.compile("Looked at on site")).check()
@@ -145,11 +145,11 @@ def loses_the_link_and_finds_it_again(page: Page, picture: Picture) -> None:
     expect(alert.first).to_be_visible(timeout=SOON_MS)
     expect(alert.first.locator(".simulated-mark")).to_be_visible()
     expect(page.locator("#map .map-flyer")).to_have_class(re.compile("estimated"), timeout=SOON_MS)
-    expect(card(page, NAME).locator(".estimate")).to_contain_text("95 of 100 times")
+    expect(card(page, NAME).locator(".estimate")).to_contain_text("(95 %)")
     picture(page, "flow-7-link-lost")
     alert.first.get_by_role("button", name="Acknowledge").click()
     expect(page.locator(".alert.known").filter(has_text="Acknowledged by opal").first).to_be_visible(timeout=SOON_MS)
-    panel.get_by_role("button", name="All well again").click()
+    panel.get_by_role("button", name="Clear faults").click()
     expect(page.locator("#map .map-flyer")).to_have_class(re.compile("measured"), timeout=SOON_MS)
     is_told(page, "Resume")
 
@@ -180,7 +180,7 @@ def is_told(page: Page, act: str) -> None:
 
 def comes_home_at_10x(page: Page, picture: Picture) -> None:
     page.evaluate(WATCHES_THE_UAV)
-    panel_of(page).get_by_role("combobox", name="Pace").select_option(label="10× real time")
+    panel_of(page).get_by_role("combobox", name="Speed").select_option(label="10× real time")
     page.wait_for_function("() => window.placesOfTheUav.size > 2", timeout=FLIGHT_MS)  # it moves
     picture(page, "flow-6-flying")
     expect(page.locator("#mission-state")).to_have_text("Completed", timeout=FLIGHT_MS)

@@ -96,7 +96,7 @@ def drops_out(visitor: Visitor, flight: Flight) -> tuple[Page, Page]:
     for name, height in (("Ruff", r"[1-9]\d"), ("Dunlin", r"[4-9]\d")):  # they have climbed
         expect(card(watcher, name).locator("[data-figure=height]")).to_contain_text(re.compile(rf"(AGL|above take-off)\s*{height}"))
     flight.vehicles["Dunlin"].comes_home()
-    lost = watcher.locator(".alert.critical").filter(has_text="without a command of ours")
+    lost = watcher.locator(".alert.critical").filter(has_text="not commanded from here")
     lost.get_by_role("button", name="Acknowledge").click()
     pilot.goto("/live")
     expect(pilot.locator(".alert.known").filter(has_text="Acknowledged by rory")).to_be_visible()
@@ -108,14 +108,14 @@ def drops_out(visitor: Visitor, flight: Flight) -> tuple[Page, Page]:
 
 def accepts(page: Page) -> None:
     """One that expires before it is taken is followed by another."""
-    expired = page.get_by_text("Nothing was sent. Look at the plan that is offered now.")
+    expired = page.get_by_text("Nothing was sent. Check the re-plan offered now.")
     for _offer in range(3):
-        expect(page.locator("#offers .countdown")).to_have_text(re.compile(r"^Can be taken for [0-2]:\d\d"))
+        expect(page.locator("#offers .countdown")).to_have_text(re.compile(r"^Valid for [0-2]:\d\d"))
         page.locator("#offers").get_by_role("button", name="Accept").click()
-        question = page.get_by_role("dialog", name="Fly the other plan?")
+        question = page.get_by_role("dialog", name="Accept the re-plan?")
         expect(question).to_contain_text("Ruff: held, given the new route while they hover, and started again.")
-        question.get_by_role("button", name="Fly the other plan").click()
-        taken = page.locator("#offers").get_by_text("The other plan is flown.")
+        question.get_by_role("button", name="Accept re-plan").click()
+        taken = page.locator("#offers").get_by_text("Re-plan accepted.")
         taken.or_(expired).first.wait_for()
         if taken.count():
             return
@@ -130,7 +130,7 @@ def test_what_one_uav_leaves_is_offered_taken_by_one_operator_and_seen_by_the_ot
     in_both_themes(watcher, picture, "live-offer")
     assert faults(watcher) == []
     accepts(watcher)
-    expect(pilot.locator("#offers")).to_contain_text("The other plan is flown. Decided by rory")
+    expect(pilot.locator("#offers")).to_contain_text("Re-plan accepted. Decided by rory")
     pilot.close()
     expect(watcher.locator("#mission-state")).to_have_text("Aborted")
     watcher.get_by_role("link", name="Watch it go on").click()
@@ -169,5 +169,5 @@ def test_the_other_plan_is_flown_to_its_end_and_told_by_its_record(visitor: Visi
 def test_an_offer_that_is_declined_changes_nothing_and_the_other_page_says_who_did(visitor: Visitor, flight: Flight) -> None:
     pilot, watcher = drops_out(visitor, flight)
     pilot.locator("#offers").get_by_role("button", name="Decline").click()
-    expect(watcher.locator("#offers")).to_contain_text("what was approved is flown. Decided by opal")
+    expect(watcher.locator("#offers")).to_contain_text("the approved plan continues. Decided by opal")
     expect(watcher.locator("#mission-state")).to_have_text("Active")

@@ -99,7 +99,7 @@ def test_a_copy_flies_to_its_end_and_its_log_says_so(visitor: Visitor, mission: 
     expect(card(page, re.escape(TWIN)).locator("[data-figure=height]")).to_contain_text(
         re.compile("(AGL|above take-off)[1-9]"), timeout=SOON_MS
     )
-    panel_of(page).get_by_role("combobox", name="Pace").select_option(label="10× real time")
+    panel_of(page).get_by_role("combobox", name="Speed").select_option(label="10× real time")
     expect(page.locator("#mission-state")).to_have_text("Completed", timeout=FLIGHT_MS)
     page.get_by_role("button", name="Event log").click()
     log = page.get_by_role("list", name="Event log")

@@ -55,11 +55,11 @@ def test_simulated_uavs_are_started_changed_and_ended_one_by_one(visitor: Visito
     flies_in_simulation(page, "5× real time")
     expect(panel.locator("#simulation-state")).to_have_text("2 simulated UAVs at 5 times real time.")
     expect(panel.locator(".simulation-uavs li")).to_have_count(2)
-    panel.get_by_role("combobox", name="Pace").select_option(label="2× real time")
+    panel.get_by_role("combobox", name="Speed").select_option(label="2× real time")
     expect(panel.locator("#simulation-state")).to_contain_text("at 2 times real time", timeout=SOON_MS)
 
     panel.get_by_label("Wind and faults of").select_option(label="Ruff")
-    panel.get_by_role("spinbutton", name="Speed").fill("9")
+    panel.get_by_role("spinbutton", name="Wind speed").fill("9")
     panel.get_by_role("spinbutton", name="From").fill("180")
     panel.get_by_role("spinbutton", name="Gusts").fill("2")
     panel.get_by_role("button", name="Set the wind").click()
@@ -70,14 +70,14 @@ def test_simulated_uavs_are_started_changed_and_ended_one_by_one(visitor: Visito
     assert winds["Avocet"]["wind"] == []
 
     panel.get_by_label("Link or GPS lost for").fill("300")
-    expect(panel.locator("#simulation-lasts")).to_have_text("By the clock on the wall; 600 s of the flight.")
+    expect(panel.locator("#simulation-lasts")).to_have_text("300 s real time = 600 s simulated")
     panel.get_by_role("button", name="Lose the link").click()
     ruff = panel.locator(".simulation-uavs li").filter(has_text="Ruff")
     expect(ruff).to_contain_text("its link is lost", timeout=SOON_MS)
     expect(panel.locator(".simulation-uavs li").filter(has_text="Avocet")).not_to_contain_text("link")
     picture(page, "simulation-panel-light")
     assert faults(page) == []
-    panel.get_by_role("button", name="All well again").click()
+    panel.get_by_role("button", name="Clear faults").click()
     expect(ruff).not_to_contain_text("link", timeout=SOON_MS)
 
     panel.get_by_role("button", name="End Ruff").click()
@@ -96,7 +96,7 @@ def test_simulated_uavs_are_started_changed_and_ended_one_by_one(visitor: Visito
 def looks_only(visitor: Visitor, mission: str, picture: Picture) -> None:
     """A viewer sees how they do, on a phone and in the dark, and can do nothing."""
     page = opened(visitor.signs_in("vera", size=(390, 844), touch=True, theme="dark"), f"/missions/{mission}/fly")
-    page.locator("#narrow-tabs label").filter(has_text="Alerts and board").click()
+    page.locator("#narrow-tabs label").filter(has_text="Alerts and targets").click()
     panel = panel_of(page)
     expect(panel.locator(".simulation-uavs")).to_contain_text("Avocet", timeout=SOON_MS)
     expect(panel.get_by_role("button")).to_have_count(0)

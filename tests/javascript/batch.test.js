@@ -104,7 +104,7 @@ test("Return of all says of each way home what Return of one says", () => {
   const [wires, clear] = returnLinesOf([south], returns);
   assert.equal(wires, `UAV 1, UAV 7: ${low}`);
   assert.match(clear, /^UAV 8: Return and Abort: nothing in the way home/);
-  assert.match(returnLinesOf([south], new Map())[0], /^UAV 1, UAV 7, UAV 8: Its way home has not been checked/);
+  assert.match(returnLinesOf([south], new Map())[0], /^UAV 1, UAV 7, UAV 8: Return path not checked/);
 });
 
 test("the answer says who is told, and of each other one why not", () => {

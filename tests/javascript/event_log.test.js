@@ -57,20 +57,20 @@ test("a fault that was injected says what it is, and that all is well again", ()
   assert.equal(injected({ motor_failed: 0 }), "Kite: motor 1 has failed, injected by Ada");
   assert.equal(
     injected({ link_lost_for_s: 60, gps_lost_for_s: 0 }),
-    "Kite: link lost for 60 s of the flight, injected by Ada",
+    "Kite: link lost for 60 s of simulated time, injected by Ada",
   );
   assert.equal(
     injected({ link_lost_for_s: 0, gps_lost_for_s: 0, motor_failed: null }, { uav: null }),
-    "All UAVs: all well again, injected by Ada",
+    "All UAVs: faults cleared, injected by Ada",
   );
-  assert.equal(words("simulation-changed", { who: "Ada", values: { speed: 5 } }), "Kite: pace 5×, set by Ada");
+  assert.equal(words("simulation-changed", { who: "Ada", values: { speed: 5 } }), "Kite: speed 5×, set by Ada");
 });
 
 test("missions and offers say who decided", () => {
   assert.equal(words("mission-aborted", { who: "Ada", values: { why: "storm" } }), "“Belt” aborted by Ada – storm");
   assert.equal(words("mission-ended", { values: { state: "completed" } }), "“Belt” has ended: completed");
-  assert.equal(words("offer-made", { values: { code: "uav-out" } }), "Another plan: A UAV has dropped out – Kite");
-  assert.equal(words("offer-accepted", { who: "Ada" }), "Another plan accepted by Ada");
+  assert.equal(words("offer-made", { values: { code: "uav-out" } }), "Re-plan: A UAV has dropped out – Kite");
+  assert.equal(words("offer-accepted", { who: "Ada" }), "Re-plan accepted by Ada");
   assert.equal(
     words("target-skipped", { values: { label: "T1", reason: "not-held" } }),
     "T1: Skipped, The UAV did not stay long enough.",

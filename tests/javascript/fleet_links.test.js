@@ -9,13 +9,13 @@ const heard = (heard_at, heard_by = "mavlink") =>
   heardWords({ heard_at, heard_by, server_time: "2026-11-22T12:00:12Z" });
 
 test("when a UAV was heard is told by the server's clock, with the door", () => {
-  assert.deepEqual(heard("2026-11-22T12:00:00Z"), { words: "Last heard 12 s ago by MAVLink.", isHeard: false });
-  assert.deepEqual(heard("2026-11-22T12:00:07Z", "http"), { words: "Last heard 5 s ago over HTTP.", isHeard: true });
-  assert.deepEqual(heard(null, null), { words: "It has never been heard.", isHeard: false });
+  assert.deepEqual(heard("2026-11-22T12:00:00Z"), { words: "Last contact 12 s ago by MAVLink.", isHeard: false });
+  assert.deepEqual(heard("2026-11-22T12:00:07Z", "http"), { words: "Last contact 5 s ago over HTTP.", isHeard: true });
+  assert.deepEqual(heard(null, null), { words: "Never connected.", isHeard: false });
 });
 
 test("what was heard a moment ahead of the clock was heard now", () => {
-  assert.equal(heard("2026-11-22T12:00:13Z").words, "Last heard 0 s ago by MAVLink.");
+  assert.equal(heard("2026-11-22T12:00:13Z").words, "Last contact 0 s ago by MAVLink.");
 });
 
 test("an age is told in seconds, then in minutes", () => {
@@ -34,7 +34,7 @@ test("of a vehicle that nobody knows only what is known is told", () => {
   };
   assert.equal(
     aboutVehicle(vehicle, Date.parse("2026-11-22T12:00:03Z")),
-    "px4 · udp 10.0.0.7:14550 · not signed · heard 3 s ago",
+    "px4 · udp 10.0.0.7:14550 · not signed · last contact 3 s ago",
   );
 });
 
@@ -45,9 +45,9 @@ test("what is on a UAV is as old as its last reading, and doubted once something
     loaded_doubt: "",
     server_time: "2027-05-04T09:03:10Z",
   };
-  assert.equal(loadedText(link), "flight 2 of an approved mission, read back 3 min ago");
+  assert.equal(loadedText(link), "flight 2 of an approved mission, verified 3 min ago");
   assert.equal(
     loadedText({ ...link, loaded_doubt: "rebooted" }),
-    "flight 2 of an approved mission, read back 3 min ago; not known since it has booted",
+    "flight 2 of an approved mission, verified 3 min ago; not known since it has booted",
   );
 });

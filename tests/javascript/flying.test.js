@@ -55,7 +55,7 @@ test("what would be refused is not offered: nothing moves without a mission on i
     assert.equal(why(kind, mission("approved")), "UAV 7 has no mission.");
     assert.equal(
       why(kind, mission("active", { approval: { ...approval, revoke_requested_at: "2027-05-04T10:00:00Z" } })),
-      "The approval is being taken back.",
+      "The approval is being revoked.",
     );
     assert.match(why(kind, mission("active", { approval: { ...approval, flights } })), /has failed/);
   }
@@ -83,12 +83,12 @@ test("what is on board is as old as its reading, and may not be there any more",
     server_time: "2027-05-04T09:03:10Z",
   };
   const { words: seen, level } = flying.boardWords(upload, link);
-  assert.deepEqual([seen, level], ["On the UAV: what was approved, read back 3 min ago", "good"]);
+  assert.deepEqual([seen, level], ["Uploaded, verified 3 min ago", "good"]);
   const doubted = flying.boardWords(upload, { ...link, loaded_doubt: "other-station" });
   assert.equal(doubted.level, "warning");
-  assert.match(doubted.words, /not known now: another ground station/);
+  assert.match(doubted.words, /uncertain now: another ground station/);
   const gone = { ...link, loaded_approval: null };
-  assert.match(flying.boardWords(upload, gone).words, /not known what is on the UAV/);
+  assert.match(flying.boardWords(upload, gone).words, /Mission on the UAV unknown/);
   const [flyer] = flying.flyersOf(mission("dispatched"));
   assert.deepEqual([flying.flightToSend(flyer, [upload], link), flying.flightToSend(flyer, [upload], gone)], [null, 1]);
   assert.equal(flying.flightToSend(flyer, [upload], { ...gone, server_time: "2027-05-04T08:59:00Z" }), null); // asked before it was there
@@ -96,7 +96,7 @@ test("what is on board is as old as its reading, and may not be there any more",
 
 test("a start that waits for the reading says how far that is", () => {
   const start = command("start", "queued", { progress: { done: 34, total: 200 } });
-  assert.equal(flying.commandWords(start).words, "Start: reading back what is on board, 34 of 200 items");
+  assert.equal(flying.commandWords(start).words, "Start: verifying the mission on board, 34 of 200 items");
 });
 
 test("UAVs that fly no route are not told anything", () => {
@@ -108,31 +108,25 @@ test("UAVs that fly no route are not told anything", () => {
 });
 
 test("what is on board is what was said last of it", () => {
-  assert.equal(words(), "Not sent yet");
+  assert.equal(words(), "Not uploaded yet");
   assert.equal(words(command("hold", "applied"), command("upload-mission", "queued")), "Waiting for the UAV");
   assert.equal(
     words(command("upload-mission", "sent", { progress: { done: 12, total: 40 } })),
-    "Sending, 12 of 40 items",
+    "Uploading, 12 of 40 items",
   );
-  assert.equal(
-    words(command("upload-mission", "applied"), command("upload-mission", "failed")),
-    "On the UAV: what was approved",
-  );
-  assert.equal(
-    words(command("upload-mission", "applied", { parameters: { flight: 2 } })),
-    "On the UAV: flight 2, what was approved",
-  );
+  assert.equal(words(command("upload-mission", "applied"), command("upload-mission", "failed")), "Uploaded");
+  assert.equal(words(command("upload-mission", "applied", { parameters: { flight: 2 } })), "Flight 2 uploaded");
   assert.equal(
     words(command("upload-mission", "expired", { outcome: "It could not be delivered in time." })),
-    "Not on the UAV: It could not be delivered in time.",
+    "Not uploaded: It could not be delivered in time.",
   );
-  assert.equal(words(command("clear-mission", "applied"), command("upload-mission", "applied")), "Taken off the UAV");
+  assert.equal(
+    words(command("clear-mission", "applied"), command("upload-mission", "applied")),
+    "Removed from the UAV",
+  );
   assert.equal(words(command("clear-mission", "failed", { outcome: "It flies." })), "Still on the UAV: It flies.");
   const beware = flying.boardWords(command("upload-mission", "applied", { outcome: "The mission has 501 items." }));
-  assert.deepEqual(
-    [beware.words, beware.level],
-    ["On the UAV: what was approved – The mission has 501 items.", "warning"],
-  );
+  assert.deepEqual([beware.words, beware.level], ["Uploaded – The mission has 501 items.", "warning"]);
 });
 
 test("a mixed mission is said loudest", () => {
@@ -174,7 +168,7 @@ test("a UAV is started once it has what was approved, and once only", () => {
   assert.match(flying.whyNoStart(mission("active"), { ...kite, flown: 1 }, [loaded]), /has flown this flight/);
   const revoked = mission("dispatched");
   revoked.approval.revoke_requested_at = "2027-05-04T09:00:00Z";
-  assert.match(flying.whyNoStart(revoked, kite, [loaded]), /being taken back/);
+  assert.match(flying.whyNoStart(revoked, kite, [loaded]), /being revoked/);
 });
 
 test("flights are sent one after the other", () => {
@@ -211,10 +205,10 @@ test("the stage is said in a sentence", () => {
   assert.match(flying.stageWords(mission("active")), /It is being flown/);
   const waiting = mission("dispatched");
   waiting.approval = { ...waiting.approval, revoke_requested_at: "2027-05-04T09:00:00Z", revoke_reason: "Wrong day" };
-  assert.match(flying.stageWords(waiting), /being taken back: Wrong day\./);
+  assert.match(flying.stageWords(waiting), /being revoked: Wrong day\./);
 });
 
 test("what is on board is not said before it was read", () => {
-  assert.equal(flying.boardWords(undefined).words, "Reading what is on the UAV…");
-  assert.equal(flying.boardWords(null).words, "Not sent yet");
+  assert.equal(flying.boardWords(undefined).words, "Reading the mission on the UAV…");
+  assert.equal(flying.boardWords(null).words, "Not uploaded yet");
 });

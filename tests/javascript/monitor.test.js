@@ -88,8 +88,8 @@ test("the age of a report is a figure, late ones in amber", () => {
 
 test("the box says how far off an estimate may be", () => {
   const { strong, rest } = estimateWords(uav({ age_s: 74, estimated: estimate() }), ESTIMATED, NOW_MS);
-  assert.equal(plain(strong), "Estimated, within 410 m");
-  assert.match(rest, /95 of 100 times.*Next contact expected \d\d:\d\d:\d\d/);
+  assert.equal(plain(strong), "Estimated position ±410 m (95 %).");
+  assert.match(rest, /^Next contact expected \d\d:\d\d:\d\d/);
   const overdue = estimate({ contact_expected_at: ago(5) });
   assert.match(estimateWords(uav({ age_s: 74, estimated: overdue }), ESTIMATED, NOW_MS).rest, /Contact overdue since/);
   assert.equal(estimateWords(uav(), MEASURED, NOW_MS), null);
@@ -257,13 +257,13 @@ test("an offer is said in a sentence, and target by target", () => {
       unreached: 1,
     },
   };
-  assert.equal(sentenceOf(offer), "1 UAV gets another route, 1 target changes hands, 1 target stays undone");
+  assert.equal(sentenceOf(offer), "1 UAV gets another route, 1 target is reassigned, 1 target stays open");
   assert.deepEqual(targetLines(offer), ["Tower 31: B → C", "Tower 51: B → Its battery does not last for it."]);
 });
 
 test("of an offer that is over it is said what became of it, and by whom or why", () => {
   const { strong, rest } = overWords({ state: "accepted", outcome: "", decided_by: "opal", decided_at: ago(0) });
-  assert.match(`${strong} ${rest}`, /^The other plan is flown\. Decided by opal, /);
+  assert.match(`${strong} ${rest}`, /^Re-plan accepted\. Decided by opal, /);
   const none = { state: "impossible", outcome: "Kite has no range left.", decided_by: null, decided_at: null };
   assert.equal(overWords(none).rest, "Kite has no range left.");
   assert.equal(overWords(none, ["E402-2"]).rest, "Kite has no range left. E402-2 stays open: plan a follow-up.");
@@ -272,8 +272,8 @@ test("of an offer that is over it is said what became of it, and by whom or why"
 });
 
 test("the time that is left to take an offer counts down to zero", () => {
-  assert.equal(validWords(ago(-42.5), NOW_MS), "Can be taken for 0:43. Dashed on the map.");
-  assert.equal(validWords(ago(5), NOW_MS), "Can be taken for 0:00. Dashed on the map.");
+  assert.equal(validWords(ago(-42.5), NOW_MS), "Valid for 0:43. Dashed on the map.");
+  assert.equal(validWords(ago(5), NOW_MS), "Valid for 0:00. Dashed on the map.");
 });
 
 test("of UAVs that are not heard it is said who is told all the same", () => {
@@ -285,9 +285,9 @@ test("of UAVs that are not heard it is said who is told all the same", () => {
     named("Wren", "mavlink", null),
   ];
   const [sent, waiting] = unheardLines(uavs, "return", NOW_MS);
-  assert.match(sent, /^Nothing is heard from Tern now: this is sent all the same/);
-  assert.match(waiting, /^There is no link to Kite, Gull, Wren now: the command waits/);
-  assert.match(unheardLines(uavs.slice(0, 1), "resume", NOW_MS)[0], /^There is no link to Tern now/);
+  assert.match(sent, /^No telemetry from Tern: the command is sent repeatedly/);
+  assert.match(waiting, /^No link to Kite, Gull, Wren: the command is sent on contact/);
+  assert.match(unheardLines(uavs.slice(0, 1), "resume", NOW_MS)[0], /^No link to Tern/);
   assert.deepEqual(unheardLines([], "return", NOW_MS), []);
 });
 

@@ -29,9 +29,7 @@ const check = (state, warnings = [], more = {}) => ({
 });
 
 test("a question before Return or Abort says something of the way home in any case", () => {
-  assert.deepEqual(returnLines(undefined), [
-    "Its way home has not been checked: it flies straight, at a height of its own.",
-  ]);
+  assert.deepEqual(returnLines(undefined), ["Return path not checked: it flies straight, at its own return altitude."]);
   assert.equal(returnLines(check("unknown", ["Not read."]))[0], "Not read.");
   assert.match(returnLines(check("clear"))[0], /nothing in the way home, 30\Wm/);
 });
@@ -111,7 +109,7 @@ test("a fence that the autopilot ignores is a warning under its name and before 
   assert.ok(
     questionOf("start", { ...flyer, planned: { ...check("clear"), fence_warning } }).lines.includes(fence_warning),
   );
-  assert.deepEqual(questionOf("start", flyer).lines.filter(Boolean).length, 2);
+  assert.deepEqual(questionOf("start", flyer).lines.filter(Boolean).length, 1);
 });
 
 test("each UAV has its own", () => {
@@ -132,7 +130,7 @@ test("an abort says what each aircraft does, and what is in the way of each", ()
   assert.match(lines[1], /^In the air: it returns and lands where it took off/);
   assert.match(lines[2], /^All return at once/);
   assert.equal(lines[3], `Tern, Kite: ${wires}`);
-  assert.match(lines.at(-2), /^Crow: Its way home has not been checked/);
+  assert.match(lines.at(-1), /^Crow: Return path not checked/);
   assert.match(questionOf("abort", { name: "Tern", returns: inTheWay }).lines[0], /^In the air: it returns/);
   assert.equal(abortQuestion({ name: "South", isActive: true, uavs: uavs.slice(0, 1) }).lines[2], "");
 });

@@ -16,7 +16,7 @@ const preflight = (next_act, uavs, checks = []) => ({ next_act, checks, uavs });
 test("the button names the next act and how many UAVs it is about", () => {
   const [tern, kite] = [row("Tern"), row("Kite", { is_loaded: true })];
   assert.equal(nextStep(preflight("upload", [tern, kite]), false).words, "Upload to 1 UAV");
-  assert.equal(nextStep(preflight("connect", [tern, kite]), false).why.startsWith("Not heard: Tern."), true);
+  assert.equal(nextStep(preflight("connect", [tern, kite]), false).why.startsWith("Not connected: Tern."), true);
   assert.equal(nextStep(preflight("start", [kite, kite]), true).words, "Start 2 UAVs");
   assert.equal(nextStep(preflight(null, []), true), null);
 });

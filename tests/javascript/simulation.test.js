@@ -31,17 +31,17 @@ const simulation = (more = {}) => ({
 });
 
 test("a simulation says how many fly, how fast, and who is lost or has crashed", () => {
-  assert.equal(stateWords(simulation()).words, "1 simulated UAV at 5 times real time.");
+  assert.equal(stateWords(simulation()).words, "1 simulated UAV at 5× real time.");
   assert.equal(stateWords(simulation({ speed: 1 })).words, "1 simulated UAV in real time.");
   const bad = stateWords(
     simulation({ vehicles: [vehicle("Tern", { told: { is_crashed: true } }), vehicle("Kite", { state: "failed" })] }),
   );
-  assert.equal(bad.words, "1 simulated UAV at 5 times real time. Crashed: Tern. Lost with their simulator: Kite.");
+  assert.equal(bad.words, "1 simulated UAV at 5× real time. Crashed: Tern. Lost with their simulator: Kite.");
   assert.equal(bad.isBad, true);
 });
 
 test("a machine that cannot keep the pace says so", () => {
-  assert.match(stateWords(simulation({ pace: { slipped_s: 12.4 } })).words, /too slow for that pace: 12 s behind/);
+  assert.match(stateWords(simulation({ pace: { slipped_s: 12.4 } })).words, /too slow for this speed: 12 s behind/);
   assert.doesNotMatch(stateWords(simulation({ pace: { slipped_s: 1 } })).words, /too slow/);
 });
 
@@ -77,7 +77,7 @@ test("each of its UAVs says how it does, and what is wrong with it", () => {
     is_link_lost: true,
   };
   assert.deepEqual(vehicleWords(vehicle("Tern", { told })), {
-    words: "in the air at 42\u00a0m · battery 72\u00a0% · calm · its link is lost",
+    words: "in the air at 42\u00a0m · battery 72\u00a0% · calm · link lost",
     isBad: false,
   });
   const air = { wind: [{ speed_mps: 9, from_deg: 180 }], gusts_mps: 2 };
@@ -93,11 +93,11 @@ test("each of its UAVs says how it does, and what is wrong with it", () => {
     words: "Lost.",
     isBad: true,
   });
-  assert.equal(vehicleWords(vehicle("Tern", { told: null })).words, "is being started");
+  assert.equal(vehicleWords(vehicle("Tern", { told: null })).words, "starting");
 });
 
 test("a fault that lasts is told by both clocks, unless they are one", () => {
-  assert.equal(lastsWords(30, 10), "By the clock on the wall; 300 s of the flight.");
+  assert.equal(lastsWords(30, 10), "30 s real time = 300 s simulated");
   assert.equal(lastsWords(30, 1), "");
   assert.equal(lastsWords(NaN, 10), "");
 });

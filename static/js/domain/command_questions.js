@@ -48,6 +48,7 @@ import {
  * @property {(string | null | false | undefined)[]} lines
  * @property {string} act the words of the button
  * @property {string} [keep] the words of the way out
+ * @property {string} [hint] the tooltip of the act
  * @property {QuestionField | null} [field]
  * @property {QuestionChoices | null} [choices]
  * @property {{ name: string, words: string }[]} [checks] what is done with it unless it is unticked
@@ -59,7 +60,7 @@ import {
  * @property {HTMLElement | null} [opener] the button out of which the question grows
  */
 
-export const LATE = t("If it cannot be reached in time, the command expires and is not carried out later.");
+export const LATE = t("The command expires if it is not delivered in time.");
 // what a gateway sends: telemetry/ground_station/orders.py
 const ABORT_DOES = t(
   "In the air: it returns and lands where it took off; an autopilot that refuses to return lands where it is. On the ground: its motors are switched off.",
@@ -87,19 +88,18 @@ const ASKED = {
         time: durationText(route.duration_s),
       }),
       planned?.fence_warning,
-      LATE,
     ],
     act: t("Start {name}", { name }),
     image: "plane-takeoff",
   }),
   arm: ({ name }) => ({
     title: t("Arm {name}?", { name }),
-    lines: [t("Its rotors may turn from then on. Make sure that nobody stands beside it."), LATE],
+    lines: [t("Its rotors may turn from then on. Make sure that nobody stands beside it.")],
     act: t("Arm {name}", { name }),
   }),
   "take-off": ({ name }) => ({
     title: t("Let {name} take off?", { name }),
-    lines: [t("It rises straight up from where it stands, and stays there until it is told otherwise."), LATE],
+    lines: [t("It rises straight up from where it stands, and stays there until it is told otherwise.")],
     act: t("Let {name} take off", { name }),
     field: {
       name: "altitude_relative_m",
@@ -115,13 +115,13 @@ const ASKED = {
   }),
   resume: ({ name }) => ({
     title: t("Resume the flight of {name}?", { name }),
-    lines: [t("It flies on along its route from where it is."), LATE],
+    lines: [t("It flies on along its route from where it is.")],
     act: t("Resume {name}", { name }),
     isBack: true,
   }),
   hold: ({ name, hold_s }) => ({
     title: t("Hold {name}?", { name }),
-    lines: [t("It stops where it is and waits for Resume, as long as its battery lasts."), holdLine(hold_s), LATE],
+    lines: [t("It stops where it is and waits for Resume, as long as its battery lasts."), holdLine(hold_s)],
     keep: t("Keep flying"),
     act: t("Hold {name}", { name }),
     isBack: true,
@@ -132,7 +132,6 @@ const ASKED = {
     lines: [
       t("It flies back to where it took off and lands there. Targets that it has not reached stay undone."),
       ...returnLines(returns),
-      LATE,
     ],
     keep: t("Keep flying"),
     act: returns && saferReturn(returns) ? t("Return straight now") : t("Return {name}", { name }),
@@ -145,7 +144,6 @@ const ASKED = {
     lines: [
       t("It comes straight down where it is now. Targets that it has not reached stay undone."),
       ...landingLines(landing),
-      LATE,
     ],
     keep: t("Keep flying"),
     act: t("Land {name} here", { name }),
@@ -160,7 +158,6 @@ const ASKED = {
         "Whatever else it was told no longer counts. Targets that it has not reached stay undone; the other UAVs go on.",
       ),
       ...returnLines(returns),
-      LATE,
     ],
     keep: t("Keep flying"),
     act: t("Abort {name}", { name }),
@@ -171,7 +168,7 @@ const ASKED = {
   }),
   "change-speed": ({ name, speed_mps }) => ({
     title: t("Change the speed of {name}?", { name }),
-    lines: [t("Over ground, until its route says otherwise. Planned times no longer hold."), LATE],
+    lines: [t("Over ground, until its route says otherwise. Planned times no longer hold.")],
     act: t("Change the speed of {name}", { name }),
     field: {
       name: "speed_mps",
@@ -226,11 +223,11 @@ export const abortQuestion = ({ name, isActive, uavs }) => {
       togetherLine(uavs.map(({ check }) => check)),
       ...returnLinesOfAll(uavs),
       ...(separate ? [...separate.lines, t("The mission then stays open: close it once all UAVs are down.")] : []),
-      LATE,
     ],
     field: WHY,
     keep: isActive ? t("Keep flying") : t("Keep it"),
     act: t("Abort the mission"),
+    hint: LATE,
     safer: separate && { words: t("Return on separate ways"), kind: "return", parameters: { ways: separate.ways } },
     isDanger: true,
     image: "octagon-alert",
@@ -243,4 +240,4 @@ export const abortQuestion = ({ name, isActive, uavs }) => {
  * @param {AskedKind} kind
  * @param {AskedOf} flyer
  */
-export const questionOf = (kind, flyer) => ASKED[kind](/** @type {AskedFlyer} */ (flyer));
+export const questionOf = (kind, flyer) => ({ ...ASKED[kind](/** @type {AskedFlyer} */ (flyer)), hint: LATE });

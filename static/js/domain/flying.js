@@ -11,8 +11,8 @@ import { routeLetter } from "./palette.js";
 
 /** @type {Record<CommandKind, string>} */
 export const KINDS = {
-  "upload-mission": t("Send the mission"),
-  "clear-mission": t("Take the mission off"),
+  "upload-mission": t("Upload mission"),
+  "clear-mission": t("Remove mission"),
   arm: t("Arm"),
   "take-off": t("Take off"),
   start: t("Start"),
@@ -114,8 +114,8 @@ const isSeenThere = ({ approval, finished_at }, connection) =>
 function readBack({ loaded_read_at, loaded_doubt, server_time }) {
   const ago = agoText((Date.parse(server_time) - Date.parse(loaded_read_at)) / 1000, loaded_read_at);
   return loaded_doubt
-    ? { words: t("read back {ago}; not known now: {why}", { ago, why: DOUBTS[loaded_doubt] }), isDoubted: true }
-    : { words: t("read back {ago}", { ago }), isDoubted: false };
+    ? { words: t("verified {ago}; uncertain now: {why}", { ago, why: DOUBTS[loaded_doubt] }), isDoubted: true }
+    : { words: t("verified {ago}", { ago }), isDoubted: false };
 }
 
 /**
@@ -126,24 +126,23 @@ function readBack({ loaded_read_at, loaded_doubt, server_time }) {
  * @returns {Said & { share?: number }}
  */
 export function boardWords(command, connection = null) {
-  if (command === undefined) return { words: t("Reading what is on the UAV…"), image: "loader-circle" };
-  if (!command) return { words: t("Not sent yet"), image: "circle-dashed" };
+  if (command === undefined) return { words: t("Reading the mission on the UAV…"), image: "loader-circle" };
+  if (!command) return { words: t("Not uploaded yet"), image: "circle-dashed" };
   const { kind, state, progress, outcome, parameters } = command;
   const why = outcome || STATES[state].words;
   if (kind === "clear-mission") {
-    if (state === "applied") return { words: t("Taken off the UAV"), image: "circle-check" };
-    if (isOpen(command)) return { words: t("Being taken off the UAV"), image: "loader-circle" };
+    if (state === "applied") return { words: t("Removed from the UAV"), image: "circle-check" };
+    if (isOpen(command)) return { words: t("Being removed from the UAV"), image: "loader-circle" };
     return { words: t("Still on the UAV: {why}", { why }), image: "octagon-alert", level: "critical" };
   }
   if (isMixed(command))
     return { words: t("Mixed mission on the UAV – {why}", { why }), image: "octagon-alert", level: "critical" };
   if (state === "applied") {
     const flight = parameters.flight ?? 1;
-    const what =
-      flight > 1 ? t("On the UAV: flight {flight}, what was approved", { flight }) : t("On the UAV: what was approved");
+    const what = flight > 1 ? t("Flight {flight} uploaded", { flight }) : t("Uploaded");
     if (!isSeenThere(command, connection))
       return {
-        words: t("It is not known what is on the UAV: send it again."),
+        words: t("Mission on the UAV unknown: upload it again."),
         image: "triangle-alert",
         level: "warning",
       };
@@ -157,10 +156,10 @@ export function boardWords(command, connection = null) {
       : { words, image: "circle-check", level: "good" };
   }
   if (state === "failed" || state === "expired")
-    return { words: t("Not on the UAV: {why}", { why }), image: "triangle-alert", level: "warning" };
+    return { words: t("Not uploaded: {why}", { why }), image: "triangle-alert", level: "warning" };
   if (progress?.total)
     return {
-      words: t("Sending, {done} of {total} items", progress),
+      words: t("Uploading, {done} of {total} items", progress),
       image: "loader-circle",
       share: progress.done / progress.total,
     };
@@ -182,7 +181,7 @@ export function commandWords(command) {
   const { progress } = command;
   if (command.state === "queued" && progress?.total && !isOfMission(command)) {
     return {
-      words: t("{kind}: reading back what is on board, {done} of {total} items", {
+      words: t("{kind}: verifying the mission on board, {done} of {total} items", {
         kind: KINDS[command.kind],
         ...progress,
       }),
@@ -233,7 +232,7 @@ const IN_MOTION = ["arm", "take-off", "start", "resume"];
 export function whyNotMoved(kind, mission, { uav, name, hasFailed }, commands) {
   if (!IN_MOTION.includes(kind)) return "";
   if (!isOnItsWay(mission) || !mission.approval) return t("{name} has no mission.", { name });
-  if (mission.approval.revoke_requested_at) return t("The approval is being taken back.");
+  if (mission.approval.revoke_requested_at) return t("The approval is being revoked.");
   if (hasFailed) return t("A flight of {name} has failed: it does not fly on in this mission.", { name });
   const { id } = mission.approval;
   const wasStarted = commands.some(
@@ -297,7 +296,7 @@ export function stageWords(mission) {
   if (state === "aborted") return t("Aborted. Save a copy to fly it again.");
   if (state === "failed") return t("A flight failed. Save a copy to fly it again.");
   if (approval?.revoke_requested_at)
-    return t("The approval is being taken back: {reason}. It ends once every UAV was seen without the mission.", {
+    return t("The approval is being revoked: {reason}. It ends once the mission is removed from every UAV.", {
       reason: approval.revoke_reason,
     });
   const by = t("Approved by {name} {time}.", {

@@ -24,7 +24,7 @@ export const returnOf = (returns, place) => returns?.find((check) => check.place
  * @returns {string[]}
  */
 export function returnLines(check) {
-  if (!check) return [t("Its way home has not been checked: it flies straight, at a height of its own.")];
+  if (!check) return [t("Return path not checked: it flies straight, at its own return altitude.")];
   const { warnings, state, fence_warning } = check;
   return [
     ...warnings,

@@ -60,7 +60,7 @@ export function nextStep(preflight, isPilotDone) {
         ...step,
         words: tn(waiting.length, "Connect {count} UAV", "Connect {count} UAVs"),
         image: "radio",
-        why: t("Not heard: {names}. Switch them on; this page sees them by itself.", { names: namesOf(waiting) }),
+        why: t("Not connected: {names}. Switch them on; this page detects them.", { names: namesOf(waiting) }),
       };
     case "upload":
       return {

@@ -19,11 +19,11 @@ const LOST_AFTER_S = 11; // a UAV reports at least every ten seconds
  * @param {Pick<UavConnection, "heard_at" | "heard_by" | "server_time">} connection
  */
 export function heardWords({ heard_at, heard_by, server_time }) {
-  if (!heard_at) return { words: t("It has never been heard."), isHeard: false };
+  if (!heard_at) return { words: t("Never connected."), isHeard: false };
   const seconds = (Date.parse(server_time) - Date.parse(heard_at)) / 1_000;
   const door = heard_by ? LINKS[heard_by].by : "";
   return {
-    words: t("Last heard {ago} {door}.", { ago: agoText(seconds, heard_at), door }),
+    words: t("Last contact {ago} {door}.", { ago: agoText(seconds, heard_at), door }),
     isHeard: seconds <= LOST_AFTER_S,
   };
 }
@@ -49,7 +49,7 @@ export function loadedText({ loaded_flight, loaded_read_at, loaded_doubt, server
   const what = t("flight {number} of an approved mission", { number: loaded_flight });
   if (!loaded_read_at) return what;
   const ago = agoText((Date.parse(server_time) - Date.parse(loaded_read_at)) / 1_000, loaded_read_at);
-  const said = t("{what}, read back {ago}", { what, ago });
+  const said = t("{what}, verified {ago}", { what, ago });
   return loaded_doubt ? `${said}; ${DOUBTS[loaded_doubt]}` : said;
 }
 
@@ -64,7 +64,7 @@ function drawing(connection) {
     h(
       "dl",
       { class: "facts" },
-      term(t("Told by"), LINKS[connection.link].words),
+      term(t("Command link"), LINKS[connection.link].words),
       term(t("Mode"), [mode, flightWords(connection)].filter(Boolean).join(", ")),
       term(t("Charge now"), battery_percent === null ? "" : percentText(battery_percent)),
       term(t("Autopilot"), [[autopilot, firmware].filter(Boolean).join(" "), vehicle_type].filter(Boolean).join(", ")),

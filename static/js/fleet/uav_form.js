@@ -95,7 +95,7 @@ function linkFields(uav, isAdministrator) {
   return [
     choiceField(
       "link",
-      t("Told what to do by"),
+      t("Command link"),
       uav.link,
       Object.entries(LINKS).map(([value, { words }]) => [value, words]),
     ),

@@ -11,7 +11,7 @@ import { agoText } from "../units.js";
 
 const ASKED_EVERY_MS = 15_000;
 const NEW = "";
-const NONE = t("None. A vehicle that speaks to a gateway with a system id of no UAV is listed here.");
+const NONE = t("None. Vehicles with an unknown system ID seen by the gateway are listed here.");
 
 /**
  * @param {Pick<UnknownVehicle, "heard_at" | "autopilot" | "vehicle_type" | "address" | "is_signed">} vehicle
@@ -24,7 +24,7 @@ export function aboutVehicle(vehicle, now = Date.now()) {
     vehicle.vehicle_type,
     vehicle.address,
     vehicle.is_signed ? t("signed") : t("not signed"),
-    t("heard {ago}", { ago: agoText(seconds, vehicle.heard_at) }),
+    t("last contact {ago}", { ago: agoText(seconds, vehicle.heard_at) }),
   ];
   return facts.filter(Boolean).join(" · ");
 }

@@ -90,7 +90,6 @@ export function createBatch(store, page) {
         ...seen,
         ...leftLines(scopes),
         ...unheardLines(silent, kind, store.state.now_ms),
-        LATE,
       ],
       act: page.mission === null ? act : `${KINDS[kind]}: ${uavs.length}`,
       safer,
@@ -101,6 +100,7 @@ export function createBatch(store, page) {
       title: page.mission === null ? t("{act}: of which mission?", { act }) : title(uavs.length),
       choices: page.mission === null ? { name: "scope", legend: t("Whom it is for"), of: scopeChoices(scopes) } : null,
       keep: t("Keep flying"),
+      hint: LATE,
       isBack: true,
       opener,
       later:

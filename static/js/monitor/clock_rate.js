@@ -20,6 +20,6 @@ export function rateOf({ link, is_simulated }) {
 
 /** @param {number} rate */
 export const rateWords = (rate) =>
-  t("It flies {rate} times as fast as the clock on the wall, by which all times here are told.", {
+  t("Simulation at {rate}×; times on this page are real time.", {
     rate: numberText(rate, Number.isInteger(rate) ? 0 : 1),
   });

@@ -47,8 +47,8 @@ const target = (state) => [
 
 /** @type {Record<string, (value: any) => string | false>} */
 const FAULTS = {
-  link_lost_for_s: (s) => s > 0 && t("link lost for {seconds} s of the flight", { seconds: numberText(s) }),
-  gps_lost_for_s: (s) => s > 0 && t("GPS lost for {seconds} s of the flight", { seconds: numberText(s) }),
+  link_lost_for_s: (s) => s > 0 && t("link lost for {seconds} s of simulated time", { seconds: numberText(s) }),
+  gps_lost_for_s: (s) => s > 0 && t("GPS lost for {seconds} s of simulated time", { seconds: numberText(s) }),
   battery_wh_left: (wh) => wh !== null && t("battery at {wh} Wh", { wh: numberText(wh) }),
   motor_failed: (motor) => motor !== null && t("motor {number} has failed", { number: motor + 1 }),
   stuck_item: (item) => item !== null && t("stuck at item {number} of its list", { number: item }),
@@ -58,12 +58,12 @@ const FAULTS = {
 /** "motor 1 has failed"; where nothing is wrong any more, all is well again. @param {Record<string, unknown>} faults */
 function faultWords(faults) {
   const wrong = Object.entries(faults).map(([name, value]) => FAULTS[name]?.(value));
-  return wrong.filter(Boolean).join(", ") || t("all well again");
+  return wrong.filter(Boolean).join(", ") || t("faults cleared");
 }
 
 /** What of a simulation was changed. @param {Facts} facts */
 const changeWords = ({ speed, conditions }) =>
-  [speed !== undefined && t("pace {speed}×", { speed }), conditions !== undefined && t("wind")]
+  [speed !== undefined && t("speed {speed}×", { speed }), conditions !== undefined && t("wind")]
     .filter(Boolean)
     .join(", ");
 
@@ -126,12 +126,12 @@ const SHAPES = {
   "target-failed": target("failed"),
   "offer-made": [
     "replace",
-    ({ code, name }) => t("Another plan: {why}", { why: because(causeWords({ code, cause: {} }), name) }),
+    ({ code, name }) => t("Re-plan: {why}", { why: because(causeWords({ code, cause: {} }), name) }),
   ],
-  "offer-accepted": ["circle-check", ({ who }) => t("Another plan accepted by {who}", { who })],
-  "offer-declined": ["circle-x", ({ who }) => t("Another plan declined by {who}", { who })],
-  "offer-expired": ["timer", () => t("Another plan expired")],
-  "offer-impossible": ["circle-x", () => t("No other plan can be flown.")],
+  "offer-accepted": ["circle-check", ({ who }) => t("Re-plan accepted by {who}", { who })],
+  "offer-declined": ["circle-x", ({ who }) => t("Re-plan declined by {who}", { who })],
+  "offer-expired": ["timer", () => t("Re-plan expired")],
+  "offer-impossible": ["circle-x", () => t("No re-plan possible.")],
   "simulation-started": ["play", ({ who }) => t("Simulated UAVs started by {who}", { who })],
   "simulation-changed": [
     "gauge",

@@ -178,7 +178,7 @@ startChrome({
     { keys: ["+", "="], words: t("Zoom in"), act: () => map.zoom(1) },
     { keys: ["-"], words: t("Zoom out"), act: () => map.zoom(-1) },
     { keys: ["["], words: t("Fold the side"), act: layout.foldSide },
-    { keys: ["]"], words: t("Fold alerts and board"), act: layout.foldRight },
+    { keys: ["]"], words: t("Fold alerts and targets"), act: layout.foldRight },
     {
       keys: ["escape"],
       words: t("Close"),

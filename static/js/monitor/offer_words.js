@@ -12,23 +12,23 @@ import { clockText, countdownText, lengthText, percentText } from "../units.js";
 const CAUSES = {
   "uav-out": t("A UAV has dropped out"),
   "zone-active": t("A no-fly zone has come into force"),
-  "battery-short": t("A battery will not do"),
-  "asked-for": t("Asked for"),
+  "battery-short": t("Battery not sufficient"),
+  "asked-for": t("Requested"),
 };
 /** @type {Record<string, string>} */
 const CHANGES = {
-  untouched: t("flies on as approved"),
+  untouched: t("continues as approved"),
   changed: t("gets another route"),
-  recalled: t("is told to return"),
+  recalled: t("returns"),
   out: t("has dropped out"),
 };
 
 /** @type {Partial<Record<OfferState, string>>} */
 const OUTCOMES = {
-  accepted: t("The other plan is flown."),
-  declined: t("The other plan was declined: what was approved is flown."),
-  outdated: t("The other plan is offered no more."),
-  impossible: t("No other plan can be flown."),
+  accepted: t("Re-plan accepted."),
+  declined: t("Re-plan declined: the approved plan continues."),
+  outdated: t("Re-plan expired."),
+  impossible: t("No re-plan possible."),
 };
 
 /** What another plan changes; empty while it is computed. @param {Pick<LiveOffer, "difference">} offer */
@@ -97,8 +97,8 @@ export function sentenceOf(offer) {
   const handed = targets.filter(({ to }) => to !== null).length;
   return [
     changed > 0 && tn(changed, "{count} UAV gets another route", "{count} UAVs get another route"),
-    handed > 0 && tn(handed, "{count} target changes hands", "{count} targets change hands"),
-    unreached > 0 && tn(unreached, "{count} target stays undone", "{count} targets stay undone"),
+    handed > 0 && tn(handed, "{count} target is reassigned", "{count} targets are reassigned"),
+    unreached > 0 && tn(unreached, "{count} target stays open", "{count} targets stay open"),
   ]
     .filter(Boolean)
     .join(", ");
@@ -143,7 +143,7 @@ export const targetLines = (offer) =>
 
 /** How long it can still be taken. @param {string} until @param {number} now_ms */
 export const validWords = (until, now_ms) =>
-  t("Can be taken for {time}. Dashed on the map.", {
+  t("Valid for {time}. Dashed on the map.", {
     time: countdownText(Date.parse(until) - now_ms),
   });
 

@@ -60,7 +60,7 @@ export const FAULTS = /** @type {Fault[]} */ ([
 export const WELL = /** @type {Fault} */ ({
   name: "well",
   image: "circle-check",
-  words: t("All well again"),
+  words: t("Clear faults"),
   of: () => ({ link_lost_for_s: 0, gps_lost_for_s: 0, motor_failed: null }),
 });
 
@@ -83,7 +83,10 @@ export const isFlown = (vehicle) => vehicle.state === "flying";
  */
 export function lastsWords(seconds, speed) {
   if (speed === 1 || !Number.isFinite(seconds)) return "";
-  return t("By the clock on the wall; {flown} s of the flight.", { flown: numberText(Math.round(seconds * speed)) });
+  return t("{real} s real time = {flown} s simulated", {
+    real: numberText(seconds),
+    flown: numberText(Math.round(seconds * speed)),
+  });
 }
 
 /** @param {SimulatedVehicle["conditions"]} conditions */
@@ -100,7 +103,7 @@ function airWords({ wind: [layer], gusts_mps }) {
 export function vehicleWords({ state, message, told, conditions }) {
   if (state === "failed") return { words: message, isBad: true };
   if (state === "ended") return { words: t("Ended"), isBad: false };
-  if (state === "wanted" || !told) return { words: t("is being started"), isBad: false };
+  if (state === "wanted" || !told) return { words: t("starting"), isBad: false };
   if (told.is_crashed) return { words: t("crashed"), isBad: true };
   const place = told.is_in_air
     ? t("in the air at {height}", { height: heightText(told.altitude_relative_m) })
@@ -110,7 +113,7 @@ export function vehicleWords({ state, message, told, conditions }) {
       place,
       t("battery {figure}", { figure: percentText(told.battery_percent) }),
       airWords(conditions),
-      told.is_link_lost && t("its link is lost"),
+      told.is_link_lost && t("link lost"),
     ]
       .filter(Boolean)
       .join(" · "),
@@ -129,7 +132,7 @@ export function stateWords(simulation, canFly) {
   if (!simulation) {
     const words = canFly
       ? t(
-          "The UAVs of this mission are simulated: start them here, then send the mission and fly it with the usual buttons.",
+          "The UAVs of this mission are simulated: start them here, then upload the mission and fly it with the usual buttons.",
         )
       : t("The UAVs of this mission are simulated. An operator starts them.");
     return { words, isBad: false };
@@ -146,14 +149,14 @@ export function stateWords(simulation, canFly) {
       ? tn(flown.length, "{count} simulated UAV in real time.", "{count} simulated UAVs in real time.")
       : tn(
           flown.length,
-          "{count} simulated UAV at {speed} times real time.",
-          "{count} simulated UAVs at {speed} times real time.",
+          "{count} simulated UAV at {speed}× real time.",
+          "{count} simulated UAVs at {speed}× real time.",
           { speed: simulation.speed },
         ),
     crashed.length > 0 && t("Crashed: {names}.", { names: crashed.map(({ name }) => name).join(", ") }),
     lost.length > 0 && t("Lost with their simulator: {names}.", { names: lost.map(({ name }) => name).join(", ") }),
     (simulation.pace?.slipped_s ?? 0) > BEHIND_S &&
-      t("This machine is too slow for that pace: {seconds} s behind.", {
+      t("This machine is too slow for this speed: {seconds} s behind.", {
         seconds: Math.round(simulation.pace?.slipped_s ?? 0),
       }),
   ];

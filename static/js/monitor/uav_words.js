@@ -11,7 +11,7 @@ import { durationText, exactClockText, heightText, lengthText, numberText, speed
 const AMBER = "warning";
 /** @type {[RegExp, string, string][]} */
 const MODES = [
-  [/^(MISSION|AUTO)$/, t("Mission|mode"), "active"],
+  [/^(MISSION|AUTO)$/, t("In mission"), "active"],
   [/^(HOLD|LOITER|POSHOLD|BRAKE|PAUSED?)$/, t("Holding"), AMBER],
   [/^(RTL|RETURN|SMART_?RTL|AUTO_?RTL|RETURNING)$/, t("Returning"), AMBER],
   [/^(LAND|LANDING|PRECLAND)$/, t("Landing"), AMBER],
@@ -27,7 +27,7 @@ const MODES = [
 export function stateOf({ measured, link }) {
   const mode = (measured?.mode || link?.mode || "").trim();
   const isInAir = inAir({ measured, link });
-  if (!mode && isInAir === null) return { words: t("Not heard yet"), level: null };
+  if (!mode && isInAir === null) return { words: t("Not connected"), level: null };
   if (isInAir === false)
     return { words: measured?.is_armed ? t("Armed, on the ground") : t("On the ground"), level: null };
   const known = MODES.find(([pattern]) => pattern.test(mode.toUpperCase().replace(/^AUTO\./, "")));
@@ -68,11 +68,11 @@ export function estimateWords(uav, certainty, now_ms) {
   const { estimated, measured } = uav;
   if (certainty === null || certainty === MEASURED || (certainty === ESTIMATED && !isLate(uav, now_ms))) return null;
   const seen = measured ? t("Last report {time}.", { time: exactClockText(measured.measured_at) }) : "";
-  if (certainty === LOST || !estimated) return { strong: t("Lost: nobody can say where it is now."), rest: seen };
+  if (certainty === LOST || !estimated) return { strong: t("Lost: position unknown."), rest: seen };
   const contact = estimated.contact_expected_at ? contactWords(estimated.contact_expected_at, now_ms) : seen;
   return {
-    strong: t("Estimated, within {distance}", { distance: lengthText(withinOf_m(estimated)) }),
-    rest: `${t("(95 of 100 times).")} ${contact}`.trim(),
+    strong: t("Estimated position ±{distance} (95 %).", { distance: lengthText(withinOf_m(estimated)) }),
+    rest: contact,
   };
 }
 

@@ -25,12 +25,11 @@ export function unheardLines(uavs, kind, now_ms) {
   const names = (some) => some.map(({ name }) => name).join(", ");
   return [
     sent.length > 0 &&
-      t(
-        "Nothing is heard from {names} now: this is sent all the same, again and again, and known to be done once it is heard.",
-        { names: names(sent) },
-      ),
+      t("No telemetry from {names}: the command is sent repeatedly, and confirmed once telemetry returns.", {
+        names: names(sent),
+      }),
     waiting.length > 0 &&
-      t("There is no link to {names} now: the command waits and is sent on contact, as long as it is wanted.", {
+      t("No link to {names}: the command is sent on contact, unless it expires first.", {
         names: names(waiting),
       }),
   ].filter(Boolean);

@@ -72,7 +72,7 @@ export function confirmAct(question) {
  * @param {Question} question
  * @param {(value: string) => void} close
  */
-function createActs({ keep = t("Not yet"), isDanger }, close) {
+function createActs({ keep = t("Cancel"), hint = "", isDanger }, close) {
   const out = h("button", { class: "button", value: "out", type: "button", onclick: () => close("out") }, keep);
   /** @param {Event} event */
   const goes = ({ currentTarget }) => /** @type {HTMLButtonElement} */ (currentTarget).type === "button" && close("go");
@@ -86,7 +86,7 @@ function createActs({ keep = t("Not yet"), isDanger }, close) {
   function draw() {
     for (const button of [go, better]) {
       button.disabled = why !== "";
-      button.title = why;
+      button.title = why || hint;
     }
   }
   return {

@@ -1,7 +1,7 @@
 /** What UAVs meet if they return now or land where they are, asked for while somebody is asked whether they shall. */
 
 import { ApiError, get } from "../api.js";
-import { LATE, questionOf } from "../domain/command_questions.js";
+import { questionOf } from "../domain/command_questions.js";
 import { t } from "../text.js";
 
 /** @import { AskedKind, AskedOf, Question } from "../domain/command_questions.js" */
@@ -79,7 +79,7 @@ export function presentQuestion(uav, kind, flyer, withMore = (lines) => lines) {
   if (!needs) return { ...first, lines: withMore(first.lines) };
   return {
     ...first,
-    lines: withMore([first.lines[0], needs, LATE]),
+    lines: withMore([first.lines[0], needs]),
     later: presentOf(uav, kind).then((present) => {
       const { lines, ...known } = questionOf(kind, { ...flyer, ...present });
       return { ...known, lines: withMore(lines) };

@@ -98,13 +98,13 @@ function nextWords(route, at_ms) {
     return t("lands in {time}", { time: waitText(track.flights[index].to_ms - at_ms) });
   return hasLanded(track, track.flights.length - 1, isOver)
     ? t("landed")
-    : t("last heard {time}", { time: clockText(track.samples[track.samples.length - 1].at_ms) });
+    : t("last contact {time}", { time: clockText(track.samples[track.samples.length - 1].at_ms) });
 }
 
 /** @param {Moment | undefined} moment */
 function unsureWords(moment) {
   if (moment?.kind === ESTIMATED) return t("estimated, ±{bound}", { bound: heightText(moment.sample.bound_m) });
-  return moment?.kind === SILENT ? t("no report") : "";
+  return moment?.kind === SILENT ? t("no telemetry") : "";
 }
 
 /** @typedef {ReturnType<typeof stripRow>} StripRow */

@@ -69,7 +69,7 @@ const errors = (rms, max) =>
  * @param {{ button?: Properties, words?: string, isWithin?: boolean }} how isWithin: of a stage, folded away with it
  */
 function legRow(leg, name, look, leave, { button, words = "", isWithin = false }) {
-  const small = [words, leg.reports === 0 && t("no report")].filter(Boolean).join(", ");
+  const small = [words, leg.reports === 0 && t("no telemetry")].filter(Boolean).join(", ");
   return h(
     "tr",
     {

@@ -68,7 +68,7 @@ export function markerOf({ uav, place, name, track }, at_ms, looked) {
 
 /** @param {NonNullable<Moment>} moment */
 function factOf(moment) {
-  if (moment.kind === SILENT) return t("no report");
+  if (moment.kind === SILENT) return t("no telemetry");
   if (moment.kind === ESTIMATED) return t("estimated, ±{bound}", { bound: heightText(moment.sample.bound_m) });
   return moment.sample.height_m === null ? "" : heightText(moment.sample.height_m);
 }

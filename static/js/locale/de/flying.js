@@ -4,8 +4,8 @@ export default {
   "The way home is being looked at …": "Der Heimweg wird angesehen …",
   "What lies below is being looked at …": "Was darunter liegt, wird angesehen …",
   "How long it can hold is being looked at …": "Wie lange es halten kann, wird angesehen …",
-  "Send the mission": "Mission senden",
-  "Take the mission off": "Mission vom UAV nehmen",
+  "Upload mission": "Mission hochladen",
+  "Remove mission": "Mission entfernen",
   "Arm": "Scharf schalten",
   "Take off": "Abheben",
   "Start": "Starten",
@@ -19,39 +19,38 @@ export default {
   "done": "ausgeführt",
   "failed": "gescheitert",
   "expired": "verfallen",
-  "Not sent yet": "Noch nicht gesendet",
-  "Taken off the UAV": "Vom UAV genommen",
-  "Being taken off the UAV": "Wird vom UAV genommen",
+  "Not uploaded yet": "Noch nicht hochgeladen",
+  "Removed from the UAV": "Vom UAV entfernt",
+  "Being removed from the UAV": "Wird vom UAV entfernt",
   "Still on the UAV: {why}": "Noch auf dem UAV: {why}",
   "Mixed mission on the UAV – {why}": "Gemischte Mission auf dem UAV – {why}",
-  "On the UAV: flight {flight}, what was approved": "Auf dem UAV: Flug {flight}, wie freigegeben",
-  "On the UAV: what was approved": "Auf dem UAV: was freigegeben wurde",
-  "Not on the UAV: {why}": "Nicht auf dem UAV: {why}",
-  "Sending, {done} of {total} items": "Wird gesendet, {done} von {total} Punkten",
+  "Flight {flight} uploaded": "Flug {flight} hochgeladen",
+  "Uploaded": "Hochgeladen",
+  "Not uploaded: {why}": "Nicht hochgeladen: {why}",
+  "Uploading, {done} of {total} items": "Wird hochgeladen, {done} von {total} Punkten",
   "Waiting for the UAV": "Wartet auf das UAV",
   "{kind}: {state} {time}": "{kind}: {state} {time}",
   "given": "gegeben",
-  "The approval is being taken back.": "Die Freigabe wird gerade zurückgenommen.",
+  "The approval is being revoked.": "Die Freigabe wird gerade widerrufen.",
   "{name} does not have its mission yet.": "{name} hat seine Mission noch nicht.",
   "{name} has no mission.": "{name} hat keine Mission.",
   "A flight of {name} has failed: it does not fly on in this mission.":
     "Ein Flug von {name} ist gescheitert: Es fliegt in dieser Mission nicht weiter.",
   "{name} has not started its mission: there is nothing to go on with.":
     "{name} hat seine Mission nicht begonnen: Es gibt nichts fortzusetzen.",
-  "Its way home has not been checked: it flies straight, at a height of its own.":
-    "Sein Heimweg ist nicht geprüft: Es fliegt geradeaus, auf einer eigenen Höhe.",
+  "Return path not checked: it flies straight, at its own return altitude.":
+    "Rückweg nicht geprüft: Es fliegt geradeaus, auf seiner eigenen Rückkehrhöhe.",
   "Return and Abort: nothing in the way home, {height} above its take-off (read {time}).":
     "„Zurück“ und „Abbrechen“: Der Heimweg ist frei, {height} über seinem Startplatz (gelesen {time}).",
   "it has booted since": "es ist seither neu gestartet",
   "another ground station has changed its lists since": "eine andere Bodenstation hat seither seine Listen geändert",
   "its list has another length since": "seine Liste ist seither anders lang",
-  "read back {ago}; not known now: {why}": "zurückgelesen {ago}; jetzt nicht bekannt: {why}",
-  "read back {ago}": "zurückgelesen {ago}",
-  "It is not known what is on the UAV: send it again.":
-    "Es ist nicht bekannt, was auf dem UAV ist: Senden Sie es noch einmal.",
+  "verified {ago}; uncertain now: {why}": "geprüft {ago}; jetzt unsicher: {why}",
+  "verified {ago}": "geprüft {ago}",
+  "Mission on the UAV unknown: upload it again.": "Mission auf dem UAV unbekannt: Laden Sie sie erneut hoch.",
   "{what}, {read}": "{what}, {read}",
-  "{kind}: reading back what is on board, {done} of {total} items":
-    "{kind}: liest zurück, was an Bord ist, {done} von {total} Punkten",
+  "{kind}: verifying the mission on board, {done} of {total} items":
+    "{kind}: prüft die Mission an Bord, {done} von {total} Punkten",
   "{name} has flown this flight.": "{name} hat diesen Flug schon geflogen.",
   "{name} has already been started.": "{name} wurde schon gestartet.",
   "Flown to its end. Save a copy to fly it again.":
@@ -59,13 +58,13 @@ export default {
   "Aborted. Save a copy to fly it again.": "Abgebrochen. Sichern Sie eine Kopie, um sie wieder zu fliegen.",
   "A flight failed. Save a copy to fly it again.":
     "Ein Flug ist gescheitert. Sichern Sie eine Kopie, um sie wieder zu fliegen.",
-  "The approval is being taken back: {reason}. It ends once every UAV was seen without the mission.":
-    "Die Freigabe wird zurückgenommen: {reason}. Sie endet, sobald jedes UAV ohne die Mission gesehen wurde.",
+  "The approval is being revoked: {reason}. It ends once the mission is removed from every UAV.":
+    "Die Freigabe wird widerrufen: {reason}. Sie endet, sobald die Mission von jedem UAV entfernt ist.",
   "Approved by {name} {time}.": "Freigegeben von {name} {time}.",
   "It is being flown: nothing of it can be changed.": "Sie wird geflogen: Nichts daran kann geändert werden.",
   "Nothing of it can be changed until that is revoked.": "Bis das widerrufen wird, kann nichts daran geändert werden.",
-  "If it cannot be reached in time, the command expires and is not carried out later.":
-    "Ist es nicht rechtzeitig zu erreichen, verfällt der Befehl und wird auch später nicht ausgeführt.",
+  "The command expires if it is not delivered in time.":
+    "Der Befehl verfällt, wenn er nicht rechtzeitig zugestellt wird.",
   "Why (kept in the history)": "Warum (steht im Verlauf)",
   "Start {name}?": "{name} starten?",
   "It takes off and flies its approved route: {length}, {time}.":
@@ -142,18 +141,17 @@ export default {
   "Somebody else has changed the mission. Look at it again.":
     "Jemand anderes hat die Mission geändert. Sehen Sie sie noch einmal an.",
   "Approve “{name}”?": "„{name}“ freigeben?",
-  "From then on nothing of the mission can be changed, and only what is approved is sent to UAVs. The approval can be revoked.":
-    "Von da an kann nichts an der Mission geändert werden, und nur was freigegeben ist, wird an UAVs gesendet. Die Freigabe kann widerrufen werden.",
+  "Approval locks the mission. Only the approved mission can be uploaded to UAVs. The approval can be revoked.":
+    "Die Freigabe sperrt die Mission. Nur die freigegebene Mission kann auf UAVs hochgeladen werden. Die Freigabe kann widerrufen werden.",
   "Approve": "Freigeben",
-  "Put points in on legs longer than [m]; empty: as planned":
-    "Punkte auf Strecken einfügen, die länger sind als [m]; leer: wie geplant",
+  "Maximum waypoint spacing [m]; blank: as planned": "Größter Wegpunktabstand [m]; leer: wie geplant",
   "Not approved.": "Nicht freigegeben.",
   "Revoke the approval of “{name}”?": "Die Freigabe von „{name}“ widerrufen?",
-  "Every UAV that may have the mission is told to drop it. The approval ends once all of them were seen without it; then the mission can be changed again.":
-    "Jedem UAV, das die Mission haben kann, wird gesagt, sie zu löschen. Die Freigabe endet, sobald alle ohne sie gesehen wurden; dann kann die Mission wieder geändert werden.",
-  "Until then it can be neither sent nor started.": "Bis dahin kann sie weder gesendet noch gestartet werden.",
-  "The mission can be changed again, and has to be approved anew before it is sent.":
-    "Die Mission kann wieder geändert werden und muss neu freigegeben werden, bevor sie gesendet wird.",
+  "The mission is removed from every UAV that may have it. The approval ends once that is confirmed; then the mission can be changed again.":
+    "Die Mission wird von jedem UAV entfernt, das sie haben kann. Die Freigabe endet, sobald das bestätigt ist; dann kann die Mission wieder geändert werden.",
+  "Until then it can be neither uploaded nor started.": "Bis dahin kann sie weder hochgeladen noch gestartet werden.",
+  "The mission can be changed again, and must be approved again before it is uploaded.":
+    "Die Mission kann wieder geändert werden und muss vor dem Hochladen neu freigegeben werden.",
   "Keep it approved": "Freigegeben lassen",
   "Revoke": "Widerrufen",
   "Not revoked.": "Nicht widerrufen.",
@@ -174,7 +172,6 @@ export default {
   "It is not saved yet.": "Sie ist noch nicht gesichert.",
   "The plan reaches no target: there is nothing to approve.":
     "Der Plan erreicht kein Ziel: Es gibt nichts freizugeben.",
-  "Not yet": "Noch nicht",
   "Sending to {name}": "Senden an {name}",
   "Commands to {name}": "Befehle an {name}",
   "by the program": "vom Programm",
@@ -184,7 +181,7 @@ export default {
   "as {hash}": "als {hash}",
   "Approval revoked": "Freigabe widerrufen",
   "Approval is being revoked": "Freigabe wird widerrufen",
-  "Sent to UAVs": "An UAVs gesendet",
+  "Uploaded to UAVs": "Auf UAVs hochgeladen",
   "Started": "Gestartet",
   "{count} UAV flies {length} in all: {names}.": [
     "{count} UAV fliegt insgesamt {length}: {names}.",

@@ -5,7 +5,7 @@ export default {
   "A UAV can get there, but not on one route with its other targets. Add a UAV.":
     "Ein UAV kann dorthin, aber nicht auf einer Route mit seinen anderen Zielen. Ein weiteres UAV hilft.",
   "Aborted": "Abgebrochen",
-  "Active": "Im Flug",
+  "In flight": "Im Flug",
   "Address": "Adresse",
   "All": "Alle",
   "and {count} more": ["und {count} weiteres", "und {count} weitere"],
@@ -45,7 +45,6 @@ export default {
   "dark": "dunkel",
   "Del": "Entf",
   "Delete": "Löschen",
-  "Dispatched": "Übergeben",
   "Done": "Fertig",
   "Draft": "Entwurf",
   "Drawing": "Zeichnen",

@@ -33,7 +33,7 @@ export default {
   "Change {name} in this mission": "{name} in dieser Mission ändern",
   "changed since it was planned": "seit der Planung geändert",
   "changed: {names}": "geändert: {names}",
-  "Choose {count} more": ["{count} weiteres wählen", "{count} weitere wählen"],
+  "Select {count} more": ["{count} weiteres auswählen", "Die übrigen {count} auswählen"],
   "Clear everything": "Alles leeren",
   "Copied from “{name}”": "Kopiert von „{name}“",
   "Copy the address with this view": "Adresse mit diesem Ausschnitt kopieren",

@@ -22,8 +22,8 @@ export default {
     "Der Plan ist inzwischen ein anderer: Dies sagt nichts über ihn. Proben Sie neu.",
   "Zones, assets or terrain have changed somewhere since.":
     "Zonen, Objekte oder Gelände haben sich seither irgendwo geändert.",
-  "Limits and what flew": "Grenzen, und was flog",
-  "Flown in simulation, and planned or allowed": "In der Simulation geflogen, und geplant oder erlaubt",
+  "Limits and simulated aircraft": "Grenzen und simulierte Luftfahrzeuge",
+  "Simulated against planned and allowed": "Simuliert gegen geplant und erlaubt",
   "From another UAV": "Von einem anderen UAV",
   "not flown to": "nicht angeflogen",
   "reached, {away} off": "erreicht, {away} daneben",

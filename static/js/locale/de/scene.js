@@ -1,6 +1,7 @@
 /** German: the 3D view of a mission. */
 
 export default {
+  "no report": "keine Meldung",
   "See it in 3D": "In 3D ansehen",
   "3D view": "3D-Ansicht",
   "3D view, and back": "3D-Ansicht und zurück",

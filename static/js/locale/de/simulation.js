@@ -4,34 +4,32 @@ export default {
   "Fly": "Fliegen",
   "Report": "Bericht",
   "Stages of the mission": "Abschnitte der Mission",
-  "It flies {rate} times as fast as the clock on the wall, by which all times here are told.":
-    "Es fliegt {rate}-mal so schnell wie die Uhr an der Wand, nach der alle Zeiten hier gehen.",
+  "Simulation at {rate}×; times on this page are real time.":
+    "Simulation mit {rate}×; Zeiten auf dieser Seite sind Echtzeit.",
   "{rate}×": "{rate}×",
   "End {name}": "{name} beenden",
   "End {name}?": "{name} beenden?",
-  "It is gone at once, wherever it is: if it is in the air, its link is lost. The others fly on.":
-    "Es ist sofort weg, wo immer es ist: Ist es in der Luft, reißt die Verbindung ab. Die anderen fliegen weiter.",
-  "Pace": "Tempo",
+  "The simulated UAV stops at once; in flight it shows as link lost. The others fly on.":
+    "Das simulierte UAV endet sofort; im Flug erscheint es mit verlorener Verbindung. Die anderen fliegen weiter.",
   "Fly in simulation": "In der Simulation fliegen",
   "Set the wind": "Wind setzen",
   "Wind and faults of": "Gilt für",
-  "Speed|wind": "Stärke",
-  "All well again": "Alles wieder gut",
-  "By the clock on the wall; {flown} s of the flight.": "Nach der Uhr an der Wand; {flown} s des Fluges.",
+  "Clear faults": "Störungen beheben",
+  "{real} s real time = {flown} s simulated": "{real} s Echtzeit = {flown} s simuliert",
   "calm": "windstill",
   "wind {speed} from {degrees}°": "Wind {speed} aus {degrees}°",
-  "is being started": "wird gestartet",
+  "starting": "startet gerade",
   "crashed": "abgestürzt",
   "in the air at {height}": "in der Luft auf {height}",
   "on the ground": "am Boden",
-  "its link is lost": "seine Verbindung ist weg",
-  "The UAVs of this mission are simulated: start them here, then send the mission and fly it with the usual buttons.":
-    "Die UAVs dieser Mission sind simuliert: Starten Sie sie hier, senden Sie dann die Mission und fliegen Sie sie mit den gewohnten Knöpfen.",
+  "link lost": "Verbindung verloren",
+  "The UAVs of this mission are simulated: start them here, then upload the mission and fly it with the usual buttons.":
+    "Die UAVs dieser Mission sind simuliert: Starten Sie sie hier, laden Sie dann die Mission hoch und fliegen Sie sie mit den gewohnten Knöpfen.",
   "The UAVs of this mission are simulated. An operator starts them.":
     "Die UAVs dieser Mission sind simuliert. Wer Missionen fliegt, startet sie.",
   "The simulation is over: {why}": "Die Simulation ist vorbei: {why}",
-  "This machine is too slow for that pace: {seconds} s behind.":
-    "Dieser Rechner ist für dieses Tempo zu langsam: {seconds} s zurück.",
+  "This machine is too slow for this speed: {seconds} s behind.":
+    "Dieser Rechner ist für diese Geschwindigkeit zu langsam: {seconds} s zurück.",
   "Real time": "Echtzeit",
   "{count} simulated UAV in real time.": [
     "{count} simuliertes UAV in Echtzeit.",
@@ -42,8 +40,8 @@ export default {
   "The wind has changed.": "Der Wind hat sich geändert.",
   "{fault}: done.": "{fault}: erledigt.",
   "End the simulation?": "Die Simulation beenden?",
-  "Its UAVs are gone at once, wherever they are: of those in the air the link is lost.":
-    "Ihre UAVs sind sofort weg, wo immer sie sind: Zu denen in der Luft reißt die Verbindung ab.",
+  "Simulated UAVs stop at once; those in flight show as link lost.":
+    "Simulierte UAVs enden sofort; solche im Flug erscheinen mit verlorener Verbindung.",
   "End the simulation": "Simulation beenden",
   "Faults": "Störungen",
   "Link or GPS lost for": "Ausfall dauert",
@@ -54,8 +52,8 @@ export default {
   "Crashed: {names}.": "Abgestürzt: {names}.",
   "Lost with their simulator: {names}.": "Mit ihrem Simulator verloren: {names}.",
   "Simulated, no real aircraft: {names}.": "Simuliert, kein echtes Luftfahrzeug: {names}.",
-  "{count} simulated UAV at {speed} times real time.": [
-    "{count} simuliertes UAV in {speed}-facher Echtzeit.",
-    "{count} simulierte UAVs in {speed}-facher Echtzeit.",
+  "{count} simulated UAV at {speed}× real time.": [
+    "{count} simuliertes UAV mit {speed}× Echtzeit.",
+    "{count} simulierte UAVs mit {speed}× Echtzeit.",
   ],
 };

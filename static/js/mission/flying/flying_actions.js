@@ -49,7 +49,7 @@ const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
 function returnsOf(returns, flyers) {
   const lines = flyers.flatMap(({ place }) => {
     const check = returnOf(returns, place);
-    if (!check) return [t("Its way home has not been checked: it flies straight, at a height of its own.")];
+    if (!check) return [t("Return path not checked: it flies straight, at its own return altitude.")];
     return [...check.warnings, check.fence_warning].filter(Boolean);
   });
   return [...new Set(lines)];
@@ -96,14 +96,12 @@ async function approve(acting) {
         names: uavsWords(flyers),
       }),
       simulated.length > 0 && t("Simulated, no real aircraft: {names}.", { names: uavsWords(simulated) }),
-      t(
-        "From then on nothing of the mission can be changed, and only what is approved is sent to UAVs. The approval can be revoked.",
-      ),
+      t("Approval locks the mission. Only the approved mission can be uploaded to UAVs. The approval can be revoked."),
       ...returnsOf(store.state.returns, flyers),
     ],
     field: {
       name: "longest_leg_m",
-      label: t("Put points in on legs longer than [m]; empty: as planned"),
+      label: t("Maximum waypoint spacing [m]; blank: as planned"),
       type: "number",
       min: 50,
       max: 5000,
@@ -133,11 +131,11 @@ async function revoke(acting) {
     lines: isOnItsWay(mission)
       ? [
           t(
-            "Every UAV that may have the mission is told to drop it. The approval ends once all of them were seen without it; then the mission can be changed again.",
+            "The mission is removed from every UAV that may have it. The approval ends once that is confirmed; then the mission can be changed again.",
           ),
-          t("Until then it can be neither sent nor started."),
+          t("Until then it can be neither uploaded nor started."),
         ]
-      : [t("The mission can be changed again, and has to be approved anew before it is sent.")],
+      : [t("The mission can be changed again, and must be approved again before it is uploaded.")],
     field: { name: "reason", label: t("Why (kept in the history)"), isNeeded: true },
     keep: t("Keep it approved"),
     act: t("Revoke"),

@@ -166,7 +166,7 @@ function wordsOfFlying({ action, after }) {
   if (action === "revoke-asked") return { title: t("Approval is being revoked"), detail: after?.reason ?? "" };
   if (action === "dispatch")
     return {
-      title: t("Sent to UAVs"),
+      title: t("Uploaded to UAVs"),
       detail: [tn(after?.sent?.length ?? 0, "{count} UAV", "{count} UAVs"), after?.why].filter(Boolean).join(", "),
     };
   if (action === "begin-starts")

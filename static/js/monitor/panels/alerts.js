@@ -74,14 +74,14 @@ async function takeOver(alert, name, opener) {
 /** @param {Alert} alert */
 async function note(alert) {
   const asked = await confirmAct({
-    title: t("A note to this alert"),
+    title: t("Add note"),
     lines: [alert.message],
-    field: { name: "text", label: t("Note; it is kept and never changed"), isNeeded: true },
-    act: t("Write it down"),
+    field: { name: "text", label: t("Note (cannot be changed later)"), isNeeded: true },
+    act: t("Save note"),
     keep: t("Cancel"),
   });
   if (!asked?.text) return;
-  await tried(async () => void (await post(`/alerts/${alert.id}/notes`, { text: asked.text })), t("The note is kept."));
+  await tried(async () => void (await post(`/alerts/${alert.id}/notes`, { text: asked.text })), t("Note saved."));
 }
 
 /** A UAV that is down where its flight does not end stays on the board until somebody says what became of it. @param {Alert} alert */
@@ -89,7 +89,7 @@ async function close(alert) {
   const asked = await confirmAct({
     title: t("Close this alert"),
     lines: [alert.message],
-    field: { name: "reason", label: t("What became of the UAV; it is kept as a note"), isNeeded: true },
+    field: { name: "reason", label: t("What happened to the UAV (saved as a note)"), isNeeded: true },
     act: t("Close"),
     keep: t("Cancel"),
   });
@@ -176,7 +176,7 @@ const noteButton = (alert) =>
     {
       type: "button",
       class: "icon-button tight",
-      "aria-label": t("A note to this alert"),
+      "aria-label": t("Add note"),
       title: t("Note"),
       onclick: () => void note(alert),
     },

@@ -45,7 +45,7 @@ async function accept(store, offer, opener) {
   const { uavs = [] } = differenceOf(offer);
   const held = uavs.flatMap(({ change, name }) => (change === "changed" ? name : [])).join(", ");
   const asked = await confirmAct({
-    title: t("Fly the other plan?"),
+    title: t("Accept the re-plan?"),
     image: "waypoints",
     opener,
     lines: [
@@ -56,16 +56,16 @@ async function accept(store, offer, opener) {
           { names: held },
         ),
       ...targetLines(offer).slice(0, 6),
-      t("What is approved now ends; the rest goes on as a mission of its own."),
+      t("The current mission ends; its open targets continue as a new mission."),
     ],
-    keep: t("Keep the plan"),
-    act: t("Fly the other plan"),
+    keep: t("Keep current plan"),
+    act: t("Accept re-plan"),
   });
   if (!asked) return;
   const current = store.state.offers.find(({ id }) => id === offer.id);
   const whyNot = current?.state === "open" ? whyNotDecided(current, store.state) : overWords(current ?? offer).rest;
-  if (current?.state === "open" && !whyNot) await decide(current, "accept", t("The other plan is flown."));
-  else toast([whyNot, t("Nothing was sent. Look at the plan that is offered now.")].filter(Boolean).join(" "));
+  if (current?.state === "open" && !whyNot) await decide(current, "accept", t("Re-plan accepted."));
+  else toast([whyNot, t("Nothing was sent. Check the re-plan offered now.")].filter(Boolean).join(" "));
 }
 
 /** @param {LiveOffer} offer */
@@ -73,7 +73,7 @@ const computingCard = (offer) =>
   h(
     "article",
     { class: "offer" },
-    h("h3", {}, icon("loader-circle"), t("Another plan is being worked out")),
+    h("h3", {}, icon("loader-circle"), t("Computing a re-plan")),
     h("p", { class: "caption" }, causeWords(offer)),
   );
 
@@ -99,7 +99,7 @@ function targetList(offer) {
 function buttons(store, offer, whyNot) {
   /** @param {Event} event */
   const onAccept = ({ currentTarget }) => void accept(store, offer, /** @type {HTMLElement} */ (currentTarget));
-  const onDecline = () => void decide(offer, "decline", t("Declined: the plan stays as it is."));
+  const onDecline = () => void decide(offer, "decline", t("Declined: the approved plan continues."));
   const isDeciding = deciding.has(offer.id);
   const how = { type: "button", disabled: isDeciding || whyNot !== "", title: whyNot || null };
   return h(
@@ -118,7 +118,7 @@ function card(store, offer, canFly, whyNot) {
   return h(
     "article",
     { class: "offer" },
-    h("h3", {}, icon("waypoints"), t("Another plan is offered")),
+    h("h3", {}, icon("waypoints"), t("Re-plan offered")),
     h("p", {}, h("strong", {}, `${causeWords(offer)}.`), ` ${sentenceOf(offer)}.`),
     uavList(offer),
     targetList(offer),
@@ -143,7 +143,7 @@ function count(now_ms) {
 function overCard(offer, { goesOn, open, canFly, onPutAway }) {
   const { strong, rest } = overWords(offer, open);
   const isLeft = offer.state === "impossible" && open.length > 0 && canFly;
-  const words = t("Put away");
+  const words = t("Dismiss");
   const image = icon(offer.state === "accepted" ? "circle-check" : "info", "small");
   const put = { type: "button", class: "icon-button tight", "aria-label": words, title: words, onclick: onPutAway };
   return h(
@@ -151,7 +151,7 @@ function overCard(offer, { goesOn, open, canFly, onPutAway }) {
     { class: "offer over" },
     h("p", {}, image, h("span", {}, h("strong", {}, strong), rest && ` ${rest}`)),
     h("button", put, icon("x", "small")),
-    goesOn && h("a", { class: "button primary", href: goesOn }, t("Watch it go on")),
+    goesOn && h("a", { class: "button primary", href: goesOn }, t("Follow the new mission")),
     isLeft && h("button", { type: "button", class: "button", onclick: followUp(offer.mission) }, t("Plan a follow-up")),
   );
 }

@@ -156,7 +156,7 @@ class SimulationPanel {
     const onclick = async ({ currentTarget }) => {
       const asked = await confirmAct({
         title: t("End {name}?", { name: vehicle.name }),
-        lines: [t("It is gone at once, wherever it is: if it is in the air, its link is lost. The others fly on.")],
+        lines: [t("The simulated UAV stops at once; in flight it shows as link lost. The others fly on.")],
         keep: t("Keep flying"),
         act: words,
         opener: /** @type {HTMLElement} */ (currentTarget),
@@ -205,7 +205,7 @@ function startForm(page, act) {
   return h(
     "form",
     { class: "simulation-form", onsubmit },
-    h("div", { class: "simulation-pair" }, field(t("Pace"), speed), field(t("Wind"), air)),
+    h("div", { class: "simulation-pair" }, field(t("Speed"), speed), field(t("Wind"), air)),
     h("button", { class: "button", type: "submit" }, icon("play", "small"), t("Fly in simulation")),
   );
 }
@@ -236,7 +236,7 @@ class ChangesInFlight {
       h(
         "div",
         { class: "simulation-pair" },
-        field(t("Pace"), this.#speed),
+        field(t("Speed"), this.#speed),
         field(t("Wind and faults of"), this.#whose),
       ),
       group(t("Wind"), "simulation-wind-title", this.#windForm()),
@@ -300,7 +300,7 @@ class ChangesInFlight {
       h(
         "div",
         { class: "simulation-three" },
-        field(t("Speed|wind"), wind, SPEED_UNIT.unit),
+        field(t("Wind speed"), wind, SPEED_UNIT.unit),
         field(t("From"), from, "°"),
         field(t("Gusts"), gusts, SPEED_UNIT.unit),
       ),
@@ -328,7 +328,7 @@ class ChangesInFlight {
     const onclick = async ({ currentTarget }) => {
       const asked = await confirmAct({
         title: t("End the simulation?"),
-        lines: [t("Its UAVs are gone at once, wherever they are: of those in the air the link is lost.")],
+        lines: [t("Simulated UAVs stop at once; those in flight show as link lost.")],
         keep: t("Keep flying"),
         act: t("End the simulation"),
         opener: /** @type {HTMLElement} */ (currentTarget),

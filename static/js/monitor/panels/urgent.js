@@ -15,7 +15,7 @@ export function mountUrgent(store, { open }) {
     "div",
     { class: "urgent float", hidden: true },
     words,
-    h("button", { type: "button", class: "text-button", onclick: open }, t("Decide")),
+    h("button", { type: "button", class: "text-button", onclick: open }, t("Open|verb")),
   );
   byId("map").parentElement?.append(box);
   store.listen(["alerts", "offers"], ({ alerts, offers }) => {
@@ -34,7 +34,7 @@ export function mountUrgent(store, { open }) {
       box.className = "urgent float offered";
       words.replaceChildren(
         icon("waypoints"),
-        h("span", {}, h("strong", {}, `${t("Another plan is offered")}. `), `${causeWords(offer)}.`),
+        h("span", {}, h("strong", {}, `${t("Re-plan offered")}. `), `${causeWords(offer)}.`),
       );
     }
   });

@@ -158,7 +158,7 @@ const limitsOf = ({ uavs, limits }) =>
   h(
     "details",
     { class: "rehearsal-limits" },
-    h("summary", {}, t("Limits and what flew")),
+    h("summary", {}, t("Limits and simulated aircraft")),
     uavs.map(({ words }) => h("p", { class: "caption" }, words)),
     h(
       "dl",
@@ -219,7 +219,7 @@ function figuresTable(route, limits, verdict) {
   return h(
     "table",
     { class: "rehearsal-table" },
-    h("caption", { class: "unseen" }, t("Flown in simulation, and planned or allowed")),
+    h("caption", { class: "unseen" }, t("Simulated against planned and allowed")),
     h(
       "tbody",
       {},

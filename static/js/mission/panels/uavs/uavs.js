@@ -87,7 +87,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
     const free = uavs.filter(isFree);
     const all = byId("choose-uavs");
     all.hidden = state.fleet.length < LEAST_TO_NARROW || free.length === 0;
-    all.textContent = tn(free.length, "Choose {count} more", "Choose all {count}");
+    all.textContent = tn(free.length, "Select {count} more", "Select the remaining {count}");
     byId("no-uav-found").hidden = visible.length > 0 || state.fleet.length === 0;
   }
 
