@@ -14,7 +14,7 @@ from typing import Self
 PX4, ARDUPILOT = "px4", "ardupilot"
 # Of each group a vehicle has one; the first sets the height, the second says whether it flies straight at that height.
 PARAMETERS = {
-    PX4: (("RTL_RETURN_ALT",), ("RTL_TYPE",), ("RTL_MIN_DIST",), ("RTL_CONE_ANG",), ("NAV_ACC_RAD",), ("GF_AVOID_NODES",)),
+    PX4: (("RTL_RETURN_ALT",), ("RTL_TYPE",), ("RTL_MIN_DIST",), ("RTL_CONE_ANG",), ("NAV_ACC_RAD",), ("GF_AVOID_NODES",), ("GF_ACTION",)),
     ARDUPILOT: (
         ("RTL_ALT_M", "RTL_ALT"), ("RTL_ALT_TYPE",), ("RTL_CLIMB_MIN_M", "RTL_CLIMB_MIN"), ("RTL_CONE_SLOPE",), ("OA_TYPE",),
         ("RALLY_INCL_HOME",), ("RALLY_TOTAL",),
@@ -26,6 +26,7 @@ BENDING = {PX4: ("RTL_TYPE", "GF_AVOID_NODES"), ARDUPILOT: ("RTL_ALT_TYPE", "OA_
 IN_CENTIMETRES = frozenset({"RTL_ALT", "RTL_CLIMB_MIN"})
 LEAST_CONE_SLOPE = 0.5  # ArduPilot: below that there is no cone
 FENCES_HEIGHT, FENCES_POLYGONS = 1, 4  # bits of FENCE_TYPE
+HOLDS_AT_FENCE = 2  # PX4's GF_ACTION: from here on it does something; 0 is nothing, 1 a warning alone (geofence_params.yaml)
 # where it is not told
 USUAL = {"RTL_CONE_SLOPE": 3.0, "FENCE_MARGIN": 2.0, "RTL_MIN_DIST": 10.0, "RTL_CONE_ANG": 45.0, "NAV_ACC_RAD": 10.0}
 
@@ -142,13 +143,23 @@ def return_height_parameter(autopilot: str | None, parameters: Mapping[str, floa
 
 
 def fence_off_by(autopilot: str, parameters: Mapping[str, float]) -> str:
-    """The parameter by which an ArduPilot ignores the fence that it holds, as "FENCE_ENABLE 0"; empty: it does not, or has not told."""
+    """The parameter by which an autopilot ignores the fence that it holds, as "FENCE_ENABLE 0"; empty: it does not, or has not told."""
+    if autopilot == PX4 and parameters.get("GF_ACTION", HOLDS_AT_FENCE) < HOLDS_AT_FENCE:
+        return f"GF_ACTION {parameters['GF_ACTION']:g}"
     if autopilot != ARDUPILOT or "FENCE_ENABLE" not in parameters:
         return ""
     if not parameters["FENCE_ENABLE"] and not parameters.get("FENCE_AUTOENABLE"):
         return "FENCE_ENABLE 0"
     kinds = int(parameters.get("FENCE_TYPE", FENCES_POLYGONS))
     return "" if kinds & FENCES_POLYGONS else f"FENCE_TYPE {kinds}"
+
+
+def fence_on_by(autopilot: str, parameters: Mapping[str, float]) -> str:
+    """The parameter by which an autopilot minds the fence that it holds, as "FENCE_ENABLE 1"; empty: it does not, or has not told."""
+    names = {PX4: ("GF_ACTION",), ARDUPILOT: ("FENCE_ENABLE", "FENCE_AUTOENABLE")}.get(autopilot, ())
+    if not names or names[0] not in parameters or fence_off_by(autopilot, parameters):
+        return ""
+    return next(f"{name} {parameters[name]:g}" for name in names if parameters.get(name))
 
 
 def _ceiling_m(values: Mapping[str, float]) -> float | None:

@@ -22,10 +22,11 @@ HEIGHT_OF_WAY_M = 60.0  # above ground, at which the wind of the way home is tak
 
 @dataclass(frozen=True, slots=True)
 class ApprovedContent:
-    """`items` is None for a UAV with a companion computer."""
+    """`items` is None for a UAV with a companion computer, which is given no fence either."""
 
     content_sha256: str
     items: int | None
+    has_fence: bool = False
 
 
 @OfFlight
@@ -61,7 +62,9 @@ def approved_content(approval_id: UUID, uav_id: int, flight: int) -> ApprovedCon
     if found is None:
         return None
     approved, _document = found
-    return ApprovedContent(approved.content_sha256, None if approved.load is None else len(approved.load.mission))
+    if approved.load is None:
+        return ApprovedContent(approved.content_sha256, None)
+    return ApprovedContent(approved.content_sha256, len(approved.load.mission), bool(approved.load.fence))
 
 
 def _approved(approval_id: UUID, uav_id: int, flight: int) -> tuple[ApprovedLoad, dict[str, Any]] | None:

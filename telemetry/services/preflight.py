@@ -19,7 +19,8 @@ from inspection.geodesy import distance_m
 from inspection.selectors import ground_revision
 from missions.command_selectors import upload_of
 from missions.fleet_selectors import performance_of
-from missions.models import OPEN_COMMANDS, Approval, CommandState, Mission, Route, Uav
+from missions.mavlink.own_return import ARDUPILOT, PX4, fence_off_by, fence_on_by
+from missions.models import OPEN_COMMANDS, Approval, CommandState, LinkKind, Mission, Route, Uav
 from missions.selectors import approval_in_force, mission_of_organisation
 from missions.services.approval_checks import look_at
 from missions.services.dispatch import TO_SEND
@@ -29,6 +30,7 @@ from missions.services.refused import Reason
 from missions.services.start_slots import reasons_to_wait
 from missions.stored_outcomes import outcome_in_words
 from telemetry.models import UavLink
+from telemetry.services.approved_flights import approved_content
 from workspace.models import Organisation
 
 HEARD_WITHIN = timedelta(seconds=15)  # companions report every 10 s
@@ -37,6 +39,8 @@ MAP_CHECK_PERIOD_S = 15.0
 FIX_IN_SPACE = 3  # GPS_FIX_TYPE of MAVLink: 3D
 MORE_WIND_MPS = 3.0  # than planned, of which is warned
 AT_ITS_PLACE_M, AWAY_FROM_ITS_PLACE_M = 15.0, 50.0  # of the planned take-off: nothing is said, and it may not start
+HOME_AT_M = 15.0  # of the planned take-off, as far as which nothing is said; before a start it is read again, and refused from far away
+FENCE_PARAMETERS = {ARDUPILOT: "FENCE_ENABLE", PX4: "GF_ACTION"}  # that put a fence on
 Reported = Mapping[str, Mapping[str, Any]]  # groups of values of the newest reports; see services/latest.py
 
 
@@ -170,8 +174,8 @@ def _uav_preflight(uav: Uav, route: Route, approval: Approval, found: _OnTheMap,
     onboard = _onboard_mission(uav, approval, link)
     is_loaded = onboard.state in (CheckState.OK, CheckState.WARNING)
     checks = (
-        _link(link, reported, now), _position(route, reported), _battery(uav, route, reported, now), onboard,
-        *_returns(found.returns.get(place.sequence)), *_wind(route.mission, reported),
+        _link(link, reported, now), _position(route, reported), _home(uav, route, link), _battery(uav, route, reported, now), onboard,
+        *_fence(uav, place.name, approval, link), *_returns(found.returns.get(place.sequence)), _wind(route.mission, reported),
         *(_others(uav, route, now) if is_loaded else ()), *_against(found.reasons, place.sequence),
     )  # fmt: skip
     return UavPreflight(uav.pk, place.name, place.sequence, is_loaded, checks)
@@ -195,12 +199,30 @@ def _position(route: Route, reported: Reported) -> Check:
         return Check("position", CheckState.FAILED, _("It has no position yet. Wait for its satellite receiver."))
     if place is None:
         return Check("position", CheckState.UNKNOWN, _("It has told no position."))
-    away_m = float(distance_m(np.array([place]), np.array([route.mission_uav.start.coords]))[0])
+    away_m = _away_m(place, route)
     if away_m > AWAY_FROM_ITS_PLACE_M:
         words = _("It stands %(metres)s m from its planned take-off place. Carry it there, or plan its start anew.")
         return Check("position", CheckState.FAILED, words % {"metres": f"{away_m:.0f}"})
     state = CheckState.OK if away_m <= AT_ITS_PLACE_M else CheckState.WARNING
     return Check("position", state, _("%(metres)s m from its planned take-off place") % {"metres": f"{away_m:.0f}"})
+
+
+def _home(uav: Uav, route: Route, link: UavLink) -> Check:
+    """Where its autopilot flies on Return, and counts its heights from. As last reported: it sets it anew where it is armed."""
+    if link.home is None:
+        words = _("Its companion reports no home position.") if uav.link == LinkKind.HTTP else _("It has not reported its home position.")
+        return Check("home", CheckState.UNKNOWN, words)
+    away_m = _away_m(link.home.coords[:2], route)
+    values = {"metres": f"{away_m:.0f}"}
+    if away_m > HOME_AT_M:
+        words = _("Its home position, as last reported, is %(metres)s m from its planned take-off place: Return leads there.")
+        return Check("home", CheckState.WARNING, words % values)
+    return Check("home", CheckState.OK, _("Home position %(metres)s m from its planned take-off place") % values)
+
+
+def _away_m(place: Sequence[float], route: Route) -> float:
+    """From the planned take-off. place: longitude, latitude [deg]."""
+    return float(distance_m(np.array([place]), np.array([route.mission_uav.start.coords]))[0])
 
 
 def _battery(uav: Uav, route: Route, reported: Reported, now: datetime) -> Check:
@@ -236,11 +258,27 @@ def _onboard_mission(uav: Uav, approval: Approval, link: UavLink) -> Check:
     return Check("mission", CheckState.OK, _("Uploaded and read back: as approved"))
 
 
+def _fence(uav: Uav, name: str, approval: Approval, link: UavLink) -> Iterator[Check]:
+    """Whether its autopilot keeps out of the fence that is approved with its route, by its parameters; none without a fence."""
+    approved = approved_content(approval.pk, uav.pk, 1)
+    if approved is None or not approved.has_fence:
+        return
+    told = uav.autopilot_return
+    autopilot, parameters = told.get("autopilot", ""), told.get("parameters", {})
+    if off_by := fence_off_by(autopilot, parameters):
+        words = _("%(uav)s ignores the fence that goes with the mission: its autopilot has %(parameter)s.")
+        yield Check("fence", CheckState.WARNING, words % {"uav": name, "parameter": off_by})
+    elif on_by := fence_on_by(autopilot, parameters):
+        yield Check("fence", CheckState.OK, _("Fence active: %(parameter)s") % {"parameter": on_by})
+    else:
+        words = _("%(parameter)s was not read from it: whether the fence is active is not known.")
+        parameter = FENCE_PARAMETERS.get(autopilot or link.autopilot, " / ".join(FENCE_PARAMETERS.values()))
+        yield Check("fence", CheckState.UNKNOWN, words % {"parameter": parameter})
+
+
 def _returns(check: ReturnCheck | None) -> Iterator[Check]:
     if check is None:
         return
-    if check.fence_warning:
-        yield Check("fence", CheckState.WARNING, check.fence_warning)
     states = {ReturnState.CLEAR: CheckState.OK, ReturnState.IN_THE_WAY: CheckState.WARNING}
     words = " ".join(check.warnings)
     if check.state == ReturnState.CLEAR and check.height_m is not None:
@@ -249,16 +287,16 @@ def _returns(check: ReturnCheck | None) -> Iterator[Check]:
         yield Check("return", states.get(check.state, CheckState.UNKNOWN), words, check.safe_height_m)
 
 
-def _wind(mission: Mission, reported: Reported) -> Iterator[Check]:
-    """Most vehicles tell it in the air alone."""
+def _wind(mission: Mission, reported: Reported) -> Check:
+    """Most vehicles report it in the air alone."""
     measured_mps = reported.get("wind", {}).get("wind_speed_mps")
-    if measured_mps is None:
-        return
     layers = (mission.conditions or {}).get("wind") or []
     planned_mps = max((float(layer["speed_mps"]) for layer in layers), default=0.0)
+    if measured_mps is None:
+        return Check("wind", CheckState.UNKNOWN, _("Wind not reported, %(planned)s m/s planned") % {"planned": f"{planned_mps:.0f}"})
     values = {"measured": f"{measured_mps:.0f}", "planned": f"{planned_mps:.0f}"}
     state = CheckState.WARNING if measured_mps > planned_mps + MORE_WIND_MPS else CheckState.OK
-    yield Check("wind", state, _("Wind %(measured)s m/s measured, %(planned)s m/s planned") % values)
+    return Check("wind", state, _("Wind %(measured)s m/s measured, %(planned)s m/s planned") % values)
 
 
 def _others(uav: Uav, route: Route, now: datetime) -> Iterator[Check]:

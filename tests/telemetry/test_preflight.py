@@ -10,6 +10,7 @@ from missions.models import CommandKind, Mission, MissionState, PlannedStarts, U
 from missions.selectors import mission_of_organisation
 from missions.services.dispatch import dispatch_mission
 from missions.services.outbox import note_failed
+from missions.services.own_return import note_own_return
 from missions.services.steering import command_uav
 from telemetry.models import UavLink
 from telemetry.services.preflight import CheckState, NextAct, Preflight, preflight_of
@@ -145,6 +146,54 @@ def test_what_is_not_told_is_unknown_and_no_state(two: tuple[Mission, Uav, Uav])
     UavLink.objects.create(uav=tern, heard_at=timezone.now())
     found = states(checks(mission), tern)
     assert (found["battery"], found["position"], found["mission"]) == (CheckState.UNKNOWN,) * 3
+    assert (found["home"], found["wind"]) == (CheckState.UNKNOWN,) * 2
+    assert "fence" not in found, "the plan has none"
+
+
+def test_a_home_position_away_from_the_planned_take_off_is_warned_of(two: tuple[Mission, Uav, Uav]) -> None:
+    mission, tern, kite = two
+    heard(tern, kite)
+    start = tern.mission_uavs.get().start
+    UavLink.objects.filter(uav=tern).update(home=start)
+    UavLink.objects.filter(uav=kite).update(home=start)  # which takes off 250 m from there
+    found = checks(mission)
+    assert states(found, tern)["home"] == CheckState.OK
+    assert states(found, kite)["home"] == CheckState.WARNING
+    assert "Return leads there" in str(found.uavs)
+
+
+@pytest.mark.parametrize(
+    ("autopilot", "parameters", "state", "words"),
+    [
+        ("ardupilot", {"FENCE_ENABLE": 1.0}, CheckState.OK, "Fence active: FENCE_ENABLE 1"),
+        ("ardupilot", {"FENCE_ENABLE": 0.0, "FENCE_AUTOENABLE": 1.0}, CheckState.OK, "Fence active: FENCE_AUTOENABLE 1"),
+        ("ardupilot", {"FENCE_ENABLE": 0.0}, CheckState.WARNING, "its autopilot has FENCE_ENABLE 0."),
+        ("ardupilot", {"RTL_ALT": 3_000.0}, CheckState.UNKNOWN, "FENCE_ENABLE was not read from it"),
+        ("px4", {"GF_ACTION": 3.0}, CheckState.OK, "Fence active: GF_ACTION 3"),
+        ("px4", {"GF_ACTION": 1.0}, CheckState.WARNING, "its autopilot has GF_ACTION 1."),
+        ("px4", {"RTL_RETURN_ALT": 60.0}, CheckState.UNKNOWN, "GF_ACTION was not read from it"),
+    ],
+)
+def test_the_fence_is_active_off_or_not_known(
+    autopilot: str, parameters: dict[str, float], state: CheckState, words: str, person: User
+) -> None:
+    [tern] = fleet("Tern")
+    towers = world().towers
+    zone_around((10.010, 56.02), 0.001)
+    mission, _approval = approved(person, [tern], [towers[0], towers[5]])
+    note_own_return(uav_id=tern.pk, autopilot=autopilot, parameters=parameters)
+    heard(tern)
+    [fence_check] = [check for check in checks(mission).uavs[0].checks if check.code == "fence"]
+    assert fence_check.state == state
+    assert words in fence_check.message
+
+
+def test_wind_is_compared_where_it_is_reported(two: tuple[Mission, Uav, Uav]) -> None:
+    mission, tern, kite = two
+    heard(tern, wind_east_mps=9.0, wind_north_mps=0.0)
+    heard(kite)
+    found = checks(mission)
+    assert (states(found, tern)["wind"], states(found, kite)["wind"]) == (CheckState.WARNING, CheckState.UNKNOWN)
 
 
 def test_an_upload_that_failed_and_one_in_doubt_are_told(two: tuple[Mission, Uav, Uav], person: User) -> None:
