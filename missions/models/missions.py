@@ -78,6 +78,9 @@ class Mission(models.Model):
         help_text="another system's id, such as a work order's; several missions may have one",
     )
     attributes = models.JSONField(default=dict, db_default={}, blank=True, help_text="names and values of other systems")
+    call_number = models.PositiveSmallIntegerField(
+        null=True, blank=True, help_text="before the letters of its UAVs while several missions fly: 2 of 2B; empty: never sent to UAVs"
+    )
     started_at = models.DateTimeField(null=True, blank=True, help_text="when its first UAV began to fly")
     ended_at = models.DateTimeField(null=True, blank=True, help_text="when it was completed, aborted, or had failed")
     continues = models.ForeignKey(

@@ -2451,6 +2451,8 @@ export interface components {
             /** Format: uuid */
             id: string;
             name: string;
+            /** @description before the letters of its UAVs on pages of several missions: 2 of 2B; missions on their way have different ones */
+            call_number: number | null;
             state: components["schemas"]["MissionState"];
             revision: number;
             /** Format: date-time */
@@ -3998,7 +4000,7 @@ export interface components {
             uavs: components["schemas"]["UavPreflight"][];
         };
         PreflightCheck: {
-            /** @description link, position, battery, mission, fence, return, wind, others, departure, ground, or a reason that refuses starts */
+            /** @description link, position, home, battery, mission, fence, return, wind, others, departure, ground, or a reason that refuses starts */
             code: string;
             /**
              * @description failed: it is not started

@@ -181,6 +181,10 @@ class LiveTargetCountsSerializer(serializers.Serializer):
 class LiveMissionSerializer(serializers.Serializer):
     id = serializers.UUIDField()
     name = serializers.CharField()
+    call_number = serializers.IntegerField(
+        allow_null=True,
+        help_text="before the letters of its UAVs on pages of several missions: 2 of 2B; missions on their way have different ones",
+    )
     state = serializers.ChoiceField(choices=MissionState.choices)
     revision = serializers.IntegerField()
     departs_at = serializers.DateTimeField(allow_null=True)

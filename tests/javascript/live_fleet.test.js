@@ -10,7 +10,7 @@ import { windWords } from "../../static/js/monitor/uav_words.js";
 const NOW_MS = Date.parse("2026-11-28T10:00:00Z");
 const SIZE = { width: 1000, height: 800 };
 
-const mission = (id, name, started_at = null) => ({ id, name, started_at, departs_at: null });
+const mission = (id, name, call_number = 1) => ({ id, name, call_number });
 const uav = (id, name, of, place, more = {}) => ({
   id,
   name,
@@ -23,27 +23,29 @@ const uav = (id, name, of, place, more = {}) => ({
 });
 
 test("two missions on a page have UAVs A each, told apart by the missions' numbers", () => {
-  const numbers = missionNumbers(new Map(), [
-    mission("b", "North", "2026-11-28T09:10:00Z"),
-    mission("a", "South", "2026-11-28T09:00:00Z"),
-  ]);
-  assert.equal(letterOf({ mission: "a", place: 0 }, numbers), "1A");
-  assert.equal(letterOf({ mission: "b", place: 0 }, numbers), "2A");
+  const numbers = missionNumbers(new Map(), [mission("b", "North", 4), mission("a", "South", 2)]);
+  assert.equal(letterOf({ mission: "a", place: 0 }, numbers), "2A");
+  assert.equal(letterOf({ mission: "b", place: 0 }, numbers), "4A");
   assert.equal(letterOf({ mission: null, place: null }, numbers), "");
 });
 
-test("a single mission has its letters alone, as on its own page", () => {
-  const numbers = missionNumbers(new Map(), [mission("a", "South")]);
+test("a single mission has its letters alone, as on its own page; so has one of before there were numbers", () => {
+  const numbers = missionNumbers(new Map(), [mission("a", "South", 7), mission("b", "North", null)]);
   assert.equal(letterOf({ mission: "a", place: 1 }, numbers), "B");
   assert.equal(prefixOf("a", new Map()), "");
 });
 
 test("a mission keeps its number when others end and come", () => {
-  const first = missionNumbers(new Map(), [mission("a", "South"), mission("b", "North")]);
-  assert.equal(first.get("b"), 1); // by name
-  const later = missionNumbers(first, [mission("a", "South"), mission("c", "East")]);
-  assert.deepEqual([later.get("a"), later.get("b"), later.get("c")], [2, 1, 3]);
-  assert.equal(missionNumbers(later, [mission("a", "South")]), later);
+  const first = missionNumbers(new Map(), [mission("a", "South", 1), mission("b", "North", 2)]);
+  const later = missionNumbers(first, [mission("b", "North", 2), mission("c", "East", 3)]);
+  assert.deepEqual(
+    [...later],
+    [
+      ["b", 2],
+      ["c", 3],
+    ],
+  );
+  assert.equal(missionNumbers(later, [mission("c", "East", 3), mission("b", "North", 2)]), later);
 });
 
 const missions = [mission("a", "South belt"), mission("b", "North line")];

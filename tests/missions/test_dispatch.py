@@ -80,6 +80,20 @@ def test_every_uav_is_sent_what_was_approved_for_it(here: World, person: User) -
     assert (entry.action, entry.actor, entry.after["why"]) == ("dispatch", person, "Go")
 
 
+def test_missions_that_live_pages_show_have_different_call_numbers(here: World, person: User) -> None:
+    def sent(name: str) -> Mission:
+        mission = dispatched(person, fleet(name), here.towers[1:2])
+        mission.refresh_from_db()
+        return mission
+
+    first, second = sent("Tern"), sent("Kite")
+    assert (first.call_number, second.call_number) == (1, 2)
+    abort_mission(mission=first, actor=person, why="")
+    assert sent("Crow").call_number == 3  # the first is still shown
+    Mission.objects.filter(pk=first.pk).update(ended_at=timezone.now() - timedelta(minutes=61))
+    assert sent("Rook").call_number == 1
+
+
 def test_what_is_sent_never_mixes_two_plans(here: World, person: User) -> None:
     """Revoked, planned otherwise and approved again: an upload that still belongs to the first approval brings the first plan, whole."""
     uavs = fleet("Tern", "Kite")

@@ -4,25 +4,24 @@ import { routeLetter } from "../domain/palette.js";
 
 /** @import { LiveMission, LiveUav } from "../api_types.d.ts" */
 
-/** Numbers of missions on a page of several, from 1. @typedef {Map<string, number>} MissionNumbers */
+/** Call numbers of the missions on a page of several, by id. @typedef {Map<string, number>} MissionNumbers */
 
 /**
- * A mission keeps its number as long as the page lives, also when others end; new ones go on behind it, in the order of their starts.
+ * As the service gives them: every page of the organisation shows the same ones, and no two missions on their way share one.
  *
  * @param {MissionNumbers} known
- * @param {Pick<LiveMission, "id" | "name" | "started_at" | "departs_at">[]} missions
- * @returns {MissionNumbers} `known` itself where nothing is new
+ * @param {Pick<LiveMission, "id" | "call_number">[]} missions
+ * @returns {MissionNumbers} `known` itself where nothing has changed
  */
 export function missionNumbers(known, missions) {
-  const added = missions.filter(({ id }) => !known.has(id));
-  if (added.length === 0) return known;
-  /** @param {typeof missions[number]} mission */
-  const keyOf = ({ started_at, departs_at, name, id }) => [started_at ?? departs_at ?? "9999", name, id].join("\n");
-  added.sort((a, b) => keyOf(a).localeCompare(keyOf(b)));
-  return new Map([...known, ...added.map(({ id }, index) => /** @type {const} */ ([id, known.size + index + 1]))]);
+  const numbers = new Map(
+    missions.flatMap(({ id, call_number }) => (call_number === null ? [] : [/** @type {const} */ ([id, call_number])])),
+  );
+  const isSame = numbers.size === known.size && [...numbers].every(([id, number]) => known.get(id) === number);
+  return isSame ? known : numbers;
 }
 
-/** "2" before the letters of the second mission; empty while there was only one. @param {string | null} mission @param {MissionNumbers} numbers */
+/** "2" before the letters of the mission with that number; empty while there is only one. @param {string | null} mission @param {MissionNumbers} numbers */
 export const prefixOf = (mission, numbers) =>
   numbers.size > 1 && mission !== null && numbers.has(mission) ? `${numbers.get(mission)}` : "";
 

@@ -14,6 +14,7 @@ export function missionOfCopy({ id, name, state, revision, departs_at, uavs, tar
   return {
     id,
     name,
+    call_number: null,
     state,
     revision,
     departs_at,
