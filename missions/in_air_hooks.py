@@ -1,4 +1,4 @@
-"""What a later app knows of UAVs: which are in the air and where, which stand on the ground, which never connected."""
+"""What a later app knows of UAVs: which are in the air and where, on the ground, down off their plans, or never connected."""
 
 from collections import defaultdict
 from collections.abc import Collection
@@ -7,7 +7,7 @@ from django.utils.module_loading import import_string
 
 from inspection.geodesy import LonLat
 
-_IN_THE_AIR, _ON_THE_GROUND, _NEVER_HEARD = "in the air", "on the ground", "never heard"
+_IN_THE_AIR, _ON_THE_GROUND, _NEVER_HEARD, _DOWN = "in the air", "on the ground", "never heard", "down off its plan"
 _sources: dict[str, list[str]] = defaultdict(list)
 
 
@@ -29,6 +29,11 @@ def register_never_heard_source(name: str) -> None:
     _register(_NEVER_HEARD, name)
 
 
+def register_down_source(name: str) -> None:
+    """Of a function that returns those that crashed, or are down away from their plans, until a person has said what became of them."""
+    _register(_DOWN, name)
+
+
 def uavs_in_the_air(uav_ids: Collection[int]) -> set[int]:
     return _asked(_IN_THE_AIR, uav_ids)
 
@@ -45,6 +50,10 @@ def uavs_on_the_ground(uav_ids: Collection[int]) -> set[int]:
 
 def uavs_never_heard(uav_ids: Collection[int]) -> set[int]:
     return _asked(_NEVER_HEARD, uav_ids)
+
+
+def uavs_down_off_plan(uav_ids: Collection[int]) -> set[int]:
+    return _asked(_DOWN, uav_ids)
 
 
 def _register(about: str, name: str) -> None:

@@ -10,12 +10,18 @@ class TelemetryConfig(AppConfig):
         from missions.approval_hooks import register_check, register_start_check  # noqa: PLC0415 (models are there by then)
         from missions.event_hooks import register_sources  # noqa: PLC0415
         from missions.flight_hooks import register_flight_teller  # noqa: PLC0415
-        from missions.in_air_hooks import register_ground_source, register_never_heard_source, register_source  # noqa: PLC0415
+        from missions.in_air_hooks import (  # noqa: PLC0415
+            register_down_source,
+            register_ground_source,
+            register_never_heard_source,
+            register_source,
+        )
 
         register_sources("telemetry.selectors.events.SOURCES")
         register_flight_teller("telemetry.selectors.in_flight.is_in_flight")
         register_source("telemetry.selectors.in_the_air.places_in_the_air")
         register_ground_source("telemetry.selectors.in_the_air.reported_on_the_ground")
         register_never_heard_source("telemetry.selectors.in_the_air.never_heard")
+        register_down_source("telemetry.selectors.in_the_air.down_off_plan")
         register_check("telemetry.services.approved_vehicles.reasons_of_vehicles")
         register_start_check("telemetry.services.preflight.reasons_not_ready")

@@ -11,6 +11,7 @@ from django.utils.translation import gettext as _
 from missions.command_rules import ALONG_ROUTE, HEIGHT_M, SETS_IN_MOTION, THEN_RETURN, WAIT_S
 from missions.command_selectors import route_commands, upload_of
 from missions.fleet_selectors import performance_of
+from missions.in_air_hooks import uavs_down_off_plan
 from missions.mavlink.own_return import own_return
 from missions.models import (
     Approval,
@@ -37,6 +38,7 @@ from workspace.models import User
 SLOWEST_MPS = 0.5
 LOWEST_TAKE_OFF_M = 1.0
 MAX_WAIT_S = 900.0  # before a return
+FROM_THE_GROUND = frozenset({CommandKind.ARM, CommandKind.TAKE_OFF, CommandKind.START})
 BY_HAND = tuple(kind for kind in CommandKind if kind not in {CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION})
 
 
@@ -153,6 +155,9 @@ def _to_move_for(uav: Uav, kind: CommandKind, mission: Mission | None, approval:
         raise refuse("being_revoked", _("The approval is being taken back."))
     if Route.objects.filter(mission=mission, mission_uav__uav=uav, has_failed=True).exists():
         raise refuse("route_failed", _("A flight of %(uav)s has failed: it does not fly on in this mission.") % values)
+    if kind in FROM_THE_GROUND and uavs_down_off_plan([uav.pk]):
+        words = _("%(uav)s has crashed, or is down away from its plan: close that alert with what became of it before it is started.")
+        raise refuse("is_down", words % values)
     was_started = approval.commands.filter(uav=uav, kind=CommandKind.START, sent_at__isnull=False).exists()
     if kind == CommandKind.RESUME and not (mission.state == MissionState.ACTIVE and was_started):
         raise refuse("not_started", _("%(uav)s has not started its mission: there is nothing to go on with.") % values)

@@ -47,6 +47,8 @@ class Memory:
     was_in_flight: bool = False  # on this line
     fell_s: float | None = None  # when it was last measured to come down faster than a UAV that is flown
     down_s: float | None = None  # since when it is on the ground after it was in flight on this line; measured, too
+    down_at: LonLat | None = None  # where it came down then
+    has_ended: bool = False  # that flight, and its mission knows
     mode_words: tuple[str, str] = ("", "")  # a mode, and what the vehicle said about the time at which it changed to it
     drain: DrainMemory = field(default_factory=DrainMemory)
     battery: dict[str, Any] | None = None  # as live pages show it
@@ -58,7 +60,8 @@ class Memory:
         if line is not self.line:
             self.line, self.place = line, None
             self.was_in_flight = False
-            self.fell_s = self.down_s = None
+            self.fell_s = self.down_s = self.down_at = None
+            self.has_ended = False
             self.drain = DrainMemory()
             self.progress.clear()
         if report is None or (self.newest is not None and report.measured_s <= self.newest.measured_s):
@@ -74,9 +77,10 @@ class Memory:
     def note_flight(self, *, is_in_flight: bool) -> None:
         """Of a UAV with an approved flight, by the newest report."""
         if is_in_flight:
-            self.was_in_flight, self.down_s = True, None
-        elif self.was_in_flight and self.down_s is None and self.newest is not None:
-            self.down_s = self.newest.measured_s
+            self.was_in_flight, self.down_s, self.down_at, self.has_ended = True, None, None, False
+        elif self.was_in_flight and self.newest is not None:
+            self.down_s = self.newest.measured_s if self.down_s is None else self.down_s
+            self.down_at = position_of(self.newest) if self.down_at is None else self.down_at
 
     @property
     def usual_interval_s(self) -> float:

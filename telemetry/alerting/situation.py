@@ -99,6 +99,12 @@ class Situation:
         return not self.is_in_flight and (self.link.is_in_air is False or told is False)
 
     @property
+    def is_disarmed(self) -> bool:
+        """By its own word, not by silence."""
+        told = None if self.uav.newest is None else self.uav.newest.measurement.is_armed
+        return (self.link.is_armed if told is None else told) is False
+
+    @property
     def agl_m(self) -> float | None:
         """As told; else above the ground as the plan has it there."""
         told = None if self.uav.newest is None else self.uav.newest.measurement

@@ -1,4 +1,4 @@
-"""Which UAVs are in the air, on the ground, or were never heard, by their last word."""
+"""Which UAVs are in the air, on the ground, down off their plans, or were never heard, by their last word."""
 
 from collections.abc import Collection
 from datetime import timedelta
@@ -9,7 +9,8 @@ from django.db.models.functions import Now
 from inspection.geodesy import LonLat
 from missions.command_rules import SETS_IN_MOTION
 from missions.models import UavCommand
-from telemetry.models import UavLink, UavWatch
+from telemetry.alerting.detectors import down
+from telemetry.models import Alert, UavLink, UavWatch
 
 BELIEVED_FOR = timedelta(minutes=10)  # after its last word: longer flights without a word are rare
 
@@ -43,3 +44,8 @@ def never_heard(uav_ids: Collection[int]) -> set[int]:
     by_link = UavLink.objects.filter(uav__in=uav_ids, heard_at__isnull=False).values_list("uav_id", flat=True)
     by_report = UavWatch.objects.filter(uav__in=uav_ids, measured__isnull=False).values_list("uav_id", flat=True)
     return set(uav_ids) - set(by_link) - set(by_report)
+
+
+def down_off_plan(uav_ids: Collection[int]) -> set[int]:
+    """Of these UAVs those with an open alert that they are down where their flight does not end: only a person closes it."""
+    return set(Alert.objects.filter(uav__in=uav_ids, code=down.CODE, closed_at=None).values_list("uav_id", flat=True))

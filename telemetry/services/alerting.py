@@ -28,6 +28,7 @@ from telemetry.selectors.alert_facts import (
 from telemetry.selectors.alerts import MIXED, OTHER_LIST, OpenRow, open_alerts_of
 from telemetry.services.alert_rows import close_alerts_of_ended_missions, settle
 from telemetry.services.approved_flights import approved_content, flight_model
+from telemetry.services.flown import note_down_off_plan
 from telemetry.services.replan_hooks import suggest_for_findings
 from telemetry.services.zones_about import ZonesAbout, zones_about
 from workspace.live import publish_live
@@ -67,6 +68,7 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
         ]
         told |= settle(found, open_rows=open_rows, now=now)
         batteries = {situation.uav.uav_id: situation.memory.battery if situation.is_in_flight else None for situation in situations}
+        _end_flights(situations)
         suggest_for_findings(
             (uav.mission_id, uav.uav_id, change.finding)
             for uav, change in found
@@ -75,6 +77,15 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
     for organisation_id in told:
         publish_live(organisation_id)
     return batteries
+
+
+def _end_flights(situations: Iterable[Situation]) -> None:
+    """Of UAVs that are down for good away from their plans: each is told to its mission once."""
+    for situation in situations:
+        if not situation.memory.has_ended and down.has_ended(situation):
+            uav = situation.uav
+            note_down_off_plan(uav_id=uav.uav_id, approval_id=uav.approval_id, flight=uav.flight)
+            situation.memory.has_ended = True
 
 
 def _with_accounts(situations: list[Situation]) -> list[Situation]:

@@ -30,6 +30,7 @@ from missions.services.refused import Reason
 from missions.services.start_slots import reasons_to_wait
 from missions.stored_outcomes import outcome_in_words
 from telemetry.models import UavLink
+from telemetry.selectors.in_the_air import down_off_plan
 from telemetry.services.approved_flights import approved_content
 from workspace.models import Organisation
 
@@ -112,7 +113,8 @@ def preflight_of(mission: Mission, *, now: datetime) -> Preflight:
     period = int(now.timestamp() // MAP_CHECK_PERIOD_S)
     read_at = tuple(None if route.mission_uav.uav is None else route.mission_uav.uav.autopilot_return_read_at for route in routes)
     found = _checked_on_the_map(mission.organisation_id, mission.pk, mission.revision, ground_revision(), read_at, get_language(), period)
-    rows = tuple(_uav_preflight(uav, route, approval, found, now) for route in routes if (uav := route.mission_uav.uav) is not None)
+    down = down_off_plan([route.mission_uav.uav_id for route in routes if route.mission_uav.uav_id is not None])
+    rows = tuple(_uav_preflight(uav, route, approval, found, down, now) for route in routes if (uav := route.mission_uav.uav) is not None)
     own = tuple(_against(found.reasons, None))
     clear = Check("ground", CheckState.OK, _("No zone in force and nothing on the ground is in the way"))
     return Preflight(_next_act(rows), own if found.reasons else (clear,), rows)
@@ -167,18 +169,25 @@ def _against(reasons: Sequence[Reason], place: int | None) -> Iterator[Check]:
     return (Check(reason.code, CheckState.FAILED, reason.message) for reason in reasons if reason.uav == place)
 
 
-def _uav_preflight(uav: Uav, route: Route, approval: Approval, found: _OnTheMap, now: datetime) -> UavPreflight:
+def _uav_preflight(uav: Uav, route: Route, approval: Approval, found: _OnTheMap, down: Collection[int], now: datetime) -> UavPreflight:
     place = route.mission_uav
     link, watch = getattr(uav, "connection", None) or UavLink(uav=uav), getattr(uav, "watch", None)
     reported: Reported = (watch.measured if watch is not None else None) or {}
     onboard = _onboard_mission(uav, approval, link)
     is_loaded = onboard.state in (CheckState.OK, CheckState.WARNING)
     checks = (
-        _link(link, reported, now), _position(route, reported), _home(uav, route, link), _battery(uav, route, reported, now), onboard,
-        *_fence(uav, place.name, approval, link), *_returns(found.returns.get(place.sequence)), _wind(route.mission, reported),
+        *_crash(uav, down), _link(link, reported, now), _position(route, reported), _home(uav, route, link),
+        _battery(uav, route, reported, now), onboard, *_fence(uav, place.name, approval, link),
+        *_returns(found.returns.get(place.sequence)), _wind(route.mission, reported),
         *(_others(uav, route, now) if is_loaded else ()), *_against(found.reasons, place.sequence),
     )  # fmt: skip
     return UavPreflight(uav.pk, place.name, place.sequence, is_loaded, checks)
+
+
+def _crash(uav: Uav, down: Collection[int]) -> Iterator[Check]:
+    if uav.pk in down:
+        words = _("It has crashed, or is down away from its plan. Close that alert with what became of it.")
+        yield Check("crash", CheckState.FAILED, words)
 
 
 def _link(link: UavLink, reported: Reported, now: datetime) -> Check:

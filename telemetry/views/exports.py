@@ -46,9 +46,7 @@ class FileKind(NamedTuple):
 KINDS = {
     "csv": FileKind("text/csv; charset=utf-8", BY_TIME, lambda records, name: csv_pieces(records)),
     "gpx": FileKind("application/gpx+xml", BY_STREAM, lambda records, name: gpx_pieces(records, name=name), is_track=True),
-    "kml": FileKind(
-        "application/vnd.google-earth.kml+xml", BY_STREAM, lambda records, name: kml_pieces(records, name=name), is_track=True
-    ),
+    "kml": FileKind("application/vnd.google-earth.kml+xml", BY_STREAM, lambda records, name: kml_pieces(records, name=name), is_track=True),
     "geojson": FileKind("application/geo+json", BY_TIME, lambda records, name: geojson_pieces(records)),
 }
 ABOUT = (

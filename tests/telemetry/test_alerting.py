@@ -270,6 +270,44 @@ def test_a_uav_that_came_down_beside_its_route_is_told_until_a_person_closes_it(
     assert open_ones() == [("down-off-plan", "critical")], "it was started again since"
 
 
+def test_a_flight_that_ended_off_its_plan_has_failed_and_its_mission_with_it(uav, approval):
+    memories = watching(uav, approval)
+    place = seen(uav, approval).newest.measurement
+    fallen = {"longitude_deg": place.longitude_deg + 0.01, "altitude_relative_m": 8.0, "is_in_air": False}
+    UavLink.objects.update(is_in_air=False)
+    for second in range(1, 6):
+        in_flight(second, uav, approval, memories, **fallen, is_armed=True)
+    assert Mission.objects.get().state == "active", "it may take off again"
+    for second in range(6, 9):
+        in_flight(second, uav, approval, memories, **fallen, is_armed=False)
+    mission = Mission.objects.get()
+    assert (mission.state, mission.routes.get().has_failed) == ("failed", True)
+    assert set(mission.targets.values_list("state", flat=True)) == {"failed"}
+    assert ("down-off-plan", "critical") in open_ones()
+
+
+@pytest.mark.parametrize("why", ["home early and carried away", "told to land", "silent", "by its companion"])
+def test_what_can_go_on_or_is_reported_by_others_is_no_end_of_a_flight(why, uav, approval):
+    memories = watching(uav, approval)
+    place = seen(uav, approval).newest.measurement
+    away = {"longitude_deg": place.longitude_deg + 0.01, "is_armed": False, "is_in_air": False}
+    away |= {"altitude_relative_m": 0.0, "velocity_down_mps": 0.5}
+    if why == "silent":
+        for second in range(1, 60, 5):
+            look(watched=[seen(uav, approval)], now=at(second), memories=memories)
+    else:
+        UavLink.objects.update(is_in_air=False, is_armed=False)
+        if why == "home early and carried away":
+            in_flight(1, uav, approval, memories, **away | {"longitude_deg": place.longitude_deg})
+        elif why == "told to land":
+            told_to_land(uav, approval, 0)
+        else:
+            Uav.objects.update(link="http")
+        for second in range(2, 8):
+            in_flight(second, uav, approval, memories, **away)
+    assert Mission.objects.get().state == "active"
+
+
 def test_no_alert_of_a_uav_closes_because_it_is_down_in_the_wrong_place(uav, approval):
     memories = watching(uav, approval)
     for second in range(1, 9):

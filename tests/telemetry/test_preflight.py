@@ -11,8 +11,11 @@ from missions.selectors import mission_of_organisation
 from missions.services.dispatch import dispatch_mission
 from missions.services.outbox import note_failed
 from missions.services.own_return import note_own_return
+from missions.services.refused import Refused
 from missions.services.steering import command_uav
-from telemetry.models import UavLink
+from telemetry.models import AlertLevel, UavLink
+from telemetry.services.alerts import open_alert
+from telemetry.services.down_alerts import close_down_alert
 from telemetry.services.preflight import CheckState, NextAct, Preflight, preflight_of
 from tests.missions.api import post
 from tests.missions.flights import an_operator, approved, carry, fleet
@@ -236,12 +239,33 @@ def test_viewers_read_it_and_nobody_of_another_organisation_does(two: tuple[Miss
     assert client_of(stranger).get(f"/api/v1/missions/{mission.pk}/preflight").status_code == 404
 
 
+def test_a_uav_that_is_down_off_its_plan_is_not_started_until_a_person_has_said_what_became_of_it(
+    two: tuple[Mission, Uav, Uav], person: User
+) -> None:
+    mission, tern, kite = two
+    heard(tern, kite)
+    dispatch_mission(mission=mission, actor=person)
+    carry(tern, kite)
+    alert = open_alert(uav=tern, level=AlertLevel.CRITICAL, code="down-off-plan", message="down")
+    found = checks(mission)
+    assert states(found, tern)["crash"] == CheckState.FAILED
+    assert "crash" not in states(found, kite)
+    for kind in (CommandKind.ARM, CommandKind.START, CommandKind.TAKE_OFF):
+        parameters = {"altitude_relative_m": 10.0} if kind == CommandKind.TAKE_OFF else {}
+        with pytest.raises(Refused) as refused:
+            command_uav(uav=tern, kind=kind, actor=person, parameters=parameters)
+        assert [reason.code for reason in refused.value.reasons] == ["is_down"]
+    close_down_alert(alert=alert, actor=person, reason="Brought back")
+    assert "crash" not in states(checks(mission), tern)
+    assert command_uav(uav=tern, kind=CommandKind.START, actor=person).kind == CommandKind.START
+
+
 def test_polls_of_one_period_check_the_map_once(two: tuple[Mission, Uav, Uav], django_assert_max_num_queries: Any) -> None:
     mission, tern, kite = two
     heard(tern, kite)
     checks(mission)
     loaded = mission_of_organisation(mission.organisation, mission.pk)
-    with django_assert_max_num_queries(7):  # approval, starts under way, routes with UAVs, ground, and an upload of each UAV
+    with django_assert_max_num_queries(8):  # approval, starts under way, routes with UAVs, crashes, ground, and an upload of each UAV
         preflight_of(loaded, now=timezone.now())
 
 

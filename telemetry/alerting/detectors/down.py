@@ -35,6 +35,20 @@ def is_down_away(situation: Situation) -> bool:
     return not situation.is_accounted_for and (any(code == CODE for code, _ in situation.open_levels) or _away(situation) is not None)
 
 
+def has_ended(situation: Situation) -> bool:
+    """Tell whether its flight is over: seen in flight, it came down away from its plan, and has stood there disarmed since.
+
+    One that came down where its plan has it stand is none, though it is carried away: it can be started again. Nor is one that was told
+    to land, is silent, or was down before it was watched.
+    """
+    memory, model, newest = situation.memory, situation.model, situation.uav.newest
+    if model is None or newest is None or memory.down_s is None or memory.down_at is None or not situation.is_disarmed:
+        return False
+    if newest.measured_s - memory.down_s < DETECTOR.raise_after_s or _away(situation) is None:
+        return False
+    return away_from_plan_m(model.line, memory.down_at, model.rally_points) >= AWAY_M
+
+
 def _away(situation: Situation) -> tuple[LonLat, float] | None:
     """Where it is, and how far from its plan [m]."""
     newest, model = situation.uav.newest, situation.model
