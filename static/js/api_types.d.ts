@@ -4000,7 +4000,7 @@ export interface components {
             uavs: components["schemas"]["UavPreflight"][];
         };
         PreflightCheck: {
-            /** @description link, position, home, battery, mission, fence, return, wind, others, departure, ground, or a reason that refuses starts */
+            /** @description crash, link, position, home, battery, mission, fence, return, wind, others, departure, ground, or a reason that refuses starts */
             code: string;
             /**
              * @description failed: it is not started

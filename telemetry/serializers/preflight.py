@@ -7,7 +7,8 @@ from telemetry.services.preflight import CheckState, NextAct
 
 class PreflightCheckSerializer(serializers.Serializer):
     code = serializers.CharField(
-        help_text="crash, link, position, home, battery, mission, fence, return, wind, others, departure, ground, or a reason that refuses starts"
+        help_text="crash, link, position, home, battery, mission, fence, return, wind, others, departure, ground, "
+        "or a reason that refuses starts"
     )
     state = serializers.ChoiceField(choices=[(state.value, state.value) for state in CheckState], help_text="failed: it is not started")
     message = serializers.CharField()
