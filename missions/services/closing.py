@@ -30,7 +30,7 @@ def close_mission(*, mission: Mission, actor: User, reasons: Mapping[int, str], 
     with transaction.atomic():
         held = held_mission(mission.pk, expected_revision)
         if held.state not in (*ON_ITS_WAY, *ENDED_STATES):
-            raise refuse("not_sent", _("Only a mission that was sent to UAVs can be closed."))
+            raise refuse("not_sent", _("Only an uploaded mission can be closed."))
         refuse_for(_in_the_air(held))
         still_open = {target.sequence: target for target in held.targets.filter(state__in=UNDECIDED)}
         if held.state in ENDED_STATES and not still_open:

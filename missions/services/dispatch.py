@@ -76,7 +76,7 @@ def dispatch_mission(
         held = held_mission(mission.pk, expected_revision)
         approval = approval_in_force(held)
         if approval is None or held.state not in TO_SEND:
-            raise refuse("not_approved", _("Only an approved mission can be sent to UAVs."))
+            raise refuse("not_approved", _("Only an approved mission can be uploaded to UAVs."))
         if approval.revoke_requested_at is not None:
             raise refuse("being_revoked", _("The approval is being taken back."))
         document = _sound_document(approval)
@@ -115,7 +115,7 @@ def abort_mission(*, mission: Mission, actor: User, why: str, expected_revision:
         approval = approval_in_force(held)
         is_over = held.state in UNSUCCESSFUL
         if approval is None or not (is_over or held.state in ON_ITS_WAY):
-            raise refuse("not_on_its_way", _("Only a mission that was sent to UAVs can be aborted."))
+            raise refuse("not_on_its_way", _("Only an uploaded mission can be aborted."))
         continued = set(held.routes.filter(continued_by__isnull=False).values_list("mission_uav__uav", flat=True))
         in_use = {route["uav"] for route in approval.document["routes"]} - continued
         touched = Uav.objects.filter(Q(pk__in=uavs_that_may_hold(approval)) | Q(pk__in=in_use, commands__mission=held))

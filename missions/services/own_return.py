@@ -112,14 +112,12 @@ def reported_return(uav: Uav | None, name: str, *, has_rally: bool) -> ReportedR
         words = _("%(uav)s is not a UAV of the fleet: how it returns is not known.")
         return ReportedReturn(None, ReturnState.UNKNOWN, words % values)
     if uav.link == LinkKind.HTTP:
-        words = _("What the companion of %(uav)s does on Return and Abort is not known here: nothing on that way is checked.")
+        words = _("Return path of %(uav)s unknown: its companion computer decides. Nothing on it is checked.")
         return ReportedReturn(None, ReturnState.NOT_CHECKED, words % values)
     told = uav.autopilot_return
     own = own_return(told.get("autopilot", ""), told.get("parameters", {}))
     if own is None:
-        words = _(
-            "%(parameter)s was not read from %(uav)s: how high it returns is not known, and the way of Return and Abort is not checked."
-        )
+        words = _("Return altitude of %(uav)s unknown (%(parameter)s not read). Its return path is not checked against terrain and zones.")
         return ReportedReturn(None, ReturnState.UNKNOWN, words % {**values, "parameter": _height_names()})
     reported = ReportedReturn(own, parameter=own.parameter, height_m=own.height_m, read_at=uav.autopilot_return_read_at)
     unknown = _why_unknown(own, name, has_rally=has_rally)
@@ -208,13 +206,13 @@ def zones_applying(table: ZoneTable, positions: NDArray[np.float64], window: tup
 def _why_unknown(own: OwnReturn, name: str, *, has_rally: bool) -> str:
     """Why nobody can say here where it flies on its way home; empty where that is known."""
     if own.untold:
-        words = _("%(parameter)s was not read from %(uav)s: its way home on Return and Abort is not known, and not checked.")
+        words = _("Return path of %(uav)s unknown (%(parameter)s not read), and not checked.")
         return words % {"uav": name, "parameter": own.untold}
     if own.bends_by:
-        words = _("By %(parameter)s %(uav)s does not return straight at one height: its way home is not known, and not checked.")
+        words = _("By %(parameter)s %(uav)s does not return straight at one altitude: its return path is unknown, and not checked.")
         return words % {"uav": name, "parameter": own.bends_by}
     if own.rally_points and not has_rally:
-        words = _("%(uav)s holds rally points that are not this mission's: its way home is not known, and not checked.")
+        words = _("%(uav)s has rally points of another mission: its return path is unknown, and not checked.")
         return words % {"uav": name}
     return ""
 
@@ -302,14 +300,14 @@ def _along(trouble: Trouble) -> str:
 
 
 def _words(trouble: Trouble, table: ZoneTable, where: str) -> str:
-    goes = _("the way to the rally point") if trouble.is_rally else _("the way home")
+    goes = _("the path to the rally point") if trouble.is_rally else _("the return path")
     zone = "" if trouble.zone is None else table.names[trouble.zone]
     values = {"where": where or _along(trouble), "way": goes, "zone": zone, "height": f"{trouble.level_m:.0f}"}
     return {
-        InTheWay.ZONE: _("%(where)s, on Return and Abort %(way)s crosses %(zone)s at %(height)s m above the take-off."),
-        InTheWay.OBSTACLE: _("%(where)s, on Return and Abort %(way)s passes towers or wires too low, at %(height)s m above the take-off."),
-        InTheWay.GROUND: _("%(where)s, on Return and Abort %(way)s comes too near the ground, at %(height)s m above the take-off."),
-        InTheWay.UNKNOWN_GROUND: _("%(where)s, the ground below %(way)s is not known."),
+        InTheWay.ZONE: _("%(where)s, %(way)s crosses %(zone)s (%(height)s m above take-off)."),
+        InTheWay.OBSTACLE: _("%(where)s, %(way)s is below safe clearance over towers or conductors (%(height)s m above take-off)."),
+        InTheWay.GROUND: _("%(where)s, %(way)s is too close to the ground (%(height)s m above take-off)."),
+        InTheWay.UNKNOWN_GROUND: _("%(where)s, the terrain below %(way)s is unknown."),
     }[trouble.kind] % values
 
 

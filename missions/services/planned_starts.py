@@ -78,7 +78,7 @@ def begin_planned_starts(
         held = held_mission(mission.pk, None)
         approval = approval_in_force(held)
         if approval is None or held.state not in ON_ITS_WAY:
-            raise refuse("not_on_its_way", _("Only a mission that was sent to its UAVs can be started."))
+            raise refuse("not_on_its_way", _("Only an uploaded mission can be started."))
         if held.planned_starts.filter(ended_at=None).exists():
             raise refuse("already_starting", _("Its UAVs are being started in planned order already."))
         routes = _chosen(_routes_to_start(held, approval), wanted)

@@ -122,7 +122,7 @@ def _battery_words(battery: BatteryAtLanding) -> list[str]:
         "landing": f"{battery.landing_percent:.0f}", "reserve": f"{battery.reserve_percent:.0f}",
     }  # fmt: skip
     if battery.landing_percent is not None and battery.landing_percent <= 0.0:
-        return [_("Its battery of %(left)s %% is not enough for the way home, which takes about %(home)s %%.") % values]
+        return [_("Battery %(left)s %% is not enough for the return, which needs about %(home)s %%.") % values]
     return [_("It would land with about %(landing)s %% of its battery, below the reserve of %(reserve)s %%.") % values]
 
 
@@ -190,7 +190,7 @@ def _from_route(one: Flown) -> ReturnCheck:
     """Nobody knows where it is: from all along its route."""
     if one.check.state != ReturnState.CLEAR:
         return one.check
-    words = _("Where %(uav)s is now is not known well enough: its way home is not checked from there.") % {"uav": one.heard.uav.name}
+    words = _("Position of %(uav)s too uncertain: its return path is not checked from there.") % {"uav": one.heard.uav.name}
     along = [] if one.mission is None else [check for check in return_checks(one.mission) if check.place == one.check.place]
     if not along:
         return replace(one.check, state=ReturnState.UNKNOWN, warnings=(words,))

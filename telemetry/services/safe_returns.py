@@ -86,11 +86,11 @@ def battery_at_landing(heard: Heard) -> BatteryAtLanding:
     if heard.battery_percent is None:
         return BatteryAtLanding(unknown=_("%(uav)s reports no battery percentage.") % values)
     if forecast is None or heard.battery_age_s is None or heard.battery_age_s > MAX_BATTERY_AGE_S:
-        words = _("What the way home takes of the battery of %(uav)s is only worked out while it flies a mission and reports.")
+        words = _("Return energy of %(uav)s is calculated only in mission with telemetry.")
         return BatteryAtLanding(left_percent=heard.battery_percent, unknown=words % values)
     left, home, reserve = forecast["left_percent"], forecast["home_percent"], forecast["reserve_percent"]
     if home is None:
-        words = _("What the way home takes of the battery of %(uav)s is not known: it has no position, or the wind leaves no headway.")
+        words = _("Return energy of %(uav)s unknown: no position, or no headway against the wind.")
         return BatteryAtLanding(left, reserve_percent=reserve, unknown=words % values)
     return BatteryAtLanding(left, home, round(left - home, 1), reserve, forecast.get("hold_s"))
 

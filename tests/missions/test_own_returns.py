@@ -41,7 +41,7 @@ def read(uav: Uav, **parameters: float) -> None:
 def test_a_height_that_was_never_read_is_not_known(mission):
     found = told(mission)
     assert (found["state"], found["height_m"], found["read_at"]) == ("unknown", None, None)
-    assert "was not read from Tern" in found["warnings"][0] and "RTL_ALT" in found["warnings"][0]
+    assert "Return altitude of Tern unknown" in found["warnings"][0] and "RTL_ALT" in found["warnings"][0]
 
 
 def test_a_free_way_home_is_told_with_its_height(mission, uav):
@@ -58,7 +58,7 @@ def test_a_zone_across_the_straight_way_home_is_named_and_no_height_helps(missio
     read(uav)
     found = told(mission)
     assert (found["state"], found["safe_height_m"]) == ("in_the_way", None)
-    assert "crosses Fire brigade at" in found["warnings"][0] and "waypoint" in found["warnings"][0]
+    assert "crosses Fire brigade" in found["warnings"][0] and "waypoint" in found["warnings"][0]
     assert found["warnings"][-1] == "No height of RTL_ALT is clear: use Hold and Land instead."
 
 
@@ -68,7 +68,7 @@ def test_wires_across_the_way_home_ask_for_a_height_that_is_told_as_it_is_to_be_
     read(uav)
     found = told(mission)
     assert found["state"] == "in_the_way"
-    assert "passes towers or wires too low" in found["warnings"][0]
+    assert "below safe clearance over towers or conductors" in found["warnings"][0]
     assert found["safe_height_m"] == 75.0
     assert found["warnings"][-1] == "Set RTL_ALT on it to at least 7500 (75 m), or use Hold and Land instead."
     read(uav, RTL_ALT=7_500.0)
@@ -88,7 +88,7 @@ def test_a_hill_is_looked_at_where_there_is_terrain(uav, tmp_path):
     [
         ({"RTL_ALT_TYPE": 1.0}, "By RTL_ALT_TYPE 1 Tern does not return straight"),
         ({"OA_TYPE": 2.0}, "By OA_TYPE 2 Tern does not return straight"),
-        ({"RALLY_TOTAL": 2.0}, "Tern holds rally points that are not this mission's"),
+        ({"RALLY_TOTAL": 2.0}, "Tern has rally points of another mission"),
     ],
 )
 def test_a_way_home_that_is_not_the_straight_one_is_not_known(facts, words, mission, uav):
@@ -100,7 +100,7 @@ def test_a_way_home_that_is_not_the_straight_one_is_not_known(facts, words, miss
 def test_a_height_alone_does_not_say_that_it_flies_straight(mission, uav):
     note_own_return(uav_id=uav.pk, autopilot="px4", parameters={"RTL_RETURN_ALT": 60.0})
     found = told(mission)
-    assert found["state"] == "unknown" and "RTL_TYPE was not read from Tern" in found["warnings"][0]
+    assert found["state"] == "unknown" and "Return path of Tern unknown (RTL_TYPE not read)" in found["warnings"][0]
     note_own_return(uav_id=uav.pk, autopilot="px4", parameters={"RTL_RETURN_ALT": 60.0, "RTL_TYPE": 0.0})
     assert told(mission)["state"] == "clear"
 
@@ -125,7 +125,7 @@ def test_a_fence_that_the_autopilot_ignores_is_told(facts, warning, mission, uav
 def test_a_companions_return_is_its_own(mission, uav):
     Uav.objects.filter(pk=uav.pk).update(link=LinkKind.HTTP)
     found = told(mission)
-    assert found["state"] == "not_checked" and "companion of Tern" in found["warnings"][0]
+    assert found["state"] == "not_checked" and "companion computer" in found["warnings"][0]
 
 
 def test_another_organisations_mission_is_not_there(mission):

@@ -29,7 +29,7 @@ from tests.workspace.people import client_of, somebody
 from workspace.models import Organisation, Role, User
 
 pytestmark = pytest.mark.django_db
-LATE = "%(uav)s is late: nothing has been heard of it for %(seconds)s s."
+LATE = "%(uav)s: no telemetry for %(seconds)s s."
 
 
 @pytest.fixture
@@ -170,7 +170,7 @@ def test_an_alert_is_opened_raised_acknowledged_and_resolved(client, mission, te
         ("alert-raised", "critical", None),
         ("alert-opened", "warning", None),
     ]
-    assert told[0]["message"] == "Resolved: Tern is late: nothing has been heard of it for 30 s."
+    assert told[0]["message"] == "Resolved: Tern: no telemetry for 30 s."
     german = [event for event in events(client, mission, language="de") if event["kind"] == "alert-resolved"]
     assert german[0]["message"] == told[0]["message"]
     assert german[0]["values"]["message"] != told[0]["values"]["message"]

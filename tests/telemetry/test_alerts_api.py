@@ -18,7 +18,7 @@ from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Organisation, Role
 
 pytestmark = pytest.mark.django_db
-LATE = "%(uav)s is late: nothing has been heard of it for %(seconds)s s."
+LATE = "%(uav)s: no telemetry for %(seconds)s s."
 
 
 @pytest.fixture
@@ -124,7 +124,7 @@ def test_limits_are_stated_for_a_type_and_checked(operator):
 def test_an_alert_is_read_in_german(uav):
     alert = an_alert(uav)
     with override("de"):
-        assert alert_words(alert.message, alert.values) == "Tern ist überfällig: Seit 12 s wurde nichts von ihm gehört."
+        assert alert_words(alert.message, alert.values) == "Tern: seit 12 s keine Telemetrie."
         same = [text for text in TEMPLATES if alert_words(text, _sevens(text)) == text % _sevens(text)]
     assert same == []
 

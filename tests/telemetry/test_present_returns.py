@@ -110,7 +110,7 @@ def test_wires_are_in_the_way_from_beyond_them_and_not_from_this_side(user, uav)
     flies(uav, EAST)
     (found,) = told(user, uav)
     assert (found["state"], found["is_clear"]) == ("in_the_way", False)
-    assert found["warnings"][0].startswith("From where it is now, on Return and Abort the way home passes towers or wires too low")
+    assert found["warnings"][0].startswith("From where it is now, the return path is below safe clearance over towers or conductors")
     assert found["safe_height_m"] == 75.0
     flies(uav, (10.004, 55.995))
     assert told(user, uav)[0]["state"] == "clear"
@@ -122,7 +122,7 @@ def test_zones_count_that_apply_while_it_flies_home(user, uav):
     read(uav)
     flies(uav, EAST)
     (found,) = told(user, uav)
-    assert "the way home crosses Fire brigade" in found["warnings"][0]
+    assert "the return path crosses Fire brigade" in found["warnings"][0]
     begins = timezone.now() + timedelta(hours=6)
     period = {"startDateTime": f"{begins:%Y-%m-%dT%H:%M:%SZ}", "endDateTime": f"{begins:%Y-%m-%dT%H:59:59Z}", "schedule": []}
     NoFlyZone.objects.filter(pk=zone.pk).update(schedule=[period])
@@ -149,7 +149,7 @@ def test_a_place_that_nobody_knows_is_not_checked_from(user, uav):
     flies(uav, None)
     (found,) = told(user, uav)
     assert (found["state"], found["present"], found["is_clear"]) == ("unknown", None, False)
-    assert "Where Tern is now is not known well enough" in found["warnings"][0]
+    assert "Position of Tern too uncertain" in found["warnings"][0]
     flies(uav, EAST, age_s=300.0)
     assert told(user, uav)[0]["state"] == "unknown"
 
@@ -177,7 +177,7 @@ def test_the_battery_at_landing_is_told_against_the_reserve(user, uav):
     assert found["warnings"] == ["It would land with about 15 % of its battery, below the reserve of 20 %."]
     assert not found["is_clear"]
     flies(uav, EAST, battery_percent=8.0, estimated=estimated(EAST, battery=forecast(left_percent=8.0, hold_s=0)))
-    assert "is not enough for the way home, which takes about 10 %" in told(user, uav)[0]["warnings"][0]
+    assert "is not enough for the return, which needs about 10 %" in told(user, uav)[0]["warnings"][0]
 
 
 def test_an_unknown_battery_is_told_with_the_reason(user, uav):
@@ -187,7 +187,7 @@ def test_an_unknown_battery_is_told_with_the_reason(user, uav):
     assert told(user, uav)[0]["battery"]["unknown"] == "Tern reports no battery percentage."
     flies(uav, EAST, battery_percent=60.0)
     battery = told(user, uav)[0]["battery"]
-    assert battery["left_percent"] == 60.0 and "only worked out while it flies a mission" in battery["unknown"]
+    assert battery["left_percent"] == 60.0 and "calculated only in mission" in battery["unknown"]
 
 
 def test_returns_that_meet_are_told_of_each_other_and_kept_apart_by_heights(user):

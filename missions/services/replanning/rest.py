@@ -162,7 +162,7 @@ def _bound(route: Route, approved: Mapping[str, Any], uav: Uav | None, orders: S
     if len(approved["flights"]) > 1:
         return _("%(uav)s flies its route in several flights, and lands in between.") % values
     if uav.located_at is None or (now - uav.located_at).total_seconds() > HEARD_WITHIN_S:
-        return _("%(uav)s was not heard of lately: nobody knows where it is.") % values
+        return _("%(uav)s: no recent telemetry, position unknown.") % values
     return ""
 
 

@@ -97,14 +97,14 @@ def _elsewhere(route: Route, now: datetime) -> str:
     """Whether the UAV is no longer on the way that the offer keeps, or too near to its end."""
     uav, values = route.mission_uav.uav, {"uav": route.mission_uav.name}
     if uav is None or uav.located_at is None or (now - uav.located_at).total_seconds() > HEARD_WITHIN_S:
-        return _("%(uav)s was not heard of lately: nobody knows where it is.") % values
+        return _("%(uav)s: no recent telemetry, position unknown.") % values
     at, points = LonLat(*uav.location.coords[:2]), _kept_points(route)
     away_m = distance_apart_m(points[0].position, at) if len(points) == 1 else place_on_route(points, at).away_m
     if away_m > NEAR_M:
         return _moved(values)
     left_s = _left_s(route, uav.located_at)
     if left_s is not None and left_s < 0:
-        return _("%(uav)s has come too near to where it was to leave its route.") % values
+        return _("%(uav)s has passed the diversion point.") % values
     return ""
 
 

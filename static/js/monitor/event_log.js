@@ -115,10 +115,12 @@ const SHAPES = {
   "alert-acknowledged": ["check", ({ message, who }) => t("Acknowledged by {who}: {message}", { who, message })],
   "alert-resolved": [
     "circle-check",
-    ({ message, who, reason }) =>
-      reason === "by-person"
-        ? t("Closed by {who}: {message}", { who, message })
-        : t("Resolved: {message}", { message }),
+    ({ message, who, reason, code, name }) => {
+      if (reason === "by-person") return t("Closed by {who}: {message}", { who, message });
+      return code === "link-lost"
+        ? t("Resolved: link to {name} restored.", { name })
+        : t("Resolved: {message}", { message });
+    },
   ],
   "target-started": target("in-progress"),
   "target-complete": target("complete"),

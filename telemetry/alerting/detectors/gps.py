@@ -12,7 +12,7 @@ from telemetry.estimation.report import Report
 
 CODE = "gps"
 NO_FIX = "%(uav)s: no GPS fix. %(own)s"
-NO_POSITION = "%(uav)s reports, but not where it is. %(own)s"
+NO_POSITION = "%(uav)s: telemetry without position. %(own)s"
 JUMPED = "The position of %(uav)s has jumped by %(metres)s m."
 FEW = "%(uav)s sees %(satellites)s satellites only."
 WEAK = "The position of %(uav)s is weak: its HDOP is %(hdop)s."

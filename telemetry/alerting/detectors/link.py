@@ -6,8 +6,8 @@ from telemetry.alerting.limits import Limits
 from telemetry.alerting.situation import Situation
 
 CODE = "link-lost"
-LATE = "%(uav)s is late: nothing has been heard of it for %(seconds)s s."
-LOST = "The link to %(uav)s is lost: nothing has been heard of it for %(seconds)s s."
+LATE = "%(uav)s: no telemetry for %(seconds)s s."
+LOST = "Link to %(uav)s lost: no telemetry for %(seconds)s s."
 LATE_INTERVALS, LOST_INTERVALS = 2.5, 5.0
 
 

@@ -7,16 +7,16 @@ from telemetry.alerting.said import AFTER_S, BEFORE_S, quoted
 from telemetry.alerting.situation import Situation
 
 CODE = "mode-changed"
-RETURNS = "%(uav)s returns (%(mode)s) without a command of ours: by its own failsafe, or told by others."
-LANDS = "%(uav)s lands (%(mode)s) without a command of ours: by its own failsafe, or told by others."
-FLOWN = "%(uav)s is flown by somebody else: its mode is %(mode)s."
-HOLDS = "%(uav)s has stopped its mission (%(mode)s) without a command of ours."
-FLIES = "%(uav)s flies a mission again (%(mode)s), though it was told otherwise."
-RETURNS_SAYING = "%(uav)s returns (%(mode)s) without a command of ours. It says: %(words)s"
-LANDS_SAYING = "%(uav)s lands (%(mode)s) without a command of ours. It says: %(words)s"
-FLOWN_SAYING = "%(uav)s is flown by somebody else: its mode is %(mode)s. It says: %(words)s"
-HOLDS_SAYING = "%(uav)s has stopped its mission (%(mode)s) without a command of ours. It says: %(words)s"
-FLIES_SAYING = "%(uav)s flies a mission again (%(mode)s), though it was told otherwise. It says: %(words)s"
+RETURNS = "%(uav)s is returning (%(mode)s): failsafe or pilot, not commanded from here."
+LANDS = "%(uav)s is landing (%(mode)s): failsafe or pilot, not commanded from here."
+FLOWN = "%(uav)s is under other control (mode %(mode)s): pilot or another ground station."
+HOLDS = "%(uav)s has stopped its mission (%(mode)s), not commanded from here."
+FLIES = "%(uav)s has resumed its mission (%(mode)s), not commanded from here."
+RETURNS_SAYING = "%(uav)s is returning (%(mode)s), not commanded from here. Autopilot: %(words)s"
+LANDS_SAYING = "%(uav)s is landing (%(mode)s), not commanded from here. Autopilot: %(words)s"
+FLOWN_SAYING = "%(uav)s is under other control (mode %(mode)s). Autopilot: %(words)s"
+HOLDS_SAYING = "%(uav)s has stopped its mission (%(mode)s), not commanded from here. Autopilot: %(words)s"
+FLIES_SAYING = "%(uav)s has resumed its mission (%(mode)s), not commanded from here. Autopilot: %(words)s"
 SETTLES_S = 4.0  # after a command of ours was carried out, until modes are compared again
 AT_END_M = 40.0
 FLY_LIST = frozenset({"start", "resume", "take-off", "arm", RETURN_ALONG})

@@ -8,7 +8,7 @@ from telemetry.alerting.situation import Situation
 from telemetry.decoding.measurement import Measurement
 
 CODE = "weather"
-WORDS = "The wind at %(uav)s is %(wind)s m/s; %(limit)s m/s are allowed."
+WORDS = "Wind %(wind)s m/s at %(uav)s (limit %(limit)s m/s)."
 CLEAR_SHARE = 0.85
 
 

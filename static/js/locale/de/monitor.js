@@ -286,5 +286,6 @@ export default {
   "{act}: being sent …": "{act}: wird gesendet …",
   "Next contact expected {time}.": "Nächster Kontakt erwartet {time}.",
   "Contact overdue since {time}.": "Kontakt überfällig seit {time}.",
+  "Resolved: link to {name} restored.": "Behoben: Verbindung zu {name} wieder da.",
   "Resolved: {message}": "Behoben: {message}",
 };
