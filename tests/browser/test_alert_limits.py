@@ -1,4 +1,4 @@
-"""Where alerts begin: stated for a type of UAV and for a mission, in fields with units that say what is wrong with a figure."""
+"""Alert thresholds: stated for a type of UAV and for a mission, in fields with units that say what is wrong with a figure."""
 
 import re
 
@@ -26,8 +26,8 @@ def page(visitor: Visitor) -> Page:
 
 
 def asked(page: Page) -> Locator:
-    details(page).get_by_role("button", name="Change where alerts begin").click()
-    return page.get_by_role("dialog", name="Where alerts begin: Merlin")
+    details(page).get_by_role("button", name="Change alert thresholds").click()
+    return page.get_by_role("dialog", name="Alert thresholds: Merlin")
 
 
 def saves(dialog: Locator) -> None:
@@ -35,7 +35,7 @@ def saves(dialog: Locator) -> None:
 
 
 def test_limits_of_a_type_are_stated_with_their_units_and_a_wrong_figure_says_what_to_do(page: Page, picture: Picture) -> None:
-    expect(details(page)).to_contain_text("They begin where they usually do.")
+    expect(details(page)).to_contain_text("Default thresholds.")
     dialog = asked(page)
     late = dialog.get_by_label("Late after")
     expect(late).to_be_focused()
@@ -57,9 +57,9 @@ def test_limits_of_a_type_are_stated_with_their_units_and_a_wrong_figure_says_wh
     key = page.url.split("id=")[1].split("&")[0]
     assert asks(page, f"/uav-types/{key}/alert-limits")["stated"] == {"link_late_s": 60.0, "link_lost_s": 120.0}
     dialog = asked(page)
-    dialog.get_by_role("button", name="All as usual").click()
+    dialog.get_by_role("button", name="Reset to defaults").click()
     saves(dialog)
-    expect(details(page)).to_contain_text("They begin where they usually do.")
+    expect(details(page)).to_contain_text("Default thresholds.")
 
 
 @pytest.mark.long
@@ -69,8 +69,8 @@ def test_a_mission_states_its_own_and_viewers_only_read(visitor: Visitor) -> Non
     page.goto(mission)
     wait_for_map(page)
     page.get_by_role("button", name="More for this mission").click()
-    page.get_by_role("button", name="Where alerts begin").click()
-    dialog = page.get_by_role("dialog", name="Where alerts begin: Close to the road")
+    page.get_by_role("button", name="Alert thresholds").click()
+    dialog = page.get_by_role("dialog", name="Alert thresholds: Close to the road")
     dialog.get_by_role("group", name="Beside its route").get_by_label("Warning from").fill("12")
     saves(dialog)
     expect(dialog).to_have_count(0)
@@ -80,4 +80,4 @@ def test_a_mission_states_its_own_and_viewers_only_read(visitor: Visitor) -> Non
     wait_for_map(reader)
     reader.get_by_role("button", name="More for this mission").click()
     expect(reader.get_by_role("button", name="History")).to_be_visible()
-    expect(reader.get_by_role("button", name="Where alerts begin")).to_have_count(0)
+    expect(reader.get_by_role("button", name="Alert thresholds")).to_have_count(0)

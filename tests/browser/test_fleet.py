@@ -88,14 +88,19 @@ def test_a_type_a_base_and_a_uav_are_added_and_the_uav_has_what_they_say(visitor
     page.get_by_label("Type", exact=True).last.select_option("Harrier")
     page.get_by_label("Base", exact=True).last.select_option("East yard")
     expect(page.get_by_text("Empty: 55.0 km and 16 m/s, as its type.")).to_be_visible()
-    for field, of_type in (("Own battery", "400"), ("Own mass", "6"), ("Own reserve", "20"), ("Own highest airspeed", "")):
+    for field, of_type in (
+        ("Battery (overrides the type)", "400"),
+        ("Mass (overrides the type)", "6"),
+        ("Reserve (overrides the type)", "20"),
+        ("Maximum airspeed (overrides the type)", ""),
+    ):
         expect(page.get_by_label(field)).to_have_attribute("placeholder", of_type)
-    page.get_by_label("Own battery").fill("480")
-    page.get_by_label("Own reserve").fill("120")
+    page.get_by_label("Battery (overrides the type)").fill("480")
+    page.get_by_label("Reserve (overrides the type)").fill("120")
     page.get_by_role("button", name="Save", exact=True).click()
-    expect(page.get_by_label("Own reserve")).to_be_focused()
-    expect(page.get_by_label("Own reserve")).to_have_accessible_description(re.compile("At most 90."))
-    page.get_by_label("Own reserve").fill("30")
+    expect(page.get_by_label("Reserve (overrides the type)")).to_be_focused()
+    expect(page.get_by_label("Reserve (overrides the type)")).to_have_accessible_description(re.compile("At most 90."))
+    page.get_by_label("Reserve (overrides the type)").fill("30")
     page.get_by_role("button", name="Save", exact=True).click()
     figures = ("480\u00a0Wh", "6\u00a0kg, as its type", "30\u00a0%")
     for words in ("55.0 km, as its type", "16 m/s, as its type", *figures, "RGB camera, Lidar", "No mission uses it yet."):
@@ -215,7 +220,7 @@ def test_two_people_in_one_uav_see_each_others_changes(visitor: Visitor) -> None
     page.get_by_role("button", name="Save", exact=True).click()
     expect(details(page).get_by_text("Changed by rory in the meantime.")).to_be_visible()
     expect(details(page).get_by_text("→ 40")).to_be_visible()
-    page.get_by_role("button", name="Store mine over it").click()
+    page.get_by_role("button", name="Overwrite").click()
     is_saved(page, "Godwit")
     facts = asks(page, f"/uavs/{uav}")["properties"]
     assert (facts["serial_number"], facts["battery_percent"]) == ("SN-1", 40.0)

@@ -38,7 +38,7 @@ def departure(page: Page) -> Locator:
 def test_departure_air_and_batteries_are_saved_and_undone_and_the_plan_shows_what_they_mean(visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("opal")
     opens_mission(page, "In the wind", targets=4)
-    expect(page.get_by_text("Any time: the plan keeps clear of all zones at all times.")).to_be_visible()
+    expect(page.get_by_text("No departure time: all zones count as active.")).to_be_visible()
     page.get_by_role("button", name="Now", exact=True).click()
     expect(departure(page)).not_to_have_value("")
     page.get_by_role("button", name="Undo").first.click()
@@ -48,12 +48,12 @@ def test_departure_air_and_batteries_are_saved_and_undone_and_the_plan_shows_wha
 
     page.get_by_role("button", name="Change the conditions").click()
     dialog = page.get_by_role("dialog", name="Conditions")
-    dialog.get_by_role("button", name="Add a height").click()
+    dialog.get_by_role("button", name="Add wind layer").click()
     dialog.get_by_label("Wind speed").fill("4")
     dialog.get_by_label(re.compile("^Wind from")).fill("90")
     dialog.get_by_label("Temperature").fill("5")
     assert faults(page) == []
-    dialog.get_by_role("button", name="Use these").click()
+    dialog.get_by_role("button", name="Apply").click()
     expect(page.get_by_text(re.compile(r"4\sm/s from the east at 100\sm, 5\s°C"))).to_be_visible()
 
     page.get_by_role("button", name="Change Kite in this mission").click()
@@ -119,7 +119,7 @@ def test_the_ways_of_planning_stand_side_by_side_and_one_click_takes_one(visitor
     page.get_by_role("button", name="Compare", exact=True).click()
     panel = page.get_by_role("complementary", name="Ways to plan it")
     rows = panel.get_by_role("row")
-    expect(rows.filter(has_text="Fly least")).to_contain_text(re.compile(r"\d\skm"))
+    expect(rows.filter(has_text="Shortest distance")).to_contain_text(re.compile(r"\d\skm"))
     expect(rows.filter(has_text="Least flying time")).to_contain_text(re.compile(r"\d\skm"))
     expect(rows.filter(has_text="Least energy")).to_contain_text("No UAV has a battery.")
     expect(panel.locator("[aria-current]")).to_contain_text("Finish soonest")

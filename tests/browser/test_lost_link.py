@@ -86,9 +86,7 @@ def test_the_way_back_is_chosen_rally_points_are_placed_dragged_and_undone_and_t
     failures = panel(page).get_by_role("list", name="From where a UAV would not get home")
     expect(failures.get_by_role("button", name=re.compile(f"back to R2 ?the way back meets {RESERVE}"))).to_be_visible()
     assert (2, RESERVE) in says_what_is_stored(page)
-    expect(page.locator("#plan-quality")).to_contain_text(
-        re.compile(r"If the link is lost: From \d+ of \d+ waypoints a UAV would not get home")
-    )
+    expect(page.locator("#plan-quality")).to_contain_text(re.compile(r"On link loss: From \d+ of \d+ waypoints a UAV would not get home"))
     failures.get_by_role("button").first.click()
     expect(page.locator("#legend")).to_contain_text("Way back without a link that fails")
     in_both_themes(page, picture, "plan-lost-link")

@@ -76,7 +76,7 @@ def test_a_zone_under_the_pointer_tells_its_heights_times_source_and_whether_it_
         expect(tip).to_contain_text("until")
         expect(tip).to_contain_text("Not in force now")
         expect(tip).to_contain_text("Breeding season")
-        expect(tip).to_contain_text("Drawn here, changed now")
+        expect(tip).to_contain_text("Drawn in Spanwise, changed now")
         expect(tip).to_contain_text("A plan with a departure counts it at its times, any other plan at all times.")
         expect(tip.locator("svg").first).to_be_visible()
         curator.keyboard.press("Escape")

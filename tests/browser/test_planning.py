@@ -45,14 +45,14 @@ def test_both_ways_of_planning_stand_side_by_side_and_one_click_switches(visitor
     facts = page.locator("#plan-facts")
     even, least = (
         page.locator("#objective label").filter(has_text="Finish soonest"),
-        page.locator("#objective label").filter(has_text="Fly least"),
+        page.locator("#objective label").filter(has_text="Shortest distance"),
     )
     expect(even).to_contain_text(re.compile(r"\d+\smin, \d+\.\d\skm"))
     expect(least).to_contain_text(re.compile(r"\d+\smin, \d+\.\d\skm"))
     figures = {name: (label.text_content() or "").split(", ")[1] for name, label in (("even", even), ("least", least))}
     expect(facts).to_contain_text(figures["even"])
 
-    objective(page, "Fly least").focus()
+    objective(page, "Shortest distance").focus()
     page.keyboard.press("Space")
     expect(facts).to_contain_text(figures["least"])
     expect(facts).not_to_contain_text("for the selection before")
@@ -120,7 +120,7 @@ def test_a_route_says_where_its_kilometres_come_from(visitor: Visitor) -> None:
     why = page.get_by_role("complementary", name="Why Kite flies this way")
     expect(why.get_by_role("heading", name="Why Kite flies this way")).to_be_focused()
     expect(why).to_contain_text("Straight from target to target")
-    expect(why).to_contain_text("What limits the plan.")
+    expect(why).to_contain_text("Limiting factor:")
     expect(why).to_contain_text(re.compile(r"Kite, not Heron\. With .* as well, Heron would fly \d+\.\d\skm"))
     page.keyboard.press("Escape")
     expect(why).to_be_hidden()

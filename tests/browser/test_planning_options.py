@@ -78,13 +78,13 @@ def test_a_pill_dragged_to_another_uav_is_locked_there_and_says_what_that_costs(
     drags_a_pill(page, "1", "Kite", to="Heron", at_x=8)
     expect(page.get_by_text("is locked as target 1 of Heron.")).to_be_visible()
     expect(strip(page, "Heron")).to_have_attribute("aria-label", re.compile(f": 1 {given[1]} \\(locked\\), 2"))
-    expect(quality).to_contain_text("Your wish is not planned yet.")
+    expect(quality).to_contain_text("Change not planned yet.")
     page.keyboard.press("Control+z")
     expect(strip(page, "Heron")).not_to_have_attribute("aria-label", re.compile("locked"))
     page.keyboard.press("Control+Shift+z")
 
     page.get_by_role("button", name="Plan again P").click()
-    expect(quality).to_contain_text(re.compile(r"Your wish costs \d+\smin more \(\+[\d.]+\s%\)\."))
+    expect(quality).to_contain_text(re.compile(r"The change costs \d+\smin more \(\+[\d.]+\s%\)\."))
     expect(quality).to_contain_text("with what is locked.")
     expect(page.get_by_role("list", name="Targets", exact=True).get_by_role("img", name="Locked to Heron")).to_have_count(1)
     assert names_in_order(page)[0] == given[1]
@@ -93,7 +93,7 @@ def test_a_pill_dragged_to_another_uav_is_locked_there_and_says_what_that_costs(
     expect(page.locator("#save-state")).to_contain_text("Saved")
     page.reload()
     wait_for_map(page)
-    expect(quality).to_contain_text("Your wish costs")
+    expect(quality).to_contain_text("The change costs")
     quality.get_by_role("button", name="Unlock all").click()
     expect(page.get_by_role("img", name="Locked to Heron")).to_have_count(0)
 

@@ -92,14 +92,14 @@ def test_a_plan_is_rehearsed_and_its_verdict_read(visitor: Visitor, planned: str
     start = panel.get_by_role("button", name="Rehearse", exact=True)
     expect(start).to_be_disabled()
     panel.get_by_role("checkbox", name="Calm").check()
-    panel.get_by_text("Own figures").last.click()
+    panel.get_by_text("Custom conditions").last.click()
     panel.get_by_label("Battery holds").fill("25")
-    expect(panel.get_by_role("checkbox", name="Own figures")).to_be_checked()
+    expect(panel.get_by_role("checkbox", name="Custom conditions")).to_be_checked()
     start.click()
     expect(panel.get_by_role("button", name="Stop")).to_be_visible()
     sentence = panel.locator("#rehearsal-sentence")
-    expect(sentence).to_have_text(re.compile(r"^\d of 3 targets fails?: Own figures\.$"), timeout=FLIGHT_MS)
-    expect(panel.get_by_role("group", name="Conditions").get_by_role("button", name="Own figures")).to_have_attribute(
+    expect(sentence).to_have_text(re.compile(r"^\d of 3 targets fails?: Custom conditions\.$"), timeout=FLIGHT_MS)
+    expect(panel.get_by_role("group", name="Conditions").get_by_role("button", name="Custom conditions")).to_have_attribute(
         "aria-pressed", "true"
     )
     expect(panel.locator(".rehearsal-targets .fail .rehearsal-why").first).to_have_text(
@@ -175,7 +175,7 @@ def test_a_verdict_of_another_plan_is_out_of_date(visitor: Visitor, rehearsed: s
     body: dict[str, Any] = {"departs_at": (datetime.now(UTC) + timedelta(days=30)).isoformat(), "plan": True}
     assert page.request.patch(f"/api/v1/missions/{rehearsed}", data=body, headers={"X-CSRFToken": token, "If-Match": "*"}).ok
     opened(page, rehearsed)
-    expect(page.get_by_role("region", name="Rehearsal")).to_contain_text("Out of date.")
+    expect(page.get_by_role("region", name="Rehearsal")).to_contain_text("Outdated:")
 
 
 def test_an_administrator_asks_for_rehearsals_before_approval(visitor: Visitor) -> None:

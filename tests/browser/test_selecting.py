@@ -202,15 +202,15 @@ def test_tasks_are_set_for_one_and_for_several_and_undone_step_by_step(visitor: 
     assert tasks(page) == [usual] * 4
 
     page.get_by_role("button", name=re.compile("^Task, priority, UAV of ")).first.click()
-    page.get_by_role("button", name="Hold over it", exact=True).click()
-    assert tasks(page) == ["Hold over it, 30\u00a0s", usual, usual, usual]
+    page.get_by_role("button", name="Hover", exact=True).click()
+    assert tasks(page) == ["Hover, 30\u00a0s", usual, usual, usual]
     page.locator("#target-list .what").nth(1).click()
     page.locator("#target-list .what").nth(3).click(modifiers=["Shift"])
     expect(page.get_by_text("3 chosen")).to_be_visible()
     page.get_by_role("button", name="Task, priority, UAV", exact=True).click()
-    page.get_by_label("Stays").fill("45")
+    page.get_by_label("Hover time").fill("45")
     page.keyboard.press("Enter")
-    assert tasks(page) == ["Hold over it, 30\u00a0s", *["Take photos, 45\u00a0s"] * 3]
+    assert tasks(page) == ["Hover, 30\u00a0s", *["Take photos, 45\u00a0s"] * 3]
 
     page.wait_for_function(
         """() => Object.keys(localStorage).some((key) => key.startsWith('spanwise.draft.')
@@ -218,13 +218,13 @@ def test_tasks_are_set_for_one_and_for_several_and_undone_step_by_step(visitor: 
     )
     page.reload()
     wait_for_map(page)
-    assert tasks(page) == ["Hold over it, 30\u00a0s", *["Take photos, 45\u00a0s"] * 3]
+    assert tasks(page) == ["Hover, 30\u00a0s", *["Take photos, 45\u00a0s"] * 3]
     page.get_by_role("button", name=re.compile("^Task, priority, UAV of ")).first.click()
     picture(page, "select-task")
     page.get_by_role("button", name="Take photos", exact=True).click()
     assert tasks(page)[0] == usual
     page.keyboard.press("Control+z")
-    assert tasks(page)[0] == "Hold over it, 30\u00a0s"
+    assert tasks(page)[0] == "Hover, 30\u00a0s"
     page.keyboard.press("Control+Shift+Z")
     assert tasks(page)[0] == usual
 

@@ -93,7 +93,7 @@ def test_where_both_changed_the_same_the_operator_sees_both_and_decides(
         expect(mine.locator("#save-state")).to_have_text(SAVED)
         assert (asks(mine, address)["name"], len(asks(mine, address)["targets"])) == ("Mine", 2)
     elif way == "theirs":
-        dialog.get_by_role("button", name="Take theirs").click()
+        dialog.get_by_role("button", name="Use theirs").click()
         expect(name).to_have_value("Theirs")
         expect(mine.locator("#target-list .target")).to_have_count(1)
         mine.get_by_role("button", name="Back to mine").click()
@@ -154,8 +154,8 @@ def test_the_address_to_share_leads_to_the_same_mission_and_place(visitor: Visit
     opens_mission(page, f"{address}{view}")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     page.get_by_role("button", name="More for this mission").click()
-    page.get_by_role("button", name="Copy the address with this view").click()
-    expect(page.get_by_text("The address with this view of the map is copied.")).to_be_visible()
+    page.get_by_role("button", name="Copy link").click()
+    expect(page.get_by_text("Link copied.")).to_be_visible()
     shared = page.evaluate("navigator.clipboard.readText()")
     assert f"{address}#map=13.5/" in shared
     other = opens_mission(visitor.signs_in("vera"), shared)

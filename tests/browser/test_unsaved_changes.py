@@ -79,7 +79,7 @@ def test_two_on_one_mission_keep_both_their_changes(visitor: Visitor, way: str) 
     mine.unroute("**/api/v1/missions/**")
 
     mine.get_by_role("button", name="See both").click()
-    mine.get_by_role("button", name="Take theirs").click()
+    mine.get_by_role("button", name="Use theirs").click()
     expect(mine.get_by_role("textbox", name="Name of the mission")).to_have_value("River crossing, checked")
     expect(mine.locator("#target-list .target")).to_have_count(2)
     expect(mine.get_by_text(BEHIND)).to_be_hidden()

@@ -22,7 +22,7 @@ const bytes = (text) => new TextEncoder().encode(text);
 test("a difference is one sentence, and what does not occur is not in it", () => {
   assert.equal(
     plain(differenceSentence({ new: 412, changed: 3, vanished: 1, kept: 2, unchanged: 18_000 })),
-    "412 new, 3 changed, 1 vanished, 2 kept as edited by hand.",
+    "412 new, 3 changed, 1 removed from source, 2 kept as edited by hand.",
   );
   assert.equal(plain(differenceSentence({ new: 1_200, changed: 0, vanished: 0, kept: 0 })), "1,200 new.");
   assert.equal(differenceSentence({ new: 0, unchanged: 9 }), "Nothing would change.");

@@ -41,40 +41,40 @@ test("a proof is said in one word, also with something locked", () => {
 
 test("the gap is what the plan is above the bound, in the unit of the objective", () => {
   const quality = qualityOf(result({ gap: 0.2 }));
-  assert.equal(plain(quality.words), "At most 25.0 % above what is possible.");
-  assert.equal(plain(quality.detail), "No plan can fly less than 50.0 km.");
+  assert.equal(plain(quality.words), "Within 25.0 % of the best possible.");
+  assert.equal(plain(quality.detail), "Lower bound: 50.0 km.");
   assert.equal(
     plain(qualityOf(result({ objective: "makespan", lower_bound_m: null, lower_bound_s: 3000 })).detail),
-    "No plan can be done in less than 50 min.",
+    "Lower bound: 50 min.",
   );
 });
 
 test("where zones come or go meanwhile, the gap is against the best plan without them", () => {
   const quality = qualityOf(result({ gap: 0.2, gap_of: "without_timed_zones" }));
-  assert.equal(plain(quality.words), "At most 25.0 % above the best plan without the zones that come or go meanwhile.");
+  assert.equal(plain(quality.words), "Within 25.0 % of the best plan without temporary zones.");
   assert.equal(quality.detail, "");
   assert.equal(
     qualityOf(result({ gap: 0, gap_of: "without_timed_zones" })).words,
-    "No worse than the best plan without the zones that come or go meanwhile.",
+    "As good as the best plan without temporary zones.",
   );
   assert.match(
     qualityOf(result({ gap: 0.2, gap_of: "without_timed_zones", wish: {} })).words,
-    /with what is locked, without the zones/,
+    /with the locked targets and without temporary zones/,
   );
   assert.equal(
     plain(qualityOf(result({ gap: 0.2, gap_of: "all_plans" })).words),
-    "At most 25.0 % above what is possible.",
+    "Within 25.0 % of the best possible.",
   );
 });
 
 test("a bound has the unit of what the plan is best at", () => {
   assert.equal(
     plain(qualityOf(result({ objective: "time", lower_bound_m: null, lower_bound_s: 3000 })).detail),
-    "No plan can be in the air for less than 50 min.",
+    "Lower bound: 50 min of flight.",
   );
   assert.equal(
     plain(qualityOf(result({ objective: "energy", lower_bound_m: null, lower_bound_wh: 812.4 })).detail),
-    "No plan can use less than 812 Wh.",
+    "Lower bound: 812 Wh.",
   );
 });
 
@@ -97,22 +97,22 @@ test("where targets are left out, a proof is of plans that reach as many, and a 
   assert.equal(qualityOf(result({ gap: 0.8, ...missed("beyond_range") })), null);
   assert.equal(
     plain(qualityOf(result({ gap: 0.2, ...missed("inside_zone") })).words),
-    "At most 25.0 % above what is possible.",
+    "Within 25.0 % of the best possible.",
   );
 });
 
 test("what a wish costs is said with its share of the free plan", () => {
   const wish = { cost_m: 2300, cost_s: 120, free_total_m: 57_500, free_longest_s: 3000, left_out: 0 };
-  assert.equal(plain(wishWordsOf({ objective: "total", wish })), "Your wish costs 2.3 km more (+4.0 %).");
-  assert.equal(plain(wishWordsOf({ objective: "makespan", wish })), "Your wish costs 2 min more (+4.0 %).");
-  assert.equal(wishWordsOf({ objective: "total", wish: { ...wish, cost_m: 0 } }), "Your wish costs nothing.");
+  assert.equal(plain(wishWordsOf({ objective: "total", wish })), "The change costs 2.3 km more (+4.0 %).");
+  assert.equal(plain(wishWordsOf({ objective: "makespan", wish })), "The change costs 2 min more (+4.0 %).");
+  assert.equal(wishWordsOf({ objective: "total", wish: { ...wish, cost_m: 0 } }), "The change costs nothing.");
   assert.equal(
     plain(wishWordsOf({ objective: "total", wish: { ...wish, cost_m: -2300 } })),
-    "Your wish saves 2.3 km (−4.0 %): the search had not found it.",
+    "The change saves 2.3 km (−4.0 %): the search had not found it.",
   );
   assert.equal(
     wishWordsOf({ objective: "total", wish: { ...wish, cost_m: null, left_out: 2 } }),
-    "Your wish leaves out 2 targets more.",
+    "The change leaves out 2 targets more.",
   );
   assert.equal(wishWordsOf({ objective: "total", wish: null }), "");
 });
@@ -120,7 +120,7 @@ test("what a wish costs is said with its share of the free plan", () => {
 test("the best so far comes with its bound and gap", () => {
   assert.equal(
     plain(bestWordsOf({ unit: "m", value: 51_500, bound: 50_000, left_out: 0 })),
-    "51.5 km so far, at most 3.0 % above what is possible (50.0 km)",
+    "51.5 km so far, within 3.0 % of the best possible (50.0 km)",
   );
   assert.equal(
     plain(bestWordsOf({ unit: "m", value: 51_500, bound: 50_000, left_out: 1 })),

@@ -76,7 +76,7 @@ test("what keeps UAVs apart is named with the nearest that they come", () => {
   assert.equal(isFault, false);
   assert.match(
     plain(words),
-    /^Kept apart: Kite takes off 3 min later, Kite flies 15 m higher\. Nearest: Heron and Kite, 42 m apart, 15 m .* 70 s/,
+    /^Separation: Kite takes off 3 min later, Kite flies 15 m higher\. Closest pair: Heron and Kite, 42 m horizontally, 15 m .* 70 s/,
   );
   assert.equal(separationOf({ routes: [heron], separation: apart }), null);
 });

@@ -19,8 +19,8 @@ import { MAY, ROLES } from "./roles.js";
 const STATES = {
   open: [t("Open"), "active"],
   accepted: [t("Accepted"), ""],
-  expired: [t("Too old"), "draft"],
-  revoked: [t("Taken back"), "draft"],
+  expired: [t("Expired"), "draft"],
+  revoked: [t("Revoked"), "draft"],
 };
 const DAYS = [1, 7, 14, 30];
 
@@ -32,7 +32,7 @@ export function mountInvitations({ tell, settle, show }) {
     filters: ["state"],
     row,
     countWords: (count) => tn(count, "{count} invitation", "{count} invitations"),
-    none: { icon: "users", title: t("No invitations"), words: t("Invite somebody: a link makes their account.") },
+    none: { icon: "users", title: t("No invitations"), words: t("Invite a user: a link creates the account.") },
     tell,
     titleOfFault: t("Invitations could not be loaded."),
   });
@@ -46,10 +46,10 @@ export function mountInvitations({ tell, settle, show }) {
       {
         type: "button",
         class: "button danger",
-        "aria-label": t("Take back the invitation for {whom}", { whom }),
+        "aria-label": t("Revoke the invitation for {whom}", { whom }),
         onclick: () => revoke(invitation),
       },
-      t("Take back"),
+      t("Revoke"),
     );
     return h(
       "tr",
@@ -85,7 +85,7 @@ export function mountInvitations({ tell, settle, show }) {
       await list.load();
       byId("invite").focus();
     } catch (error) {
-      tell(t("The invitation is not taken back."), error);
+      tell(t("The invitation was not revoked."), error);
     }
   }
 
@@ -108,14 +108,14 @@ function askInvitation(made) {
   const form = h(
     "form",
     { class: "stack", novalidate: true },
-    h("h2", { id: "invite-title" }, t("Invite somebody")),
+    h("h2", { id: "invite-title" }, t("Invite user")),
     elements,
     fault,
     h(
       "div",
       { class: "acts" },
       h("button", { type: "button", class: "button", onclick: close }, t("Cancel")),
-      h("button", { class: "button primary" }, t("Make the link")),
+      h("button", { class: "button primary" }, t("Create link")),
     ),
   );
   /** @type {HTMLDialogElement} */
@@ -181,7 +181,7 @@ function invitationFields() {
       email,
       h("p", { class: "caption", id: "invite-mail" }, mail),
     ),
-    h("div", { class: "field" }, h("label", { for: "invite-days" }, t("Works for")), days),
+    h("div", { class: "field" }, h("label", { for: "invite-days" }, t("Expires after")), days),
   ];
   const read = () => ({
     role: roles.find(({ input }) => input.checked)?.input.value,

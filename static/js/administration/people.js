@@ -25,9 +25,9 @@ const fullName = (person) => [person.first_name, person.last_name].filter(Boolea
 
 /** @param {Person} person */
 function accessChip({ is_active, last_seen_at }) {
-  if (!is_active) return h("span", { class: "chip aborted" }, t("Kept out"));
+  if (!is_active) return h("span", { class: "chip aborted" }, t("Blocked"));
   if (last_seen_at && Date.now() - Date.parse(last_seen_at) < HERE_WITHIN_MS)
-    return h("span", { class: "chip active" }, icon("check"), t("Here now"));
+    return h("span", { class: "chip active" }, icon("check"), t("Online"));
   return h("span", { class: "chip" }, t("May sign in"));
 }
 
@@ -40,7 +40,7 @@ export function mountPeople(reporter) {
     filters: ["text", "role", "access"],
     row: (/** @type {Person} */ person) => people.row(person),
     countWords: (count) => tn(count, "{count} person", "{count} people"),
-    none: { icon: "users", title: t("Nobody is here"), words: t("Invite somebody.") },
+    none: { icon: "users", title: t("Nobody is online"), words: t("Invite a user.") },
     tell: reporter.tell,
     titleOfFault: t("People could not be loaded."),
   });
@@ -83,7 +83,7 @@ class People {
       h(
         "td",
         { class: "seen", title: person.last_seen_at && exactText(person.last_seen_at) },
-        h("span", { class: "phone-label" }, `${t("Last here")}: `),
+        h("span", { class: "phone-label" }, `${t("Last seen")}: `),
         person.last_seen_at ? whenText(person.last_seen_at) : t("never"),
       ),
       h("td", { class: "number tokens" }, person.valid_tokens ? `${person.valid_tokens}` : "—"),
@@ -124,9 +124,7 @@ class People {
     const { username: name, is_active } = person;
     const words = is_active ? t("{name} can no longer sign in.", { name }) : t("{name} may sign in.", { name });
     const act = () => this.#change(person, { is_active: !is_active }, words, { is_active });
-    return is_active
-      ? { icon: "circle-x", label: t("Keep out"), act }
-      : { icon: "check", label: t("Let in again"), act };
+    return is_active ? { icon: "circle-x", label: t("Block"), act } : { icon: "check", label: t("Unblock"), act };
   }
 
   /** Draws the row again, with the focus inside it. @param {Person} person @param {string} focus selector */

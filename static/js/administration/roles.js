@@ -18,7 +18,7 @@ export const MAY = {
   viewer: t("sees everything, changes nothing"),
   operator: t("plans and flies missions"),
   curator: t("keeps assets, zones and terrain"),
-  administrator: t("does everything, and lets people in"),
+  administrator: t("does everything, and manages users"),
 };
 
 /** @param {Role} chosen */

@@ -115,9 +115,9 @@ function tokenForm({ role }) {
     "form",
     { class: "token-form", novalidate: true },
     h("div", { class: "field" }, h("label", { for: "service-token-name" }, t("Name")), name),
-    h("div", { class: "field" }, h("label", { for: "service-token-days" }, t("Works for")), days),
+    h("div", { class: "field" }, h("label", { for: "service-token-days" }, t("Expires after")), days),
     h("fieldset", { class: "token-scopes" }, h("legend", {}, t("May")), labels),
-    h("button", { class: "button primary" }, t("Make a token")),
+    h("button", { class: "button primary" }, t("Create token")),
   );
   const read = () => ({
     name: name.value.trim(),

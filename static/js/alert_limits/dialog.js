@@ -61,7 +61,7 @@ export async function openAlertLimits({ address, title, hint, onSaved }) {
             }
           },
         },
-        t("All as usual"),
+        t("Reset to defaults"),
       ),
       h("button", { type: "button", class: "button", onclick: () => void dialog.close() }, t("Cancel")),
       save,
@@ -95,7 +95,7 @@ export async function openAlertLimits({ address, title, hint, onSaved }) {
     try {
       const { data: kept } = /** @type {Answer<AlertLimits>} */ (await put(address, stated));
       dialog.close();
-      toast(t("Saved. Alerts begin there from now on."));
+      toast(t("Thresholds saved."));
       onSaved?.(kept.stated);
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;

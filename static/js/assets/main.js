@@ -59,7 +59,7 @@ function sourceWords({ properties }) {
       source ? `, ${source.file_name}` : "",
     ];
   }
-  return set ? [`${set}${source ? `, ${source.file_name}` : ""}`] : [t("Drawn here")];
+  return set ? [`${set}${source ? `, ${source.file_name}` : ""}`] : [t("Drawn in Spanwise")];
 }
 
 /** @param {AssetDetailFeature} feature */
@@ -75,7 +75,7 @@ function details(feature) {
         h(
           "p",
           {},
-          h("strong", {}, `${t("Off the ground.")} `),
+          h("strong", {}, `${t("Deleted.")} `),
           t("Since {when}; missions still know it.", { when: whenText(properties.vanished_at) }),
         ),
       ),
@@ -160,7 +160,7 @@ const ASSETS = {
         ]
       : [
           h("strong", {}, t("No assets yet.")),
-          h("span", {}, t("Bring in an OpenStreetMap file, or take the visible area from Overpass.")),
+          h("span", {}, t("Import an OpenStreetMap file, or download the visible area from OpenStreetMap.")),
           h("a", { class: "button", href: "/imports" }, t("Import a file")),
         ],
 };

@@ -28,7 +28,7 @@ const HINTS = {
 };
 const HOLD = matchMedia("(pointer: coarse)").matches
   ? ` ${t("Hold a point to remove it.")}`
-  : ` ${t("Alt-click removes one; with Ctrl or Alt nothing snaps.")}`;
+  : ` ${t("Alt-click removes a point. Hold Ctrl or Alt to turn off snapping.")}`;
 const MOVING = t("Drag the whole shape, or move it with the arrow keys.");
 
 /** @param {string} words @param {string} name of an icon @param {() => unknown} act @param {Record<string, string>} [rest] */

@@ -37,7 +37,7 @@ function typeFields(type) {
   const battery = numberField("battery_wh", t("Battery"), type.battery_wh, {
     unit: "Wh",
     ...BOUNDS.battery_wh,
-    hint: t("When full; empty: no energy is counted."),
+    hint: t("When full. Blank: energy is not calculated."),
   });
   const mass = numberField("mass_kg", t("Mass"), type.mass_kg, {
     unit: "kg",
@@ -51,7 +51,7 @@ function typeFields(type) {
     required: true,
     hint: t("Of the battery; a plan does not use it."),
   });
-  const airspeed = numberField("max_airspeed_mps", t("Highest airspeed"), type.max_airspeed_mps, {
+  const airspeed = numberField("max_airspeed_mps", t("Maximum airspeed"), type.max_airspeed_mps, {
     factor: SPEED_UNIT.mps,
     unit: SPEED_UNIT.unit,
     ...AIRSPEED_BOUNDS,

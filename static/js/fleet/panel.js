@@ -229,8 +229,8 @@ export function conflictNotice({ who, seen, theirs, form, onTheirs, onMine }) {
       h(
         "p",
         {},
-        h("button", { type: "button", class: "text-button", onclick: onTheirs }, t("Take theirs")),
-        h("button", { type: "button", class: "text-button", onclick: onMine }, t("Store mine over it")),
+        h("button", { type: "button", class: "text-button", onclick: onTheirs }, t("Use theirs")),
+        h("button", { type: "button", class: "text-button", onclick: onMine }, t("Overwrite")),
       ),
     ),
   );

@@ -24,7 +24,7 @@ export async function mountTypeLimits(place, type, { canPlan, failed }) {
     "For all UAVs of this type, at once, also in flight. Empty: the usual, in grey. A mission can state its own.",
   );
   const change = () =>
-    openAlertLimits({ address, title: t("Where alerts begin: {name}", { name: type.name }), hint, onSaved: draw });
+    openAlertLimits({ address, title: t("Alert thresholds: {name}", { name: type.name }), hint, onSaved: draw });
 
   /** @param {Figures} stated */
   function draw(stated) {
@@ -36,14 +36,14 @@ export async function mountTypeLimits(place, type, { canPlan, failed }) {
             { class: "facts" },
             lines.map(([label, figure]) => [h("dt", {}, label), h("dd", {}, figure)]),
           )
-        : h("p", { class: "quiet-text" }, t("They begin where they usually do.")),
+        : h("p", { class: "quiet-text" }, t("Default thresholds.")),
       ...(canPlan
         ? [
             h(
               "button",
               { type: "button", class: "button", onclick: () => void change().catch(failed) },
               icon("bell", "small"),
-              t("Change where alerts begin"),
+              t("Change alert thresholds"),
             ),
           ]
         : []),

@@ -111,24 +111,27 @@ function linkFields(uav, isAdministrator) {
 /** @param {UavBody} uav */
 function figureFields(uav) {
   return {
-    range: numberField("max_range_m", t("Own range"), uav.max_range_m, {
+    range: numberField("max_range_m", t("Range (overrides the type)"), uav.max_range_m, {
       factor: LONG_UNIT.metres,
       unit: LONG_UNIT.unit,
       min: 0.1,
     }),
-    speed: numberField("cruise_speed_mps", t("Own speed"), uav.cruise_speed_mps, {
+    speed: numberField("cruise_speed_mps", t("Speed (overrides the type)"), uav.cruise_speed_mps, {
       factor: SPEED_UNIT.mps,
       unit: SPEED_UNIT.unit,
       min: 0.5,
     }),
-    battery: numberField("battery_wh", t("Own battery"), uav.battery_wh, { unit: "Wh", ...BOUNDS.battery_wh }),
-    mass: numberField("mass_kg", t("Own mass"), uav.mass_kg, { unit: "kg", ...BOUNDS.mass_kg }),
-    reserve: numberField("reserve_percent", t("Own reserve"), uav.reserve_percent, {
+    battery: numberField("battery_wh", t("Battery (overrides the type)"), uav.battery_wh, {
+      unit: "Wh",
+      ...BOUNDS.battery_wh,
+    }),
+    mass: numberField("mass_kg", t("Mass (overrides the type)"), uav.mass_kg, { unit: "kg", ...BOUNDS.mass_kg }),
+    reserve: numberField("reserve_percent", t("Reserve (overrides the type)"), uav.reserve_percent, {
       unit: "%",
       digits: 1,
       ...BOUNDS.reserve_percent,
     }),
-    airspeed: numberField("max_airspeed_mps", t("Own highest airspeed"), uav.max_airspeed_mps, {
+    airspeed: numberField("max_airspeed_mps", t("Maximum airspeed (overrides the type)"), uav.max_airspeed_mps, {
       factor: SPEED_UNIT.mps,
       unit: SPEED_UNIT.unit,
       ...AIRSPEED_BOUNDS,
@@ -168,8 +171,8 @@ function ownFigures(uav, type, types) {
     range.usual(chosen?.max_range_m);
     speed.usual(chosen?.cruise_speed_mps);
     const isCounted = Boolean(chosen?.battery_wh) || battery.read() !== null;
-    const grey = chosen ? t("Empty: as its type, in grey.") : t("Empty: the usual, in grey.");
-    powerHint.textContent = isCounted ? grey : t("{grey} Without a battery no energy is counted.", { grey });
+    const grey = chosen ? t("Blank: value of the type (grey).") : t("Blank: default value (grey).");
+    powerHint.textContent = isCounted ? grey : t("{grey} Without a battery, energy is not calculated.", { grey });
   }
   type.input.addEventListener("change", () => {
     showHint();
@@ -217,7 +220,7 @@ export function uavFields(uav, context) {
   const type = idField("type", t("Type"), uav.type, types);
   const base = idField("base", t("Base"), uav.base, bases);
   const figures = ownFigures(uav, type, types);
-  const charge = numberField("battery_percent", t("Charged to"), uav.battery_percent, {
+  const charge = numberField("battery_percent", t("Battery charge"), uav.battery_percent, {
     unit: "%",
     min: 0,
     max: 100,

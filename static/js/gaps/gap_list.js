@@ -213,7 +213,7 @@ class GapList {
         h("strong", {}, t("Nothing looks wrong here.")),
         h("p", {}, t("The ground is searched again after each change.")),
       ];
-    const none = state === "repaired" ? t("Nothing has been repaired yet.") : t("Nothing has been left as it is.");
+    const none = state === "repaired" ? t("Nothing has been repaired yet.") : t("Nothing has been ignored.");
     return [h("strong", {}, none)];
   }
 }

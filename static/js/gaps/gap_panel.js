@@ -255,6 +255,6 @@ function assetWords({ asset, other_asset: other }) {
 /** @param {Gap["properties"]} properties */
 function decidedWords({ state, decided_by: who, decided_at: when, note }) {
   const repaired = who ? t("Repaired by {name}", { name: who }) : t("No longer found");
-  const dismissed = who ? t("Left as it is by {name}", { name: who }) : t("Left as it is");
+  const dismissed = who ? t("Ignored by {name}", { name: who }) : t("Ignored");
   return `${state === "repaired" ? repaired : dismissed}${when ? `, ${whenText(when)}` : ""}${note ? `: ${note}` : ""}`;
 }

@@ -23,7 +23,7 @@ export const KINDS = {
 /** @type {{ state: Properties["state"], name: string }[]} */
 export const STATES = [
   { state: "open", name: t("Open") },
-  { state: "dismissed", name: t("Left as it is") },
+  { state: "dismissed", name: t("Ignored") },
   { state: "repaired", name: t("Repaired") },
 ];
 
@@ -36,7 +36,7 @@ export function cutOffText({ kind, cut_off_m: cutOff_m }) {
   if (!cutOff_m) return "";
   return onlyConcerns(kind)
     ? t("concerns {length}", { length: lengthText(cutOff_m) })
-    : t("cuts off {length}", { length: lengthText(cutOff_m) });
+    : t("cuts off {length} of network", { length: lengthText(cutOff_m) });
 }
 
 /** @param {GapKind} kind */

@@ -55,7 +55,7 @@ const list = mountGapList({
 });
 const panel = mountGapPanel(page.canCurate, {
   repair,
-  dismiss: (note) => act((id) => post(`/gaps/${id}/dismiss`, { note }), t("Left as it is."), reopen),
+  dismiss: (note) => act((id) => post(`/gaps/${id}/dismiss`, { note }), t("Ignored."), reopen),
   reopen: () => act(reopen, t("On the open list again.")),
   preview: (collection) => layer.showRepair(map.map, collection),
   place: startPlacing,

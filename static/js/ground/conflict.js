@@ -45,24 +45,19 @@ export function askWhich({ changed_by, changed_at, seen, mine, theirs }) {
           ? t("Changed by {name} at {time}", { name: changed_by, time: clockText(changed_at) })
           : t("Changed by {name}", { name: changed_by }),
       ),
-      h(
-        "p",
-        {},
-        theirs ? t("Nothing of yours is stored yet.") : t("It was taken off the ground. Nothing of yours is stored."),
-      ),
+      h("p", {}, theirs ? t("Nothing of yours is stored yet.") : t("It was deleted. Nothing of yours is stored.")),
       theirs && [
-        h("h3", {}, t("What they changed")),
+        h("h3", {}, t("Their changes")),
         list(differences(seen, theirs)),
-        h("h3", {}, t("What yours would change of that")),
+        h("h3", {}, t("Your changes")),
         list(differences(theirs, mine)),
       ],
       h(
         "div",
         { class: "acts" },
         h("button", { type: "button", class: "button", onclick: answer(null) }, t("Go on editing")),
-        h("button", { type: "button", class: "button", onclick: answer("theirs") }, t("Take theirs")),
-        theirs &&
-          h("button", { type: "button", class: "button danger", onclick: answer("mine") }, t("Store mine over it")),
+        h("button", { type: "button", class: "button", onclick: answer("theirs") }, t("Use theirs")),
+        theirs && h("button", { type: "button", class: "button danger", onclick: answer("mine") }, t("Overwrite")),
       ),
     );
     dialog.addEventListener("cancel", (event) => {

@@ -21,7 +21,7 @@ import {
 const ACTS = {
   created: t("Drawn"),
   changed: t("Changed"),
-  deleted: t("Taken off the ground"),
+  deleted: t("Deleted"),
   vanished: t("No longer in its source"),
   reverted: t("Brought back to an earlier state"),
   restored: t("Restored"),
@@ -40,7 +40,7 @@ const NAMES = {
   subtype: t("Type"),
   geometry: t("Shape"),
   tags: t("Tags"),
-  vanished: t("Off the ground"),
+  vanished: t("Deleted"),
   restriction: t("Restriction"),
   reason: t("Reason"),
   schedule: t("Schedule"),

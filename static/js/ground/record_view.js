@@ -193,7 +193,7 @@ export class RecordView {
         await this.choose(feature.id, { stay: true });
       };
       const act = () => this.#change(restore, t("It is back."));
-      toast(t("{name} is taken off the ground.", { name }), { label: t("Undo"), act });
+      toast(t("{name} deleted.", { name }), { label: t("Undo"), act });
     });
   }
 }

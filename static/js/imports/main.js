@@ -105,7 +105,9 @@ function tellFacts(proposals) {
   const working = proposals.filter(isOpen).length;
   byId("page-facts").textContent = [
     working && t("{count} being worked on", { count: numberText(working) }),
-    waiting ? tn(waiting, "{count} import to be decided", "{count} imports to be decided") : t("Nothing to be decided"),
+    waiting
+      ? tn(waiting, "{count} import ready for review", "{count} imports ready for review")
+      : t("No imports to review"),
   ]
     .filter(Boolean)
     .join(" · ");

@@ -121,7 +121,7 @@ class ProposalPanel {
       facts(proposal),
       kind === "zones" && state === "applied" && summary.set && versions(summary.set, this.#acts),
       Object.values(difference).some((count) => count > MOST_LISTED) &&
-        h("p", { class: "caption" }, t("Below are the first {count} of each.", { count: numberText(MOST_LISTED) })),
+        h("p", { class: "caption" }, t("Showing the first {count} per group.", { count: numberText(MOST_LISTED) })),
     ];
   }
 
@@ -328,7 +328,7 @@ function facts({ summary, provenance, state }) {
   return h(
     "details",
     { class: "import-facts" },
-    h("summary", {}, t("What is in the file")),
+    h("summary", {}, t("File contents")),
     h(
       "dl",
       {},

@@ -20,7 +20,7 @@ export const KINDS = {
 export const STATES = {
   reading: { words: t("Reading"), icon: "loader-circle", chip: "active" },
   refused: { words: t("Refused"), icon: "octagon-alert", chip: "failed" },
-  ready: { words: t("To be decided"), icon: "eye", chip: "approved" },
+  ready: { words: t("Ready for review"), icon: "eye", chip: "approved" },
   applying: { words: t("Applying"), icon: "loader-circle", chip: "active" },
   applied: { words: t("Applied"), icon: "circle-check", chip: "" },
   discarded: { words: t("Discarded"), icon: "circle-x", chip: "draft" },
@@ -30,7 +30,7 @@ export const STATES = {
 export const ACTIONS = {
   new: { words: t("new"), short: t("New"), sign: "+" },
   changed: { words: t("changed"), short: t("Changed"), sign: "≠" },
-  vanished: { words: t("vanished"), short: t("Vanished"), sign: "−" },
+  vanished: { words: t("removed from source"), short: t("Removed from source"), sign: "−" },
   kept: { words: t("kept as edited by hand"), short: t("Kept"), sign: "=" },
   not_read: { words: t("not read"), short: t("Not read"), sign: "?" },
 };

@@ -154,7 +154,7 @@ function zoneContent({ properties, place }, details, problem = "") {
 
 /** Where the zone is from, and how old what is known of it is. @param {ZoneDetailProperties} details */
 function sourceWords({ zone_set, source, is_edited, updated_at }) {
-  if (!source) return t("Drawn here, changed {when}", { when: whenText(updated_at) });
+  if (!source) return t("Drawn in Spanwise, changed {when}", { when: whenText(updated_at) });
   const name = zone_set ?? source.file_name;
   const words = source.fetched_at
     ? t("From {name}, fetched {when}", { name, when: whenText(source.fetched_at) })

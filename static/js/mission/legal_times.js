@@ -123,7 +123,7 @@ export function wordsOf(times, departs_at) {
     sentence,
     departure: departs_at
       ? departureWords(times, Date.parse(departs_at))
-      : t("No departure is chosen: the plan keeps clear of all zones at all times."),
+      : t("No departure time: all zones count as active."),
   };
 }
 

@@ -38,7 +38,11 @@ const DIGITS = 6; // some 0.1 m
 
 /** @type {{ value: LostLink["behaviour"], words: string, meaning: string }[]} */
 export const BEHAVIOURS = [
-  { value: "go_on", words: t("Fly on"), meaning: t("Each UAV flies its route to the end, as it was checked.") },
+  {
+    value: "go_on",
+    words: t("Continue mission"),
+    meaning: t("Each UAV flies its route to the end, as it was checked."),
+  },
   {
     value: "hold",
     words: t("Hold, then return"),

@@ -47,10 +47,10 @@ export function qualityOf({
     return { isProven: false, words: beyondTimedZones(above < LEAST_SHARE ? null : share, Boolean(wish)), detail: "" };
   const words =
     above < LEAST_SHARE
-      ? t("As good as is possible.")
+      ? t("Best possible.")
       : wish
-        ? t("At most {share} above what is possible with what is locked.", { share })
-        : t("At most {share} above what is possible.", { share });
+        ? t("Within {share} of the best possible with the locked targets.", { share })
+        : t("Within {share} of the best possible.", { share });
   return { isProven: false, words, detail: bound === null || bound === undefined ? "" : boundWords(objective, bound) };
 }
 
@@ -62,20 +62,20 @@ export function qualityOf({
  * @param {boolean} isLocked
  */
 function beyondTimedZones(share, isLocked) {
-  if (share === null) return t("No worse than the best plan without the zones that come or go meanwhile.");
+  if (share === null) return t("As good as the best plan without temporary zones.");
   if (isLocked)
-    return t("At most {share} above the best plan with what is locked, without the zones that come or go meanwhile.", {
+    return t("Within {share} of the best plan with the locked targets and without temporary zones.", {
       share,
     });
-  return t("At most {share} above the best plan without the zones that come or go meanwhile.", { share });
+  return t("Within {share} of the best plan without temporary zones.", { share });
 }
 
 /** @param {Plan["objective"]} objective @param {number} bound */
 function boundWords(objective, bound) {
-  if (objective === "total") return t("No plan can fly less than {length}.", { length: lengthText(bound) });
-  if (objective === "energy") return t("No plan can use less than {energy}.", { energy: energyText(bound) });
-  if (objective === "time") return t("No plan can be in the air for less than {time}.", { time: durationText(bound) });
-  return t("No plan can be done in less than {time}.", { time: durationText(bound) });
+  if (objective === "total") return t("Lower bound: {length}.", { length: lengthText(bound) });
+  if (objective === "energy") return t("Lower bound: {energy}.", { energy: energyText(bound) });
+  if (objective === "time") return t("Lower bound: {time} of flight.", { time: durationText(bound) });
+  return t("Lower bound: {time}.", { time: durationText(bound) });
 }
 
 /**
@@ -124,17 +124,17 @@ export function wishWordsOf({ objective, wish }) {
   const [cost, free] = isTotal ? [wish.cost_m, wish.free_total_m] : [wish.cost_s, wish.free_longest_s];
   const leftOut =
     wish.left_out > 0
-      ? tn(wish.left_out, "Your wish leaves out {count} target more.", "Your wish leaves out {count} targets more.")
+      ? tn(wish.left_out, "The change leaves out {count} target more.", "The change leaves out {count} targets more.")
       : "";
-  if (cost === null || cost === undefined) return leftOut || t("What your wish costs is not known.");
+  if (cost === null || cost === undefined) return leftOut || t("Cost of the change unknown.");
   const figure = (isTotal ? lengthText : durationText)(Math.abs(cost));
   const share = free > 0 ? ` (${cost < 0 ? "−" : "+"}${shareText(Math.abs(cost) / free)})` : "";
   const isNothing = Math.abs(cost) < (isTotal ? 1 : 0.5);
   const words = isNothing
-    ? t("Your wish costs nothing.")
+    ? t("The change costs nothing.")
     : cost > 0
-      ? t("Your wish costs {figure} more{share}.", { figure, share })
-      : t("Your wish saves {figure}{share}: the search had not found it.", { figure, share });
+      ? t("The change costs {figure} more{share}.", { figure, share })
+      : t("The change saves {figure}{share}: the search had not found it.", { figure, share });
   return [words, leftOut].filter(Boolean).join(" ");
 }
 
@@ -150,7 +150,7 @@ export function bestWordsOf(best) {
   const figure = textOf(value);
   const words =
     bound !== null && bound > 0 && !left_out
-      ? t("{figure} so far, at most {share} above what is possible ({least})", {
+      ? t("{figure} so far, within {share} of the best possible ({least})", {
           figure,
           share: shareText(Math.max(0, value / bound - 1)),
           least: textOf(bound),

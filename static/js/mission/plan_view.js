@@ -31,7 +31,7 @@ const REASONS = {
 /** @type {{ value: Plan["objective"], words: string, meaning: string }[]} */
 export const OBJECTIVES = [
   { value: "makespan", words: t("Finish soonest"), meaning: t("The last UAV is done as early as possible") },
-  { value: "total", words: t("Fly least"), meaning: t("All routes together as short as possible") },
+  { value: "total", words: t("Shortest distance"), meaning: t("All routes together as short as possible") },
   {
     value: "time",
     words: t("Least flying time"),

@@ -219,7 +219,7 @@ const SENTENCES = [
   [/^There is no permitted route for (.+)\.$/, (names) => t("There is no permitted route for {names}.", { names })],
   [
     /^No UAV can get there: no way on the network keeps clear of every zone\.$/,
-    () => t("No UAV can get there: no way on the network keeps clear of every zone."),
+    () => t("No permitted route from any base."),
   ],
   [
     /^There is no way from it to a base that lies outside every no-fly zone\.$/,

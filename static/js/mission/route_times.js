@@ -136,7 +136,7 @@ export function separationOf({ separation, routes }) {
     ].filter(Boolean),
   );
   const kept = changes.length
-    ? t("Kept apart: {changes}.", { changes: changes.join(", ") })
+    ? t("Separation: {changes}.", { changes: changes.join(", ") })
     : t("The UAVs keep apart.");
   return { isFault: false, words: [kept, nearestWords(separation.closest)].filter(Boolean).join(" ") };
 }
@@ -153,11 +153,8 @@ function nearestWords(closest) {
     height: heightText(closest.vertical_m ?? 0),
   };
   return closest.vertical_m === null || closest.vertical_m === undefined
-    ? t("Nearest: {one} and {other}, {distance} apart, {time} one after the other.", values)
-    : t(
-        "Nearest: {one} and {other}, {distance} apart, {height} one above the other, {time} one after the other.",
-        values,
-      );
+    ? t("Closest pair: {one} and {other}, {distance} horizontally, {time} apart.", values)
+    : t("Closest pair: {one} and {other}, {distance} horizontally, {height} vertically, {time} apart.", values);
 }
 
 /** @param {Separation["unresolved"][number]} conflict */

@@ -18,9 +18,9 @@ import { LONGEST_HOLD_S, sensorsKnown, taskOf, wishesOf } from "./selection.js";
 
 /** @type {{ kind: Task["kind"], icon: string, words: () => string }[]} */
 export const TASKS = [
-  { kind: "look", icon: "eye", words: () => t("Look in passing") },
+  { kind: "look", icon: "eye", words: () => t("Fly-by") },
   { kind: "photo", icon: "camera", words: () => t("Take photos") },
-  { kind: "hold", icon: "timer", words: () => t("Hold over it") },
+  { kind: "hold", icon: "timer", words: () => t("Hover") },
 ];
 
 /** @param {Pick<Task, "kind">} task */
@@ -214,7 +214,7 @@ export function targetMenu(targets, actions, known, more = []) {
     h(
       "form",
       { class: "task-seconds", onsubmit: submit },
-      h("label", { for: "task-seconds" }, t("Stays")),
+      h("label", { for: "task-seconds" }, t("Hover time")),
       h("div", { class: "with-unit" }, seconds, h("span", { class: "unit" }, "s")),
       h("button", { class: "button" }, t("Set")),
     ),

@@ -110,7 +110,7 @@ export async function copyAddress(mission) {
   const address = `${location.origin}/missions/${mission.id}`;
   try {
     await navigator.clipboard.writeText(address);
-    toast(t("The address of “{name}” is copied.", { name: mission.name }));
+    toast(t("Link to “{name}” copied.", { name: mission.name }));
   } catch {
     toast(address); // without the clipboard: there to be marked and copied
   }

@@ -230,7 +230,7 @@ function actButtons(mission, canPlan, acts, name) {
         { icon: "map", label: t("Open"), act: () => location.assign(`/missions/${mission.id}`) },
         ...(mayChange ? [{ icon: "pencil", label: t("Rename"), act: edit }] : []),
         ...(canPlan ? [{ icon: "copy", label: t("Duplicate"), act: acts.duplicate }] : []),
-        { icon: "link", label: t("Copy the address"), act: acts.copyAddress },
+        { icon: "link", label: t("Copy link"), act: acts.copyAddress },
         ...(mayChange ? [{ icon: "trash-2", label: t("Delete"), act: acts.remove }] : []),
       ]),
     ),

@@ -75,8 +75,7 @@ function details({ properties }) {
         {},
         h("p", {}, heightsText(properties)),
         h("p", {}, scheduleText(properties.schedule, { otherwise: properties.schedule_words })),
-        isTimed &&
-          h("p", { class: "caption" }, t("By the clock of {zone}.", { zone: zoneText(new Date().toISOString()) })),
+        isTimed && h("p", { class: "caption" }, t("Times in {zone}.", { zone: zoneText(new Date().toISOString()) })),
       ),
     ),
     ...(properties.schedule ?? [])
@@ -96,7 +95,7 @@ function details({ properties }) {
           }),
       ),
       term(t("Identifier"), properties.identifier.startsWith("drawn-") ? "" : properties.identifier),
-      term(t("Zone set"), properties.zone_set ?? t("Drawn here")),
+      term(t("Zone set"), properties.zone_set ?? t("Drawn in Spanwise")),
       term(t("File"), source?.file_name),
       term(t("Licence"), source ? source.licence || t("not stated") : ""),
       term(t("Attribution"), source?.attribution),
@@ -106,7 +105,7 @@ function details({ properties }) {
       term(t("Imported"), source?.imported_at && whenText(source.imported_at)),
       term(t("Changed"), whenText(properties.updated_at)),
     ),
-    h("p", { class: "caption" }, t("Facts as the source states them; whether you may fly is for you to judge.")),
+    h("p", { class: "caption" }, t("Data as published by its source. Check the legal status before flying.")),
   ].filter((part) => part instanceof Node);
 }
 

@@ -75,7 +75,7 @@ class SetsPanel {
   #draw() {
     const subscribe = () => this.#askSubscription(null);
     const button = h("button", { type: "button", class: "button", onclick: subscribe });
-    setChildren(button, icon("plus", "small"), t("Fetch a source by itself"));
+    setChildren(button, icon("plus", "small"), t("Subscribe to a zone source"));
     setChildren(
       this.#place,
       this.#canCurate && h("section", { class: "panel-section" }, button),
@@ -127,7 +127,7 @@ class SetsPanel {
     const button = (kind, act, ...words) => h("button", { type: "button", class: kind, onclick: act }, words);
     const versions = countText(set.version_count, "version");
     return [
-      button("button", () => this.#showZones(set), t("Its zones")),
+      button("button", () => this.#showZones(set), t("Show zones")),
       this.#canCurate &&
         set.version_count > 0 &&
         button("button", () => this.#askVersion(set), icon("history", "small"), versions),

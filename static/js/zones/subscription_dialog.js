@@ -64,7 +64,7 @@ export function askSubscription(set, { attempt, reload }) {
     ),
   );
   /** @type {HTMLDialogElement} */
-  const dialog = openDialog(set ? t("Source of {name}", { name: set.name }) : t("Fetch a source by itself"), form);
+  const dialog = openDialog(set ? t("Source of {name}", { name: set.name }) : t("Subscribe to a zone source"), form);
   form.addEventListener("submit", async (event) => {
     event.preventDefault();
     try {

@@ -97,7 +97,7 @@ def test_a_gap_that_is_right_is_left_with_a_note_and_opened_again(visitor: Visit
     expect(page.get_by_role("textbox", name="Note")).to_be_focused()
     page.get_by_role("button", name="Leave it", exact=True).click()
     expect(page.locator(".gap-decided")).to_contain_text("A pipe bridge, seen on site.")
-    page.get_by_role("radio", name="Left as it is").check()
+    page.get_by_role("radio", name="Ignored").check()
     expect(page.locator(".gap-row")).to_have_count(1)
     page.get_by_role("button", name="Open it again").click()
     expect(page.locator("#gap-list-end")).to_contain_text("No gap like that here.")

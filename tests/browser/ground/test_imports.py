@@ -126,7 +126,7 @@ def test_what_a_file_would_change_is_seen_on_list_and_map_before_it_counts_and_c
 
     page.get_by_text("Roll the set back").click()
     page.get_by_role("listitem").filter(has_text="Version 1").get_by_role("button", name="Roll back").click()
-    expect(page.locator("#proposal .chip")).to_have_text("To be decided")
+    expect(page.locator("#proposal .chip")).to_have_text("Ready for review")
     expect(sentence(page)).to_have_text("1\u00a0new, 1\u00a0changed, 1\u00a0vanished.")
     page.get_by_role("button", name="Discard").click()
     expect(page.get_by_text("is discarded. Nothing of it counts.")).to_be_visible()
@@ -245,7 +245,7 @@ def test_what_was_edited_by_hand_is_kept_or_overwritten_with_a_word(curator: Pag
     apply.click()
     expect(page.get_by_role("button", name="Keep the edits")).to_be_focused()
     page.keyboard.press("Escape")
-    expect(page.locator("#proposal .chip")).to_have_text("To be decided")
+    expect(page.locator("#proposal .chip")).to_have_text("Ready for review")
     apply.click()
     page.get_by_role("button", name="Overwrite and apply").click()
     expect(page.locator("#proposal .chip")).to_have_text("Applied")

@@ -85,7 +85,7 @@ def test_the_second_of_two_curators_is_asked_and_overwrites_nothing_unseen(visit
     page.get_by_role("button", name="Save").click()
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text("Theirs → Mine")
-    dialog.get_by_role("button", name="Take theirs").click()
+    dialog.get_by_role("button", name="Use theirs").click()
     expect(page.locator("#record-show")).to_contain_text("Theirs")
     visitor.complaints.clear()  # the browser tells of the answer 412, which is meant
 
@@ -102,7 +102,7 @@ def test_what_is_stored_over_a_change_of_others_leaves_their_other_facts(visitor
     dialog = page.get_by_role("dialog")
     expect(dialog.locator("dd").last).to_have_text("Theirs → Mine")
     expect(dialog.locator("dl").last.locator("dd")).to_have_count(1)
-    dialog.get_by_role("button", name="Store mine over it").click()
+    dialog.get_by_role("button", name="Overwrite").click()
     expect(page.locator(".history-list li").first).to_contain_text("Theirs → Mine")
     stored = asks(page, f"/assets/{asset}")["properties"]
     assert (stored["operator"], stored["name"]) == ("Mine", "Their name")

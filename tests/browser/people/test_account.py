@@ -117,11 +117,11 @@ def test_a_new_password_says_what_is_wrong_and_signs_out_elsewhere(visitor: Visi
 def test_a_token_is_shown_once_works_and_is_revoked(visitor: Visitor) -> None:
     page = account(newcomer(visitor, "tove"))
     expect(page.get_by_text("No tokens")).to_be_visible()
-    page.get_by_role("button", name="Make a token").click()
+    page.get_by_role("button", name="Create token").click()
     expect(page.get_by_role("alert")).to_contain_text("Say what the token is for.")
     page.get_by_label("Name", exact=True).fill("Nightly export")
-    page.get_by_label("Works for").select_option("7 days")
-    page.get_by_role("button", name="Make a token").click()
+    page.get_by_label("Expires after").select_option("7 days")
+    page.get_by_role("button", name="Create token").click()
     token = page.get_by_role("textbox", name="Token", exact=True).text_content() or ""
     expect(page.get_by_role("button", name="Copy")).to_be_focused()
     stranger = visitor.new_context(extra_http_headers={"Authorization": f"Bearer {token}"})

@@ -43,10 +43,10 @@ def row_of(page: Page, name: str) -> Locator:
 
 
 def invites(page: Page, role: str) -> str:
-    page.get_by_role("button", name="Invite somebody").click()
-    dialog = page.get_by_role("dialog", name="Invite somebody")
+    page.get_by_role("button", name="Invite user").click()
+    dialog = page.get_by_role("dialog", name="Invite user")
     dialog.get_by_role("radio", name=re.compile(f"^{role}")).check()
-    dialog.get_by_role("button", name="Make the link").click()
+    dialog.get_by_role("button", name="Create link").click()
     link = page.get_by_role("textbox", name="Link of the invitation")
     expect(page.get_by_role("button", name="Copy")).to_be_focused()
     return link.text_content() or ""
@@ -90,9 +90,9 @@ def test_the_link_keeps_the_focus_however_late_the_dialog_says_that_it_is_closed
 def test_an_invitation_that_was_taken_back_lets_nobody_in(visitor: Visitor) -> None:
     page = administration(visitor.signs_in("ada"))
     link = invites(page, "Administrator")
-    page.get_by_role("button", name=re.compile("Take back")).first.click()
+    page.get_by_role("button", name=re.compile("Revoke")).first.click()
     expect(page.get_by_text("The link works no more.")).to_be_visible()
-    expect(page.get_by_role("row").nth(1)).to_contain_text("Taken back")
+    expect(page.get_by_role("row").nth(1)).to_contain_text("Revoked")
     expect(visitor.opens(link).get_by_role("heading", name="This link does not work any more")).to_be_visible()
     visitor.complaints[:] = [words for words in visitor.complaints if "410" not in words]
 
@@ -106,7 +106,7 @@ def test_a_person_is_found_given_a_role_and_the_role_is_taken_back(visitor: Visi
     page.keyboard.type("rolf")
     expect(page.get_by_text("1 person", exact=True)).to_be_visible()
     row = row_of(page, "rolf")
-    expect(row).to_contain_text("Here now")
+    expect(row).to_contain_text("Online")
     row.get_by_label("Role of rolf").select_option("Curator")
     expect(page.get_by_text("rolf has the role Curator now.")).to_be_visible()
     expect(row.get_by_label("Role of rolf")).to_be_focused()
@@ -126,15 +126,15 @@ def test_whoever_is_kept_out_is_out_at_once_and_let_in_again(visitor: Visitor) -
     expect(guest.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
     administration(page)
     page.get_by_role("button", name="More for kept").click()
-    page.get_by_role("button", name="Keep out").click()
+    page.get_by_role("button", name="Block").click()
     expect(page.get_by_text("kept can no longer sign in.")).to_be_visible()
-    expect(row_of(page, "kept")).to_contain_text("Kept out")
+    expect(row_of(page, "kept")).to_contain_text("Blocked")
     guest.goto("/account")
     expect(guest.get_by_role("heading", name="Sign in")).to_be_visible()
-    page.get_by_label("Access").select_option("Kept out")
+    page.get_by_label("Access").select_option("Blocked")
     expect(page.get_by_text("1 person", exact=True)).to_be_visible()
     page.get_by_role("button", name="More for kept").click()
-    page.get_by_role("button", name="Let in again").click()
+    page.get_by_role("button", name="Unblock").click()
     expect(page.get_by_text("kept may sign in.")).to_be_visible()
     visitor.signs_in("kept")
 
@@ -177,7 +177,7 @@ def test_a_program_works_with_a_service_account_until_it_is_disabled(visitor: Vi
     dialog.get_by_role("button", name="Add").click()
     tokens = page.get_by_role("dialog", name="Tokens of erp")
     tokens.get_by_label("Name").fill("night run")
-    tokens.get_by_role("button", name="Make a token").click()
+    tokens.get_by_role("button", name="Create token").click()
     token = tokens.get_by_role("textbox", name="Token", exact=True).text_content() or ""
     program = visitor.new_context(extra_http_headers={"Authorization": f"Bearer {token}"})
     assert program.request.get("/api/v1/missions").status == 200
@@ -236,9 +236,9 @@ def test_axe_finds_nothing_serious_on_any_tab_or_behind_a_link(visitor: Visitor,
         assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), tab
         assert faults(page) == [], tab
         picture(page, f"page-administration-{tab}-{view}")
-    page.get_by_role("button", name="Invite somebody").click()
+    page.get_by_role("button", name="Invite user").click()
     assert faults(page) == []
-    page.get_by_role("dialog").get_by_role("button", name="Make the link").click()
+    page.get_by_role("dialog").get_by_role("button", name="Create link").click()
     link = page.get_by_role("textbox", name="Link of the invitation").text_content() or ""
     assert faults(page) == []
     guest = visitor.opens(link, **VIEWS[view])

@@ -63,7 +63,7 @@ def test_a_viewer_has_nothing_to_edit_with(visitor: Visitor, size: tuple[int, in
     expect(editing).to_have_count(0)
     page.get_by_role("button", name="More for this mission").click()
     acts = page.get_by_role("group", name="This mission").get_by_role("button").all_text_contents()
-    assert acts == ["Copy the address with this view", "History", "All missions"]
+    assert acts == ["Copy link", "History", "All missions"]
 
     page.goto("/missions/new")
     wait_for_map(page)

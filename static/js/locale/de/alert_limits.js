@@ -1,16 +1,16 @@
 /** German: where alerts begin. */
 
 export default {
-  "Where alerts begin": "Wo Alarme beginnen",
-  "Where alerts begin: {name}": "Wo Alarme beginnen: {name}",
-  "Change where alerts begin": "Ändern, wo Alarme beginnen",
-  "They begin where they usually do.": "Sie beginnen, wo sie üblicherweise beginnen.",
+  "Alert thresholds": "Alarmschwellen",
+  "Alert thresholds: {name}": "Alarmschwellen: {name}",
+  "Change alert thresholds": "Alarmschwellen ändern",
+  "Default thresholds.": "Übliche Schwellen.",
   "For all UAVs of this type, at once, also in flight. Empty: the usual, in grey. A mission can state its own.":
     "Für alle UAVs dieses Typs, sofort, auch im Flug. Leer: das Übliche, in Grau. Eine Mission kann Eigenes angeben.",
   "For this mission alone, also while it flies. Empty: as the type of each UAV says, else the usual, in grey.":
     "Nur für diese Mission, auch während sie fliegt. Leer: wie es der Typ jedes UAVs sagt, sonst das Übliche, in Grau.",
-  "All as usual": "Alles wie üblich",
-  "Saved. Alerts begin there from now on.": "Gespeichert. Alarme beginnen von jetzt an dort.",
+  "Reset to defaults": "Auf Standard zurücksetzen",
+  "Thresholds saved.": "Schwellen gespeichert.",
   "The server does not take this figure.": "Der Server nimmt diesen Wert nicht an.",
   "Not below “{other}” ({figure}). Raise this one, or lower the other.":
     "Nicht unter „{other}“ ({figure}). Diesen Wert erhöhen oder den anderen senken.",

@@ -2,8 +2,8 @@
 
 export default {
   "All assets": "Alle Objekte",
-  "Bring in an OpenStreetMap file, or take the visible area from Overpass.":
-    "Eine OpenStreetMap-Datei einlesen oder den sichtbaren Bereich von Overpass holen.",
+  "Import an OpenStreetMap file, or download the visible area from OpenStreetMap.":
+    "Eine OpenStreetMap-Datei importieren oder den sichtbaren Bereich von OpenStreetMap herunterladen.",
   "Height above ground": "Höhe über Grund",
   "Light rail": "Stadtbahn",
   "Minor line": "Kleine Leitung",
@@ -14,7 +14,7 @@ export default {
   "New railway": "Neue Bahnstrecke",
   "No assets yet.": "Noch keine Objekte.",
   "not flown": "nicht beflogen",
-  "Off the ground.": "Nicht mehr im Bestand.",
+  "Deleted.": "Gelöscht.",
   "Other words, another kind, or a larger part of the map may have it.":
     "Andere Wörter, eine andere Art oder ein größerer Kartenausschnitt helfen vielleicht.",
   "Part of the flying network": "Teil des Flugnetzes",

@@ -8,8 +8,8 @@ export default {
   "A line needs two points.": "Eine Linie braucht zwei Punkte.",
   "A part lies within another.": "Ein Teil liegt in einem anderen.",
   "Add a point in the middle of the map": "Einen Punkt in der Kartenmitte hinzufügen",
-  "Alt-click removes one; with Ctrl or Alt nothing snaps.":
-    "Klick mit Alt entfernt einen Punkt; mit Strg oder Alt rastet nichts ein.",
+  "Alt-click removes a point. Hold Ctrl or Alt to turn off snapping.":
+    "Klick mit Alt entfernt einen Punkt. Strg oder Alt gedrückt halten schaltet das Einrasten aus.",
   "An area needs three points.": "Eine Fläche braucht drei Punkte.",
   "Choose a point by its number; the arrow keys then move it, Del removes it.":
     "Einen Punkt über seine Nummer wählen; die Pfeiltasten verschieben ihn, Entf entfernt ihn.",

@@ -29,7 +29,7 @@ export default {
   "A route with stops to charge cannot be changed by hand.":
     "Eine Route mit Ladehalten lässt sich nicht von Hand ändern.",
   "a zone": "eine Zone",
-  "Add a height": "Höhe hinzufügen",
+  "Add wind layer": "Windschicht hinzufügen",
   "Add by coordinates": "Nach Koordinaten setzen",
   "Add on the map": "Auf der Karte setzen",
   "after {start}": "nach {start}",
@@ -42,7 +42,7 @@ export default {
   "another UAV’s route is the longest": "die Route eines anderen UAV ist die längste",
   "Any time": "Jederzeit",
   "any time": "jederzeit",
-  "Any time: the plan keeps clear of all zones at all times.": "Jederzeit: Der Plan meidet alle Zonen zu allen Zeiten.",
+  "No departure time: all zones count as active.": "Keine Abflugzeit: Alle Zonen gelten als aktiv.",
   "Arrival": "Ankunft",
   "As drawn, over the ground and what stands tall, a route with it takes {missing} Wh more than the battery of {name} may give.":
     "Wie gezeichnet, über das Gelände und was hoch aufragt, braucht eine Route dorthin {missing} Wh mehr, als der Akku von {name} geben darf.",
@@ -70,7 +70,6 @@ export default {
   "ends {now} instead of {before}": "endet {now} statt {before}",
   "By hand; empty: {speed} as planned.": "Von Hand; leer: {speed} wie geplant.",
   "Calm": "Windstill",
-  "Calm and mild": "Windstill und mild",
   "Calm at all heights.": "Windstill in allen Höhen.",
   "Can be inspected": "Kann inspiziert werden",
   "Can be inspected.": "Kann inspiziert werden.",
@@ -110,7 +109,6 @@ export default {
     "Einen Wegpunkt auf der Karte ziehen oder einen neuen aus der Mitte einer Teilstrecke. Start, Ende und Ziele bleiben.",
   "Drawn over the ground and what stands tall, routes take more than is counted on the network; with that kept back no battery lasts for it.":
     "Gezeichnet über das Gelände und was hoch aufragt, brauchen Routen mehr, als auf dem Netz gezählt wird; mit dieser Rücklage reicht kein Akku dafür.",
-  "Drop the changes": "Änderungen verwerfen",
   "Each UAV flies its route to the end, as it was checked.":
     "Jedes UAV fliegt seine Route zu Ende, wie sie geprüft wurde.",
   "Each UAV flies straight to the nearest of its start and the rally points, and lands.":
@@ -129,7 +127,7 @@ export default {
     "Für {uavs} wird die Energie nicht geprüft: Es ist kein Akku angegeben.",
   "Finish soonest": "Am frühesten fertig",
   "flies on": "fliegt weiter",
-  "Fly on": "Weiterfliegen",
+  "Continue mission": "Mission fortsetzen",
   "From 0 to {most} s.": "Von 0 bis {most} s.",
   "From every waypoint each UAV gets home with its reserve, and meets no zone.":
     "Von jedem Wegpunkt kommt jedes UAV mit seiner Reserve heim und trifft auf keine Zone.",
@@ -143,8 +141,8 @@ export default {
   "Holds for": "Hält für",
   "holds {time}, then returns": "hält {time} und kehrt dann zurück",
   "How the flight of {name} ends": "Wie der Flug von {name} endet",
-  "If the link is lost": "Wenn die Verbindung abreißt",
-  "If the link is lost:": "Wenn die Verbindung abreißt:",
+  "On link loss": "Bei Verbindungsverlust",
+  "On link loss:": "Bei Verbindungsverlust:",
   "Highest way back, above the start: {heights}.": "Höchster Rückweg, über dem Start: {heights}.",
   "It is being checked for energy and zones.": "Energie und Zonen werden gerade geprüft.",
   "It is checked for energy and zones once there is a plan.":
@@ -154,7 +152,6 @@ export default {
     "Die {count} Sammelpunkte bleiben und werden nicht genutzt.",
   ],
   "its start": "seinem Start",
-  "Keep|route": "Behalten",
   "Latitude and longitude are wanted, such as 39.9612, −82.9988.":
     "Gefragt sind Breite und Länge, etwa 39.9612, −82.9988.",
   "Latitude and longitude of {name}": "Breite und Länge von {name}",
@@ -190,12 +187,12 @@ export default {
   "from the {side}": "aus {side}",
   "{from} to {to}": "{from} bis {to}",
   "From|wind": "Aus",
-  "Highest airspeed": "Höchste Fluggeschwindigkeit",
+  "Maximum airspeed": "Höchste Fluggeschwindigkeit",
   "in {count} flight": ["in {count} Flug", "in {count} Flügen"],
   "In part": "Zum Teil",
   "In the air": "In der Luft",
   "its range": "seine Reichweite",
-  "Kept apart: {changes}.": "Auf Abstand gehalten: {changes}.",
+  "Separation: {changes}.": "Staffelung: {changes}.",
   "Kept in reserve": "Reserve",
   "Least energy": "Wenigste Energie",
   "Least flying time": "Kürzeste Flugzeit",
@@ -215,17 +212,15 @@ export default {
     "Mehr als ein Flug nur, wo es zum Start zurückkehrt; jeder mit vollem Akku.",
   "{name} flies {height} higher": "{name} fliegt {height} höher",
   "{name} takes off {time} later": "{name} startet {time} später",
-  "Nearest: {one} and {other}, {distance} apart, {height} one above the other, {time} one after the other.":
-    "Am nächsten: {one} und {other}, {distance} Abstand, {height} übereinander, {time} nacheinander.",
-  "Nearest: {one} and {other}, {distance} apart, {time} one after the other.":
-    "Am nächsten: {one} und {other}, {distance} Abstand, {time} nacheinander.",
+  "Closest pair: {one} and {other}, {distance} horizontally, {height} vertically, {time} apart.":
+    "Engstes Paar: {one} und {other}, {distance} horizontal, {height} vertikal, {time} auseinander.",
+  "Closest pair: {one} and {other}, {distance} horizontally, {time} apart.":
+    "Engstes Paar: {one} und {other}, {distance} horizontal, {time} auseinander.",
   "Next waypoint": "Nächster Wegpunkt",
   "No battery lasts for the way there and back.": "Kein Akku reicht für Hin- und Rückweg.",
-  "No departure is chosen: the plan keeps clear of all zones at all times.":
-    "Kein Abflug ist gewählt: Der Plan meidet alle Zonen zu allen Zeiten.",
   "No leg leads here.": "Hierher führt keine Teilstrecke.",
-  "No plan can be in the air for less than {time}.": "Kein Plan kann weniger als {time} in der Luft sein.",
-  "No plan can use less than {energy}.": "Kein Plan kann weniger als {energy} verbrauchen.",
+  "Lower bound: {time} of flight.": "Untere Schranke: {time} Flugzeit.",
+  "Lower bound: {energy}.": "Untere Schranke: {energy}.",
   "No route yet": "Noch keine Route",
   "No UAV has a battery.": "Kein UAV hat einen Akku.",
   "No-fly zone at times": "Zeitweise Flugverbotszone",
@@ -275,7 +270,7 @@ export default {
     "{reachable} von {all} Objekten können inspiziert werden, jedes in einem eigenen Flug.",
   "Reached at {time}": "Erreicht um {time}",
   "Reasons": "Gründe",
-  "Remove this height": "Diese Höhe entfernen",
+  "Remove wind layer": "Windschicht entfernen",
   "(shown)": "(gezeigt)",
   "Not kept: {reason}": "Nicht übernommen: {reason}",
   "south": "Süden",
@@ -319,17 +314,14 @@ export default {
   "There is no asset to inspect.": "Es gibt kein Objekt zu inspizieren.",
   "Tick one in the list: what can be inspected is worked out from where it starts.":
     "In der Liste eines anhaken: Ermittelt wird von seinem Start aus.",
-  "Two rows have the same height.": "Zwei Zeilen haben dieselbe Höhe.",
-  "UAVs that fly once may stop on a tower to charge":
-    "UAVs, die einmal fliegen, dürfen zum Laden auf einem Mast landen",
+  "Two wind layers have the same height.": "Zwei Windschichten haben dieselbe Höhe.",
+  "Allow charging stops on towers": "Ladehalte auf Masten erlauben",
   "UAVs that cannot take off": "UAVs, die nicht starten können",
   "until {time}": "bis {time}",
-  "Use these": "Übernehmen",
   "Waypoint before": "Voriger Wegpunkt",
   "Waypoint {number}": "Wegpunkt {number}",
   "Ways to plan it": "Arten zu planen",
   "west": "Westen",
-  "What binds it.": "Was sie begrenzt.",
   "What can be inspected": "Was inspiziert werden kann",
   "What is wrong": "Was nicht stimmt",
   "When is this mission legal?": "Wann ist diese Mission erlaubt?",
@@ -337,8 +329,8 @@ export default {
   "{when}, not legal": "{when}, nicht erlaubt",
   "Wind": "Wind",
   "Wind at a height": "Wind in einer Höhe",
-  "Wind between two heights is in between; below the lowest and above the highest it is as there. Arrows show where it blows.":
-    "Zwischen zwei Höhen liegt der Wind dazwischen; darunter und darüber ist er wie dort. Pfeile zeigen, wohin er weht.",
+  "Wind is interpolated between layers. Arrows show where it blows.":
+    "Der Wind wird zwischen den Schichten interpoliert. Pfeile zeigen, wohin er weht.",
   "Wind from, degrees clockwise from north": "Wind aus, Grad im Uhrzeigersinn von Norden",
   "Wind speed": "Windgeschwindigkeit",
   "Working out what can be inspected": "Wird ermittelt: was inspiziert werden kann",

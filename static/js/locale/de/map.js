@@ -28,7 +28,7 @@ export default {
   "Copied: {coordinates}": "Kopiert: {coordinates}",
   "Copy the coordinates": "Koordinaten kopieren",
   "Copy the coordinates at the pointer, or of the middle": "Koordinaten am Zeiger oder der Mitte kopieren",
-  "Drawn here, changed {when}": "Hier gezeichnet, geändert {when}",
+  "Drawn in Spanwise, changed {when}": "In Spanwise gezeichnet, geändert {when}",
   "edited by hand": "von Hand bearbeitet",
   "emergency": "Notfall",
   "foreign territory": "fremdes Gebiet",

@@ -11,7 +11,6 @@ export default {
   "between two days": "zwischen zwei Tagen",
   "Choose all on this page": "Alle auf dieser Seite wählen",
   "Choose none": "Keine wählen",
-  "Copy the address": "Adresse kopieren",
   "Distance": "Flugstrecke",
   "Duplicate": "Duplizieren",
   "Fewest targets": "Wenigste Ziele",
@@ -43,7 +42,7 @@ export default {
   "Somebody has changed the mission since; this is how it is now.":
     "Jemand hat die Mission seither geändert; so ist sie jetzt.",
   "State, last first": "Zustand, letzter zuerst",
-  "The address of “{name}” is copied.": "Die Adresse von „{name}“ ist kopiert.",
+  "Link to “{name}” copied.": "Link zu „{name}“ kopiert.",
   "Time": "Zeit",
   "today": "heute",
   "{count} mission chosen": ["{count} Mission gewählt", "{count} Missionen gewählt"],

@@ -36,18 +36,16 @@ export default {
     "Jeder gerade Weg dorthin vom Netz im Umkreis von {reach} trifft auf eine Flugverbotszone.",
   "There is no way from it to a base that lies outside every no-fly zone.":
     "Kein Weg führt von dort zu einer Basis, die außerhalb aller Flugverbotszonen liegt.",
-  "No UAV can get there: no way on the network keeps clear of every zone.":
-    "Kein UAV kommt hin: Kein Weg im Netz meidet alle Zonen.",
+  "No permitted route from any base.": "Keine zulässige Route von einer Basis.",
   "There is no permitted route for {names}.": "Für {names} gibt es keine zulässige Route.",
   "{minutes} min of flight.": "{minutes} min Flug.",
   "It is locked to others: the run is left out as a whole.":
     "Es ist mit anderen festgelegt: Die Folge bleibt als Ganzes weg.",
-  "At most {share} above the best plan without the zones that come or go meanwhile.":
-    "Höchstens {share} über dem besten Plan ohne die Zonen, die währenddessen kommen oder gehen.",
-  "At most {share} above the best plan with what is locked, without the zones that come or go meanwhile.":
-    "Höchstens {share} über dem besten Plan mit dem Festgelegten, ohne die Zonen, die währenddessen kommen oder gehen.",
-  "No worse than the best plan without the zones that come or go meanwhile.":
-    "Nicht schlechter als der beste Plan ohne die Zonen, die währenddessen kommen oder gehen.",
+  "Within {share} of the best plan without temporary zones.":
+    "Höchstens {share} über dem besten Plan ohne zeitweise Zonen.",
+  "Within {share} of the best plan with the locked targets and without temporary zones.":
+    "Höchstens {share} über dem besten Plan mit den festgelegten Zielen und ohne zeitweise Zonen.",
+  "As good as the best plan without temporary zones.": "So gut wie der beste Plan ohne zeitweise Zonen.",
   "Legs of {name} that were changed by hand and are as planned again: {missed} of {count}. Their ends differ, or something bars them now.":
     "Von Hand geänderte Abschnitte von {name}, die wieder sind wie geplant: {missed} von {count}. Ihre Enden sind andere, oder etwas ist ihnen jetzt im Weg.",
   "Each UAV that can do it has as many targets as it may have.":
@@ -73,15 +71,15 @@ export default {
   "there and on to the nearest base|way": "hin und weiter zur nächsten Basis",
   "there|way": "hin",
   "(locked)": "(festgelegt)",
-  "As good as is possible.": "So gut wie möglich.",
+  "Best possible.": "Optimal.",
   "Add a base": "Basis anlegen",
   "as many as fit": "so viele wie möglich",
   "as planned": "wie geplant",
   "At most this many targets": "Höchstens so viele Ziele",
   "at most {count} target": ["höchstens {count} Ziel", "höchstens {count} Ziele"],
-  "At most {share} above what is possible with what is locked.":
-    "Höchstens {share} über dem, was mit dem Festgelegten möglich ist.",
-  "At most {share} above what is possible.": "Höchstens {share} über dem, was möglich ist.",
+  "Within {share} of the best possible with the locked targets.":
+    "Höchstens {share} über dem Optimum mit den festgelegten Zielen.",
+  "Within {share} of the best possible.": "Höchstens {share} über dem Optimum.",
   "before your last change": "vor Ihrer letzten Änderung",
   "different": "verschieden",
   "Each UAV lands at the nearest base": "Jedes UAV landet auf der nächsten Basis",
@@ -107,8 +105,8 @@ export default {
   "Low priority": "Niedrige Priorität",
   "Required sensor": "Vorgeschriebener Sensor",
   "needs {sensor}": "braucht {sensor}",
-  "No plan can be done in less than {time}.": "Kein Plan kann in weniger als {time} fertig sein.",
-  "No plan can fly less than {length}.": "Kein Plan kann unter {length} bleiben.",
+  "Lower bound: {time}.": "Untere Schranke: {time}.",
+  "Lower bound: {length}.": "Untere Schranke: {length}.",
   "No sensor is stated for it.": "Für es ist kein Sensor angegeben.",
   "No UAV may fly it: none has the sensor, or is the one it is tied to.":
     "Kein UAV darf es anfliegen: Keines hat den Sensor oder ist das eine, das es soll.",
@@ -150,20 +148,20 @@ export default {
   "Unlock": "Freigeben",
   "Unlock its targets": "Seine Ziele freigeben",
   "Unlock all": "Alle freigeben",
-  "What your wish costs is not known.": "Was Ihr Wunsch kostet, ist nicht bekannt.",
+  "Cost of the change unknown.": "Kosten der Änderung unbekannt.",
   "The new plan is no better ({figures}). The one on the page stays.":
     "Der neue Plan ist nicht besser ({figures}). Der auf der Seite bleibt.",
   "The plan is of what was picked when planning began.": "Der Plan gilt für das, was bei Planungsbeginn gewählt war.",
   "The selection has changed since.": "Die Auswahl hat sich seitdem geändert.",
-  "Your wish costs nothing.": "Ihr Wunsch kostet nichts.",
-  "Your wish costs {figure} more{share}.": "Ihr Wunsch kostet {figure} mehr{share}.",
-  "Your wish is not planned yet.": "Ihr Wunsch ist noch nicht geplant.",
-  "Your wish leaves out {count} target more.": [
-    "Ihr Wunsch lässt {count} Ziel mehr aus.",
-    "Ihr Wunsch lässt {count} Ziele mehr aus.",
+  "The change costs nothing.": "Die Änderung kostet nichts.",
+  "The change costs {figure} more{share}.": "Die Änderung kostet {figure} mehr{share}.",
+  "Change not planned yet.": "Änderung noch nicht geplant.",
+  "The change leaves out {count} target more.": [
+    "Die Änderung lässt {count} Ziel mehr aus.",
+    "Die Änderung lässt {count} Ziele mehr aus.",
   ],
-  "Your wish saves {figure}{share}: the search had not found it.":
-    "Ihr Wunsch spart {figure}{share}: Die Suche hatte ihn nicht gefunden.",
+  "The change saves {figure}{share}: the search had not found it.":
+    "Die Änderung spart {figure}{share}: Die Suche hatte sie nicht gefunden.",
   "{count} target changed": ["{count} Ziel geändert", "{count} Ziele geändert"],
   "{count} route so far": ["bisher {count} Route", "bisher {count} Routen"],
   "{count} target is flown by {uav} alone.": [
@@ -176,8 +174,8 @@ export default {
     "{count} Ziele darf jedes UAV anfliegen.",
   ],
   "{figure} so far": "bisher {figure}",
-  "{figure} so far, at most {share} above what is possible ({least})":
-    "bisher {figure}, höchstens {share} über dem, was möglich ist ({least})",
+  "{figure} so far, within {share} of the best possible ({least})":
+    "bisher {figure}, höchstens {share} über dem Optimum ({least})",
   "{name} has as many targets as it may have ({count}).": "{name} hat so viele Ziele, wie es haben darf ({count}).",
   "{name} has as many targets as it may have ({count}), and no other UAV has the range for it.":
     "{name} hat so viele Ziele, wie es haben darf ({count}), und kein anderes UAV hat die Reichweite dafür.",

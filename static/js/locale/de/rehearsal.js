@@ -4,7 +4,7 @@ export default {
   "Save the mission first: what is stored is rehearsed.":
     "Speichern Sie die Mission zuerst: Geprobt wird, was gespeichert ist.",
   "Plan the mission first.": "Planen Sie die Mission zuerst.",
-  "Own figures": "Eigene Werte",
+  "Custom conditions": "Eigene Bedingungen",
   "Wind from": "Wind aus",
   "out of date": "veraltet",
   "under way": "läuft",
@@ -17,9 +17,8 @@ export default {
   "What is empty is as planned.": "Was leer ist, ist wie geplant.",
   "Choose at least one of the conditions.": "Wählen Sie mindestens eine der Bedingungen.",
   "Simulated {time}": "Simuliert {time}",
-  "Out of date.": "Überholt.",
-  "The plan is another one by now: this says nothing about it. Rehearse it again.":
-    "Der Plan ist inzwischen ein anderer: Dies sagt nichts über ihn. Proben Sie neu.",
+  "Outdated:": "Veraltet:",
+  "the plan has changed since. Rehearse again.": "Der Plan wurde seither geändert. Wiederholen Sie den Probeflug.",
   "Zones, assets or terrain have changed somewhere since.":
     "Zonen, Objekte oder Gelände haben sich seither irgendwo geändert.",
   "Limits and simulated aircraft": "Grenzen und simulierte Luftfahrzeuge",

@@ -17,7 +17,7 @@ export default {
   "Begins": "Beginnt",
   "Bring in an ED-269, ED-318, OpenAir or GeoJSON file, or have one fetched.":
     "Eine ED-269-, ED-318-, OpenAir- oder GeoJSON-Datei einlesen oder eine abrufen lassen.",
-  "By the clock of {zone}.": "Nach der Uhr von {zone}.",
+  "Times in {zone}.": "Zeiten in {zone}.",
   "daily": "täglich",
   "Days": "Tage",
   "Draw one, or bring in an ED-269, ED-318, OpenAir or GeoJSON file.":
@@ -27,9 +27,9 @@ export default {
   "Ends": "Endet",
   "every {hours}\u00a0h": "alle {hours}\u00a0h",
   "Every … hours": "Alle … Stunden",
-  "Facts as the source states them; whether you may fly is for you to judge.":
-    "Angaben, wie die Quelle sie macht; ob Sie fliegen dürfen, müssen Sie beurteilen.",
-  "Fetch a source by itself": "Eine Quelle selbsttätig abrufen",
+  "Data as published by its source. Check the legal status before flying.":
+    "Daten wie von der Quelle veröffentlicht. Prüfen Sie vor dem Flug die Rechtslage.",
+  "Subscribe to a zone source": "Zonenquelle abonnieren",
   "Fetch no longer": "Nicht mehr abrufen",
   "Fetch now": "Jetzt abrufen",
   "Fetching…": "Wird abgerufen…",
@@ -52,7 +52,7 @@ export default {
   "ground": "Boden",
   "Heights not stated": "Höhen nicht angegeben",
   "hundred feet of pressure altitude": "hundert Fuß Druckhöhe",
-  "Its zones": "Ihre Zonen",
+  "Show zones": "Zonen zeigen",
   "lower limit not stated": "Untergrenze nicht angegeben",
   "Mon": "Mo",
   "morning twilight": "Morgendämmerung",

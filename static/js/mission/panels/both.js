@@ -92,11 +92,11 @@ function rowsOf(before) {
     [t("Name"), ({ name }) => [name]],
     [t("Targets"), ({ selection }) => listWords(selection, before, TARGETS)],
     [t("UAVs"), ({ selection }) => listWords(selection, before, UAVS)],
-    [t("Best at"), ({ selection }) => [objectiveWords(selection.objective)]],
+    [t("Optimised for"), ({ selection }) => [objectiveWords(selection.objective)]],
     [t("Departure"), ({ selection }) => [selection.departs_at ? departureText(selection.departs_at) : t("any time")]],
     [t("Conditions"), ({ selection }) => [conditionsText(selection.conditions)]],
     [t("Charging on towers"), ({ selection }) => [selection.charging_w ? powerText(selection.charging_w) : t("no")]],
-    [t("If the link is lost"), ({ selection }) => [lostLinkText(selection.lost_link)]],
+    [t("On link loss"), ({ selection }) => [lostLinkText(selection.lost_link)]],
     [t("Return to start"), ({ selection }) => [returnWords(selection.return_to_start)]],
     [t("Locked"), ({ selection }) => lockWords(selection)],
   ];
@@ -168,7 +168,7 @@ export function showBoth(conflict, mine, ways) {
     h(
       "div",
       { class: "acts" },
-      act(t("Take theirs"), ways.takeTheirs),
+      act(t("Use theirs"), ways.takeTheirs),
       act(t("Put mine on top"), ways.putMineOnTop),
       act(t("Keep mine as a copy"), ways.keepMineAsCopy),
       ways.mergeBoth && act(t("Put together"), ways.mergeBoth, "primary"),

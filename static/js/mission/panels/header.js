@@ -51,7 +51,7 @@ async function copyAddress(mission) {
   const address = `${location.origin}/missions/${mission.id}${location.hash}`;
   try {
     await navigator.clipboard.writeText(address);
-    toast(t("The address with this view of the map is copied."));
+    toast(t("Link copied."));
   } catch {
     toast(address); // without the clipboard: there to be marked and copied
   }
@@ -65,7 +65,7 @@ async function changeAlertLimits({ id, name }) {
   try {
     await openAlertLimits({
       address: `/missions/${id}/alert-limits`,
-      title: t("Where alerts begin: {name}", { name }),
+      title: t("Alert thresholds: {name}", { name }),
       hint,
     });
   } catch (error) {
@@ -123,11 +123,11 @@ function itemsFor(mission, actions, { canPlan, canCopy }) {
       allMissions,
     ];
   return [
-    { icon: "link", label: t("Copy the address with this view"), act: () => void copyAddress(mission) },
+    { icon: "link", label: t("Copy link"), act: () => void copyAddress(mission) },
     { icon: "history", label: t("History"), act: () => void showHistory(mission) },
     ...(canCopy
       ? [
-          { icon: "bell", label: t("Where alerts begin"), act: () => void changeAlertLimits(mission) },
+          { icon: "bell", label: t("Alert thresholds"), act: () => void changeAlertLimits(mission) },
           { icon: "copy", label: t("Save a copy"), act: () => actions.save({ asCopy: true }) },
         ]
       : []),

@@ -98,7 +98,7 @@ function changeWords({ before, after }) {
       }),
     );
   if (before?.objective !== after?.objective)
-    words.push(after?.objective === "total" ? t("best at: fly least") : t("best at: even routes"));
+    words.push(after?.objective === "total" ? t("optimised for: shortest distance") : t("optimised for: even routes"));
   if (before?.return_to_start !== after?.return_to_start)
     words.push(after?.return_to_start ? t("each UAV returns to its start") : t("no UAV has to return"));
   if (JSON.stringify(before?.lost_link) !== JSON.stringify(after?.lost_link))

@@ -112,7 +112,7 @@ function createForm({ showAnswer, signal, close }) {
       h(
         "p",
         { class: "caption", id: "paste-hint" },
-        t("One a line, or parted by commas, semicolons or tabs."),
+        t("One per line, or separated by commas, semicolons or tabs."),
         " ",
         t("With a first line “ref;external_id” it is a table, and targets get these ids."),
       ),
@@ -120,7 +120,7 @@ function createForm({ showAnswer, signal, close }) {
     h(
       "div",
       { class: "paste-row" },
-      h("div", { class: "field" }, h("label", { for: "paste-kind" }, t("They are")), kind),
+      h("div", { class: "field" }, h("label", { for: "paste-kind" }, t("Type")), kind),
       h("button", { type: "button", class: "button", onclick: () => file.click() }, icon("file"), t("From a file")),
       file,
     ),
@@ -164,7 +164,7 @@ const sentenceOf = (found, several, none) =>
   [
     found > 0 && tn(found, "{count} found", "{count} found"),
     several > 0 && tn(several, "{count} means several things", "{count} mean several things"),
-    none > 0 && tn(none, "{count} is not known", "{count} are not known"),
+    none > 0 && tn(none, "{count} not found", "{count} not found"),
   ]
     .filter(Boolean)
     .join(", ");

@@ -86,8 +86,8 @@ function windRow(layer, onRemove) {
     {
       type: "button",
       class: "icon-button tight",
-      "aria-label": t("Remove this height"),
-      title: t("Remove this height"),
+      "aria-label": t("Remove wind layer"),
+      title: t("Remove wind layer"),
       onclick: onRemove,
     },
     icon("x", "small"),
@@ -123,7 +123,7 @@ function createWind(wind) {
     "button",
     { type: "button", class: "button", onclick: addLayer },
     icon("plus", "small"),
-    t("Add a height"),
+    t("Add wind layer"),
   );
 
   /** @param {WindLayer} layer */
@@ -199,13 +199,7 @@ export function askForConditions(conditions, use) {
       "div",
       {},
       h("h2", { id: "conditions-title" }, t("Conditions")),
-      h(
-        "p",
-        { class: "quiet-text" },
-        t(
-          "Wind between two heights is in between; below the lowest and above the highest it is as there. Arrows show where it blows.",
-        ),
-      ),
+      h("p", { class: "quiet-text" }, t("Wind is interpolated between layers. Arrows show where it blows.")),
     ),
     wind.element,
     h(
@@ -218,16 +212,16 @@ export function askForConditions(conditions, use) {
     h(
       "div",
       { class: "acts" },
-      h("button", { type: "button", class: "button quiet", onclick: () => finish(null) }, t("Calm and mild")),
+      h("button", { type: "button", class: "button quiet", onclick: () => finish(null) }, t("Reset")),
       h("button", { type: "button", class: "button", onclick: () => dialog.close() }, t("Cancel")),
-      h("button", { class: "button primary" }, t("Use these")),
+      h("button", { class: "button primary" }, t("Apply")),
     ),
   );
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     const layers = wind.read();
     if (new Set(layers.map(({ altitude_agl_m }) => altitude_agl_m)).size < layers.length)
-      wrong.textContent = t("Two rows have the same height.");
+      wrong.textContent = t("Two wind layers have the same height.");
     else finish(conditionsOf({ wind: layers, temperature_c: temperature.read() }));
   });
   dialog.append(form);

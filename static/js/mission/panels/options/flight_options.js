@@ -24,7 +24,7 @@ export function mountFlightOptions(store, actions) {
 
 /** What a departure means for zones; one that lies behind is told. @param {MissionSelection} selection */
 function departureWords({ departs_at }) {
-  if (!departs_at) return t("Any time: the plan keeps clear of all zones at all times.");
+  if (!departs_at) return t("No departure time: all zones count as active.");
   const where = zoneText(departs_at);
   if (Date.parse(departs_at) < Date.now())
     return t("{zone}. This moment has passed; zones count at it all the same.", { zone: where });
@@ -126,12 +126,7 @@ function chargingOptions(store, actions) {
   const row = h(
     "label",
     { class: "switch-row" },
-    h(
-      "span",
-      {},
-      t("Charging on towers"),
-      h("small", { class: "caption" }, t("UAVs that fly once may stop on a tower to charge")),
-    ),
+    h("span", {}, t("Charging on towers"), h("small", { class: "caption" }, t("Allow charging stops on towers"))),
     charges,
   );
   store.listen(["selection"], ({ selection: { charging_w } }) => {

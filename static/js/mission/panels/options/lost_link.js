@@ -24,7 +24,7 @@ export function mountLostLink(store, actions, { canPlan, showPlaces }) {
     return;
   }
   place.append(
-    h("h3", { class: "field-label", id: "lost-link-title" }, t("If the link is lost")),
+    h("h3", { class: "field-label", id: "lost-link-title" }, t("On link loss")),
     ...behaviourChoice(store, actions),
     holdField(store, actions),
     createRallyList(store, actions, showPlaces),

@@ -47,12 +47,12 @@ export function mountForm({ onStart, onChange }) {
       { class: "rehearsal-conditions" },
       h("legend", { class: "field-label" }, t("Conditions")),
       checks.map(({ element }) => element),
-      h("label", { class: "rehearsal-check" }, own, h("span", {}, t("Own figures"))),
+      h("label", { class: "rehearsal-check" }, own, h("span", {}, t("Custom conditions"))),
     ),
     h(
       "details",
       { class: "rehearsal-own" },
-      h("summary", {}, t("Own figures")),
+      h("summary", {}, t("Custom conditions")),
       h(
         "div",
         { class: "rehearsal-figures" },

@@ -104,13 +104,7 @@ function ageNotice({ is_outdated, ground_changed }) {
       "p",
       { class: "notice warning", role: "status" },
       icon("triangle-alert"),
-      h(
-        "span",
-        {},
-        h("strong", {}, t("Out of date.")),
-        " ",
-        t("The plan is another one by now: this says nothing about it. Rehearse it again."),
-      ),
+      h("span", {}, h("strong", {}, t("Outdated:")), " ", t("the plan has changed since. Rehearse again.")),
     );
   if (!ground_changed) return null;
   return h(

@@ -37,7 +37,7 @@ export function drawQuality(state, plan, { canPlan, actions }) {
       bound(
         "triangle-alert",
         true,
-        t("If the link is lost:"),
+        t("On link loss:"),
         " ",
         checkText(linkState, plan),
         h("button", { type: "button", class: "text-button", onclick: showLostLink }, t("Show")),
@@ -47,7 +47,7 @@ export function drawQuality(state, plan, { canPlan, actions }) {
         "span",
         { class: "plan-wish" },
         icon("lock", "small"),
-        h("span", {}, isCurrent ? wishWordsOf(plan.result) : t("Your wish is not planned yet.")),
+        h("span", {}, isCurrent ? wishWordsOf(plan.result) : t("Change not planned yet.")),
         canPlan && [
           !isCurrent && h("button", { type: "button", class: "text-button", onclick: actions.plan }, t("Plan again")),
           h("button", { type: "button", class: "text-button", onclick: actions.unlockAll }, t("Unlock all")),

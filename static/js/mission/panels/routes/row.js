@@ -65,7 +65,7 @@ function secondWords(route, result) {
       .filter(Boolean)
       .join(" · ");
   if (isGrounded(result, route)) return t("cannot take off");
-  return result.unassigned.length ? t("reaches none of what is left") : t("not needed");
+  return result.unassigned.length ? t("Not used: no target in reach") : t("not needed");
 }
 
 /** @param {ShownRoute} route @param {RowContext} context */

@@ -155,7 +155,7 @@ const ownFigures = ({ battery_wh, reserve_percent, mass_kg, max_airspeed_mps }, 
       "div",
       { class: "pair" },
       field(t("Mass at take-off"), mass_kg, "kg"),
-      field(t("Highest airspeed"), max_airspeed_mps, SPEED_UNIT.unit),
+      field(t("Maximum airspeed"), max_airspeed_mps, SPEED_UNIT.unit),
     ),
     h("p", { class: "caption own-values" }, hint),
   );

@@ -137,7 +137,7 @@ function createFilters(onChange) {
   let narrowedBy = "";
   const words = {
     base: [t("Base"), t("Every base")],
-    sensor: [t("Sensor"), t("Every sensor")],
+    sensor: [t("Sensor"), t("All sensors")],
     type: [t("Type"), t("Every type")],
   };
 

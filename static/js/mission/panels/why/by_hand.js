@@ -171,8 +171,8 @@ export function createByHand(store, actions) {
     t("Drag a waypoint on the map, or pull a new one out of the middle of a leg. Start, end and targets stay."),
   );
   const takeBack = createTakeBack(actions);
-  const keep = h("button", { type: "button", class: "button primary", onclick: actions.keepByHand }, t("Keep|route"));
-  const leave = h("button", { type: "button", class: "button", onclick: actions.endByHand }, t("Drop the changes"));
+  const keep = h("button", { type: "button", class: "button primary", onclick: actions.keepByHand }, t("Apply"));
+  const leave = h("button", { type: "button", class: "button", onclick: actions.endByHand }, t("Discard"));
 
   /** @param {string[]} list */
   function drawFaults(list) {

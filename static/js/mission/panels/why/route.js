@@ -50,7 +50,7 @@ export function partsOf({ zones, straight_m, on_lines_m, round_zones_m }) {
   const names = zones.map(({ name }) => name).join(", ");
   const list = [
     { name: "straight", words: t("Straight from target to target"), length_m: straight_m },
-    { name: "lines", words: t("Kept to the lines"), length_m: on_lines_m },
+    { name: "lines", words: t("Extra for following lines"), length_m: on_lines_m },
     {
       name: "zones",
       words: names ? t("Round {zones}", { zones: names }) : t("Round no-fly zones"),
@@ -146,7 +146,7 @@ function limit(plan, route) {
     last.uav === route.uav
       ? t("{name} is the last to be done, after {time}.", { name: last.uav, time })
       : t("Not this route: {name} is the last to be done, after {time}.", { name: last.uav, time });
-  return h("p", {}, h("strong", {}, t("What limits the plan.")), " ", words);
+  return h("p", {}, h("strong", {}, t("Limiting factor:")), " ", words);
 }
 
 /** What keeps the route from more targets, or from being quicker. @param {RouteExplanation} explanation */
@@ -164,7 +164,7 @@ function bound({ binds, used_wh, usable_wh, wind_s }) {
     balance: t("another UAV’s route is the longest"),
   };
   const said = (binds ?? []).flatMap((what) => words[what] ?? []);
-  return said.length ? h("p", {}, h("strong", {}, t("What binds it.")), " ", `${sentence(said.join("; "))}.`) : null;
+  return said.length ? h("p", {}, h("strong", {}, t("Limiting factor:")), " ", `${sentence(said.join("; "))}.`) : null;
 }
 
 /** @param {string} words */
