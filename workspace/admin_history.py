@@ -12,7 +12,9 @@ from django.utils.html import format_html, format_html_join
 from django.utils.safestring import SafeString
 
 from workspace.admin_scope import OrganisationScopedAdmin
+from workspace.author_names import author_name
 from workspace.models import AuditEntry
+from workspace.signed_in import user_of
 
 PAGE = 50
 LONGEST_TEXT = 200
@@ -62,7 +64,7 @@ class HistoryAdmin(OrganisationScopedAdmin):
             "title": f"History of {row}",
             "subtitle": None,
             "page": page,
-            "entries": [(entry, as_table(what_changed(entry))) for entry in page],
+            "entries": [(entry, author_name(entry.actor, user_of(request)), as_table(what_changed(entry))) for entry in page],
             "module_name": str(self.opts.verbose_name_plural).capitalize(),
             "object": row,
             "opts": self.opts,

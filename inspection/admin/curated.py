@@ -1,7 +1,7 @@
 """What the admin's pages of assets and zones share: nobody overwrites what somebody else changed meanwhile, and the history is whole."""
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, ClassVar
 
 from django import forms
 from django.contrib import messages
@@ -13,15 +13,19 @@ from inspection.services import StaleRevision
 from inspection.services.curation import many_edits
 from workspace.admin import ReadOnlyAdmin
 from workspace.admin_history import HistoryAdmin
-from workspace.models import AuditEntry
+from workspace.author_names import author_name
+from workspace.models import AuditEntry, User
+from workspace.signed_in import user_of
 
 MOST_AT_ONCE = 500  # rows that one bulk action changes in a request
+PEOPLE = {"created_by", "decided_by", "imported_by"}
 
 
 class CuratedForm(forms.ModelForm):
     """Carries the revision that the page showed; a form from an older one is shown back."""
 
     history_subject = ""
+    reader: ClassVar[User]
     expected_revision = forms.IntegerField(required=False, widget=forms.HiddenInput)
 
     def __init__(self, *args: Any, **options: Any) -> None:
@@ -36,14 +40,23 @@ class CuratedForm(forms.ModelForm):
             model = type(self.instance)
             current = model._base_manager.filter(pk=self.instance.pk).values_list("revision", flat=True).first()
             if current != expected:
-                raise ValidationError(stale_sentence(self.history_subject, self.instance.pk), code="stale")
+                raise ValidationError(stale_sentence(self.history_subject, self.instance.pk, self.reader), code="stale")
         return cleaned
 
 
 class CommonGroundAdmin(ReadOnlyAdmin):
-    """What the program writes of the ground, which all organisations share."""
+    """What the program writes of the ground, which all organisations share. People are named to installation operators alone."""
 
     organisation_path = None
+
+    def get_list_display(self, request: HttpRequest) -> list[Any]:
+        return _without_people(super().get_list_display(request), request)
+
+    def get_search_fields(self, request: HttpRequest) -> list[Any]:
+        return _without_people(super().get_search_fields(request), request)
+
+    def get_fields(self, request: HttpRequest, obj: Any = None) -> list[Any]:
+        return _without_people(super().get_fields(request, obj), request)
 
 
 class CuratedAdmin(HistoryAdmin):
@@ -51,11 +64,16 @@ class CuratedAdmin(HistoryAdmin):
 
     organisation_path = None
 
+    def get_form(self, request: HttpRequest, obj: Any = None, change: bool = False, **options: Any) -> Any:
+        form = super().get_form(request, obj, change, **options)
+        form.reader = user_of(request)  # the class is made for this request
+        return form
+
     def changeform_view(self, request: HttpRequest, object_id: str | None = None, *args: Any, **options: Any) -> HttpResponse:
         try:
             return super().changeform_view(request, object_id, *args, **options)
         except StaleRevision as error:
-            messages.error(request, stale_sentence(error.subject, error.key))
+            messages.error(request, stale_sentence(error.subject, error.key, user_of(request)))
             return HttpResponseRedirect(request.get_full_path())
 
     def change_each(self, request: HttpRequest, queryset: QuerySet[Any], change: Callable[[Any], None]) -> int:
@@ -72,15 +90,21 @@ class CuratedAdmin(HistoryAdmin):
         return number
 
 
-def stale_sentence(subject: str, key: int | None) -> str:
+def stale_sentence(subject: str, key: int | None, reader: User) -> str:
     last = AuditEntry.objects.select_related("actor").filter(subject_type=subject, subject_id=str(key)).order_by("-pk").first()
     if last is None:
         return "This has changed in the meantime, and nothing was saved. Open it again to see it as it is now."
-    who = last.actor.display_name if last.actor else "An import"
+    who = author_name(last.actor, reader) or "An import"
     return (
         f"{who} has changed this in the meantime ({last.action}, {last.recorded_at:%H:%M} UTC), and nothing was saved. "
         "What you entered is still below; open the page again to see it as it is now."
     )
+
+
+def _without_people(names: Iterable[Any], request: HttpRequest) -> list[Any]:
+    if user_of(request).operates_installation:
+        return list(names)
+    return [name for name in names if str(name).partition("__")[0] not in PEOPLE]
 
 
 def expected_revision(form: Any) -> int | None:

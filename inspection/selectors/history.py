@@ -1,16 +1,21 @@
-"""What was changed on the ground, newest first. The ground is shared, so everybody sees all of it."""
+"""What was changed on the ground, newest first. Everybody sees all of it, but no names of other organisations' people."""
 
 from django.db.models import QuerySet
 
-from workspace.models import AuditEntry
+from workspace.models import AuditEntry, User
 
 NEWEST_FIRST = ("-recorded_at", "-pk")
 SUBJECTS = ("asset", "zone")
 
 
-def changes_of_the_ground(*, subject_type: str = "", actor: str = "") -> QuerySet[AuditEntry]:
-    entries = AuditEntry.objects.select_related("actor").filter(subject_type__in=[subject_type] if subject_type else SUBJECTS)
-    return entries.filter(actor__username=actor) if actor else entries
+def changes_of_the_ground(*, subject_type: str = "") -> QuerySet[AuditEntry]:
+    return AuditEntry.objects.select_related("actor").filter(subject_type__in=[subject_type] if subject_type else SUBJECTS)
+
+
+def changes_by(username: str, entries: QuerySet[AuditEntry], *, reader: User) -> QuerySet[AuditEntry]:
+    """Those of the entries that a user made. A user of another organisation is nobody, but for installation operators."""
+    entries = entries.filter(actor__username=username)
+    return entries if reader.operates_installation else entries.filter(actor__organisation=reader.organisation_id)
 
 
 def changes_of(subject_type: str, subject_id: int) -> QuerySet[AuditEntry]:

@@ -10,6 +10,8 @@ from inspection.serializers.features import collection_serializer, feature_seria
 from inspection.serializers.gap_words import sentence, title
 from inspection.services.repairs import Offer, Repaired
 from workspace import strict_serializers as serializers
+from workspace.author_names import AUTHOR_HELP, author_name
+from workspace.models import User
 from workspace.serializers import Declared
 
 LONGEST_NOTE = 500
@@ -43,7 +45,7 @@ class GapPropertiesSerializer(serializers.Serializer):
     cut_off_m = serializers.FloatField(help_text="length of network that depends on it")
     repairs = OfferSerializer(many=True)
     note = serializers.CharField()
-    decided_by = serializers.CharField(allow_null=True)
+    decided_by = serializers.CharField(allow_null=True, help_text=AUTHOR_HELP)
     decided_at = serializers.DateTimeField(allow_null=True)
     found_at = serializers.DateTimeField()
 
@@ -80,7 +82,7 @@ class RepairedSerializer(serializers.Serializer):
     is_current = serializers.BooleanField(help_text="whether the ground has been searched again already")
 
 
-def gap_feature(gap: DrawnGap, repairs: list[dict[str, Any]]) -> dict[str, Any]:
+def gap_feature(gap: DrawnGap, repairs: list[dict[str, Any]], reader: User) -> dict[str, Any]:
     """`gap` comes with `geometry_json` from inspection.selectors.gaps."""
     properties = {
         "kind": gap.kind,
@@ -94,7 +96,7 @@ def gap_feature(gap: DrawnGap, repairs: list[dict[str, Any]]) -> dict[str, Any]:
         "cut_off_m": gap.cut_off_m,
         "repairs": repairs,
         "note": gap.note,
-        "decided_by": gap.decided_by.display_name if gap.decided_by else None,
+        "decided_by": author_name(gap.decided_by, reader),
         "decided_at": gap.decided_at,
         "found_at": gap.found_at,
     }

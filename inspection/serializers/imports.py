@@ -11,6 +11,7 @@ from inspection.serializers.features import GeometrySerializer
 from inspection.services.proposals.bounds import KINDS
 from inspection.services.uploads import PART_BYTES
 from workspace import strict_serializers as serializers
+from workspace.author_names import AUTHOR_HELP, author_name
 from workspace.fields import FiniteFloatField
 from workspace.models import JobState, User
 from workspace.serializers import Declared
@@ -100,9 +101,9 @@ class ProposalSerializer(serializers.Serializer):
         many=True, help_text="why it was not applied by itself; empty: it was, was not asked to, or is being read"
     )
     job = ProposalJobSerializer(allow_null=True)
-    created_by = serializers.CharField(allow_null=True)
+    created_by = serializers.CharField(allow_null=True, help_text=AUTHOR_HELP)
     created_at = serializers.DateTimeField()
-    decided_by = serializers.CharField(allow_null=True)
+    decided_by = serializers.CharField(allow_null=True, help_text=AUTHOR_HELP)
     decided_at = serializers.DateTimeField(allow_null=True)
     data_import = serializers.IntegerField(allow_null=True)
 
@@ -170,9 +171,9 @@ def proposal_json(proposal: ImportProposal, reader: User, *, is_brief: bool = Fa
         "max_removed_percent": proposal.max_removed_percent,
         "held_back": [reason | {"message": in_words(reason["message"])} for reason in proposal.held_back],
         "job": job and {"id": str(job.pk), "state": job.state, "progress": job.progress, "message": in_words(job.message)},
-        "created_by": _name(proposal.created_by),
+        "created_by": author_name(proposal.created_by, reader),
         "created_at": proposal.created_at,
-        "decided_by": _name(proposal.decided_by),
+        "decided_by": author_name(proposal.decided_by, reader),
         "decided_at": proposal.decided_at,
         "data_import": proposal.data_import_id,
     }
@@ -209,7 +210,3 @@ def change_feature(change: DrawnChange) -> dict[str, Any]:
             "after": change.after,
         },
     }
-
-
-def _name(user: User | None) -> str | None:
-    return user.display_name if user else None

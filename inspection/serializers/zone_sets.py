@@ -7,6 +7,7 @@ from inspection.selectors.zone_sets import CountedZoneSet
 from inspection.serializers.features import SourceSerializer, source_json
 from inspection.services.zone_import import FORMAT_NAMES
 from workspace import strict_serializers as serializers
+from workspace.author_names import AUTHOR_HELP, author_name
 from workspace.models import User
 from workspace.outgoing import OutgoingRefused, check_address
 from workspace.serializers import Declared
@@ -17,7 +18,7 @@ LONGEST_INTERVAL_H = 24 * 90
 class ZoneSetSourceSerializer(SourceSerializer):
     """The file that the set last took over."""
 
-    imported_by = serializers.CharField(allow_null=True)
+    imported_by = serializers.CharField(allow_null=True, help_text=AUTHOR_HELP)
 
 
 class SubscriptionProposalSerializer(serializers.Serializer):
@@ -65,7 +66,7 @@ class ZoneSetVersionSerializer(serializers.Serializer):
     version = serializers.IntegerField()
     zone_count = serializers.IntegerField()
     created_at = serializers.DateTimeField()
-    created_by = serializers.CharField(allow_null=True)
+    created_by = serializers.CharField(allow_null=True, help_text=AUTHOR_HELP)
     source: Declared = ZoneSetSourceSerializer(allow_null=True)
 
 
@@ -109,7 +110,7 @@ class FetchJobSerializer(serializers.Serializer):
     job = serializers.UUIDField()
 
 
-def zone_set_json(zone_set: CountedZoneSet) -> dict[str, Any]:
+def zone_set_json(zone_set: CountedZoneSet, reader: User) -> dict[str, Any]:
     return {
         "id": zone_set.pk,
         "name": zone_set.name,
@@ -117,18 +118,18 @@ def zone_set_json(zone_set: CountedZoneSet) -> dict[str, Any]:
         "zone_count": zone_set.zone_count,
         "edited_count": zone_set.edited_count,
         "version_count": zone_set.version_count,
-        "source": _source_json(zone_set.data_import),
+        "source": _source_json(zone_set.data_import, reader),
         "subscription": subscription_json(zone_set.subscription) if hasattr(zone_set, "subscription") else None,
     }
 
 
-def version_json(version: ZoneSetVersion) -> dict[str, Any]:
+def version_json(version: ZoneSetVersion, reader: User) -> dict[str, Any]:
     return {
         "version": version.number,
         "zone_count": version.zones,
         "created_at": version.created_at,
-        "created_by": _name(version.created_by),
-        "source": _source_json(version.data_import),
+        "created_by": author_name(version.created_by, reader),
+        "source": _source_json(version.data_import, reader),
     }
 
 
@@ -148,10 +149,6 @@ def _proposal_json(proposal: ImportProposal | None) -> dict[str, Any] | None:
     return {"id": str(proposal.pk), "state": proposal.state, "difference": proposal.difference} if proposal else None
 
 
-def _source_json(data_import: DataImport | None) -> dict[str, Any] | None:
+def _source_json(data_import: DataImport | None, reader: User) -> dict[str, Any] | None:
     source = source_json(data_import)
-    return source | {"imported_by": _name(data_import.imported_by)} if source and data_import else None
-
-
-def _name(user: User | None) -> str | None:
-    return user.display_name if user else None
+    return source | {"imported_by": author_name(data_import.imported_by, reader)} if source and data_import else None

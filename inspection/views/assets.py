@@ -81,7 +81,7 @@ class AssetList(APIView):
         body.is_valid(raise_exception=True)
         values = dict(body.validated_data)
         reference = _reference_in(values)
-        with edits(lambda: None), transaction.atomic():
+        with edits(request.user, lambda: None), transaction.atomic():
             asset = save_asset(asset=Asset(**values), actor=request.user)
             if any(reference.values()):
                 save_asset_reference(asset=asset, actor=request.user, values=reference)
@@ -123,7 +123,7 @@ class AssetDetail(APIView):
         reference = _reference_in(values)
         for name, value in values.items():
             setattr(asset, name, value)
-        with edits(lambda: asset_now(request.user, asset_id)), transaction.atomic():
+        with edits(request.user, lambda: asset_now(request.user, asset_id)), transaction.atomic():
             if values or not reference:
                 save_asset(asset=asset, actor=request.user, expected_revision=revision)
             if reference:
@@ -140,7 +140,7 @@ class AssetDetail(APIView):
     )
     def delete(self, request: SignedInRequest, asset_id: int) -> Response:
         revision = expected_revision(request)
-        with edits(lambda: asset_now(request.user, asset_id)):
+        with edits(request.user, lambda: asset_now(request.user, asset_id)):
             delete_asset(asset=self._asset(asset_id), actor=request.user, expected_revision=revision)
         return Response(status=204)
 

@@ -10,17 +10,19 @@ from inspection.selectors.history import NEWEST_FIRST, changes_of
 from inspection.services import StaleRevision, WrongGeometry
 from inspection.services.asset_references import ExternalIdTaken
 from inspection.services.history import CannotUndo
+from workspace.author_names import author_name
 from workspace.errors import ApiProblem
+from workspace.models import User
 
 
 @contextmanager
-def edits(current: Callable[[], dict[str, Any] | None]) -> Iterator[None]:
+def edits(user: User, current: Callable[[], dict[str, Any] | None]) -> Iterator[None]:
     """Turns the errors of the curation services into answers; `current` gives the feature as it is now, for whoever was too late."""
     try:
         yield
     except StaleRevision as error:
         last = changes_of(error.subject, error.key or 0).order_by(*NEWEST_FIRST).first()
-        who = last.actor.display_name if last and last.actor else "an import"
+        who = (last and author_name(last.actor, user)) or "an import"
         details = {"current": current(), "changed_by": who, "changed_at": last and last.recorded_at}
         raise ApiProblem(
             412, "changed", _("Changed by %(who)s in the meantime; nothing of yours was stored.") % {"who": who}, details=details

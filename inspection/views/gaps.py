@@ -32,6 +32,7 @@ from inspection.services.repair_edits import CannotRepair
 from inspection.services.repairs import offers_of, preview_of, repair_gap, undo_repair
 from inspection.views.parameters import BOX, box_of, invalid, text_of
 from workspace.errors import ApiProblem
+from workspace.models import User
 from workspace.paging import asked_choice, page_of
 from workspace.permissions import CURATORS
 from workspace.schema import PAGE_PARAMETERS, several_of
@@ -53,10 +54,10 @@ class GapList(APIView):
         ],
         responses=GapCollectionSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         found = gaps(kinds=_kinds(request), state=_state(request), box=box_of(request), text=text_of(request))
         page = page_of(request, found, order=WORST_FIRST)
-        features = [gap_feature(gap, [offer_json(offer) for offer in offers_of(gap)]) for gap in page.rows]
+        features = [gap_feature(gap, [offer_json(offer) for offer in offers_of(gap)], request.user) for gap in page.rows]
         return Response({"type": "FeatureCollection", "features": features, "next": page.next})
 
 
@@ -68,8 +69,8 @@ class GapCounts(APIView):
 
 class GapDetail(APIView):
     @extend_schema(operation_id="get_gap", summary="One gap, with what each repair would draw", responses=GapFeatureSerializer)
-    def get(self, request: Request, gap_id: int) -> Response:
-        return Response(_feature(_gap(gap_id)))
+    def get(self, request: SignedInRequest, gap_id: int) -> Response:
+        return Response(_feature(_gap(gap_id), request.user))
 
 
 class GapRepair(APIView):
@@ -89,7 +90,7 @@ class GapRepair(APIView):
         with _repairs():
             repaired = repair_gap(gap=_gap(gap_id), action=parameters.pop("action"), parameters=parameters, actor=request.user)
         is_current = find_gaps_at_once()
-        return Response(repaired_json(repaired, _feature_now(gap_id), is_current=is_current))
+        return Response(repaired_json(repaired, _feature_now(gap_id, request.user), is_current=is_current))
 
 
 class GapUndo(APIView):
@@ -107,7 +108,7 @@ class GapUndo(APIView):
         with _repairs():
             undo_repair(gap=_gap(gap_id), entries=body.validated_data["entries"], actor=request.user)
         find_gaps_at_once()
-        feature = _feature_now(gap_id)
+        feature = _feature_now(gap_id, request.user)
         return Response(feature) if feature else Response(status=204)
 
 
@@ -121,7 +122,7 @@ class GapDismiss(APIView):
         body = DismissSerializer(data=request.data)
         body.is_valid(raise_exception=True)
         dismiss_gap(gap=_gap(gap_id), note=body.validated_data["note"], actor=request.user)
-        return Response(_feature(_gap(gap_id)))
+        return Response(_feature(_gap(gap_id), request.user))
 
 
 class GapReopen(APIView):
@@ -130,7 +131,7 @@ class GapReopen(APIView):
     @extend_schema(operation_id="reopen_gap", summary="Put it on the open list again", request=None, responses={200: GapFeatureSerializer})
     def post(self, request: SignedInRequest, gap_id: int) -> Response:
         reopen_gap(gap=_gap(gap_id), actor=request.user)
-        return Response(_feature(_gap(gap_id)))
+        return Response(_feature(_gap(gap_id), request.user))
 
 
 @contextmanager
@@ -151,7 +152,7 @@ def _gap(gap_id: int) -> DrawnGap:
     return gap
 
 
-def _feature(gap: DrawnGap) -> dict[str, Any]:
+def _feature(gap: DrawnGap, reader: User) -> dict[str, Any]:
     repairs = []
     for offer in offers_of(gap):
         preview, refused = None, ""
@@ -161,13 +162,13 @@ def _feature(gap: DrawnGap) -> dict[str, Any]:
             except CannotRepair as error:
                 refused = str(error)
         repairs.append(offer_json(offer, preview, refused))
-    return gap_feature(gap, repairs)
+    return gap_feature(gap, repairs, reader)
 
 
-def _feature_now(gap_id: int) -> dict[str, Any] | None:
+def _feature_now(gap_id: int, reader: User) -> dict[str, Any] | None:
     """None when the gap has gone with its asset."""
     gap = gaps().filter(pk=gap_id).first()
-    return _feature(gap) if gap else None
+    return _feature(gap, reader) if gap else None
 
 
 def _kinds(request: Request) -> list[GapKind]:

@@ -11,7 +11,7 @@ from rest_framework.views import APIView
 
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import asset_with_geometry, references_of, zones
-from inspection.selectors.history import NEWEST_FIRST, SUBJECTS, changes_of, changes_of_the_ground
+from inspection.selectors.history import NEWEST_FIRST, SUBJECTS, changes_by, changes_of, changes_of_the_ground
 from inspection.serializers.assets import AssetDetailFeatureSerializer, asset_detail_feature
 from inspection.serializers.history import GroundHistoryPageSerializer, RevertSerializer, entry_json
 from inspection.serializers.zones import ZoneDetailFeatureSerializer, zone_detail_feature
@@ -61,9 +61,9 @@ def _entry(subject_type: str, subject_id: int, request: Request) -> AuditEntry:
     return entry
 
 
-def _page(request: Request, entries: Any) -> dict[str, Any]:
+def _page(request: SignedInRequest, entries: Any) -> dict[str, Any]:
     page = page_of(request, entries, order=NEWEST_FIRST, default_limit=50)
-    return {"results": [entry_json(entry) for entry in page.rows], "next": page.next}
+    return {"results": [entry_json(entry, request.user) for entry in page.rows], "next": page.next}
 
 
 class HistoryList(APIView):
@@ -72,17 +72,18 @@ class HistoryList(APIView):
         summary="What was changed on the ground, newest first",
         parameters=[
             OpenApiParameter("subject_type", str, enum=SUBJECTS),
-            OpenApiParameter("actor", str, description="a user name"),
+            OpenApiParameter("actor", str, description="a user name of your organisation"),
             *PAGE_PARAMETERS,
         ],
         responses=GroundHistoryPageSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         subject_type = asked_choice(request, "subject_type", SUBJECTS)
         actor = request.query_params.get("actor", "")
         if not actor.isprintable():
             raise invalid("actor", _("A user name is printable."))
-        return Response(_page(request, changes_of_the_ground(subject_type=subject_type, actor=actor)))
+        entries = changes_of_the_ground(subject_type=subject_type)
+        return Response(_page(request, changes_by(actor, entries, reader=request.user) if actor else entries))
 
 
 class HistoryUndo(APIView):
@@ -103,7 +104,7 @@ class HistoryUndo(APIView):
         def now(key: int) -> dict[str, Any] | None:
             return asset_now(request.user, key) if entry.subject_type == "asset" else zone_now(key)
 
-        with edits(lambda: now(int(entry.subject_id))):
+        with edits(request.user, lambda: now(int(entry.subject_id))):
             row = undo(entry=entry, actor=request.user)
         return Response(status=204) if row is None else answer(now(row.pk))
 
@@ -115,7 +116,7 @@ class AssetHistory(APIView):
         parameters=PAGE_PARAMETERS,
         responses=GroundHistoryPageSerializer,
     )
-    def get(self, request: Request, asset_id: int) -> Response:
+    def get(self, request: SignedInRequest, asset_id: int) -> Response:
         page = _page(request, changes_of("asset", asset_id))
         asset = Asset.objects.select_related("data_import").filter(pk=asset_id).first()
         if asset is None and not page["results"]:
@@ -145,7 +146,7 @@ class AssetRevert(APIView):
     def post(self, request: SignedInRequest, asset_id: int) -> Response:
         entry, revision = _entry("asset", asset_id, request), expected_revision(request)
         asset = _asset(asset_id)
-        with edits(lambda: asset_now(request.user, asset_id)):
+        with edits(request.user, lambda: asset_now(request.user, asset_id)):
             revert_asset(asset=asset, entry=entry, actor=request.user, expected_revision=revision)
         return answer(asset_now(request.user, asset_id))
 
@@ -163,7 +164,7 @@ class AssetFollowSource(APIView):
     def post(self, request: SignedInRequest, asset_id: int) -> Response:
         revision = expected_revision(request)
         asset = _asset(asset_id)
-        with edits(lambda: asset_now(request.user, asset_id)):
+        with edits(request.user, lambda: asset_now(request.user, asset_id)):
             follow_source(asset=asset, actor=request.user, expected_revision=revision)
         return answer(asset_now(request.user, asset_id))
 
@@ -172,7 +173,7 @@ class ZoneHistory(APIView):
     @extend_schema(
         operation_id="list_zone_history", summary="The history of a zone", parameters=PAGE_PARAMETERS, responses=GroundHistoryPageSerializer
     )
-    def get(self, request: Request, zone_id: int) -> Response:
+    def get(self, request: SignedInRequest, zone_id: int) -> Response:
         page = _page(request, changes_of("zone", zone_id))
         if not page["results"] and not NoFlyZone.objects.filter(pk=zone_id).exists():
             raise Http404
@@ -194,7 +195,7 @@ class ZoneRevert(APIView):
         zone = NoFlyZone.objects.filter(pk=zone_id).first()
         if zone is None:
             raise Http404
-        with edits(lambda: zone_now(zone_id)):
+        with edits(request.user, lambda: zone_now(zone_id)):
             revert_zone(zone=zone, entry=entry, actor=request.user, expected_revision=revision)
         return answer(zone_now(zone_id))
 

@@ -32,8 +32,10 @@ from inspection.services.uploads import UploadTooLarge, check_size_for
 from inspection.tasks import send_job_of
 from inspection.views.parameters import invalid
 from inspection.views.uploads import CuratorsAlone
+from workspace.author_names import author_name
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
+from workspace.models import User
 from workspace.paging import asked_choice, page_of
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
@@ -52,9 +54,9 @@ def _answer(request: SignedInRequest, proposal_id: UUID, status: int = 200) -> R
     return Response(proposal_json(_proposal(proposal_id), request.user), status=status)
 
 
-def _too_late(error: pipeline.WrongState) -> ApiProblem:
+def _too_late(error: pipeline.WrongState, reader: User) -> ApiProblem:
     proposal = error.proposal
-    who = proposal.decided_by and proposal.decided_by.display_name
+    who = author_name(proposal.decided_by, reader)
     words = f"{error} {who} decided it." if who else str(error)
     return ApiProblem(409, "wrong_state", words, details={"state": proposal.state, "decided_by": who, "decided_at": proposal.decided_at})
 
@@ -149,7 +151,7 @@ class ImportDetail(APIView):
             with transaction.atomic():
                 send_job_of(pipeline.read_again(proposal=_proposal(proposal_id), parameters=parameters, actor=request.user))
         except pipeline.WrongState as error:
-            raise _too_late(error) from error
+            raise _too_late(error, request.user) from error
         return _answer(request, proposal_id, 202)
 
 
@@ -187,7 +189,7 @@ class ImportApply(APIView):
             with transaction.atomic():
                 send_job_of(pipeline.ask_to_apply(proposal=_proposal(proposal_id), parameters=parameters, actor=request.user))
         except pipeline.WrongState as error:
-            raise _too_late(error) from error
+            raise _too_late(error, request.user) from error
         except pipeline.NotSeen as error:
             words = ngettext(
                 "%(count)s record of the file is not read. See it first.",
@@ -208,7 +210,7 @@ class ImportDiscard(APIView):
         try:
             pipeline.discard_proposal(proposal=_proposal(proposal_id), actor=request.user)
         except pipeline.WrongState as error:
-            raise _too_late(error) from error
+            raise _too_late(error, request.user) from error
         return _answer(request, proposal_id)
 
 

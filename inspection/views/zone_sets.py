@@ -64,17 +64,17 @@ class ZoneSetList(APIView):
         parameters=PAGE_PARAMETERS,
         responses=ZoneSetPageSerializer,
     )
-    def get(self, request: Request) -> Response:
+    def get(self, request: SignedInRequest) -> Response:
         page = page_of(request, zone_sets(), order=BY_NAME)
-        return Response({"results": [zone_set_json(zone_set) for zone_set in page.rows], "next": page.next})
+        return Response({"results": [zone_set_json(zone_set, request.user) for zone_set in page.rows], "next": page.next})
 
 
 class ZoneSetDetail(APIView):
     write_roles = CURATORS
 
     @extend_schema(operation_id="get_zone_set", summary="One zone set", responses=ZoneSetSerializer)
-    def get(self, request: Request, set_id: int) -> Response:
-        return Response(zone_set_json(_zone_set(set_id)))
+    def get(self, request: SignedInRequest, set_id: int) -> Response:
+        return Response(zone_set_json(_zone_set(set_id), request.user))
 
     @extend_schema(
         operation_id="empty_zone_set",
@@ -94,9 +94,9 @@ class ZoneSetVersions(APIView):
         parameters=PAGE_PARAMETERS,
         responses=ZoneSetVersionPageSerializer,
     )
-    def get(self, request: Request, set_id: int) -> Response:
+    def get(self, request: SignedInRequest, set_id: int) -> Response:
         page = page_of(request, versions_of(_zone_set(set_id)), order=NEWEST_VERSION_FIRST, default_limit=50)
-        return Response({"results": [version_json(version) for version in page.rows], "next": page.next})
+        return Response({"results": [version_json(version, request.user) for version in page.rows], "next": page.next})
 
 
 class ZoneSetRollBack(APIView):

@@ -54,7 +54,7 @@ class ZoneList(APIView):
     def post(self, request: SignedInRequest) -> Response:
         body = ZoneInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
-        with edits(lambda: None):
+        with edits(request.user, lambda: None):
             zone = save_zone(zone=NoFlyZone(**body.validated_data), actor=request.user)
         response = answer(zone_now(zone.pk))
         response.status_code = 201
@@ -84,7 +84,7 @@ class ZoneDetail(APIView):
         body.is_valid(raise_exception=True)
         for name, value in body.validated_data.items():
             setattr(zone, name, value)
-        with edits(lambda: zone_now(zone_id)):
+        with edits(request.user, lambda: zone_now(zone_id)):
             save_zone(zone=zone, actor=request.user, expected_revision=revision)
         return answer(zone_now(zone_id))
 
@@ -97,7 +97,7 @@ class ZoneDetail(APIView):
     )
     def delete(self, request: SignedInRequest, zone_id: int) -> Response:
         revision = expected_revision(request)
-        with edits(lambda: zone_now(zone_id)):
+        with edits(request.user, lambda: zone_now(zone_id)):
             delete_zone(zone=self._zone(zone_id), actor=request.user, expected_revision=revision)
         return Response(status=204)
 

@@ -1627,6 +1627,7 @@ export interface components {
             cut_off_m: number;
             repairs: components["schemas"]["Offer"][];
             note: string;
+            /** @description a name, or "another organisation" in your language */
             decided_by: string | null;
             /** Format: date-time */
             decided_at: string | null;
@@ -1807,7 +1808,7 @@ export interface components {
             id: number | null;
             /** @description created, changed, deleted, vanished, reverted, restored, followed source, imported */
             action: string;
-            /** @description null for a command or a person who is gone */
+            /** @description a name, or "another organisation" in your language; null for a command or a person who is gone */
             actor: string | null;
             /** Format: date-time */
             recorded_at: string;
@@ -4218,9 +4219,11 @@ export interface components {
             /** @description why it was not applied by itself; empty: it was, was not asked to, or is being read */
             held_back: components["schemas"]["HeldBack"][];
             job: components["schemas"]["ProposalJob"] | null;
+            /** @description a name, or "another organisation" in your language */
             created_by: string | null;
             /** Format: date-time */
             created_at: string;
+            /** @description a name, or "another organisation" in your language */
             decided_by: string | null;
             /** Format: date-time */
             decided_at: string | null;
@@ -7679,6 +7682,7 @@ export interface components {
             is_synthetic: boolean;
             /** Format: date-time */
             imported_at: string;
+            /** @description a name, or "another organisation" in your language */
             imported_by: string | null;
         };
         ZoneSetVersion: {
@@ -7686,6 +7690,7 @@ export interface components {
             zone_count: number;
             /** Format: date-time */
             created_at: string;
+            /** @description a name, or "another organisation" in your language */
             created_by: string | null;
             source: components["schemas"]["ZoneSetSource"] | null;
         };
