@@ -12,6 +12,7 @@ from pathlib import Path
 PROJECT_DIR = Path(__file__).resolve().parent.parent
 TYPES = PROJECT_DIR / "static" / "js" / "api_types.d.ts"
 GENERATOR = PROJECT_DIR / "node_modules" / "openapi-typescript" / "bin" / "cli.js"
+NODE = Path(sys.executable).with_name("node")
 HEADER = "// Made by `python -m scripts.api_types` from the OpenAPI document: change the serializers, then run it again.\n\n"
 
 
@@ -35,8 +36,7 @@ def generated_types() -> str:
     with tempfile.TemporaryDirectory() as folder:
         document, types = Path(folder) / "openapi.json", Path(folder) / "types.d.ts"
         document.write_text(json.dumps(openapi_schemas()))
-        node = str(Path(sys.executable).with_name("node"))
-        _output(node, str(GENERATOR), str(document), "--output", str(types), "--root-types", "--root-types-no-schema-prefix")
+        _output(str(NODE), str(GENERATOR), str(document), "--output", str(types), "--root-types", "--root-types-no-schema-prefix")
         return HEADER + types.read_text()
 
 

@@ -1,7 +1,9 @@
 """The API describes itself, offline."""
 
 import gzip
+import json
 import re
+import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from io import StringIO
 from pathlib import Path
@@ -13,9 +15,11 @@ from django.core.management import call_command
 from django.test import Client
 from openapi_spec_validator import validate
 
+from scripts.api_types import GENERATOR, NODE
 from workspace import api_document
 
 pytestmark = pytest.mark.django_db
+API_PAGE = Path(__file__).resolve().parents[2] / "docs" / "api.md"
 ERROR_TYPES = {"application/json", "application/problem+json"}
 
 
@@ -76,6 +80,30 @@ def test_every_error_has_a_body_that_is_described(document: Any) -> None:
 
 def test_the_document_is_valid_and_without_a_warning() -> None:
     call_command("spectacular", "--validate", "--fail-on-warn", stdout=StringIO())
+
+
+def test_a_generator_of_types_takes_the_whole_document_without_a_word(document: Any, tmp_path: Path) -> None:
+    source, types = tmp_path / "openapi.json", tmp_path / "types.d.ts"
+    source.write_text(json.dumps(document))
+    done = subprocess.run([NODE, GENERATOR, source, "--output", types], capture_output=True, text=True, check=False)  # noqa: S603
+    assert (done.returncode, done.stderr) == (0, "")
+    made = types.read_text()
+    names = [each["operationId"] for methods in document["paths"].values() for each in methods.values()]
+    assert len(names) > 200
+    assert [name for name in names if f'operations["{name}"]' not in made] == []
+
+
+def test_answers_that_generated_clients_cannot_know_are_named_where_they_are_told_of(document: Any) -> None:
+    """openapi-python-client leaves out answers without a media type that it knows, with a warning."""
+
+    def is_known(media_type: str) -> bool:
+        return media_type.startswith("text/") or media_type.endswith(("/json", "+json", "/octet-stream"))
+
+    answers = [response for methods in document["paths"].values() for each in methods.values() for response in each["responses"].values()]
+    contents = [response["content"] for response in answers if response.get("content")]
+    unknown = {media_type for content in contents if not any(map(is_known, content)) for media_type in content}
+    told = API_PAGE.read_text().partition("content_type_overrides:\n")[2].partition("```")[0]
+    assert unknown == set(re.findall(r"^  (\S+): application/octet-stream$", told, flags=re.MULTILINE))
 
 
 def test_every_operation_has_a_summary_and_says_which_errors_it_knows(document: Any) -> None:

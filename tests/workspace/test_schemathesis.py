@@ -42,9 +42,11 @@ CHECKS = [
 PRECONDITION, TOO_LARGE = 412, 413  # answered before the rest of a request is looked at
 # Rules about several fields, about what is stored, and about texts of every kind: docs/api.md says them.
 BESIDE_THE_SCHEMA = re.compile(
-    "A text holds a control character|is not one that this address gave|printable|control characters|There is no such tower or pole"
-    "|This is no entry of its history|Say one of|Send the file first|One height for each position|A zone needs an area or a circle"
-    "|A time with its zone|south is not above north|latitude from -90 to 90|then latitude|within 5 degrees of a pole|Either every_s or most"
+    "A text holds a control character|is not one that this address gave|A user name is printable|At most [0-9]+ printable characters"
+    "|At most [0-9]+ characters, and no control characters|There is no such tower or pole"
+    "|This is no entry of its history|Say one of bbox, import_id and set|Send the file first|One height for each position"
+    "|A zone needs an area or a circle|A time with its zone|south is not above north|latitude from -90 to 90"
+    "|A position is longitude, then latitude|Longitude comes first|within 5 degrees of a pole|Either every_s or most"
     "|required for a UAV without an id|A target needs an asset or a position|With a battery its mass is needed"
     "|cross the 180th meridian|There is no such (upload|set)|A speed is checked|A route is as plans have it"
     "|A UAV needs a position|It encloses nothing|a geometry is an object|Only addresses that begin with"
