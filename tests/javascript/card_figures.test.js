@@ -64,7 +64,10 @@ test("the forecast of its own drain counts before the plan, and the reserve stan
   const battery = { level: "", left_percent: 71, reserve_percent: 20, lands_percent: 43.2 };
   const one = uav({ estimated: estimate({ is_measured: true, battery }) });
   assert.equal(shown(one, MEASURED)[0], "71 % lands 43 %, reserve 20 %");
-  assert.match(plain(figuresOf(one, MEASURED, BESIDE)[0].title), /^At landing about 43 %, by its own drain\. Reserve 20 %/);
+  assert.match(
+    plain(figuresOf(one, MEASURED, BESIDE)[0].title),
+    /^At landing about 43 %, by its own drain\. Reserve 20 %/,
+  );
   const held = uav({ estimated: estimate({ is_measured: true, battery: { ...battery, lands_percent: null } }) });
   assert.equal(shown(held, MEASURED)[0], "71 % lands 41 %, reserve 20 %");
   const short = uav({ estimated: estimate({ is_measured: true, battery: { ...battery, lands_percent: -3 } }) });
