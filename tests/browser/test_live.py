@@ -86,7 +86,7 @@ def test_one_operator_starts_a_flight_and_another_sees_it_move_an_alert_and_an_a
         starts(visitor, pilot, name)  # the second one's slot is later
 
     kite = card(watcher, "Kite")
-    along_m = flies_until(watcher, lambda: watcher.locator("#mission-state").inner_text() == "Active", flyers, 0.0)
+    along_m = flies_until(watcher, lambda: watcher.locator("#mission-state").inner_text() == "In flight", flyers, 0.0)
     expect(watcher.locator(".map-flyer.measured")).to_have_count(2)
     first = watcher.locator(".map-flyer").first.get_attribute("style")
     along_m = flies_until(watcher, lambda: watcher.locator(".map-flyer").first.get_attribute("style") != first, flyers, along_m)

@@ -109,7 +109,7 @@ def test_a_plan_is_rehearsed_and_its_verdict_read(visitor: Visitor, planned: str
     expect(panel.get_by_role("row", name=re.compile(r"^Battery at landing .* limit 20\s%"))).to_be_visible()
     panel.get_by_role("button", name="Calm").click()
     expect(panel.locator(".rehearsal-targets .pass")).to_have_count(3)
-    panel.get_by_text("Limits and what flew").click()
+    panel.get_by_text("Limits and simulated aircraft").click()
     expect(panel).to_contain_text("Wigeon: the simulated Iris, the nearest by speed and mass")
     picture(page, "rehearsal-limits")
 

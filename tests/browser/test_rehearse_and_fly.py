@@ -128,7 +128,7 @@ def flies(plan: Page, live: Page, picture: Picture) -> None:
     panel.get_by_role("checkbox", name=re.compile("Looked at on site")).check()
     panel.get_by_role("button", name="Start 1 UAV").click()
     answers(live, "Start in planned order")
-    expect(live.locator("#mission-state")).to_have_text("Active", timeout=SOON_MS)
+    expect(live.locator("#mission-state")).to_have_text("In flight", timeout=SOON_MS)
     expect(live.locator("#map .map-flyer")).to_have_class(re.compile("measured"), timeout=SOON_MS)
     expect(card(live, NAME).locator("[data-figure=height]")).to_contain_text(re.compile("(AGL|above take-off)[1-9]"), timeout=SOON_MS)
 
@@ -140,8 +140,8 @@ def loses_the_link_and_finds_it_again(page: Page, picture: Picture) -> None:
     expect(card(page, NAME).locator(".chip").first).to_have_text("Holding", timeout=SOON_MS)
     panel.get_by_label("Link or GPS lost for").fill(SILENT_S)
     panel.get_by_role("button", name="Lose the link").click()
-    expect(panel.locator(".simulation-uavs")).to_contain_text("its link is lost", timeout=SOON_MS)
-    alert = page.locator(".alert").filter(has_text=re.compile("is late|is lost"))
+    expect(panel.locator(".simulation-uavs")).to_contain_text("link lost", timeout=SOON_MS)
+    alert = page.locator(".alert").filter(has_text=re.compile("no telemetry"))
     expect(alert.first).to_be_visible(timeout=SOON_MS)
     expect(alert.first.locator(".simulated-mark")).to_be_visible()
     expect(page.locator("#map .map-flyer")).to_have_class(re.compile("estimated"), timeout=SOON_MS)
@@ -158,14 +158,14 @@ def reads_the_log(page: Page, picture: Picture) -> None:
     """Who did what, as the server keeps it; what is new comes by itself."""
     page.get_by_role("button", name="Event log").click()
     log = page.get_by_role("list", name="Event log")
-    for words in (f"{NAME} took off", f"{NAME}: link lost for 3,600 s of the flight, injected by opal", f"{NAME}: Hold, given by opal"):
+    for words in (f"{NAME} took off", f"{NAME}: link lost for 3,600 s of simulated time, injected by opal", f"{NAME}: Hold, given by opal"):
         expect(log.get_by_text(words)).to_be_visible(timeout=SOON_MS)
     expect(log.get_by_text(re.compile("^Acknowledged by opal: ")).first).to_be_visible()
     expect(log.get_by_text(re.compile("^Resolved: ")).first).to_be_visible(timeout=SOON_MS)
     expect(log.get_by_text(f"{NAME}: Resume, done")).to_be_visible(timeout=SOON_MS)
     picture(page, "flow-7-event-log")
     assert faults(page) == []
-    page.get_by_role("button", name="Back to the board").click()
+    page.get_by_role("button", name="Back to target status").click()
 
 
 def is_told(page: Page, act: str) -> None:
@@ -187,7 +187,7 @@ def comes_home_at_10x(page: Page, picture: Picture) -> None:
     expect(page.locator("#board .complete")).to_have_count(2)
     page.get_by_role("button", name="Event log").click()
     expect(page.get_by_role("list", name="Event log").get_by_text(f"{NAME} landed")).to_be_visible(timeout=SOON_MS)
-    page.get_by_role("button", name="Back to the board").click()
+    page.get_by_role("button", name="Back to target status").click()
     assert faults(page) == []
     assert page.evaluate(TOO_WIDE) == []
     picture(page, "flow-8-completed")

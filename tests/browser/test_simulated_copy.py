@@ -95,7 +95,7 @@ def test_a_copy_flies_to_its_end_and_its_log_says_so(visitor: Visitor, mission: 
     panel.get_by_role("checkbox", name=re.compile("Looked at on site")).check(timeout=SOON_MS)
     panel.get_by_role("button", name="Start 1 UAV").click(timeout=SOON_MS)
     answers(page, "Start in planned order")
-    expect(page.locator("#mission-state")).to_have_text("Active", timeout=SOON_MS)
+    expect(page.locator("#mission-state")).to_have_text("In flight", timeout=SOON_MS)
     expect(card(page, re.escape(TWIN)).locator("[data-figure=height]")).to_contain_text(
         re.compile("(AGL|above take-off)[1-9]"), timeout=SOON_MS
     )

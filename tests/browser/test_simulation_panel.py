@@ -73,7 +73,7 @@ def test_simulated_uavs_are_started_changed_and_ended_one_by_one(visitor: Visito
     expect(panel.locator("#simulation-lasts")).to_have_text("300 s real time = 600 s simulated")
     panel.get_by_role("button", name="Lose the link").click()
     ruff = panel.locator(".simulation-uavs li").filter(has_text="Ruff")
-    expect(ruff).to_contain_text("its link is lost", timeout=SOON_MS)
+    expect(ruff).to_contain_text("link lost", timeout=SOON_MS)
     expect(panel.locator(".simulation-uavs li").filter(has_text="Avocet")).not_to_contain_text("link")
     picture(page, "simulation-panel-light")
     assert faults(page) == []
@@ -83,7 +83,7 @@ def test_simulated_uavs_are_started_changed_and_ended_one_by_one(visitor: Visito
     panel.get_by_role("button", name="End Ruff").click()
     answers(page, "End Ruff")
     expect(ruff).to_contain_text("Ended", timeout=SOON_MS)
-    expect(panel.locator("#simulation-state")).to_have_text("1 simulated UAV at 2 times real time.", timeout=SOON_MS)
+    expect(panel.locator("#simulation-state")).to_have_text("1 simulated UAV at 2× real time.", timeout=SOON_MS)
     expect(panel.get_by_role("button", name=re.compile("End Avocet"))).to_have_count(0)  # it is the simulation's end
 
     looks_only(visitor, mission, picture)

@@ -37,7 +37,7 @@ test("a batch reaches UAVs of its mission that may be in the air, and says why t
     ],
   );
   assert.deepEqual(more, [], "a mission that is over has nobody to command");
-  assert.deepEqual(leftLines([south, north]), ["Not told: UAV 2 is on the ground."]);
+  assert.deepEqual(leftLines([south, north]), ["Not sent: UAV 2 is on the ground."]);
 });
 
 test("the request of one mission names that mission and its UAVs alone", () => {
@@ -103,7 +103,7 @@ test("Return of all says of each way home what Return of one says", () => {
   ]);
   const [wires, clear] = returnLinesOf([south], returns);
   assert.equal(wires, `UAV 1, UAV 7: ${low}`);
-  assert.match(clear, /^UAV 8: Return and Abort: nothing in the way home/);
+  assert.match(clear, /^UAV 8: Return path clear/);
   assert.match(returnLinesOf([south], new Map())[0], /^UAV 1, UAV 7, UAV 8: Return path not checked/);
 });
 
@@ -114,5 +114,5 @@ test("the answer says who is told, and of each other one why not", () => {
     is_accepted: false,
     reasons: [{ code: "on_the_ground", message: "Kite is on the ground." }],
   };
-  assert.equal(answerWords([told, refused]), "1 UAV is being told. Kite was not told: Kite is on the ground.");
+  assert.equal(answerWords([told, refused]), "Sending to 1 UAV. Not sent to Kite: Kite is on the ground.");
 });

@@ -95,10 +95,10 @@ test("facts say what was and what would be, with their unit", () => {
 test("facts that are empty on both sides are not said, and shapes are on the map", () => {
   const point = { type: "Point", coordinates: [9, 47] };
   assert.deepEqual(factLines({ before: null, after: { tags: {}, schedule: null, geometry: point } }), [
-    { words: "shape", before: null, after: "on the map" },
+    { words: "geometry", before: null, after: "changed" },
   ]);
   assert.deepEqual(factLines({ before: { geometry: point }, after: { geometry: point } }), [
-    { words: "shape", before: "dashed on the map", after: "drawn on the map" },
+    { words: "geometry", before: "dashed on the map", after: "drawn on the map" },
   ]);
 });
 

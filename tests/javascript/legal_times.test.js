@@ -68,23 +68,23 @@ test("ticks stand at every sixth hour of the reader's clock, and midnight names 
 });
 
 test("the sentence says how much is free, and why a departure is not legal and when the next one is", () => {
-  assert.equal(plain(wordsOf(times, null).sentence), "Legal for 23 h 58 min of the next 48 hours.");
+  assert.equal(plain(wordsOf(times, null).sentence), "Zones open for 23 h 58 min of the next 48 hours.");
   assert.match(wordsOf(times, null).departure, /^No departure time/);
-  assert.match(wordsOf(times, "2026-11-21T20:00:00Z").departure, /is legal\.$/);
+  assert.match(wordsOf(times, "2026-11-21T20:00:00Z").departure, /: zones open\.$/);
   const closed = wordsOf(times, "2026-11-22T12:00:00Z").departure;
-  assert.match(closed, /not legal: School\. The next legal one is 22 Nov, 19:00\.$/);
-  assert.match(wordsOf(times, "2026-11-22T06:00:00Z").departure, /not legal/); // a span is open at its end
+  assert.match(closed, /closed by School\. Next open departure: 22 Nov, 19:00\.$/);
+  assert.match(wordsOf(times, "2026-11-22T06:00:00Z").departure, /zones closed|closed by/); // a span is open at its end
 });
 
 test("always and never are said as such", () => {
   const span = { from: "2026-11-21T18:00:00Z", to: "2026-11-23T18:00:00Z" };
   assert.equal(
     wordsOf(legalTimesOf({ ...span, windows: [span], zones: [] }), null).sentence,
-    "Legal at any time of the next 48 hours.",
+    "Zones open throughout the next 48 hours.",
   );
   assert.equal(
     wordsOf(legalTimesOf({ ...span, windows: [], zones: [] }), null).sentence,
-    "Legal at no time of the next 48 hours.",
+    "Zones closed throughout the next 48 hours.",
   );
 });
 

@@ -31,7 +31,7 @@ const check = (state, warnings = [], more = {}) => ({
 test("a question before Return or Abort says something of the way home in any case", () => {
   assert.deepEqual(returnLines(undefined), ["Return path not checked: it flies straight, at its own return altitude."]);
   assert.equal(returnLines(check("unknown", ["Not read."]))[0], "Not read.");
-  assert.match(returnLines(check("clear"))[0], /nothing in the way home, 30\Wm/);
+  assert.match(returnLines(check("clear"))[0], /Return path clear, 30\Wm/);
 });
 
 test("it says whence that was looked at, and how certain that is", () => {
@@ -54,9 +54,12 @@ test("it says what is left of the battery at the landing, or why nobody knows", 
 
 test("of several it says whether they keep apart on the way home", () => {
   const met = { met: [{ name: "Kite" }] };
-  assert.match(togetherLine([check("clear"), check("clear")]), /their ways home keep apart/);
-  assert.match(togetherLine([check("clear"), check("clear", ["Returning now, …"], met)]), /nothing keeps them apart/);
-  assert.match(togetherLine([check("clear"), undefined]), /nothing keeps them apart/);
+  assert.match(togetherLine([check("clear"), check("clear")]), /their return paths are separated/);
+  assert.match(
+    togetherLine([check("clear"), check("clear", ["Returning now, …"], met)]),
+    /their return paths are not separated/,
+  );
+  assert.match(togetherLine([check("clear"), undefined]), /their return paths are not separated/);
   assert.equal(togetherLine([check("clear")]), "");
 });
 
@@ -69,13 +72,13 @@ test("a landing where it is says what lies below", () => {
   const { lines } = questionOf("land", { name: "Tern", landing });
   assert.equal(lines[1], "Railway Dee line is below it.");
   assert.equal(lines[2], "It is 42 m above the ground. The ground slopes by 3° there.");
-  assert.deepEqual(landingLines(null), ["What lies below it has not been looked at."]);
+  assert.deepEqual(landingLines(null), ["Landing place not checked."]);
 });
 
 test("a hold says how long it can last", () => {
-  assert.match(holdLine(400), /^It can hold for about 7\Wmin: the rest of its battery is for the way home/);
+  assert.match(holdLine(400), /^It can hold for about 7\Wmin, with battery left for the return/);
   assert.match(holdLine(10), /^It cannot hold/);
-  assert.equal(holdLine(null), "How long it can hold is not known.");
+  assert.equal(holdLine(null), "Hold time unknown.");
   assert.match(questionOf("hold", { name: "Tern", hold_s: 400 }).lines[1], /7\Wmin/);
   const [shortest, unknown] = holdLinesOfAll([
     { name: "Tern", hold_s: 900 },
@@ -83,7 +86,7 @@ test("a hold says how long it can last", () => {
     { name: "Crow", hold_s: null },
   ]);
   assert.match(shortest, /^Kite: It can hold for about 7\Wmin/);
-  assert.equal(unknown, "Not known how long they can hold: Crow.");
+  assert.equal(unknown, "Hold time unknown: Crow.");
 });
 
 test("what is in the way is a warning, what is not known is said", () => {
@@ -104,7 +107,7 @@ test("a fence that the autopilot ignores is a warning under its name and before 
   const fence_warning = "Tern ignores the fence that goes with the mission: its autopilot has FENCE_ENABLE 0.";
   const said = returnSaid({ ...check("clear"), fence_warning });
   assert.deepEqual([said.level, said.image], ["warning", "triangle-alert"]);
-  assert.match(said.words, /nothing in the way home.*FENCE_ENABLE 0\.$/);
+  assert.match(said.words, /Return path clear.*FENCE_ENABLE 0\.$/);
   const flyer = { name: "Tern", route: { length_m: 900, duration_s: 120 }, speed_mps: 8 };
   assert.ok(
     questionOf("start", { ...flyer, planned: { ...check("clear"), fence_warning } }).lines.includes(fence_warning),
@@ -175,7 +178,7 @@ test("several return on separate ways where they meet otherwise, and it is said 
   const { ways, lines } = separateReturns([one, other, { ...one, uav: 3, name: "Crow", safest: null }]);
   assert.deepEqual([...ways], [[2, { height_m: 66 }]]);
   assert.match(lines[0], /Kite: Return at 66\Wm/);
-  assert.match(lines[1], /^Crow: no way home is clear/);
+  assert.match(lines[1], /^Crow: no return path is clear/);
   assert.equal(separateReturns([one]), null);
 });
 

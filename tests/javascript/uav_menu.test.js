@@ -26,7 +26,7 @@ const entriesOf = (commands, more = {}, now = "dispatched") =>
 test("a UAV that has its mission is started alone, and is not sent it again", () => {
   const { start, send } = entriesOf([upload]);
   assert.equal(start.reason, "");
-  assert.equal(send.reason, "Kite has what it is to fly.");
+  assert.equal(send.reason, "The mission is already on Kite.");
 });
 
 test("one whose upload failed is sent it again, and says why it cannot start", () => {

@@ -105,7 +105,7 @@ export function assetForm(feature, kind, kept) {
           : field("asset-height", t("Height above ground"), height, "m"),
       ),
     !isPower && field("asset-height", t("Height above ground"), height, "m"),
-    h("label", { class: "switch-line" }, flyable, t("Part of the flying network")),
+    h("label", { class: "switch-line" }, flyable, t("Used for routing")),
   );
   return {
     element,

@@ -93,7 +93,7 @@ function details(feature) {
         properties.height_m && t("{height} above ground", { height: exactHeightText(properties.height_m) }),
       ),
       term(t("Length"), properties.length_m && lengthText(properties.length_m)),
-      term(t("Network"), properties.is_flyable ? "" : t("Not part of the flying network")),
+      term(t("Network"), properties.is_flyable ? "" : t("Not used for routing")),
       term(t("Place"), coordinateText(properties.centre)),
       term(t("Source"), sourceWords(feature)),
       term(t("Licence"), properties.source?.licence),

@@ -70,7 +70,7 @@ function landingText({ landing_percent, reserve_percent, unknown }) {
  * @returns {string[]}
  */
 export function landingLines(landing) {
-  if (!landing) return [t("What lies below it has not been looked at.")];
+  if (!landing) return [t("Landing place not checked.")];
   return [...landing.warnings, landing.facts.join(" "), basisText(landing.present)].filter(Boolean);
 }
 
@@ -80,10 +80,9 @@ export function landingLines(landing) {
  * @param {number | null | undefined} hold_s
  */
 export function holdLine(hold_s) {
-  if (typeof hold_s !== "number") return t("How long it can hold is not known.");
-  if (hold_s < MIN_HOLD_S)
-    return t("It cannot hold: the rest of its battery is needed for the way home and the reserve.");
-  return t("It can hold for about {time}: the rest of its battery is for the way home and the reserve.", {
+  if (typeof hold_s !== "number") return t("Hold time unknown.");
+  if (hold_s < MIN_HOLD_S) return t("It cannot hold: its battery is needed for the return and the reserve.");
+  return t("It can hold for about {time}, with battery left for the return and the reserve.", {
     time: durationText(hold_s),
   });
 }
@@ -100,7 +99,7 @@ export function holdLinesOfAll(uavs) {
   const unknown = uavs.filter(({ hold_s }) => typeof hold_s !== "number").map(({ name }) => name);
   return [
     first && `${first.name}: ${holdLine(first.hold_s)}`,
-    unknown.length && t("Not known how long they can hold: {names}.", { names: unknown.join(", ") }),
+    unknown.length && t("Hold time unknown: {names}.", { names: unknown.join(", ") }),
   ].filter((line) => typeof line === "string");
 }
 
@@ -176,7 +175,7 @@ export function separateReturns(checks) {
       t("On separate ways they keep apart: {ways}.", {
         ways: better.map(({ name, safer }) => `${name}: ${safer.words}`).join("; "),
       }),
-      lost.length ? t("{names}: no way home is clear. They return straight.", { names: lost.join(", ") }) : "",
+      lost.length ? t("{names}: no return path is clear. They return straight.", { names: lost.join(", ") }) : "",
     ].filter(Boolean),
   };
 }
@@ -193,8 +192,8 @@ export function togetherLine(checks) {
   if (checks.length < 2) return "";
   const isKnown = checks.every((check) => check?.present);
   return isKnown && checks.every((check) => !check?.met.length)
-    ? t("All return at once: their ways home keep apart.")
-    : t("All return at once: nothing keeps them apart on the way home.");
+    ? t("All return at once: their return paths are separated.")
+    : t("All return at once: their return paths are not separated.");
 }
 
 /**
@@ -217,5 +216,5 @@ export function returnSaid(check) {
 /** @param {Pick<ReturnCheck, "height_m" | "read_at">} check */
 function clearText({ height_m, read_at }) {
   const values = { height: heightText(height_m ?? 0), time: read_at ? clockText(read_at) : "—" };
-  return t("Return and Abort: nothing in the way home, {height} above its take-off (read {time}).", values);
+  return t("Return path clear, {height} above take-off (read {time}).", values);
 }

@@ -74,7 +74,7 @@ export function nextStep(preflight, isPilotDone) {
         ...step,
         words: t("Uploading …"),
         image: "send",
-        why: t("What each UAV has on board is read back and compared."),
+        why: t("The upload to each UAV is verified."),
       };
     case "start":
       return startStep(preflight, isPilotDone);

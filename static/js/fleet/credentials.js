@@ -26,7 +26,7 @@ const NEEDED_NOW = ["in_flight", "commands_waiting", "mission_on_its_way"]; // a
 /** @param {Credential | undefined} credential @param {Credential | undefined} earlier */
 function factsOf(credential, earlier) {
   if (!credential) return t("Not set.");
-  const made = t("Made {when} by {who}", {
+  const made = t("Created {when} by {who}", {
     when: whenText(credential.created_at),
     who: credential.created_by ?? t("somebody who has left"),
   });

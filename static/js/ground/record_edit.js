@@ -172,7 +172,7 @@ export class RecordEdit {
       this.#draft.drop();
       notices.replaceChildren();
     };
-    const when = kept.kept_at ? `${t("It is from {when}.", { when: whenText(kept.kept_at) })} ` : "";
+    const when = kept.kept_at ? `${t("From {when}.", { when: whenText(kept.kept_at) })} ` : "";
     setChildren(
       notices,
       h(
@@ -182,10 +182,10 @@ export class RecordEdit {
         h(
           "p",
           {},
-          h("strong", {}, `${t("An edit was not saved.")} `),
+          h("strong", {}, `${t("Unsaved edit.")} `),
           when,
           h("button", { type: "button", class: "text-button", onclick: goOn }, t("Go on")),
-          h("button", { type: "button", class: "text-button", onclick: drop }, t("Throw it away")),
+          h("button", { type: "button", class: "text-button", onclick: drop }, t("Discard")),
         ),
       ),
     );

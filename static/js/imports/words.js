@@ -107,7 +107,7 @@ const UNITS = {
 
 /** "height_m" → { words: "height", unit: "m" } @param {string} name */
 export function factName(name) {
-  if (name === "geometry") return { words: t("shape"), unit: "" };
+  if (name === "geometry") return { words: t("geometry"), unit: "" };
   const parts = name.split("_");
   const unit = parts.length > 1 ? (UNITS[parts[parts.length - 1]] ?? "") : "";
   if (unit) parts.pop();
@@ -122,7 +122,7 @@ export function factText(name, value) {
   if (value === false) return t("no");
   if (typeof value === "number") return number(value).replace("-", "−");
   if (typeof value === "string") return value.length > 120 ? `${value.slice(0, 119)}…` : value;
-  if (isGeometry(value)) return t("on the map");
+  if (isGeometry(value)) return t("changed");
   if (Array.isArray(value))
     return value.length && value.every((entry) => typeof entry !== "object")
       ? value.join(", ")

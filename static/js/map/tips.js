@@ -83,7 +83,7 @@ export function tipOf(thing, refresh) {
     ),
     quiet(properties.detail),
     quiet(isSaid ? "" : properties.voltages),
-    properties.flyable === false && quiet(t("Not part of the flying network")),
+    properties.flyable === false && quiet(t("Not used for routing")),
   ].filter((part) => part instanceof Node);
 }
 

@@ -115,10 +115,10 @@ export function wordsOf(times, departs_at) {
   const hours = Math.round((times.to_ms - times.from_ms) / HOUR_MS);
   const isWhole = free_ms >= times.to_ms - times.from_ms;
   const sentence = isWhole
-    ? tn(hours, "Legal at any time of the next hour.", "Legal at any time of the next {count} hours.")
+    ? tn(hours, "Zones open throughout the next hour.", "Zones open throughout the next {count} hours.")
     : free_ms === 0
-      ? tn(hours, "Legal at no time of the next hour.", "Legal at no time of the next {count} hours.")
-      : t("Legal for {free} of the next {hours} hours.", { free: durationText(free_ms / 1000), hours });
+      ? tn(hours, "Zones closed throughout the next hour.", "Zones closed throughout the next {count} hours.")
+      : t("Zones open for {free} of the next {hours} hours.", { free: durationText(free_ms / 1000), hours });
   return {
     sentence,
     departure: departs_at
@@ -132,17 +132,17 @@ function departureWords(times, moment) {
   const when = departureText(new Date(moment).toISOString());
   if (moment < times.from_ms || moment >= times.to_ms)
     return t("The departure {when} is outside these hours.", { when });
-  if (spanAt(times.windows, moment)) return t("The departure {when} is legal.", { when });
+  if (spanAt(times.windows, moment)) return t("Departure {when}: zones open.", { when });
   const names = times.zones
     .filter(({ blocked }) => spanAt(blocked, moment))
     .map(({ name }) => name)
     .join(", ");
   const next = times.windows.find(({ from_ms }) => from_ms > moment);
   const words = names
-    ? t("The departure {when} is not legal: {zones}.", { when, zones: names })
-    : t("The departure {when} is not legal.", { when });
+    ? t("Departure {when}: closed by {zones}.", { when, zones: names })
+    : t("Departure {when}: zones closed.", { when });
   return next
-    ? `${words} ${t("The next legal one is {when}.", { when: departureText(new Date(next.from_ms).toISOString()) })}`
+    ? `${words} ${t("Next open departure: {when}.", { when: departureText(new Date(next.from_ms).toISOString()) })}`
     : words;
 }
 

@@ -75,7 +75,7 @@ export const returnLinesOf = (scopes, returns) =>
   returnLinesOfAll(scopes.flatMap(({ uavs }) => uavs.map(({ id, name }) => ({ name, check: returns.get(id) }))));
 
 /** @param {BatchScope[]} scopes */
-export const leftLines = (scopes) => scopes.flatMap(({ left }) => left.map(({ why }) => t("Not told: {why}", { why })));
+export const leftLines = (scopes) => scopes.flatMap(({ left }) => left.map(({ why }) => t("Not sent: {why}", { why })));
 
 /**
  * The request of a batch: { path, body }. It names the UAVs that the question named, and no others.
@@ -98,9 +98,9 @@ export function answerWords(results) {
   const told = results.filter((answer) => answer.is_accepted).length;
   const refused = results.filter((answer) => !answer.is_accepted);
   return [
-    tn(told, "{count} UAV is being told.", "{count} UAVs are being told."),
+    tn(told, "Sending to {count} UAV.", "Sending to {count} UAVs."),
     ...refused.map(({ name, reasons }) =>
-      t("{name} was not told: {why}", { name, why: reasons.map(({ message }) => message).join(" ") }),
+      t("Not sent to {name}: {why}", { name, why: reasons.map(({ message }) => message).join(" ") }),
     ),
   ].join(" ");
 }

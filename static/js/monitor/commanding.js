@@ -79,7 +79,7 @@ export function createCommanding(store, page) {
       const isTold = await tellUav(uav.id, uav.name, kind, filled, { key, within_ms: ANSWER_WITHIN_MS });
       keptUnsent(store, uav.id, null);
       if (!isTold) markSending(store, [uav.id], null);
-      if (isTold) say(t("{act}: {name} is being told.", { act: KINDS[kind], name: uav.name }));
+      if (isTold) say(t("{act}: sending to {name}.", { act: KINDS[kind], name: uav.name }));
       return isTold;
     } catch (error) {
       markSending(store, [uav.id], null);
@@ -96,7 +96,7 @@ export function createCommanding(store, page) {
         return false;
       }
       keptUnsent(store, uav.id, null);
-      toast(`${t("{name} was not told: {act}.", { name: uav.name, act: KINDS[kind] })} ${error.message}`);
+      toast(`${t("{act}: not sent to {name}.", { name: uav.name, act: KINDS[kind] })} ${error.message}`);
       return false;
     }
   }

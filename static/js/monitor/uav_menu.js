@@ -46,7 +46,7 @@ export function menuEntries({ mission, commands, connection }, flyer, silent) {
       kind: "send",
       icon: "send",
       label: flight > 1 ? t("Upload flight {flight}", { flight }) : t("Upload again"),
-      reason: canSend ? "" : t("{name} has what it is to fly.", { name: flyer.name }),
+      reason: canSend ? "" : t("The mission is already on {name}.", { name: flyer.name }),
       flight,
     },
     ...KIND_ICONS.map(([kind, icon]) => ({ kind, icon, label: KINDS[kind], reason: reasonOf(kind), flight })),
@@ -75,7 +75,7 @@ async function send(mission, { name, place }, flight, opener) {
         ? t("Upload flight {flight} to {name}?", { flight, name })
         : t("Upload its route to {name}?", { name }),
     lines: [
-      t("What it then has on board is read back and compared with what was approved. Nothing takes off by this."),
+      t("The upload is verified against the approved mission. The UAV does not take off."),
       t("A UAV that is not connected gets its route when it is, within the hour."),
     ],
     act: t("Upload to {name}", { name }),

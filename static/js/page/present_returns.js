@@ -9,13 +9,13 @@ import { t } from "../text.js";
 /** @import { Answer } from "../api.js" */
 
 const CHECK_TIMEOUT_MS = 4000; // then it is said that nobody has looked
-export const CHECKING_HOME = t("The way home is being looked at …");
+export const CHECKING_HOME = t("Checking the return path …");
 /** @type {Partial<Record<AskedKind, string>>} */
 const LOOKED_AT = {
   return: CHECKING_HOME,
   abort: CHECKING_HOME,
-  land: t("What lies below is being looked at …"),
-  hold: t("How long it can hold is being looked at …"),
+  land: t("Checking the landing place …"),
+  hold: t("Checking how long it can hold …"),
 };
 
 /**

@@ -130,7 +130,7 @@ def test_what_a_file_would_change_is_seen_on_list_and_map_before_it_counts_and_c
     expect(sentence(page)).to_have_text("1\u00a0new, 1\u00a0changed, 1\u00a0vanished.")
     page.get_by_role("button", name="Discard").click()
     expect(page.get_by_text("is discarded. Nothing of it counts.")).to_be_visible()
-    expect(page.get_by_role("list", name="What has come in").get_by_role("listitem").first).to_contain_text("Discarded")
+    expect(page.get_by_role("list", name="Import history").get_by_role("listitem").first).to_contain_text("Discarded")
 
 
 def test_a_cut_connection_goes_on_where_it_was_also_after_a_reload(visitor: Visitor, curator: Page, tmp_path: Path) -> None:
@@ -305,7 +305,7 @@ def test_a_file_on_its_way_says_how_far_it_is_and_what_is_read_can_be_stopped(
 def test_an_area_that_is_too_large_is_not_asked_of_overpass(curator: Page) -> None:
     page = curator
     look_at(page, region.centre, 11)
-    button = page.get_by_role("button", name="Take the visible area from Overpass")
+    button = page.get_by_role("button", name="Download this area from OpenStreetMap")
     expect(button).to_have_attribute("aria-disabled", "false")
     for _ in range(3):
         page.get_by_role("button", name="Zoom out").click()

@@ -25,7 +25,7 @@ def newcomer(visitor: Visitor, name: str, role: str = "operator") -> Page:
     guest = visitor.opens(invitation["link"])
     guest.get_by_label("User name").fill(name)
     guest.get_by_label("Password", exact=True).fill(PASSWORD)
-    guest.get_by_label("Once more").fill(PASSWORD)
+    guest.get_by_label("Repeat").fill(PASSWORD)
     guest.get_by_role("button", name="Make the account").click()
     expect(guest.get_by_role("heading", name="Missions", exact=True)).to_be_visible()
     return guest
@@ -73,7 +73,7 @@ def test_a_chosen_language_is_there_at_once(visitor: Visitor) -> None:
 
 def test_single_keys_can_be_switched_off(visitor: Visitor) -> None:
     page = account(newcomer(visitor, "kira"))
-    page.get_by_role("switch", name="Shortcuts of one key").uncheck()
+    page.get_by_role("switch", name="Single-key shortcuts").uncheck()
     expect(page.get_by_role("status").filter(has_text="Saved")).to_be_visible()
     page.locator("#main").focus()
     page.keyboard.press("?")
@@ -84,7 +84,7 @@ def test_single_keys_can_be_switched_off(visitor: Visitor) -> None:
     expect(page.get_by_role("dialog")).to_contain_text("Single keys are switched off in your account.")
     expect(page).to_have_url(re.compile("/account"))
     page.keyboard.press("Escape")
-    page.get_by_role("switch", name="Shortcuts of one key").check()
+    page.get_by_role("switch", name="Single-key shortcuts").check()
     expect(page.locator("html")).to_have_attribute("data-single-keys", "on")
     page.locator("#main").focus()
     page.keyboard.press("?")
@@ -94,7 +94,7 @@ def test_single_keys_can_be_switched_off(visitor: Visitor) -> None:
 def test_a_new_password_says_what_is_wrong_and_signs_out_elsewhere(visitor: Visitor) -> None:
     page = account(newcomer(visitor, "petra"))
     elsewhere = visitor.signs_in("petra")
-    old, new, again = (page.get_by_label(label) for label in ("Password until now", "New password", "Once more"))
+    old, new, again = (page.get_by_label(label) for label in ("Current password", "New password", "Repeat"))
     button = page.get_by_role("button", name="Change the password")
     old.fill("wrong")
     new.fill("walk-the-corridor")

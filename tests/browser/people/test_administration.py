@@ -58,7 +58,7 @@ def comes_in(visitor: Visitor, link: str, name: str) -> Page:
     guest.get_by_label("First name").fill("Mona")
     guest.get_by_label("Last name").fill("Vale")
     guest.get_by_label("Password", exact=True).fill(PASSWORD)
-    guest.get_by_label("Once more").fill(PASSWORD)
+    guest.get_by_label("Repeat").fill(PASSWORD)
     guest.get_by_role("button", name="Make the account").click()
     return guest
 

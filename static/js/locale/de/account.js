@@ -28,7 +28,7 @@ export default {
   "Planning in flight": "Planung im Flug",
   "Read": "Lesen",
   "Reading an import": "Import wird gelesen",
-  "Rehearsing a mission": "Generalprobe einer Mission",
+  "Rehearsing a mission": "Probeflug einer Mission",
   "Revoke {name}": "{name} widerrufen",
   "Revoked": "Widerrufen",
   "revoked {when}": "widerrufen {when}",

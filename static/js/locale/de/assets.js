@@ -17,7 +17,7 @@ export default {
   "Deleted.": "Gelöscht.",
   "Other words, another kind, or a larger part of the map may have it.":
     "Andere Wörter, eine andere Art oder ein größerer Kartenausschnitt helfen vielleicht.",
-  "Part of the flying network": "Teil des Flugnetzes",
+  "Used for routing": "Wird für Routen verwendet",
   "Since {when}; missions still know it.": "Seit {when}; Missionen kennen das Objekt noch.",
   "Voltages, highest first": "Spannungen, höchste zuerst",
   "Write kilovolts up to {most}, such as 110, 20.": "Kilovolt bis {most} angeben, etwa 110, 20.",

@@ -48,7 +48,7 @@ export default {
     "Es wird für neue Missionen nicht angeboten und verbindet sich nicht.",
   "cruise speed": "Reisegeschwindigkeit",
   "Link": "Verbindung",
-  "Made {when} by {who}": "Erstellt {when} von {who}",
+  "Created {when} by {who}": "Erstellt {when} von {who}",
   "Maintenance": "Wartung",
   "Create": "Erstellen",
   "Map of the fleet": "Karte der Flotte",
@@ -154,7 +154,7 @@ export default {
   "hovers {time}": "schwebt {time}",
   "up to {speed}": "bis {speed}",
   "In simulation {airframe} flies for {name}. Rehearsals of its missions are out of date if another one flew.":
-    "In der Simulation fliegt {airframe} für {name}. Proben seiner Missionen sind veraltet, wenn ein anderes flog.",
+    "In der Simulation fliegt {airframe} für {name}. Probeflüge seiner Missionen sind veraltet, wenn ein anderes flog.",
   "It flies with the battery of the UAV where that is stated.":
     "Es fliegt mit dem Akku des UAVs, wo der angegeben ist.",
   "No real aircraft: it may fly where there is no terrain data.":

@@ -1,9 +1,9 @@
 /** German: a mission that is approved, sent, flown. */
 
 export default {
-  "The way home is being looked at …": "Der Heimweg wird angesehen …",
-  "What lies below is being looked at …": "Was darunter liegt, wird angesehen …",
-  "How long it can hold is being looked at …": "Wie lange es halten kann, wird angesehen …",
+  "Checking the return path …": "Rückweg wird geprüft …",
+  "Checking the landing place …": "Landeplatz wird geprüft …",
+  "Checking how long it can hold …": "Haltedauer wird geprüft …",
   "Upload mission": "Mission hochladen",
   "Remove mission": "Mission entfernen",
   "Arm": "Scharf schalten",
@@ -40,8 +40,8 @@ export default {
     "{name} hat seine Mission nicht begonnen: Es gibt nichts fortzusetzen.",
   "Return path not checked: it flies straight, at its own return altitude.":
     "Rückweg nicht geprüft: Es fliegt geradeaus, auf seiner eigenen Rückkehrhöhe.",
-  "Return and Abort: nothing in the way home, {height} above its take-off (read {time}).":
-    "„Zurück“ und „Abbrechen“: Der Heimweg ist frei, {height} über seinem Startplatz (gelesen {time}).",
+  "Return path clear, {height} above take-off (read {time}).":
+    "Rückweg frei, {height} über Startplatz (gelesen {time}).",
   "it has booted since": "es ist seither neu gestartet",
   "another ground station has changed its lists since": "eine andere Bodenstation hat seither seine Listen geändert",
   "its list has another length since": "seine Liste ist seither anders lang",
@@ -101,13 +101,13 @@ export default {
   "Battery at landing not known: {why}": "Akku bei der Landung nicht bekannt: {why}",
   "Lands with about {landing} of its battery (reserve {reserve}).":
     "Landet mit etwa {landing} seines Akkus (Reserve {reserve}).",
-  "What lies below it has not been looked at.": "Was darunter liegt, wurde nicht geprüft.",
-  "How long it can hold is not known.": "Wie lange es halten kann, ist nicht bekannt.",
-  "It cannot hold: the rest of its battery is needed for the way home and the reserve.":
-    "Es kann nicht halten: Den Rest seines Akkus brauchen Heimweg und Reserve.",
-  "It can hold for about {time}: the rest of its battery is for the way home and the reserve.":
-    "Es kann etwa {time} halten: Der Rest seines Akkus ist für Heimweg und Reserve.",
-  "Not known how long they can hold: {names}.": "Nicht bekannt, wie lange sie halten können: {names}.",
+  "Landing place not checked.": "Landeplatz nicht geprüft.",
+  "Hold time unknown.": "Haltedauer unbekannt.",
+  "It cannot hold: its battery is needed for the return and the reserve.":
+    "Es kann nicht halten: Sein Akku wird für Rückkehr und Reserve gebraucht.",
+  "It can hold for about {time}, with battery left for the return and the reserve.":
+    "Es kann etwa {time} halten; der Akku reicht dann noch für Rückkehr und Reserve.",
+  "Hold time unknown: {names}.": "Haltedauer unbekannt: {names}.",
   "Checked from where it was measured {age} ago.": "Geprüft von da, wo es vor {age} gemessen wurde.",
   "Checked from where it is estimated, ± {distance}; last report {age} ago.":
     "Geprüft von seinem geschätzten Ort aus, ± {distance}; letzte Meldung vor {age}.",
@@ -120,13 +120,14 @@ export default {
   "Return along the route": "Entlang der Route zurück",
   "Hold {time}, then return at {height}": "{time} halten, dann auf {height} zurück",
   "On separate ways they keep apart: {ways}.": "Auf getrennten Wegen bleiben sie auseinander: {ways}.",
-  "{names}: no way home is clear. They return straight.":
-    "{names}: Kein Heimweg ist frei. Sie kehren geradeaus zurück.",
+  "{names}: no return path is clear. They return straight.":
+    "{names}: Kein Rückweg ist frei. Sie kehren geradeaus zurück.",
   "Return on separate ways": "Auf getrennten Wegen zurück",
   "{count} target is still visited.": ["{count} Ziel wird noch angeflogen.", "{count} Ziele werden noch angeflogen."],
-  "All return at once: their ways home keep apart.": "Alle kehren zugleich zurück: Ihre Heimwege halten Abstand.",
-  "Set the return height of {name} to {height} with it: lower, something is in its way home":
-    "Rückkehrhöhe von {name} dabei auf {height} setzen: Tiefer ist etwas im Heimweg",
+  "All return at once: their return paths are separated.":
+    "Alle kehren zugleich zurück: Ihre Rückwege sind gestaffelt.",
+  "Also set the return altitude of {name} to {height}: lower, its return path is obstructed":
+    "Rückkehrhöhe von {name} dabei auf {height} setzen: Tiefer ist der Rückweg versperrt",
   "Set return height to {height}": "Rückkehrhöhe auf {height} setzen",
   "Land {name} here": "{name} hier landen",
   "Abort the flight of {name}?": "Den Flug von {name} abbrechen?",
@@ -138,8 +139,8 @@ export default {
     "Über Grund, bis die Route etwas anderes sagt. Geplante Zeiten gelten dann nicht mehr.",
   "Change the speed of {name}": "Tempo von {name} ändern",
   "Speed [m/s]; now planned with {speed}": "Tempo [m/s]; geplant sind {speed}",
-  "Somebody else has changed the mission. Look at it again.":
-    "Jemand anderes hat die Mission geändert. Sehen Sie sie noch einmal an.",
+  "The mission was changed by someone else. Review it again.":
+    "Die Mission wurde von jemand anderem geändert. Prüfen Sie sie noch einmal.",
   "Approve “{name}”?": "„{name}“ freigeben?",
   "Approval locks the mission. Only the approved mission can be uploaded to UAVs. The approval can be revoked.":
     "Die Freigabe sperrt die Mission. Nur die freigegebene Mission kann auf UAVs hochgeladen werden. Die Freigabe kann widerrufen werden.",
@@ -163,10 +164,10 @@ export default {
     "{names} hören das vor allem anderen, was wartet. Ziele, die nicht erreicht sind, bleiben offen, und die Mission kann nicht wieder aufgenommen werden.",
   "Abort the mission": "Mission abbrechen",
   "Not aborted.": "Nicht abgebrochen.",
-  "{name} was not told: {act}.": "{name} wurde es nicht gesagt: {act}.",
-  "{act}: {name} is being told.": "{act}: {name} wird es gesagt.",
-  "{act}: {name} has done it.": "{act}: {name} hat es ausgeführt.",
-  "{act}: {name} has not done it. {outcome}": "{act}: {name} hat es nicht ausgeführt. {outcome}",
+  "{act}: not sent to {name}.": "{act}: nicht an {name} gesendet.",
+  "{act}: sending to {name}.": "{act}: wird an {name} gesendet.",
+  "{act}: done by {name}.": "{act}: von {name} ausgeführt.",
+  "{act}: not done by {name}. {outcome}": "{act}: von {name} nicht ausgeführt. {outcome}",
   "It has changed since it was planned. Plan again first.":
     "Sie hat sich seit der Planung geändert. Planen Sie zuerst neu.",
   "It is not saved yet.": "Sie ist noch nicht gesichert.",
@@ -208,10 +209,10 @@ export default {
   "Fly: {act}": "Fliegen: {act}",
   "Upload flight {flight}": "Flug {flight} hochladen",
   "Upload again": "Erneut hochladen",
-  "{name} has what it is to fly.": "{name} hat, was es fliegen soll.",
+  "The mission is already on {name}.": "Die Mission ist schon auf {name}.",
   "Upload flight {flight} to {name}?": "Flug {flight} auf {name} hochladen?",
   "Upload its route to {name}?": "Die Route auf {name} hochladen?",
-  "What it then has on board is read back and compared with what was approved. Nothing takes off by this.":
-    "Was es danach an Bord hat, wird zurückgelesen und mit dem Freigegebenen verglichen. Dadurch startet nichts.",
+  "The upload is verified against the approved mission. The UAV does not take off.":
+    "Das Hochgeladene wird mit der freigegebenen Mission verglichen. Das UAV startet nicht.",
   "Upload to {name}": "Auf {name} hochladen",
 };

@@ -112,7 +112,7 @@ export default {
   "not known": "nicht bekannt",
   "not limited": "nicht begrenzt",
   "Not loaded.": "Nicht geladen.",
-  "Not part of the flying network": "Nicht Teil des Flugnetzes",
+  "Not used for routing": "Nicht für Routen verwendet",
   "not reached": "nicht erreicht",
   "Not saved.": "Nicht gespeichert.",
   "not stated": "nicht angegeben",

@@ -1,7 +1,7 @@
 /** Records of the ground, their history and conflicts. English → German; [one, other] where there is a plural. */
 
 export default {
-  "An edit was not saved.": "Eine Bearbeitung wurde nicht gespeichert.",
+  "Unsaved edit.": "Nicht gespeicherte Bearbeitung.",
   "Bring back what was before": "Den vorigen Stand zurückholen",
   "Brought back to an earlier state": "Auf einen früheren Stand gebracht",
   "by a command": "durch einen Befehl",
@@ -20,7 +20,7 @@ export default {
   "Go on editing": "Weiter bearbeiten",
   "It follows its source again.": "Es folgt wieder seiner Quelle.",
   "It is back.": "Es ist zurück.",
-  "It is from {when}.": "Sie ist von {when}.",
+  "From {when}.": "Von {when}.",
   "It was deleted. Nothing of yours is stored.": "Es wurde gelöscht. Von Ihnen ist nichts gespeichert.",
   "Kind": "Art",
   "Lower limit counted": "Untergrenze gezählt",
@@ -32,7 +32,6 @@ export default {
   "Schedule": "Zeiten",
   "Shape": "Form",
   "Tags": "Merkmale",
-  "Throw it away": "Verwerfen",
   "Upper limit counted": "Obergrenze gezählt",
   "Their changes": "Deren Änderungen",
   "What was before is back.": "Der vorige Stand ist zurück.",

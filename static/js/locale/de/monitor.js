@@ -18,8 +18,8 @@ export default {
   "Battery: too low to hold longer": "Akku: zu wenig, um länger zu halten",
   "In the air: it returns and lands where it took off; an autopilot that refuses to return lands where it is. On the ground: its motors are switched off.":
     "In der Luft: Es kehrt zurück und landet, wo es gestartet ist; ein Autopilot, der die Rückkehr verweigert, landet an Ort und Stelle. Am Boden: Seine Motoren werden abgeschaltet.",
-  "All return at once: nothing keeps them apart on the way home.":
-    "Alle kehren gleichzeitig zurück: Nichts hält sie auf dem Rückweg auseinander.",
+  "All return at once: their return paths are not separated.":
+    "Alle kehren zugleich zurück: Ihre Rückwege sind nicht gestaffelt.",
   "Starts in planned order begun": "Starts in geplanter Reihenfolge begonnen",
   "Starts in planned order stopped": "Starts in geplanter Reihenfolge angehalten",
   "All starts were given.": "Alle Startbefehle sind gegeben.",
@@ -46,15 +46,14 @@ export default {
   "Not connected: {names}. Switch them on; this page detects them.":
     "Nicht verbunden: {names}. Schalten Sie sie ein; diese Seite erkennt sie.",
   "Uploading …": "Wird hochgeladen …",
-  "What each UAV has on board is read back and compared.":
-    "Was jedes UAV an Bord hat, wird zurückgelesen und verglichen.",
+  "The upload to each UAV is verified.": "Das Hochladen auf jedes UAV wird geprüft.",
   "Blocked: {names}": "Verhindert: {names}",
   "Tick what was looked at on site.": "Haken Sie ab, was vor Ort angesehen wurde.",
-  "This plan was not rehearsed": "Dieser Plan wurde nicht geprobt",
-  "Its rehearsal failed": "Seine Probe ist gescheitert",
-  "Rehearsed, with warnings": "Geprobt, mit Warnungen",
-  "Rehearsed: passed": "Geprobt: bestanden",
-  "Its rehearsal has no result yet": "Seine Probe hat noch kein Ergebnis",
+  "This plan was not rehearsed": "Dieser Plan hatte keinen Probeflug",
+  "Its rehearsal failed": "Ihr Probeflug ist gescheitert",
+  "Rehearsed, with warnings": "Probeflug mit Warnungen",
+  "Rehearsed: passed": "Probeflug bestanden",
+  "Its rehearsal has no result yet": "Ihr Probeflug hat noch kein Ergebnis",
   "Looked at on site: propellers and battery, take-off place, airspace and weather, radio at hand":
     "Vor Ort angesehen: Propeller und Akku, Startplatz, Luftraum und Wetter, Funkgerät zur Hand",
   "{count} check not known": ["{count} Prüfung nicht bekannt", "{count} Prüfungen nicht bekannt"],
@@ -70,8 +69,8 @@ export default {
   "{name} never connected.": "{name} war noch nie verbunden.",
   "{name} is on the ground.": "{name} ist am Boden.",
   "All {missions} missions: {uavs}": "Alle {missions} Missionen: {uavs}",
-  "Not told: {why}": "Nicht gesendet: {why}",
-  "{name} was not told: {why}": "Nicht gesendet an {name}: {why}",
+  "Not sent: {why}": "Nicht gesendet: {why}",
+  "Not sent to {name}: {why}": "Nicht gesendet an {name}: {why}",
   "{act}: of which mission?": "{act}: welche Mission?",
   "Whom it is for": "Für wen",
   "{act}: not confirmed.": "{act}: nicht bestätigt.",
@@ -138,7 +137,7 @@ export default {
   "Acknowledge the alert that has focus, or the first": "Den Alarm mit Fokus bestätigen, sonst den ersten",
   "At|time": "Um",
   "{done} of {all} complete": "{done} von {all} erledigt",
-  "Back to the board": "Zurück zur Tafel",
+  "Back to target status": "Zurück zum Zielstatus",
   "Event log": "Ereignisse",
   "Follow": "Folgen",
   "not in a mission": "in keiner Mission",
@@ -200,7 +199,7 @@ export default {
   "Go to what flies": "Zu dem, was fliegt",
   "Return {count} UAV?": ["{count} UAV zurückrufen?", "Alle {count} UAVs zurückrufen?"],
   "{count} target open": ["{count} Ziel offen", "{count} Ziele offen"],
-  "{count} UAV is being told.": ["{count} UAV erhält den Befehl.", "{count} UAVs erhalten den Befehl."],
+  "Sending to {count} UAV.": ["Wird an {count} UAV gesendet.", "Wird an {count} UAVs gesendet."],
   "{count} UAV gets another route": [
     "{count} UAV bekommt eine andere Route",
     "{count} UAVs bekommen eine andere Route",

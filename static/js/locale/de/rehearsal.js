@@ -2,7 +2,7 @@
 
 export default {
   "Save the mission first: what is stored is rehearsed.":
-    "Speichern Sie die Mission zuerst: Geprobt wird, was gespeichert ist.",
+    "Speichern Sie die Mission zuerst: Der Probeflug nimmt, was gespeichert ist.",
   "Plan the mission first.": "Planen Sie die Mission zuerst.",
   "Custom conditions": "Eigene Bedingungen",
   "Wind from": "Wind aus",
@@ -11,7 +11,7 @@ export default {
   "Flown {time}: the same plan in the same air flies alike, and was not flown again.":
     "Geflogen {time}: Derselbe Plan fliegt in derselben Luft gleich und wurde nicht noch einmal geflogen.",
   "Fly it again": "Noch einmal fliegen",
-  "Rehearse": "Proben",
+  "Rehearse": "Probeflug",
   "Gusts": "Böen",
   "Battery holds": "Akku fasst",
   "What is empty is as planned.": "Was leer ist, ist wie geplant.",
@@ -27,7 +27,7 @@ export default {
   "not flown to": "nicht angeflogen",
   "reached, {away} off": "erreicht, {away} daneben",
   "not reached, {away} off": "nicht erreicht, {away} daneben",
-  "Rehearse: choose conditions": "Proben: Bedingungen wählen",
+  "Rehearse: choose conditions": "Probeflug: Bedingungen wählen",
   "wind {speed} from {from}° at {height}": "Wind {speed} aus {from}° in {height}",
   "no wind": "kein Wind",
   "gusts {speed}": "Böen {speed}",

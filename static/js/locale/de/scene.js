@@ -11,7 +11,7 @@ export default {
   "Reading what there is to see.": "Was zu sehen ist, wird gelesen.",
   "There is nothing to see yet: plan the mission first.": "Noch ist nichts zu sehen: Planen Sie die Mission zuerst.",
   "What is shown": "Was gezeigt wird",
-  "Rehearsal": "Generalprobe",
+  "Rehearsal": "Probeflug",
   "Record": "Aufzeichnung",
   "Planned, not flown": "Geplant, nicht geflogen",
   "Flat ground assumed": "Ebener Boden angenommen",

@@ -130,8 +130,8 @@ function tellChanges(before, now) {
   const ended = now.filter(({ id, state }) => !isOpen({ state }) && states.has(id) && states.get(id) !== state);
   for (const { uav, kind, state, outcome } of ended) {
     const words = { name: uav.name, act: KINDS[kind], outcome };
-    if (state === "applied") say(t("{act}: {name} has done it.", words));
-    else if (state === "failed") toast(t("{act}: {name} has not done it. {outcome}", words));
+    if (state === "applied") say(t("{act}: done by {name}.", words));
+    else if (state === "failed") toast(t("{act}: not done by {name}. {outcome}", words));
   }
   return ended.length > 0;
 }

@@ -71,7 +71,7 @@ async function tried({ store, failed, readCommands }, title, act) {
     if (!(error instanceof ApiError)) throw error;
     if (error.isSignedOut) failed(title, error, [{ label: t("Sign in"), href: signInAddress }]);
     else if (error.status === 412)
-      failed(title, new ApiError(t("Somebody else has changed the mission. Look at it again."), { status: 412 }), [
+      failed(title, new ApiError(t("The mission was changed by someone else. Review it again."), { status: 412 }), [
         { label: t("Load again"), act: () => location.reload() },
       ]);
     else failed(title, error);

@@ -143,7 +143,7 @@ export function mountBoard(store, { show, readOlder }) {
     const { showsLog, missions, uavs, details, numbers } = state;
     byId("board-count").textContent = countWords(missions);
     button.setAttribute("aria-pressed", `${showsLog}`);
-    button.textContent = showsLog ? t("Back to the board") : t("Event log");
+    button.textContent = showsLog ? t("Back to target status") : t("Event log");
     board.hidden = showsLog;
     byId("log").hidden = !showsLog;
     if (showsLog) drawEvents(state);

@@ -62,7 +62,7 @@ async function setHeight(uav, name, height_m) {
     return await tellUav(uav, name, "set-return-height", { height_m });
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
-    toast(`${t("{name} was not told: {act}.", { name, act: KINDS["set-return-height"] })} ${error.message}`);
+    toast(`${t("{act}: not sent to {name}.", { name, act: KINDS["set-return-height"] })} ${error.message}`);
     return false;
   }
 }
@@ -184,7 +184,7 @@ function drawHeights(place, { next_act, uavs }) {
         h(
           "span",
           {},
-          t("Set the return height of {name} to {height} with it: lower, something is in its way home", {
+          t("Also set the return altitude of {name} to {height}: lower, its return path is obstructed", {
             name,
             height: heightText(height_m),
           }),

@@ -52,7 +52,7 @@ function departureOption(store, actions) {
   const legal = h(
     "button",
     { type: "button", class: "text-button", onclick: () => showLegalTimes(store, actions) },
-    t("When is this mission legal?"),
+    t("When are the zones open?"),
   );
   const element = h(
     "div",

@@ -73,7 +73,7 @@ function axis(times) {
  * @param {ChartActs} acts
  */
 function unionTrack(times, { depart }) {
-  const track = h("div", { class: "legal-track", role: "group", "aria-label": t("Legal times to depart") });
+  const track = h("div", { class: "legal-track", role: "group", "aria-label": t("Permitted departure times") });
   times.windows.forEach((free, index) => {
     const button = h("button", {
       type: "button",
@@ -130,7 +130,11 @@ function departureSlider(times, moment, acts) {
       "aria-valuemax": most,
       "aria-valuenow": at,
       "aria-valuetext":
-        moment === null ? t("any time") : isLegal ? t("{when}, legal", { when }) : t("{when}, not legal", { when }),
+        moment === null
+          ? t("any time")
+          : isLegal
+            ? t("{when}, zones open", { when })
+            : t("{when}, zones closed", { when }),
     },
     h("span", { class: "legal-handle" }),
     h("small", {}, moment === null ? t("Departure") : when),

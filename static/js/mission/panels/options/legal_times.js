@@ -64,7 +64,7 @@ export function showLegalTimes(store, actions) {
       h(
         "div",
         {},
-        h("h2", { id: "legal-title" }, t("When is this mission legal?")),
+        h("h2", { id: "legal-title" }, t("When are the zones open?")),
         h(
           "p",
           { class: "quiet-text" },
