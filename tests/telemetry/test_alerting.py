@@ -229,7 +229,7 @@ def test_a_mode_that_nobody_asked_for_is_told_with_what_the_vehicle_said(uav, ap
     for second in range(1, 12):
         in_flight(second, uav, approval, memories, mode="RTL")
     alert = Alert.objects.get(code="mode-changed")
-    assert alert_words(alert.message, alert.values).endswith("It says: Battery Failsafe - RTL")
+    assert alert_words(alert.message, alert.values).endswith("Autopilot: Battery Failsafe - RTL")
     with override("de"):
         assert "Battery Failsafe - RTL" in alert_words(alert.message, alert.values) != alert_words(alert.message, {})
     for second in range(12, 700, 10):
@@ -284,6 +284,16 @@ def test_a_flight_that_ended_off_its_plan_has_failed_and_its_mission_with_it(uav
     assert (mission.state, mission.routes.get().has_failed) == ("failed", True)
     assert set(mission.targets.values_list("state", flat=True)) == {"failed"}
     assert ("down-off-plan", "critical") in open_ones()
+
+
+def test_a_flight_whose_last_report_came_from_the_ground_off_its_plan_has_failed(uav, approval):
+    memories = watching(uav, approval)
+    place = seen(uav, approval).newest.measurement
+    last = {"longitude_deg": place.longitude_deg + 0.01, "altitude_relative_m": 8.0, "is_armed": False, "is_in_air": False}
+    UavLink.objects.update(is_in_air=False, is_armed=False)
+    for second in range(1, 6):
+        look(watched=[seen(uav, approval, 1, **last)], now=at(second), memories=memories)
+    assert Mission.objects.get().state == "failed"
 
 
 @pytest.mark.parametrize("why", ["home early and carried away", "told to land", "silent", "by its companion"])

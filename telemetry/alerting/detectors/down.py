@@ -44,7 +44,8 @@ def has_ended(situation: Situation) -> bool:
     memory, model, newest = situation.memory, situation.model, situation.uav.newest
     if model is None or newest is None or memory.down_s is None or memory.down_at is None or not situation.is_disarmed:
         return False
-    if newest.measured_s - memory.down_s < DETECTOR.raise_after_s or _away(situation) is None:
+    has_stayed = newest.measured_s - memory.down_s >= DETECTOR.raise_after_s or situation.is_open(CODE, str(situation.uav.flight))
+    if not has_stayed or _away(situation) is None:
         return False
     return away_from_plan_m(model.line, memory.down_at, model.rally_points) >= AWAY_M
 
