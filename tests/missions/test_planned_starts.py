@@ -188,7 +188,7 @@ def test_one_that_was_started_alone_meanwhile_is_not_started_twice(crossing, per
 def test_nothing_begins_before_each_has_its_route(person) -> None:
     here, uavs = world(), fleet("Tern", "Kite")
     mission, _approval = approved(person, uavs, here.towers[4:6])
-    with pytest.raises(Refused, match="Only a mission that was sent"):
+    with pytest.raises(Refused, match="Only an uploaded mission"):
         begin_planned_starts(mission=mission, actor=person)
     other = dispatched(person, fleet("Crow", "Rook"), here.towers[1:3], name="North")
     with pytest.raises(Refused) as error:
