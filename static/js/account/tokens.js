@@ -43,7 +43,7 @@ export function mountTokens({ tell, settle }) {
     try {
       await remove(`/account/tokens/${token.id}`);
       settle();
-      toast(t("“{name}” works no more.", { name: token.name }));
+      toast(t("“{name}” was revoked.", { name: token.name }));
       await load();
       byId("token_name").focus();
     } catch (error) {

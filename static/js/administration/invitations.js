@@ -81,7 +81,7 @@ export function mountInvitations({ tell, settle, show }) {
       await remove(`/invitations/${invitation.id}`);
       settle();
       byId("new-link").replaceChildren();
-      toast(t("The link works no more."));
+      toast(t("The link was revoked."));
       await list.load();
       byId("invite").focus();
     } catch (error) {

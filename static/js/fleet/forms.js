@@ -26,7 +26,7 @@ function typeFields(type) {
     factor: LONG_UNIT.metres,
     unit: LONG_UNIT.unit,
     min: 0.1,
-    hint: t("On one battery; empty: not limited."),
+    hint: t("On one battery. Blank: not limited."),
   });
   const speed = numberField("cruise_speed_mps", t("Speed"), type.cruise_speed_mps, {
     factor: SPEED_UNIT.mps,
@@ -55,20 +55,20 @@ function typeFields(type) {
     factor: SPEED_UNIT.mps,
     unit: SPEED_UNIT.unit,
     ...AIRSPEED_BOUNDS,
-    hint: t("Against the wind; empty: its speed."),
+    hint: t("Against the wind. Blank: cruise speed."),
   });
   const disk = numberField("rotor_disk_m2", t("Rotor area"), type.rotor_disk_m2, {
     unit: "m²",
     ...BOUNDS.rotor_disk_m2,
     digits: 4,
     usual: IRIS.rotor_disk_m2,
-    hint: t("Circles of all rotors together; empty: those of a PX4 Iris, in grey."),
+    hint: t("Circles of all rotors together. Blank: those of a PX4 Iris (grey)."),
   });
   const hover = numberField("hover_power_w", t("Power in a hover"), type.hover_power_w, {
     unit: "W",
     ...BOUNDS.hover_power_w,
     digits: 1,
-    hint: t("As measured in still air, with this mass; empty: worked out from mass and rotors."),
+    hint: t("As measured in still air, with this mass. Blank: calculated from mass and rotors."),
   });
   const sensors = textField("sensors", t("Sensors"), type.sensors.join(", "), {
     maxlength: 600,

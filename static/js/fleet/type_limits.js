@@ -21,7 +21,7 @@ import { t } from "../text.js";
 export async function mountTypeLimits(place, type, { canPlan, failed }) {
   const address = `/uav-types/${type.id}/alert-limits`;
   const hint = t(
-    "For all UAVs of this type, at once, also in flight. Empty: the usual, in grey. A mission can state its own.",
+    "For all UAVs of this type, at once, also in flight. Blank: default (grey). A mission can have its own.",
   );
   const change = () =>
     openAlertLimits({ address, title: t("Alert thresholds: {name}", { name: type.name }), hint, onSaved: draw });

@@ -142,11 +142,11 @@ function figureFields(uav) {
 /** What counts where a UAV has no range and speed of its own. @param {FleetType | undefined} type */
 const usualText = (type) =>
   type
-    ? t("Empty: {range} and {speed}, as its type.", {
+    ? t("Blank: {range} and {speed} of the type.", {
         range: type.max_range_m === null ? t("no limit") : lengthText(type.max_range_m),
         speed: speedText(type.cruise_speed_mps),
       })
-    : t("Empty: the range is not limited, the speed is the usual one.");
+    : t("Blank: range not limited, default speed.");
 
 /**
  * The figures that a UAV may have of its own. What counts in an empty field stands in it in grey.

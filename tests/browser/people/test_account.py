@@ -132,7 +132,7 @@ def test_a_token_is_shown_once_works_and_is_revoked(visitor: Visitor) -> None:
     expect(page.get_by_role("list", name="Tokens").get_by_text("Nightly export")).to_be_visible()
     expect(page.get_by_text(re.compile("last used now|last used today"))).to_be_visible()
     page.get_by_role("button", name="Revoke Nightly export").click()
-    expect(page.get_by_text("“Nightly export” works no more.")).to_be_visible()
+    expect(page.get_by_text("“Nightly export” was revoked.")).to_be_visible()
     expect(page.get_by_role("list", name="Tokens").get_by_text("Revoked", exact=True)).to_be_visible()
     assert stranger.request.get("/api/v1/account").status == 401
 

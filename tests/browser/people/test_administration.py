@@ -91,7 +91,7 @@ def test_an_invitation_that_was_taken_back_lets_nobody_in(visitor: Visitor) -> N
     page = administration(visitor.signs_in("ada"))
     link = invites(page, "Administrator")
     page.get_by_role("button", name=re.compile("Revoke")).first.click()
-    expect(page.get_by_text("The link works no more.")).to_be_visible()
+    expect(page.get_by_text("The link was revoked.")).to_be_visible()
     expect(page.get_by_role("row").nth(1)).to_contain_text("Revoked")
     expect(visitor.opens(link).get_by_role("heading", name="This link does not work any more")).to_be_visible()
     visitor.complaints[:] = [words for words in visitor.complaints if "410" not in words]

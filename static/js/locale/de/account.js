@@ -65,5 +65,5 @@ export default {
   "Your password, please": "Bitte Ihr Passwort",
   "“{name}” is made. Copy it now: it is not shown again.":
     "„{name}“ ist erstellt. Jetzt kopieren: Es wird nicht wieder gezeigt.",
-  "“{name}” works no more.": "„{name}“ gilt nicht mehr.",
+  "“{name}” was revoked.": "„{name}“ wurde widerrufen.",
 };

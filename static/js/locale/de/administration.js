@@ -91,7 +91,7 @@ export default {
   "The first {what}": "Die ersten {what}",
   "The invitation was not revoked.": "Die Einladung wurde nicht widerrufen.",
   "The link is sent there, and shown to you.": "Der Link wird dorthin gesendet und Ihnen gezeigt.",
-  "The link works no more.": "Der Link gilt nicht mehr.",
+  "The link was revoked.": "Der Link wurde widerrufen.",
   "Tokens": "Tokens",
   "Tokens of {name}": "Tokens von {name}",
   "Expired": "Abgelaufen",

@@ -5,10 +5,10 @@ export default {
   "Alert thresholds: {name}": "Alarmschwellen: {name}",
   "Change alert thresholds": "Alarmschwellen ändern",
   "Default thresholds.": "Übliche Schwellen.",
-  "For all UAVs of this type, at once, also in flight. Empty: the usual, in grey. A mission can state its own.":
-    "Für alle UAVs dieses Typs, sofort, auch im Flug. Leer: das Übliche, in Grau. Eine Mission kann Eigenes angeben.",
-  "For this mission alone, also while it flies. Empty: as the type of each UAV says, else the usual, in grey.":
-    "Nur für diese Mission, auch während sie fliegt. Leer: wie es der Typ jedes UAVs sagt, sonst das Übliche, in Grau.",
+  "For all UAVs of this type, at once, also in flight. Blank: default (grey). A mission can have its own.":
+    "Für alle UAVs dieses Typs, sofort, auch im Flug. Leer: Standard (grau). Eine Mission kann eigene haben.",
+  "For this mission only, also in flight. Blank: value of each UAV's type, else default (grey).":
+    "Nur für diese Mission, auch im Flug. Leer: Wert des Typs jedes UAV, sonst Standard (grau).",
   "Reset to defaults": "Auf Standard zurücksetzen",
   "Thresholds saved.": "Schwellen gespeichert.",
   "The server does not take this figure.": "Der Server nimmt diesen Wert nicht an.",

@@ -13,8 +13,8 @@ export default {
   "All of them": "Alle",
   "Any base": "Jede Basis",
   "Any type": "Jeder Typ",
-  "As measured in still air, with this mass; empty: worked out from mass and rotors.":
-    "Gemessen in ruhiger Luft, mit dieser Masse; leer: aus Masse und Rotoren errechnet.",
+  "As measured in still air, with this mass. Blank: calculated from mass and rotors.":
+    "Gemessen in ruhiger Luft, mit dieser Masse. Leer: aus Masse und Rotoren berechnet.",
   "At least {least}.": "Mindestens {least}.",
   "At most {most}.": "Höchstens {most}.",
   "At take-off; needed with a battery.": "Beim Start; mit einem Akku nötig.",
@@ -27,17 +27,16 @@ export default {
   "Battery": "Akku",
   "Changed by {who} in the meantime.": "Inzwischen von {who} geändert.",
   "Battery charge": "Akkuladung",
-  "Circles of all rotors together; empty: those of a PX4 Iris, in grey.":
-    "Kreise aller Rotoren zusammen; leer: die einer PX4 Iris, in Grau.",
+  "Circles of all rotors together. Blank: those of a PX4 Iris (grey).":
+    "Kreise aller Rotoren zusammen. Leer: die einer PX4 Iris (grau).",
   "Delete {name}": "{name} löschen",
   "Divided by commas.": "Durch Kommas getrennt.",
   "Drag it, or click into the map": "Ziehen oder in die Karte klicken",
   "Earlier missions": "Frühere Missionen",
   "Edit {name}": "{name} bearbeiten",
   "Blank: value of the type (grey).": "Leer: Wert des Typs (grau).",
-  "Empty: the range is not limited, the speed is the usual one.":
-    "Leer: Die Reichweite ist nicht begrenzt, die Geschwindigkeit ist die übliche.",
-  "Empty: {range} and {speed}, as its type.": "Leer: {range} und {speed}, wie der Typ.",
+  "Blank: range not limited, default speed.": "Leer: Reichweite nicht begrenzt, übliche Geschwindigkeit.",
+  "Blank: {range} and {speed} of the type.": "Leer: {range} und {speed} des Typs.",
   "Blank: default value (grey).": "Leer: üblicher Wert (grau).",
   "Find in the fleet": "In der Flotte suchen",
   "{grey} Without a battery, energy is not calculated.": "{grey} Ohne Akku wird keine Energie berechnet.",
@@ -72,7 +71,7 @@ export default {
   "not used yet": "noch nicht benutzt",
   "not used yet: the one before it still works until then": "noch nicht benutzt: das vorige gilt bis dahin weiter",
   "Nothing matches “{text}”": "Nichts passt zu „{text}“",
-  "On one battery; empty: not limited.": "Mit einem Akku; leer: nicht begrenzt.",
+  "On one battery. Blank: not limited.": "Mit einem Akku. Leer: nicht begrenzt.",
   "Or drag the pin on the map, or click into it.": "Oder die Nadel auf der Karte ziehen oder in die Karte klicken.",
   "Battery (overrides the type)": "Akku (statt dem des Typs)",
   "Maximum airspeed (overrides the type)": "Höchste Fluggeschwindigkeit (statt der des Typs)",

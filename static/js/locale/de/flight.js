@@ -33,7 +33,7 @@ export default {
   "Add by coordinates": "Nach Koordinaten setzen",
   "Add on the map": "Auf der Karte setzen",
   "after {start}": "nach {start}",
-  "Against the wind; empty: its speed.": "Gegen den Wind; leer: seine Geschwindigkeit.",
+  "Against the wind. Blank: cruise speed.": "Gegen den Wind. Leer: Reisegeschwindigkeit.",
   "All UAVs together as few minutes in the air as possible":
     "Alle UAVs zusammen so wenige Minuten wie möglich in der Luft",
   "All UAVs together with as little of their batteries as possible":
@@ -116,10 +116,10 @@ export default {
   "Each UAV stays where it is for a while, then flies straight to the nearest of its start and the rally points, and lands.":
     "Jedes UAV bleibt eine Weile, wo es ist, fliegt dann geradeaus zum nächsten von Start und Sammelpunkten und landet.",
   "east": "Osten",
-  "Empty: as in the fleet, in grey. Without a battery its energy is not planned.":
-    "Leer: wie in der Flotte, in Grau. Ohne Akku wird seine Energie nicht geplant.",
-  "Empty: as its type, in grey. Without a battery its energy is not planned.":
-    "Leer: wie sein Typ, in Grau. Ohne Akku wird seine Energie nicht geplant.",
+  "Blank: value of the fleet (grey). Without a battery, energy is not calculated.":
+    "Leer: Wert der Flotte (grau). Ohne Akku wird keine Energie berechnet.",
+  "Blank: value of the type (grey). Without a battery, energy is not calculated.":
+    "Leer: Wert des Typs (grau). Ohne Akku wird keine Energie berechnet.",
   "end": "Ende",
   "Energy": "Energie",
   "{energy} are missing with the reserve kept": "es fehlen {energy}, wenn die Reserve bleibt",

@@ -59,9 +59,7 @@ async function copyAddress(mission) {
 
 /** @param {Mission} mission */
 async function changeAlertLimits({ id, name }) {
-  const hint = t(
-    "For this mission alone, also while it flies. Empty: as the type of each UAV says, else the usual, in grey.",
-  );
+  const hint = t("For this mission only, also in flight. Blank: value of each UAV's type, else default (grey).");
   try {
     await openAlertLimits({
       address: `/missions/${id}/alert-limits`,

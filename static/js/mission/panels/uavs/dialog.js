@@ -23,7 +23,7 @@ export function changeDialog({ uav, submit, ...how }) {
   const limits = createLimits(uav);
   fields.showUsual(uav.usual ?? usualOf(null));
   showDialog(fields, how, {
-    ownHint: t("Empty: as in the fleet, in grey. Without a battery its energy is not planned."),
+    ownHint: t("Blank: value of the fleet (grey). Without a battery, energy is not calculated."),
     rest: h(
       "div",
       {},
@@ -53,7 +53,7 @@ export function newDialog({ uav, submit, ...how }) {
   fields.showUsual(uav.usual ?? usualOf(null));
   const { showRange } = showDialog(fields, how, {
     others: { type },
-    ownHint: t("Empty: as its type, in grey. Without a battery its energy is not planned."),
+    ownHint: t("Blank: value of the type (grey). Without a battery, energy is not calculated."),
     head: [h("div", { class: "pair" }, field(t("Name"), fields.name), field(t("Base"), fields.base_name)), ofType],
     submit: () => submit({ ...fields.read(), type: type.value ? Number(type.value) : null }),
   });
