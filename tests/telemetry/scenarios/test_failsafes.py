@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from missions.models import MissionState
+from missions.models import Mission, MissionState
 from telemetry.models import Alert, TelemetryRecord, UavLink, UavWatch
 from telemetry.selectors.alert_words import alert_words
 from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for
@@ -52,6 +52,7 @@ def test_a_landing_without_gps_is_told(uav, mission, new_vehicle, tmp_path):
         wait_for(lambda: Alert.objects.filter(code="gps", uav=uav).exists(), "an alert of GPS")
         wait_for(lambda: not vehicle.is_armed, "that it is down", patience_s=FLIGHT_S)
         assert "is on the ground" in words_of("down-off-plan", uav)
+        wait_for(lambda: Mission.objects.filter(pk=mission.pk, state=MissionState.FAILED).exists(), "its mission has failed")
 
 
 def test_a_mission_is_flown_in_wind_and_a_copter_without_airspeed_measures_none(uav, mission, new_vehicle, tmp_path):
