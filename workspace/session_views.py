@@ -35,7 +35,7 @@ class ThisSession(APIView):
 
     @extend_schema(
         operation_id="keep_session",
-        summary="Say that somebody is there",
+        summary="Extend session",
         description="The session is not idle any more; it still ends a fixed time after signing in.",
         request=None,
         responses=SessionTimesSerializer,
@@ -57,7 +57,7 @@ class Proof(APIView):
 
     @extend_schema(
         operation_id="prove_oneself",
-        summary="Say one's own password again",
+        summary="Re-authenticate",
         description="For 15 min this session may then make tokens and end sessions. Five tries in a quarter of an hour.",
         request=ProofSerializer,
         responses={204: OpenApiResponse(description="It is the password.")},

@@ -98,7 +98,7 @@ def test_a_stretch_between_two_towers_is_taken_tower_by_tower_or_flown_along(vis
     clicks_both()
     page.get_by_role("button", name=re.compile("Fly along")).click()
     expect(rows(page)).to_have_count(1)
-    expect(rows(page)).to_contain_text(re.compile(r"stretch, \d+\sm"))
+    expect(rows(page)).to_contain_text(re.compile(r"tower to tower, \d+\sm"))
     page.keyboard.press("Escape")
     expect(page.get_by_role("radio", name="Point")).to_be_checked()
 

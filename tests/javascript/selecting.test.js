@@ -145,7 +145,7 @@ test("a stretch is another target than its line and says how long it is", () => 
   });
   assert.notEqual(target.key, line.key);
   assert.equal(target.key, keyOf({ asset: 9, stretch }));
-  assert.equal(target.detail, "stretch, 7.2\u00a0km");
+  assert.equal(target.detail, "tower to tower, 7.2\u00a0km");
   assert.deepEqual(requestOf(withTargets(EMPTY, [target])).targets, [{ asset: 9, stretch }]);
 });
 

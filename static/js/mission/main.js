@@ -243,7 +243,7 @@ function planningKeys() {
     { keys: ["b"], words: t("Pick by box"), act: choose("box") },
     { keys: ["o"], words: t("Draw round what is picked"), act: choose("lasso") },
     { keys: ["w"], words: t("Pick whole lines"), act: choose("line") },
-    { keys: ["t"], words: t("Pick a stretch between two towers"), act: choose("stretch") },
+    { keys: ["t"], words: t("Pick tower to tower"), act: choose("stretch") },
     { keys: ["i"], words: t("Paste a list"), act: () => void askForList(actions) },
   ];
 }

@@ -71,7 +71,7 @@ export function targetOfRow({ id, kind, centre, ...properties }) {
 export function extentOf(kind, length_m, position = null, stretch = null) {
   const whole = kind === "line" ? t("whole line") : kind === "railway" ? t("section") : undefined;
   if (!whole || position) return whole && t("one point");
-  const words = stretch ? t("stretch") : whole;
+  const words = stretch ? t("tower to tower") : whole;
   return length_m ? `${words}, ${lengthText(length_m)}` : words;
 }
 

@@ -125,12 +125,11 @@ class SetsPanel {
     const { subscription } = set;
     /** @param {string} kind @param {() => unknown} act @param {...Child} words */
     const button = (kind, act, ...words) => h("button", { type: "button", class: kind, onclick: act }, words);
-    const versions = countText(set.version_count, "version");
     return [
       button("button", () => this.#showZones(set), t("Show zones")),
       this.#canCurate &&
         set.version_count > 0 &&
-        button("button", () => this.#askVersion(set), icon("history", "small"), versions),
+        button("button", () => this.#askVersion(set), icon("history", "small"), t("Version history")),
       this.#canCurate &&
         subscription && [
           button("button", () => this.#fetchNow(subscription), icon("refresh-cw", "small"), t("Fetch now")),

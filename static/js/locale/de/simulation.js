@@ -56,4 +56,5 @@ export default {
     "{count} simuliertes UAV mit {speed}× Echtzeit.",
     "{count} simulierte UAVs mit {speed}× Echtzeit.",
   ],
+  "Wind speed|panel": "Windstärke",
 };

@@ -105,7 +105,7 @@ export default {
   "Your clock shows UTC now.": "Ihre Uhr zeigt jetzt UTC.",
   "Zone set": "Satz",
   "Zones": "Zonen",
-  "{count} version": ["{count} Fassung", "{count} Fassungen"],
+  "Version history": "Versionsverlauf",
   "{count} zone by hand": ["{count} Zone von Hand", "{count} Zonen von Hand"],
   "{days} all day": "{days} ganztägig",
   "{days} {from} to {to}": "{days} {from} bis {to}",

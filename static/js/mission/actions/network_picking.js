@@ -63,7 +63,7 @@ function createLinePicking({ failed }, addMany) {
     try {
       return /** @type {Answer<SupportsOutput>} */ (await get(`/assets/stretch?from=${from}&to=${to}`)).data;
     } catch (error) {
-      failed(t("There is no stretch between the two."), error, [], { untilChanged: true });
+      failed(t("No connection between the two towers."), error, [], { untilChanged: true });
       return null;
     }
   }

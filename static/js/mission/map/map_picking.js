@@ -83,7 +83,7 @@ export function toolWords({ tool, stretchFrom }) {
     line: t("Click a line, or a section of a railway: it is flown end to end."),
     stretch: stretchFrom
       ? t("From {name}. Now click the last tower.", { name: stretchFrom.label })
-      : t("Click the first tower of the stretch."),
+      : t("Click the first tower."),
   };
   return words[tool];
 }

@@ -300,7 +300,7 @@ class ChangesInFlight {
       h(
         "div",
         { class: "simulation-three" },
-        field(t("Wind speed"), wind, SPEED_UNIT.unit),
+        field(t("Wind speed|panel"), wind, SPEED_UNIT.unit),
         field(t("From"), from, "°"),
         field(t("Gusts"), gusts, SPEED_UNIT.unit),
       ),
