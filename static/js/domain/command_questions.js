@@ -94,16 +94,16 @@ const ASKED = {
   }),
   arm: ({ name }) => ({
     title: t("Arm {name}?", { name }),
-    lines: [t("Its rotors may turn from then on. Make sure that nobody stands beside it.")],
+    lines: [t("Its rotors may start at once. Keep people clear of it.")],
     act: t("Arm {name}", { name }),
   }),
   "take-off": ({ name }) => ({
     title: t("Let {name} take off?", { name }),
-    lines: [t("It rises straight up from where it stands, and stays there until it is told otherwise.")],
+    lines: [t("It climbs straight up and hovers until the next command.")],
     act: t("Let {name} take off", { name }),
     field: {
       name: "altitude_relative_m",
-      label: t("Height above the place of take-off [m]"),
+      label: t("Height above take-off [m]"),
       type: "number",
       value: 10,
       min: 1,
@@ -115,7 +115,7 @@ const ASKED = {
   }),
   resume: ({ name }) => ({
     title: t("Resume the flight of {name}?", { name }),
-    lines: [t("It flies on along its route from where it is.")],
+    lines: [t("It continues its route from its present position.")],
     act: t("Resume {name}", { name }),
     isBack: true,
   }),
@@ -129,10 +129,7 @@ const ASKED = {
   }),
   return: ({ name, returns }) => ({
     title: t("Return {name}?", { name }),
-    lines: [
-      t("It flies back to where it took off and lands there. Targets that it has not reached stay undone."),
-      ...returnLines(returns),
-    ],
+    lines: [t("It returns to its take-off place and lands. Its remaining targets stay open."), ...returnLines(returns)],
     keep: t("Keep flying"),
     act: returns && saferReturn(returns) ? t("Return straight now") : t("Return {name}", { name }),
     safer: returns && saferReturn(returns),
@@ -141,10 +138,7 @@ const ASKED = {
   }),
   land: ({ name, landing }) => ({
     title: t("Land {name} here?", { name }),
-    lines: [
-      t("It comes straight down where it is now. Targets that it has not reached stay undone."),
-      ...landingLines(landing),
-    ],
+    lines: [t("It lands where it is now. Its remaining targets stay open."), ...landingLines(landing)],
     keep: t("Keep flying"),
     act: t("Land {name} here", { name }),
     isDanger: true,
@@ -154,9 +148,7 @@ const ASKED = {
     title: t("Abort the flight of {name}?", { name }),
     lines: [
       ABORT_DOES,
-      t(
-        "Whatever else it was told no longer counts. Targets that it has not reached stay undone; the other UAVs go on.",
-      ),
+      t("Earlier commands are cancelled. Its remaining targets stay open; the other UAVs continue."),
       ...returnLines(returns),
     ],
     keep: t("Keep flying"),
@@ -193,12 +185,7 @@ const ASKED = {
  */
 export const outOfSlotQuestion = (name, why) => ({
   title: t("Start {name} outside its slot?", { name }),
-  lines: [
-    why,
-    t(
-      "Plans keep UAVs apart by their times. Started now, it is up to you to keep them apart: hold one, or have one return.",
-    ),
-  ],
+  lines: [why, t("The plan separates UAVs by time. Started now, you have to separate them: hold one, or return one.")],
   keep: t("Wait"),
   act: t("Start {name} all the same", { name }),
   isDanger: true,
@@ -216,7 +203,7 @@ export const abortQuestion = ({ name, isActive, uavs }) => {
     title: t("Abort “{name}”?", { name }),
     lines: [
       t(
-        "{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.",
+        "Sent to {names} ahead of all other commands. Remaining targets stay open, and the mission cannot be resumed.",
         { names: uavs.map((uav) => uav.name).join(", ") },
       ),
       ABORT_DOES,

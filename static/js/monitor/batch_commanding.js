@@ -28,7 +28,7 @@ const ALL = {
   },
   return: {
     title: (uavs) => tn(uavs, "Return {count} UAV?", "Return all {count} UAVs?"),
-    lines: [t("Each flies back to where it took off and lands there. Targets that are not reached stay undone.")],
+    lines: [t("Each returns to its take-off place and lands. Remaining targets stay open.")],
     act: t("Return all"),
   },
 };

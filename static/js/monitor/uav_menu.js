@@ -76,7 +76,7 @@ async function send(mission, { name, place }, flight, opener) {
         : t("Upload its route to {name}?", { name }),
     lines: [
       t("The upload is verified against the approved mission. The UAV does not take off."),
-      t("A UAV that is not connected gets its route when it is, within the hour."),
+      t("A UAV that is not connected receives its route on contact, within the hour."),
     ],
     act: t("Upload to {name}", { name }),
     isBack: true,

@@ -25,7 +25,7 @@ const DONE_SHOWN_AFTER_MS = 30_000; // where nothing is left to be done about it
 const ENDS = {
   done: t("All starts were given."),
   stopped: t("Stopped. No further UAV is started."),
-  commanded: t("Stopped: a UAV of the mission was told to hold, return, land or abort."),
+  commanded: t("Stopped: a UAV of the mission was commanded to hold, return, land or abort."),
   "mission-over": t("Stopped: the mission is over."),
   interrupted: t("Stopped: the server could not look after it for a minute."),
 };

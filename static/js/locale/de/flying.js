@@ -71,30 +71,30 @@ export default {
     "Es hebt ab und fliegt seine freigegebene Route: {length}, {time}.",
   "Start {name}": "{name} starten",
   "Arm {name}?": "{name} scharf schalten?",
-  "Its rotors may turn from then on. Make sure that nobody stands beside it.":
-    "Von da an können sich die Rotoren drehen. Vergewissern Sie sich, dass niemand daneben steht.",
+  "Its rotors may start at once. Keep people clear of it.":
+    "Seine Rotoren können sofort anlaufen. Halten Sie Personen fern.",
   "Arm {name}": "{name} scharf schalten",
   "Let {name} take off?": "{name} abheben lassen?",
-  "It rises straight up from where it stands, and stays there until it is told otherwise.":
-    "Es steigt senkrecht auf und bleibt dort, bis es etwas anderes hört.",
+  "It climbs straight up and hovers until the next command.":
+    "Es steigt senkrecht auf und schwebt bis zum nächsten Befehl.",
   "Let {name} take off": "{name} abheben lassen",
-  "Height above the place of take-off [m]": "Höhe über dem Startplatz [m]",
+  "Height above take-off [m]": "Höhe über Startplatz [m]",
   "Keep flying": "Weiterfliegen",
   "Start {name} outside its slot?": "{name} außerhalb seines Zeitfensters starten?",
   Wait: "Warten",
   "Start {name} all the same": "{name} trotzdem starten",
   "Resume the flight of {name}?": "Den Flug von {name} fortsetzen?",
-  "It flies on along its route from where it is.": "Es fliegt seine Route weiter, von da, wo es ist.",
+  "It continues its route from its present position.": "Es setzt seine Route von seiner jetzigen Position fort.",
   "Resume {name}": "{name} fortsetzen",
   "Hold {name}?": "{name} anhalten?",
   "Hold {name}": "{name} anhalten",
   "Return {name}?": "{name} zurückholen?",
-  "It flies back to where it took off and lands there. Targets that it has not reached stay undone.":
-    "Es fliegt dahin zurück, wo es abgehoben hat, und landet dort. Ziele, die es nicht erreicht hat, bleiben offen.",
+  "It returns to its take-off place and lands. Its remaining targets stay open.":
+    "Es kehrt zu seinem Startplatz zurück und landet. Seine übrigen Ziele bleiben offen.",
   "Return {name}": "{name} zurückholen",
   "Land {name} here?": "{name} hier landen?",
-  "It comes straight down where it is now. Targets that it has not reached stay undone.":
-    "Es kommt da, wo es jetzt ist, senkrecht herunter. Ziele, die es nicht erreicht hat, bleiben offen.",
+  "It lands where it is now. Its remaining targets stay open.":
+    "Es landet, wo es jetzt ist. Seine übrigen Ziele bleiben offen.",
   "Return: holds until {time}": "Zurück: hält bis {time}",
   "Return straight now": "Jetzt geradeaus zurück",
   "Set return height": "Rückkehrhöhe setzen",
@@ -131,8 +131,8 @@ export default {
   "Set return height to {height}": "Rückkehrhöhe auf {height} setzen",
   "Land {name} here": "{name} hier landen",
   "Abort the flight of {name}?": "Den Flug von {name} abbrechen?",
-  "Whatever else it was told no longer counts. Targets that it has not reached stay undone; the other UAVs go on.":
-    "Was ihm sonst gesagt wurde, gilt nicht mehr. Ziele, die es nicht erreicht hat, bleiben offen; die anderen UAVs fliegen weiter.",
+  "Earlier commands are cancelled. Its remaining targets stay open; the other UAVs continue.":
+    "Frühere Befehle entfallen. Seine übrigen Ziele bleiben offen; die anderen UAVs fliegen weiter.",
   "Abort {name}": "{name} abbrechen",
   "Change the speed of {name}?": "Das Tempo von {name} ändern?",
   "Over ground, until its route says otherwise. Planned times no longer hold.":
@@ -156,12 +156,12 @@ export default {
   "Keep it approved": "Freigegeben lassen",
   "Revoke": "Widerrufen",
   "Not revoked.": "Nicht widerrufen.",
-  "A UAV that is not connected gets its route when it is, within the hour.":
-    "Ein UAV, das nicht verbunden ist, bekommt seine Route, sobald es das ist, innerhalb einer Stunde.",
+  "A UAV that is not connected receives its route on contact, within the hour.":
+    "Ein nicht verbundenes UAV erhält seine Route beim nächsten Kontakt, innerhalb einer Stunde.",
   "Not sent.": "Nicht gesendet.",
   "Abort “{name}”?": "„{name}“ abbrechen?",
-  "{names} are told before anything else that is waiting. Targets that are not reached stay undone, and the mission cannot be taken up again.":
-    "{names} hören das vor allem anderen, was wartet. Ziele, die nicht erreicht sind, bleiben offen, und die Mission kann nicht wieder aufgenommen werden.",
+  "Sent to {names} ahead of all other commands. Remaining targets stay open, and the mission cannot be resumed.":
+    "Wird vor allen anderen Befehlen an {names} gesendet. Übrige Ziele bleiben offen, und die Mission kann nicht fortgesetzt werden.",
   "Abort the mission": "Mission abbrechen",
   "Not aborted.": "Nicht abgebrochen.",
   "{act}: not sent to {name}.": "{act}: nicht an {name} gesendet.",
@@ -204,8 +204,8 @@ export default {
   ],
   "It stops where it is and waits for Resume, as long as its battery lasts.":
     "Es hält an, wo es ist, und wartet auf „Fortsetzen“, solange sein Akku reicht.",
-  "Plans keep UAVs apart by their times. Started now, it is up to you to keep them apart: hold one, or have one return.":
-    "Pläne halten UAVs durch ihre Zeiten auseinander. Startet es jetzt, müssen Sie sie auseinanderhalten: eines anhalten oder zurückholen.",
+  "The plan separates UAVs by time. Started now, you have to separate them: hold one, or return one.":
+    "Der Plan staffelt UAVs zeitlich. Startet es jetzt, müssen Sie staffeln: eines anhalten oder zurückholen.",
   "Fly: {act}": "Fliegen: {act}",
   "Upload flight {flight}": "Flug {flight} hochladen",
   "Upload again": "Erneut hochladen",

@@ -12,8 +12,8 @@ export default {
   "Its flight failed.": "Sein Flug ist gescheitert.",
   "The UAV went past it at a distance.": "Das UAV ist in einem Abstand daran vorbeigeflogen.",
   "The UAV did not stay long enough.": "Das UAV ist nicht lange genug geblieben.",
-  "Each flies back to where it took off and lands there. Targets that are not reached stay undone.":
-    "Jedes fliegt zu seinem Startplatz zurück und landet dort. Ziele, die nicht erreicht sind, bleiben unerledigt.",
+  "Each returns to its take-off place and lands. Remaining targets stay open.":
+    "Jedes kehrt zu seinem Startplatz zurück und landet. Übrige Ziele bleiben offen.",
   "Return all": "Alle zurück",
   "Battery: too low to hold longer": "Akku: zu wenig, um länger zu halten",
   "In the air: it returns and lands where it took off; an autopilot that refuses to return lands where it is. On the ground: its motors are switched off.":
@@ -229,7 +229,6 @@ export default {
   "Worst, {time}: {message}": "Am schlimmsten, {time}: {message}",
   "{act} to {name}: not known to be sent. {why}": "{act} an {name}: nicht sicher gesendet. {why}",
   "Sending…": "Wird gesendet…",
-  "Give up": "Verwerfen",
   "Expired {time}.": "Abgelaufen {time}.",
   "No data on this device: it may have expired.": "Keine Daten auf diesem Gerät: Das Angebot kann abgelaufen sein.",
   "no GPS fix": "kein GPS-Fix",
@@ -246,8 +245,8 @@ export default {
   "Each stops where it is and waits for Resume, as long as its battery lasts.":
     "Jedes hält an, wo es ist, und wartet auf „Fortsetzen“, solange sein Akku reicht.",
   "Hold all": "Alle anhalten",
-  "Stopped: a UAV of the mission was told to hold, return, land or abort.":
-    "Angehalten: Ein UAV der Mission bekam Anhalten, Rückkehr, Landen oder Abbruch befohlen.",
+  "Stopped: a UAV of the mission was commanded to hold, return, land or abort.":
+    "Angehalten: Ein UAV der Mission erhielt Anhalten, Rückkehr, Landen oder Abbruch.",
   "Not started: {names}.": "Nicht gestartet: {names}.",
   "Stop, or any Hold, Return, Land or Abort of this mission ends it: no further UAV is started.":
     "„Anhalten“ oder jedes Halten, jede Rückkehr, Landung oder jeder Abbruch in dieser Mission beendet es: Kein weiteres UAV wird gestartet.",

@@ -313,7 +313,7 @@ class Card {
         icon("cloud-off", "small"),
         h("span", {}, h("strong", {}, words)),
         button(unsent.isBusy ? t("Sending…") : t("Try again"), () => commanding?.tryAgain(id)),
-        button(t("Give up"), () => commanding?.giveUp(id)),
+        button(t("Discard"), () => commanding?.giveUp(id)),
       ];
     });
   }
