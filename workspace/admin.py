@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import django.contrib.auth.admin  # noqa: F401 - registers groups, also where this module is the first to be loaded
 from django.contrib import admin, messages
 from django.contrib.auth.models import Group
 from django.db import transaction
