@@ -156,7 +156,7 @@ def test_the_other_plan_is_flown_to_its_end_and_told_by_its_record(visitor: Visi
     pilot.close()
     wait_for_map(watcher)
     expect(watcher.locator("#mission-state")).to_have_text("Completed", timeout=LANDS_WITHIN_MS)
-    expect(card(watcher, "Ruff").locator(".letter")).to_have_text("A")
+    expect(card(watcher, "Ruff").locator(".card-head .letter")).to_have_text("A")
     expect(watcher.locator(".alert")).to_have_count(0)
     in_both_themes(watcher, picture, "live-over")
     watcher.goto(watcher.url.replace("/fly", "/report"))
