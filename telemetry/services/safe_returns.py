@@ -86,7 +86,7 @@ def battery_at_landing(heard: Heard) -> BatteryAtLanding:
     if heard.battery_percent is None:
         return BatteryAtLanding(unknown=_("%(uav)s reports no battery percentage.") % values)
     if forecast is None or heard.battery_age_s is None or heard.battery_age_s > MAX_BATTERY_AGE_S:
-        words = _("Return energy of %(uav)s is calculated only in mission with telemetry.")
+        words = _("The return energy of %(uav)s is calculated during a mission with telemetry only.")
         return BatteryAtLanding(left_percent=heard.battery_percent, unknown=words % values)
     left, home, reserve = forecast["left_percent"], forecast["home_percent"], forecast["reserve_percent"]
     if home is None:
