@@ -17,7 +17,7 @@ CONDITIONS = {
     "as-planned": gettext_noop("As planned"),
     "strong-wind": gettext_noop("Strong wind"),
     "weak-battery": gettext_noop("Weak battery"),
-    "own": gettext_noop("Own figures"),
+    "own": gettext_noop("Custom conditions"),
 }
 LIMITS = {
     "waypoint_warn_m": gettext_noop("a waypoint is passed within"),

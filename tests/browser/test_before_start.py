@@ -32,7 +32,7 @@ def approved(visitor: Visitor, site: Site) -> Iterator[Approved]:
     places = [[region.east[0] + 0.012 * column, region.east[1]] for column in range(2)]
     uavs = [
         writes(page, "POST", "/uavs", {"name": name, "position": at, "is_simulated": True, "link": "http"})["id"]
-        for name, at in zip(("Petrel", "Gannet"), places, strict=True)
+        for name, at in zip(("Bunting", "Pipit"), places, strict=True)
     ]
     tokens = [writes(page, "POST", f"/uavs/{uav}/credentials", {"kind": "link-token"})["secret"] for uav in uavs]
     body: dict[str, Any] = {

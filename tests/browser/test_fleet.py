@@ -87,7 +87,7 @@ def test_a_type_a_base_and_a_uav_are_added_and_the_uav_has_what_they_say(visitor
     page.get_by_label("Name", exact=True).fill("Harrier 1")
     page.get_by_label("Type", exact=True).last.select_option("Harrier")
     page.get_by_label("Base", exact=True).last.select_option("East yard")
-    expect(page.get_by_text("Empty: 55.0 km and 16 m/s, as its type.")).to_be_visible()
+    expect(page.get_by_text("Blank: 55.0 km and 16 m/s of the type.")).to_be_visible()
     for field, of_type in (
         ("Battery (overrides the type)", "400"),
         ("Mass (overrides the type)", "6"),

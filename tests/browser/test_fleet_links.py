@@ -83,7 +83,7 @@ def test_only_an_administrator_says_that_a_uav_is_simulated_or_needs_no_signatur
 def test_an_unknown_vehicle_is_adopted_and_another_ignored(site: Site, visitor: Visitor, picture: Picture) -> None:
     page = visitor.signs_in("ada")
     fleet(page)
-    expect(unknown(page).get_by_text("None. A vehicle that speaks to a gateway")).to_be_visible()
+    expect(unknown(page).get_by_text("None. Vehicles with an unknown system ID")).to_be_visible()
     site.does(HEARD)
     fleet(page)
     expect(unknown(page).get_by_text("System 41")).to_be_visible()

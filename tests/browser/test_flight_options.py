@@ -94,7 +94,7 @@ def test_the_bar_of_legal_times_takes_a_departure_from_keys_and_from_a_click(
         page.get_by_role("button", name="Panel height").click()
     page.get_by_role("button", name="When are the zones open?").click()
     dialog = page.get_by_role("dialog", name="When are the zones open?")
-    expect(dialog).to_contain_text("Legal at any time of the next 48 hours.")
+    expect(dialog).to_contain_text("Zones open throughout the next 48 hours.")
     slider = dialog.get_by_role("slider", name="Departure")
     expect(slider).to_have_attribute("aria-valuetext", "any time")
     slider.focus()
@@ -167,7 +167,7 @@ def test_a_route_is_changed_by_hand_on_the_map_and_by_keys_undone_and_kept(visit
     expect(panel).to_contain_text("2 waypoints are changed. The whole route is clear.")
     in_both_themes(page, picture, "plan-by-hand")
     assert faults(page) == []
-    panel.get_by_role("button", name="Keep").click()
+    panel.get_by_role("button", name="Apply").click()
     expect(panel).to_be_hidden()
     expect(route(page, "Kite")).to_contain_text("changed by hand")
     kept = mission_of(page)["plan"]["routes"][1]

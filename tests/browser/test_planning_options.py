@@ -17,7 +17,7 @@ pytestmark = pytest.mark.browser
 
 Picture = Callable[[Page, str], None]
 # Proven where its routes lose nothing to turns; else the gap, which contains them.
-IS_GOOD = re.compile(r"Proven soonest\.|At most [\d.]+\s% above what is possible\.")
+IS_GOOD = re.compile(r"Proven soonest\.|Within [\d.]+\s% of the best possible\.")
 PHONE: dict[str, Any] = {"theme": "dark", "size": (390, 844), "touch": True}
 
 
@@ -190,7 +190,7 @@ def test_a_large_plan_is_seen_while_it_is_made_comes_back_after_a_reload_and_can
     expect(so_far).to_be_visible()
     page.get_by_role("button", name="Stop, keep the best").click()
     expect(page.get_by_text("Stopped. The best plan so far is kept.")).to_be_visible()
-    expect(page.locator("#plan-quality")).to_contain_text(re.compile(r"At most [\d.]+\s% above what is possible\."))
+    expect(page.locator("#plan-quality")).to_contain_text(re.compile(r"Within [\d.]+\s% of the best possible\."))
     page.get_by_role("button", name="Plan again P").click()
     page.get_by_role("button", name="Cancel").click()
     expect(page.get_by_text("Planning stopped. Nothing was changed.")).to_be_visible()

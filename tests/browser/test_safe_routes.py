@@ -77,7 +77,7 @@ def test_a_route_goes_round_a_timed_zone_at_its_times_alone_and_the_page_says_so
     in_both_themes(page, picture, "plan-zone-asleep")
     page.get_by_role("button", name="When are the zones open?").click()
     dialog = page.get_by_role("dialog", name="When are the zones open?")
-    expect(dialog).to_contain_text(re.compile("Legal for .* of the next 48 hours. Zones count 5\xa0min before and after their times"))
+    expect(dialog).to_contain_text(re.compile("Zones open for .* of the next 48 hours. Zones count 5\xa0min before and after their times"))
     expect(dialog).to_contain_text(f"{DAY.day} {DAY:%B}, 14:00 to 17:00")
     expect(dialog).to_contain_text(re.compile("Heron, (start to A1, A1 to A2|A1 to A2, A2 to A3)"))
     in_both_themes(page, picture, "plan-legal-zone")

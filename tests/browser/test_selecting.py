@@ -163,7 +163,7 @@ def test_a_pasted_list_says_what_is_found_what_is_unclear_and_what_is_unknown(
     words = [feature["properties"]["osm"] for feature in towers]
     dialog.get_by_label("References, names or OSM ids").fill("\n".join([*words, name, "nowhere 7"]))
     dialog.get_by_role("button", name="Look them up").click()
-    expect(page.get_by_role("heading", name="3 found, 1 means several things, 1 is not known.")).to_be_focused()
+    expect(page.get_by_role("heading", name="3 found, 1 means several things, 1 not found.")).to_be_focused()
     dialog = page.get_by_role("dialog")
     expect(dialog.get_by_role("region", name="Not known")).to_contain_text("nowhere 7")
     expect(dialog.get_by_role("button", name="Add 3 targets")).to_be_enabled()

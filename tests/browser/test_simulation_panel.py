@@ -53,10 +53,10 @@ def test_simulated_uavs_are_started_changed_and_ended_one_by_one(visitor: Visito
     expect(panel.locator("#simulation-state")).to_contain_text("start them here")
     picture(page, "simulation-before")
     flies_in_simulation(page, "5× real time")
-    expect(panel.locator("#simulation-state")).to_have_text("2 simulated UAVs at 5 times real time.")
+    expect(panel.locator("#simulation-state")).to_have_text("2 simulated UAVs at 5× real time.")
     expect(panel.locator(".simulation-uavs li")).to_have_count(2)
     panel.get_by_role("combobox", name="Speed").select_option(label="2× real time")
-    expect(panel.locator("#simulation-state")).to_contain_text("at 2 times real time", timeout=SOON_MS)
+    expect(panel.locator("#simulation-state")).to_contain_text("at 2× real time", timeout=SOON_MS)
 
     panel.get_by_label("Wind and faults of").select_option(label="Ruff")
     panel.get_by_role("spinbutton", name="Wind speed").fill("9")

@@ -256,7 +256,7 @@ def test_operators_look_and_change_nothing(visitor: Visitor, picture: Picture) -
     page = opens(visitor, "/zones", "opal", theme="dark")
     expect(page.get_by_role("button", name="New zone")).to_be_hidden()
     page.locator(".record-row").first.click()
-    expect(page.locator("#record-show")).to_contain_text("Facts as the source states them")
+    expect(page.locator("#record-show")).to_contain_text("Data as published by its source")
     expect(page.get_by_role("button", name="Edit", exact=True)).to_have_count(0)
     page.set_viewport_size({"width": PHONE[0], "height": PHONE[1]})
     pictures(page, picture, "zones-phone")
