@@ -172,7 +172,7 @@ export default {
   "{names} and {count} more": "{names} und {count} weitere",
   "Plan a follow-up": "Folgemission planen",
   "Copy position": "Position kopieren",
-  "Navigate to it": "Dorthin navigieren",
+  "Navigate": "Navigieren",
   "Position copied (latitude, longitude): {position}": "Position kopiert (Breite, Länge): {position}",
   "Latitude, longitude: {position}": "Breite, Länge: {position}",
   "The mission then stays open: close it once all UAVs are down.":

@@ -130,7 +130,7 @@ function positionActs(alert) {
       { type: "button", class: "button small quiet", onclick: () => void copyPosition(`${latitude}, ${longitude}`) },
       t("Copy position"),
     ),
-    h("a", { class: "button small quiet", href: address, target: "_blank", rel: "noreferrer" }, t("Navigate to it")),
+    h("a", { class: "button small quiet", href: address, target: "_blank", rel: "noreferrer" }, t("Navigate")),
   ];
 }
 
