@@ -2,6 +2,8 @@
 
 import math
 import re
+import time
+from collections.abc import Callable
 from typing import Any
 
 from playwright.sync_api import Page, expect
@@ -13,7 +15,7 @@ from tests.browser.test_fleet import writes
 
 APART_M, FROM_M = (150.0, 900.0), 250.0  # of the two towers; of a UAV from the first one
 FLIGHT_MS = 240_000  # a machine that has much else to do flies slower than it was told
-SOON_MS = 60_000
+SOON_MS, SOON_S = 60_000, 90.0
 DEGREE_M = 111_195.0
 CONFLICT = 409
 
@@ -48,6 +50,21 @@ def simulated_uavs(page: Page, *names: str, at: list[float], **more: Any) -> lis
         )["id"]
         for number, name in enumerate(names)
     ]
+
+
+def has_nothing_open(page: Page, uav: int) -> bool:
+    newest = asks(page, f"/uavs/{uav}/commands?limit=20")["results"]
+    return all(one["state"] not in {"queued", "sent", "acknowledged"} for one in newest)
+
+
+def until(page: Page, fact: Callable[[], Any], words: str, within_s: float = SOON_S) -> Any:
+    """What is found, once it is."""
+    until_s = time.monotonic() + within_s
+    while time.monotonic() < until_s:
+        if found := fact():
+            return found
+        page.wait_for_timeout(500)
+    raise AssertionError(f"not within {within_s:.0f} s: {words}")
 
 
 def retires(page: Page, uavs: list[int]) -> None:

@@ -12,9 +12,17 @@ from playwright.sync_api import Locator, Page, expect
 from tests.browser.conftest import Visitor
 from tests.browser.operator_map import asks
 from tests.browser.regions import region
-from tests.browser.simulated_mission import away_m, card, opened, retires, simulated_uavs, stores_simulated_mission
+from tests.browser.simulated_mission import (
+    away_m,
+    card,
+    has_nothing_open,
+    opened,
+    retires,
+    simulated_uavs,
+    stores_simulated_mission,
+    until,
+)
 from tests.browser.test_fleet import writes
-from tests.browser.test_flight_day import has_nothing_open, until
 
 pytestmark = [pytest.mark.browser, pytest.mark.long]  # UAVs fly in real time
 
@@ -36,14 +44,11 @@ class Steps:
     page: Page
     clicks: dict[str, int] = field(default_factory=dict)
 
-    def take(self, step: str, does: Callable[[], None], until: Locator, words: str | re.Pattern[str] | None = None) -> None:
+    def take(self, step: str, does: Callable[[], None], shown: Locator, words: str | re.Pattern[str]) -> None:
         began_s, before = time.monotonic(), self.page.evaluate("window.clicked")
         does()
         self.clicks[step] = self.page.evaluate("window.clicked") - before
-        if words is None:
-            expect(until).to_be_visible(timeout=FLIGHT_MS)
-        else:
-            expect(until).to_contain_text(words, timeout=FLIGHT_MS)
+        expect(shown).to_contain_text(words, timeout=FLIGHT_MS)
         print(f"{step}: {self.clicks[step]} clicks, {time.monotonic() - began_s:.0f} s")
 
 

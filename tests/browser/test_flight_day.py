@@ -2,7 +2,7 @@
 
 import re
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,13 +13,22 @@ from tests.browser.conftest import Site, Visitor
 from tests.browser.frozen_line import line_to
 from tests.browser.operator_map import asks
 from tests.browser.regions import region
-from tests.browser.simulated_mission import away_m, card, opened, retires, simulated_uavs, stores_simulated_mission
+from tests.browser.simulated_mission import (
+    away_m,
+    card,
+    has_nothing_open,
+    opened,
+    retires,
+    simulated_uavs,
+    stores_simulated_mission,
+    until,
+)
 from tests.browser.test_fleet import writes
 
 pytestmark = [pytest.mark.browser, pytest.mark.long]  # UAVs fly in real time
 
 FLEETS = {"South": ("Tern", "Kite", "Gull"), "North": ("Crow", "Rook", "Swift")}
-FLIES_MS, TOLD_S = 180_000, 90.0
+FLIES_MS = 180_000
 STALE_S = 6.0
 
 # By the page's own clock, which is this machine's: asking the page takes time of its own.
@@ -36,16 +45,6 @@ class Flown:
     mission: str
     uavs: dict[str, int]
     vehicles: dict[str, str]
-
-
-def until(page: Page, fact: Callable[[], Any], words: str, within_s: float = TOLD_S) -> Any:
-    """What is found, once it is."""
-    until_s = time.monotonic() + within_s
-    while time.monotonic() < until_s:
-        if found := fact():
-            return found
-        page.wait_for_timeout(500)
-    raise AssertionError(f"not within {within_s:.0f} s: {words}")
 
 
 def commands_of(page: Page, uav: int) -> list[str]:
@@ -77,11 +76,6 @@ def is_flown(page: Page, name: str, towers: list[dict[str, Any]]) -> Flown:
     for uav in uavs.values():
         until(page, lambda uav=uav: is_started(page, uav), f"{uav} is started", within_s=240.0)
     return Flown(mission, uavs, vehicles)
-
-
-def has_nothing_open(page: Page, uav: int) -> bool:
-    newest = asks(page, f"/uavs/{uav}/commands?limit=20")["results"]
-    return all(one["state"] not in {"queued", "sent", "acknowledged"} for one in newest)
 
 
 @pytest.fixture
