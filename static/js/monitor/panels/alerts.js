@@ -116,7 +116,7 @@ async function copyPosition(position) {
   toast(said);
 }
 
-/** To whoever fetches the UAV: copies its position, and hands it to a phone's navigation or to a map. @param {Alert} alert */
+/** For the crew that recovers the UAV: its position to copy, and a link to a phone's navigation or to a map. @param {Alert} alert */
 function positionActs(alert) {
   const position = downAt(alert);
   if (!position) return [];
@@ -295,7 +295,7 @@ class AlertPanel {
     const answers = this.#actButtons(alert);
     const known = this.#page.canFly && isUnanswered(alert) && acknowledgeButton(alert, answers.length > 0);
     const closing = this.#page.canFly && alert.code === "down-off-plan" && isOpenAlert(alert) && closeButton(alert);
-    const fetching = positionActs(alert);
+    const recovery = positionActs(alert);
     const past = historyWords(alert);
     const pick = () => uav && this.#acts.pick(uav.id);
     return h(
@@ -310,8 +310,8 @@ class AlertPanel {
         alert.is_simulated && [" ", simulatedMark()],
       ),
       past && h("p", { class: "caption" }, past),
-      (answers.length > 0 || known || closing || fetching.length > 0) &&
-        h("div", { class: "alert-acts" }, answers, known, closing, fetching),
+      (answers.length > 0 || known || closing || recovery.length > 0) &&
+        h("div", { class: "alert-acts" }, answers, known, closing, recovery),
     );
   }
 
