@@ -5,6 +5,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
+from typing import Any
 
 import pytest
 from playwright.sync_api import Locator, Page, expect
@@ -57,15 +58,23 @@ def names(request: pytest.FixtureRequest) -> tuple[str, ...]:
     return NAMES[: request.param]
 
 
+def nearest_m(tower: dict[str, Any], others: list[dict[str, Any]]) -> float:
+    return min(away_m(tower["geometry"]["coordinates"], other["geometry"]["coordinates"]) for other in others)
+
+
 @pytest.fixture
 def mission(visitor: Visitor, names: tuple[str, ...]) -> Iterator[str]:
     """Approved; its simulated UAVs are connected, as real ones are that were switched on."""
     page = visitor.signs_in("ada")
     towers = asks(page, f"/assets?kind=tower&bbox={region.spread_towers}&limit=200")["features"]
-    origin = towers[0]["geometry"]["coordinates"]
-    towers.sort(key=lambda tower: away_m(tower["geometry"]["coordinates"], origin))
-    uavs = simulated_uavs(page, *names, at=origin)
-    key = stores_simulated_mission(page, f"{len(names)} UAVs", uavs, towers[: TARGETS_EACH * len(names)])
+    uavs: list[int] = []
+    targets: list[dict[str, Any]] = []
+    for name in names:  # each beside towers of its own, so that no start waits for a route that crosses
+        own = max(towers, key=lambda tower: nearest_m(tower, targets)) if targets else towers[0]
+        towers.sort(key=lambda tower, own=own: away_m(tower["geometry"]["coordinates"], own["geometry"]["coordinates"]))
+        uavs += simulated_uavs(page, name, at=own["geometry"]["coordinates"])
+        targets += towers[:TARGETS_EACH]
+    key = stores_simulated_mission(page, f"{len(names)} UAVs", uavs, targets)
     writes(page, "POST", f"/missions/{key}/simulated-flights", {"speed": 1, "conditions": "calm"})
     page.context.close()
     yield key
