@@ -187,7 +187,7 @@ def test_an_unknown_battery_is_told_with_the_reason(user, uav):
     assert told(user, uav)[0]["battery"]["unknown"] == "Tern reports no battery percentage."
     flies(uav, EAST, battery_percent=60.0)
     battery = told(user, uav)[0]["battery"]
-    assert battery["left_percent"] == 60.0 and "calculated only in mission" in battery["unknown"]
+    assert battery["left_percent"] == 60.0 and "is calculated during a mission with telemetry only" in battery["unknown"]
 
 
 def test_returns_that_meet_are_told_of_each_other_and_kept_apart_by_heights(user):
