@@ -3,7 +3,15 @@
 from django.urls import include, path, register_converter
 
 from telemetry.views.alert_limits import MissionAlertLimits, UavTypeAlertLimits
-from telemetry.views.alerts import AlertAcknowledgement, AlertClosing, AlertCounts, AlertDetail, AlertNotes, Alerts
+from telemetry.views.alerts import (
+    AlertAcknowledgement,
+    AlertClosing,
+    AlertCounts,
+    AlertDetail,
+    AlertNotes,
+    Alerts,
+    EndedAlertsAcknowledgement,
+)
 from telemetry.views.estimates import MissionEstimates
 from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFile
 from telemetry.views.live import Live
@@ -41,6 +49,7 @@ urlpatterns = [
     path("unknown-vehicles/<int:vehicle_id>/adopt", UnknownVehicleAdoption.as_view(), name="api-unknown-vehicle-adoption"),
     path("unknown-vehicles/<int:vehicle_id>/ignore", UnknownVehicleIgnoring.as_view(), name="api-unknown-vehicle-ignoring"),
     path("alerts", Alerts.as_view(), name="api-alerts"),
+    path("alerts/acknowledge-ended", EndedAlertsAcknowledgement.as_view(), name="api-ended-alerts-acknowledgement"),
     path("alerts/counts", AlertCounts.as_view(), name="api-alert-counts"),
     path("alerts/<int:alert_id>", AlertDetail.as_view(), name="api-alert"),
     path("alerts/<int:alert_id>/acknowledge", AlertAcknowledgement.as_view(), name="api-alert-acknowledgement"),

@@ -7,8 +7,11 @@ from telemetry.alerting.acts import ACTS, KINDS, acts_of
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alert_words import alert_words
 from telemetry.selectors.alerts import WORST
+from telemetry.services.alerts import ACKNOWLEDGED, STILL_OPEN, UNKNOWN
 from workspace import strict_serializers as serializers
 from workspace.models import User
+
+MAX_ACKNOWLEDGED = 500  # alerts in one request
 
 
 class AlertActSerializer(serializers.Serializer):
@@ -78,6 +81,26 @@ class AlertDetailSerializer(AlertSerializer):
 
 class AcknowledgementInputSerializer(KnownFieldsSerializer):
     note = serializers.CharField(required=False, allow_blank=True, max_length=1_000, default="")
+    seen_level = serializers.ChoiceField(
+        choices=AlertLevel.choices, required=False, help_text="that was seen: an alert that has risen above it since is not acknowledged"
+    )
+
+
+class EndedAlertsInputSerializer(KnownFieldsSerializer):
+    alerts = serializers.ListField(
+        child=serializers.IntegerField(min_value=1), min_length=1, max_length=MAX_ACKNOWLEDGED, help_text="ids of those that were seen"
+    )
+
+
+class EndedAlertOutcomeSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    outcome = serializers.ChoiceField(
+        choices=[ACKNOWLEDGED, STILL_OPEN, UNKNOWN], help_text="still-open: left as it is, to be acknowledged singly"
+    )
+
+
+class EndedAlertsSerializer(serializers.Serializer):
+    results = EndedAlertOutcomeSerializer(many=True)
 
 
 class ClosingInputSerializer(KnownFieldsSerializer):

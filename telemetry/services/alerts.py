@@ -1,10 +1,11 @@
 """Alerts: opened with their cause, closed with it, acknowledged and noted by people."""
 
+from collections.abc import Collection
 from datetime import datetime
 from typing import Any
 
 from django.db import transaction
-from django.db.models import F
+from django.db.models import F, Q
 from django.utils import timezone
 
 from missions.models import Mission, Uav
@@ -13,7 +14,7 @@ from telemetry.alerting.finding import RANK
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alerts import waiting_to_be_seen
 from workspace.live import publish_live
-from workspace.models import User
+from workspace.models import Organisation, User
 from workspace.services import record_change
 
 SECOND_SENDER = "second-sender"
@@ -22,6 +23,15 @@ COPIES = (
     "The signed frames of %(uav)s come from two addresses, %(believed)s and %(other)s. Both are answered; one may belong to a listener."
 )
 OPENED, ROSE, ACKNOWLEDGED, CLOSED = "opened", "rose", "acknowledged", "closed"
+STILL_OPEN, UNKNOWN = "still-open", "unknown"  # beside ACKNOWLEDGED: what became of an alert that was to be acknowledged as ended
+
+
+class LevelRose(Exception):
+    """An alert that is to be acknowledged has risen above the level that was seen. `alert` is what it is by now."""
+
+    def __init__(self, alert: Alert) -> None:
+        super().__init__(f"{alert.code} rose to {alert.level}")
+        self.alert = alert
 
 
 def step(what: str, at: Any, **facts: Any) -> dict[str, Any]:
@@ -80,24 +90,53 @@ def close_alert(*, uav: Uav, code: str) -> bool:
     return True
 
 
-def acknowledge_alert(*, alert: Alert, actor: User, note: str = "") -> Alert:
+def acknowledge_alert(*, alert: Alert, actor: User, note: str = "", seen_level: str | None = None) -> Alert:
     """It goes on, and is silent. Acknowledged again it stays with who was first, and the note is added.
 
-    Alerts of the same cause that have ended before are acknowledged with it.
+    Alerts of the same cause that have ended before are acknowledged with it. Raises LevelRose where nobody has acknowledged the level
+    that it has, and that is above `seen_level`; None: whatever level it has.
     """
-    now = timezone.now()
     with transaction.atomic():
-        held = Alert.objects.select_for_update().get(pk=alert.pk)
-        if held.acknowledged_at is None:
-            _acknowledge(held, actor, now)
-            same = Alert.objects.filter(organisation=held.organisation_id, uav=held.uav_id, code=held.code, subject=held.subject)
-            for ended in same.filter(waiting_to_be_seen()).exclude(pk=held.pk).select_for_update().order_by("pk"):
-                _acknowledge(ended, actor, now)
-            after = {"code": held.code, "level": held.level, "uav": held.uav_id, "note": note}
-            _record(held, actor, "acknowledge", after)
+        held = _acknowledge_cause(alert, actor, note, seen_level)
         if note:
             note_alert(alert=held, actor=actor, text=note)
         _tell(held.organisation_id)
+    return held
+
+
+def acknowledge_ended(*, organisation: Organisation, alert_ids: Collection[int], actor: User) -> dict[int, str]:
+    """Acknowledge critical alerts that have ended, one by one; returns by id ACKNOWLEDGED, STILL_OPEN or UNKNOWN.
+
+    One that is open is left as it is. One that was acknowledged before counts as acknowledged.
+    """
+    found = Alert.objects.filter(organisation=organisation, pk__in=alert_ids).in_bulk()
+    outcomes = {}
+    for alert_id in sorted(alert_ids):
+        alert = found.get(alert_id)
+        if alert is None:
+            outcomes[alert_id] = UNKNOWN
+        elif alert.closed_at is None:
+            outcomes[alert_id] = STILL_OPEN
+        else:
+            with transaction.atomic():
+                _acknowledge_cause(alert, actor)
+            outcomes[alert_id] = ACKNOWLEDGED
+    publish_live(organisation.pk)
+    return outcomes
+
+
+def _acknowledge_cause(alert: Alert, actor: User, note: str = "", seen_level: str | None = None) -> Alert:
+    """The alert, and those of its cause that have ended before; all locked in one order. Raises LevelRose."""
+    same = Q(organisation=alert.organisation_id, uav=alert.uav_id, code=alert.code, subject=alert.subject) & waiting_to_be_seen()
+    rows = {row.pk: row for row in Alert.objects.select_for_update().filter(Q(pk=alert.pk) | same).order_by("pk")}
+    held, now = rows.pop(alert.pk), timezone.now()
+    if held.acknowledged_at is not None:
+        return held
+    if seen_level is not None and RANK[held.level] > RANK[seen_level]:
+        raise LevelRose(held)
+    for row in (held, *rows.values()):
+        _acknowledge(row, actor, now)
+    _record(held, actor, "acknowledge", {"code": held.code, "level": held.level, "uav": held.uav_id, "note": note})
     return held
 
 

@@ -13,7 +13,7 @@ from inspection.views.parameters import invalid
 from telemetry.models import Alert, AlertLevel
 from telemetry.selectors.alerts import AlertFilter, alerts_of_organisation, alerts_that_match, unanswered_counts
 from telemetry.serializers import alerts as shapes
-from telemetry.services.alerts import acknowledge_alert, note_alert
+from telemetry.services.alerts import LevelRose, acknowledge_alert, acknowledge_ended, note_alert
 from telemetry.services.down_alerts import ClosedByItself, close_down_alert
 from telemetry.views.log_filters import UAV, mission_of, time_of
 from workspace.errors import ApiProblem
@@ -72,15 +72,38 @@ class AlertAcknowledgement(APIView):
         summary="Say that somebody knows: it goes on, and is silent",
         description="Acknowledged again it stays with who was first. Raised to a higher level it has to be acknowledged anew.",
         request=shapes.AcknowledgementInputSerializer,
-        responses=shapes.AlertDetailSerializer,
+        responses={200: shapes.AlertDetailSerializer, 409: OpenApiResponse(description="It has risen above `seen_level`: `level_rose`.")},
     )
     @idempotent
     def post(self, request: SignedInRequest, alert_id: int) -> Response:
         alert = _alert(request, alert_id)
         body = shapes.AcknowledgementInputSerializer(data=request.data)
         body.is_valid(raise_exception=True)
-        acknowledge_alert(alert=alert, actor=request.user, note=body.validated_data["note"])
+        try:
+            acknowledge_alert(alert=alert, actor=request.user, **body.validated_data)
+        except LevelRose as error:
+            raise ApiProblem(409, "level_rose", _rose_words(error.alert.level)) from error
         return Response(_detail(_alert(request, alert_id)))
+
+
+class EndedAlertsAcknowledgement(APIView):
+    write_scopes = FLYING
+
+    @extend_schema(
+        operation_id="acknowledge_ended_alerts",
+        summary="Acknowledge several critical alerts that have ended",
+        description="Answered alert by alert. One that is still open is left as it is, to be acknowledged singly.",
+        request=shapes.EndedAlertsInputSerializer,
+        responses=shapes.EndedAlertsSerializer,
+    )
+    @idempotent
+    def post(self, request: SignedInRequest) -> Response:
+        body = shapes.EndedAlertsInputSerializer(data=request.data)
+        body.is_valid(raise_exception=True)
+        outcomes = acknowledge_ended(
+            organisation=request.user.organisation, alert_ids=set(body.validated_data["alerts"]), actor=request.user
+        )
+        return Response({"results": [{"id": alert_id, "outcome": outcome} for alert_id, outcome in outcomes.items()]})
 
 
 class AlertNotes(APIView):
@@ -121,6 +144,12 @@ class AlertClosing(APIView):
         except ClosedByItself as error:
             raise ApiProblem(409, "closed_by_itself", _("This alert is over when its cause is gone.")) from error
         return Response(_detail(_alert(request, alert_id)))
+
+
+def _rose_words(level: str) -> str:
+    if level == AlertLevel.CRITICAL:
+        return _("Not acknowledged: this alert has become critical. Read it again, then acknowledge it.")
+    return _("Not acknowledged: this alert has become a warning. Read it again, then acknowledge it.")
 
 
 def _alert(request: SignedInRequest, alert_id: int) -> Alert:

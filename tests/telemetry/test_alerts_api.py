@@ -198,3 +198,53 @@ def test_acts_are_those_of_the_cause_or_of_the_alert_itself(uav, operator):
     answers = {alert["id"]: alert for alert in operator.get("/api/v1/alerts").json()["results"]}
     assert answers[hold.pk]["acts"] == [{"kind": "hold", "uav": uav.pk}]
     assert (answers[own.pk]["acts"], answers[own.pk]["details"]) == ([{"kind": "land", "uav": uav.pk}], {"hdop": 9.9})
+
+
+def test_an_alert_that_rose_since_it_was_seen_is_not_acknowledged(uav, operator):
+    alert = an_alert(uav)
+    an_alert(uav, level=AlertLevel.CRITICAL)
+    answer = post(operator, f"{alert.pk}/acknowledge", seen_level="warning", note="Seen.")
+    assert (answer.status_code, answer.json()["error"]["code"]) == (409, "level_rose")
+    assert "critical" in answer.json()["error"]["message"]
+    shown = operator.get(f"/api/v1/alerts/{alert.pk}").json()
+    assert (shown["level"], shown["acknowledged_at"], shown["notes"]) == ("critical", None, 0)
+    assert post(operator, f"{alert.pk}/acknowledge", seen_level="critical").json()["acknowledged_at"]
+    again = post(operator, f"{alert.pk}/acknowledge", seen_level="warning")
+    assert again.status_code == 200, "somebody has seen it at its level"
+
+
+def test_without_a_level_an_alert_is_acknowledged_whatever_it_is_and_an_unknown_level_is_refused(uav, operator):
+    alert = an_alert(uav, level=AlertLevel.CRITICAL)
+    assert post(operator, f"{alert.pk}/acknowledge", seen_level="bad").status_code == 400
+    assert post(operator, f"{alert.pk}/acknowledge").json()["acknowledged_at"]
+
+
+def test_ended_alerts_are_acknowledged_together_and_open_ones_are_left(uav, operator):
+    now = timezone.now()
+    older = an_alert(uav, "zone", AlertLevel.CRITICAL, closed_at=now - timedelta(hours=2))
+    ended = [an_alert(uav, code, AlertLevel.CRITICAL, closed_at=now) for code in ("zone", "gps")]
+    unseen = an_alert(uav, "converging", AlertLevel.CRITICAL, closed_at=now)
+    live = an_alert(uav, "battery-short", AlertLevel.CRITICAL)
+    ids = [*(alert.pk for alert in ended), live.pk, 999_999]
+    answer = post(operator, "acknowledge-ended", alerts=ids)
+    assert answer.status_code == 200
+    outcomes = {row["id"]: row["outcome"] for row in answer.json()["results"]}
+    assert outcomes == {ended[0].pk: "acknowledged", ended[1].pk: "acknowledged", live.pk: "still-open", 999_999: "unknown"}
+    still = set(Alert.objects.filter(acknowledged_at=None).values_list("pk", flat=True))
+    assert still == {unseen.pk, live.pk}, f"{older.pk} is an earlier one of the same cause"
+    assert [row.course[-1]["what"] for row in Alert.objects.filter(pk__in=[alert.pk for alert in ended])] == ["acknowledged"] * 2
+    audited = AuditEntry.objects.filter(subject_type="alert", action="acknowledge").values_list("subject_id", flat=True)
+    assert sorted(audited) == sorted(str(alert.pk) for alert in ended)
+    assert post(operator, "acknowledge-ended", alerts=ids).json() == answer.json()
+    assert AuditEntry.objects.filter(subject_type="alert").count() == 2, "those that were acknowledged before are not audited again"
+
+
+def test_ended_alerts_of_others_are_unknown_and_viewers_acknowledge_none(uav):
+    ended = an_alert(uav, "zone", AlertLevel.CRITICAL, closed_at=timezone.now())
+    assert post(client_of(somebody(Role.VIEWER)), "acknowledge-ended", alerts=[ended.pk]).status_code == 403
+    stranger = client_of(somebody(Role.ADMINISTRATOR, organisation=Organisation.objects.create(name="Others")))
+    assert post(stranger, "acknowledge-ended", alerts=[ended.pk]).json()["results"] == [{"id": ended.pk, "outcome": "unknown"}]
+    for wrong in ([], ["1"], [0], "all"):
+        assert post(stranger, "acknowledge-ended", alerts=wrong).status_code == 400
+    ended.refresh_from_db()
+    assert ended.acknowledged_at is None
