@@ -64,7 +64,7 @@ def nearest_m(tower: dict[str, Any], others: list[dict[str, Any]]) -> float:
 
 @pytest.fixture
 def mission(visitor: Visitor, names: tuple[str, ...]) -> Iterator[str]:
-    """Approved; its simulated UAVs are connected, as real ones are that were switched on."""
+    """Approved; its simulated UAVs are not there yet."""
     page = visitor.signs_in("ada")
     towers = asks(page, f"/assets?kind=tower&bbox={region.spread_towers}&limit=200")["features"]
     uavs: list[int] = []
@@ -75,7 +75,6 @@ def mission(visitor: Visitor, names: tuple[str, ...]) -> Iterator[str]:
         uavs += simulated_uavs(page, name, at=own["geometry"]["coordinates"])
         targets += towers[:TARGETS_EACH]
     key = stores_simulated_mission(page, f"{len(names)} UAVs", uavs, targets)
-    writes(page, "POST", f"/missions/{key}/simulated-flights", {"speed": 1, "conditions": "calm"})
     page.context.close()
     yield key
     page = visitor.signs_in("ada")
@@ -122,8 +121,8 @@ def test_clicks_from_approved_to_the_follow_up(visitor: Visitor, mission: str, n
 
 def start_all(page: Page, uavs: int) -> None:
     panel = page.get_by_role("region", name="Before start")
-    panel.get_by_role("button", name=f"Upload to {uavs} UAVs").click(timeout=SOON_MS)
-    panel.get_by_role("checkbox", name=re.compile("Looked at on site")).check(timeout=SOON_MS)
+    panel.get_by_role("button", name="Fly in simulation").click(timeout=SOON_MS)  # they connect, and the mission is uploaded to them
+    panel.get_by_role("checkbox", name=re.compile("Looked at on site")).check(timeout=FLIGHT_MS)
     panel.get_by_role("button", name=f"Start {uavs} UAVs").click(timeout=FLIGHT_MS)
     page.get_by_role("dialog").get_by_role("button", name="Start in planned order").click()
 

@@ -94,7 +94,7 @@ def test_a_mission_is_approved_frozen_sent_and_revoked(visitor: Visitor, mission
     assert posts(page, f"/missions/{mission.split('/')[-1]}", {"name": "Other"}, method="PATCH").status == 409
 
     expect(page.get_by_role("button", name=re.compile("^Send|^Upload|^Start|^Hold|^Abort"))).to_have_count(0)
-    expect(page.get_by_role("link", name="Fly: Connect 2 UAVs")).to_have_class(re.compile("primary"))
+    expect(page.get_by_role("link", name="Fly in simulation")).to_have_class(re.compile("primary"))
     assert posts(page, f"/missions/{mission.split('/')[-1]}/dispatch", {}).ok  # before they are switched on
     expect(state).to_have_text("Uploaded")
     uavs = page.get_by_role("list", name="UAVs of this mission").get_by_role("listitem")
@@ -105,7 +105,7 @@ def test_a_mission_is_approved_frozen_sent_and_revoked(visitor: Visitor, mission
     page.locator("#commands summary").click()
     expect(page.get_by_role("list", name="Commands").get_by_role("listitem")).to_have_count(2)
     picture(page, "flying-light")
-    page.get_by_role("link", name="Fly: Connect 2 UAVs").click()
+    page.get_by_role("link", name="Fly in simulation").click()
     wait_for_map(page)
     cannot_be_told(page, "Petrel")
     page.go_back()

@@ -91,8 +91,7 @@ def test_a_copy_flies_to_its_end_and_its_log_says_so(visitor: Visitor, mission: 
     page = visitor.signs_in("opal")
     flies_copy(page, mission)
     panel = page.get_by_role("region", name="Before start")
-    panel.get_by_role("button", name="Upload to 1 UAV").click(timeout=SOON_MS)
-    panel.get_by_role("checkbox", name=re.compile("Looked at on site")).check(timeout=SOON_MS)
+    panel.get_by_role("checkbox", name=re.compile("Looked at on site")).check(timeout=FLIGHT_MS)  # the upload comes by itself
     panel.get_by_role("button", name="Start 1 UAV").click(timeout=SOON_MS)
     answers(page, "Start in planned order")
     expect(page.locator("#mission-state")).to_have_text("In flight", timeout=SOON_MS)

@@ -57,6 +57,8 @@ def test_simulated_uavs_are_started_changed_and_ended_one_by_one(visitor: Visito
     expect(panel.locator(".simulation-uavs li")).to_have_count(2)
     panel.get_by_role("combobox", name="Speed").select_option(label="2× real time")
     expect(panel.locator("#simulation-state")).to_contain_text("at 2× real time", timeout=SOON_MS)
+    expect(panel.get_by_label("Wind and faults of")).to_have_value("")  # of nobody, until somebody is chosen
+    expect(panel.get_by_role("button", name="Lose the link")).to_be_disabled()
 
     panel.get_by_label("Wind and faults of").select_option(label="Ruff")
     panel.get_by_role("spinbutton", name="Wind speed").fill("9")
@@ -119,6 +121,7 @@ def test_the_panel_obeys_the_readers_units_and_language(visitor: Visitor, missio
         panel.get_by_role("button", name="In der Simulation fliegen").click()
         expect(panel.locator(".simulation-uavs")).to_contain_text("am Boden", timeout=SOON_MS)
         expect(panel.locator(".simulation-three .unit")).to_have_text(["mph", "°", "mph"])
+        panel.get_by_role("combobox", name="Gilt für").select_option(label="Alle UAVs dieser Mission")
         panel.get_by_role("spinbutton", name="Böen").fill("10")
         panel.get_by_role("button", name="Wind setzen").click()
         expect(page.locator("#spoken")).to_have_text("Der Wind hat sich geändert.")

@@ -3,7 +3,7 @@ import { test } from "node:test";
 
 globalThis.document ??= { cookie: "", querySelector: () => null, documentElement: { lang: "en", dataset: {} } };
 globalThis.location ??= { hash: "", pathname: "/", protocol: "http:", host: "here" };
-const { nextStep, summaryOf } = await import("../../static/js/domain/preflight_step.js");
+const { canUploadToAll, firstStep, nextStep, summaryOf } = await import("../../static/js/domain/preflight_step.js");
 const { rehearsalCheck } = await import("../../static/js/monitor/panels/preflight.js");
 
 const check = (code, state, message = code) => ({ code, state, message });
@@ -53,9 +53,15 @@ test("a zone in the way keeps an approved mission from being uploaded", () => {
 test("the worst check of a UAV is what is said of it", () => {
   const [ok, failed] = [check("link", "ok"), check("battery", "failed", "It would land with 5 %.")];
   assert.equal(summaryOf({ checks: [ok] }), "Ready");
-  assert.equal(summaryOf({ checks: [ok, check("return", "warning"), check("fence", "warning")] }), "2 warnings");
+  assert.equal(
+    summaryOf({ checks: [ok, check("return", "warning"), check("fence", "warning")] }),
+    "Warning: return path, fence",
+  );
   assert.equal(summaryOf({ checks: [check("return", "warning"), failed, ok] }), "It would land with 5 %.");
-  assert.equal(summaryOf({ checks: [ok, check("battery", "unknown")] }), "1 check not known");
+  assert.equal(
+    summaryOf({ checks: [ok, ...["battery", "wind", "home", "home"].map((code) => check(code, "unknown"))] }),
+    "Not known: battery, wind, home position",
+  );
 });
 
 test("a rehearsal of another plan is none", () => {
@@ -64,4 +70,27 @@ test("a rehearsal of another plan is none", () => {
   assert.equal(rehearsalCheck({ state: "done", level: "fail", is_outdated: false }).message, "Its rehearsal failed");
   assert.equal(rehearsalCheck({ state: "done", level: "pass", is_outdated: false }).state, "ok");
   assert.equal(rehearsalCheck({ state: "running", level: "", is_outdated: false }).state, "unknown");
+});
+
+test("simulated UAVs are not waited for: the button flies them in simulation, then says that they start", () => {
+  const [tern, kite] = ["Tern", "Kite"].map((name, uav) => row(name, { uav, checks: [check("link", "failed")] }));
+  const off = nextStep(preflight("connect", [tern, kite]), false, "off");
+  assert.deepEqual([off.act, off.words, off.why], ["simulate", "Fly in simulation", ""]);
+  const heard = row("Kite", { uav: 1, checks: [check("link", "ok")] });
+  const starting = nextStep(preflight("upload", [tern, heard]), false, "starting");
+  assert.equal(starting.act, "connect");
+  assert.match(starting.why, /Waiting for: Tern\./);
+  assert.equal(nextStep(preflight("connect", [tern, kite]), false, "running").act, "connect");
+  assert.equal(nextStep(preflight("upload", [tern, heard]), false, "running").act, "upload");
+});
+
+test("the mission goes to simulated UAVs once all are connected", () => {
+  const [lost, heard] = ["failed", "ok"].map((state) => row("Tern", { checks: [check("link", state)] }));
+  assert.equal(canUploadToAll(preflight("upload", [lost, heard])), false);
+  assert.equal(canUploadToAll(preflight("upload", [heard, heard])), true);
+  assert.equal(canUploadToAll(preflight("connect", [heard])), false);
+});
+
+test("before the checks have arrived the button says what is being checked", () => {
+  assert.match(firstStep().why, /Link, position, battery/);
 });

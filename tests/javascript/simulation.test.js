@@ -3,9 +3,11 @@ import { test } from "node:test";
 
 import { rateOf } from "../../static/js/monitor/clock_rate.js";
 import {
+  ALL,
   FAULTS,
   isPresent,
   lastsWords,
+  meantFor,
   stateWords,
   vehicleWords,
   WELL,
@@ -111,4 +113,14 @@ test("a clock's rate is a whole number where it nearly is one, and 1 where nobod
 
 test("what can be mended is mended", () => {
   assert.deepEqual(WELL.of(), { link_lost_for_s: 0, gps_lost_for_s: 0, motor_failed: null });
+});
+
+test("wind and faults are for nobody until a UAV is selected or chosen; all of them are a choice of its own", () => {
+  const vehicles = [vehicle("a", { uav: { id: 7 } }), vehicle("b", { uav: { id: 8 } }), vehicle("c", { uav: null })];
+  assert.equal(meantFor("", null, vehicles), "");
+  assert.equal(meantFor("", 8, vehicles), "b");
+  assert.equal(meantFor("a", 8, vehicles), "a");
+  assert.equal(meantFor("gone", 7, vehicles), "a");
+  assert.equal(meantFor(ALL, 8, vehicles), ALL);
+  assert.equal(meantFor("", 99, vehicles), "");
 });

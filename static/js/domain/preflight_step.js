@@ -4,11 +4,12 @@ import { t, tn } from "../text.js";
 
 /** @import { Preflight, PreflightCheck, UavPreflight } from "../api_types.d.ts" */
 
+/** Whether simulated UAVs stand in for the mission's: null where they cannot. @typedef {"off" | "starting" | "running" | null} Stand */
 /**
  * The button: what it says, whether it can be pressed (`why` is then empty), and what it leaves undone.
  *
  * @typedef {object} NextStep
- * @property {Preflight["next_act"]} act
+ * @property {Preflight["next_act"] | "simulate"} act
  * @property {string} words
  * @property {string} image name of an icon
  * @property {string} why it cannot be pressed
@@ -22,15 +23,33 @@ const WORST_FIRST = ["failed", "waiting", "warning", "unknown", "ok"];
 /** @param {Pick<PreflightCheck, "state">[]} checks */
 export const worstOf = (checks) => WORST_FIRST.find((state) => checks.some((check) => check.state === state)) ?? "ok";
 
+/** @type {Record<string, string>} */
+const CHECK_NAMES = {
+  crash: t("crash"),
+  link: t("link"),
+  position: t("position"),
+  home: t("home position"),
+  battery: t("battery"),
+  mission: t("mission on board"),
+  fence: t("fence"),
+  return: t("return path"),
+  wind: t("wind"),
+  others: t("other UAVs"),
+  departure: t("departure"),
+  ground: t("zones and ground"),
+};
+
+/** Each once. @param {Pick<PreflightCheck, "code">[]} checks */
+const namesOfChecks = (checks) => [...new Set(checks.map(({ code }) => CHECK_NAMES[code] ?? code))].join(", ");
+
 /** What is said of a UAV in one line: its worst check, or that it is ready. @param {Pick<UavPreflight, "checks">} row */
 export function summaryOf({ checks }) {
   const worst = worstOf(checks);
   const said = checks.filter(({ state }) => state === worst);
   if (worst === "ok") return t("Ready");
   if (worst === "failed" || worst === "waiting") return said[0].message;
-  return worst === "warning"
-    ? tn(said.length, "{count} warning", "{count} warnings")
-    : tn(said.length, "{count} check not known", "{count} checks not known");
+  const names = namesOfChecks(said);
+  return worst === "warning" ? t("Warning: {names}", { names }) : t("Not known: {names}", { names });
 }
 
 /** Why a UAV is not started with the others. @param {UavPreflight} row */
@@ -44,18 +63,40 @@ function whyLeft({ name, is_loaded, checks }) {
 /** @param {UavPreflight[]} rows */
 const namesOf = (rows) => rows.map(({ name }) => name).join(", ");
 
+/** @param {UavPreflight} row */
+const isConnected = ({ checks }) => checks.every(({ code, state }) => code !== "link" || state === "ok");
+
+/** Whether all UAVs that lack the mission can take it now. @param {Preflight} preflight */
+export const canUploadToAll = ({ next_act, uavs }) =>
+  next_act === "upload" && uavs.every((row) => row.is_loaded || isConnected(row));
+
+/** Before the first answer. @returns {NextStep} */
+export const firstStep = () => ({
+  act: null,
+  words: t("Checking …"),
+  image: "timer",
+  why: t("Link, position, battery and mission of each UAV are being checked."),
+  left: [],
+  uavs: [],
+});
+
 /**
  * @param {Preflight} preflight
  * @param {boolean} isPilotDone what only a pilot can see was looked at
+ * @param {Stand} [stand]
  * @returns {NextStep | null} null where nothing is left to start
  */
-export function nextStep(preflight, isPilotDone) {
+export function nextStep(preflight, isPilotDone, stand = null) {
   const { next_act, uavs, checks } = preflight;
   const against = checks.find(({ state }) => state === "failed");
   const waiting = uavs.filter(({ is_loaded }) => !is_loaded);
   const step = { act: next_act, why: "", left: [], uavs: waiting.map(({ uav }) => uav) };
+  const isStarting = stand === "starting" && (next_act === "connect" || next_act === "upload");
+  if (isStarting || (stand === "running" && next_act === "connect")) return startingStep(waiting);
   switch (next_act) {
     case "connect":
+      if (stand === "off")
+        return { ...step, act: "simulate", words: t("Fly in simulation"), image: "play", why: against?.message ?? "" };
       return {
         ...step,
         words: tn(waiting.length, "Connect {count} UAV", "Connect {count} UAVs"),
@@ -81,6 +122,21 @@ export function nextStep(preflight, isPilotDone) {
     default:
       return null;
   }
+}
+
+/** Simulated UAVs connect by themselves. @param {UavPreflight[]} waiting for the mission @returns {NextStep} */
+function startingStep(waiting) {
+  const unheard = waiting.filter((row) => !isConnected(row));
+  return {
+    act: "connect",
+    words: t("Starting simulated UAVs …"),
+    image: "radio",
+    why: unheard.length
+      ? t("They connect by themselves. Waiting for: {names}.", { names: namesOf(unheard) })
+      : t("All are connected. The mission is uploaded next."),
+    left: [],
+    uavs: waiting.map(({ uav }) => uav),
+  };
 }
 
 /** Those that are ready are started; the others are named. @param {Preflight} preflight @param {boolean} isPilotDone @returns {NextStep} */

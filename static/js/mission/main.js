@@ -94,6 +94,7 @@ const BEGINNING = {
   connections: new Map(),
   preflight: null,
   isDispatching: false,
+  arrival: "awaited",
   rehearsal: NO_REHEARSAL,
 };
 /** @type {MissionStore} */
@@ -335,8 +336,10 @@ async function load() {
       byId("notices").after(element);
     } else if (page.canPlan) actions.openDraft();
     isLoaded = true;
+    store.update({ arrival: "whole" });
     void actions.resume();
   } catch (error) {
+    store.update({ arrival: "failed" });
     actions.failed(t("Not loaded."), error, [{ label: t("Load again"), act: () => location.reload() }]);
     if (!(error instanceof ApiError)) throw error;
   }

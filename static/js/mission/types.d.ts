@@ -418,6 +418,7 @@ export interface MissionPageState {
   /** checks before start, as the page Fly shows them; null: not read */
   preflight: Preflight | null;
   isDispatching: boolean;
+  arrival: "awaited" | "whole" | "failed"; // of the page's mission and the fleet: before, nothing is said to be empty
   rehearsal: RehearsalState;
 }
 

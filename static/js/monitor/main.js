@@ -1,6 +1,7 @@
 /** What flies now: composes the page, listens to the feed, keeps the time. */
 
 import { ApiError, get } from "../api.js";
+import { byId } from "../dom.js";
 import { openFeed } from "../live/feed.js";
 import { KINDS } from "../live/shown.js";
 import { staleWords } from "../live/stale.js";
@@ -11,6 +12,7 @@ import { mountWorkbench } from "../page/workbench.js";
 import { mountSceneOpener } from "../scene/opener.js";
 import { createStore } from "../store.js";
 import { t } from "../text.js";
+import { hasArrived } from "./arrival.js";
 import { missionNumbers } from "./call_signs.js";
 import { createCommanding } from "./commanding.js";
 import { createEventReading } from "./event_reading.js";
@@ -104,9 +106,9 @@ mountBoard(store, {
   },
   readOlder: createEventReading(store, page).readOlder,
 });
-mountSimulation(page);
+const simulation = mountSimulation(store, page);
 mountPlannedStarts({ mission: page.mission, canFly: page.canFly });
-mountPreflight(store, page);
+mountPreflight(store, page, simulation);
 mountAbortMission(store, page);
 mountCloseMission(store, page);
 mountUrgent(store, { open: narrow.showBoard });
@@ -240,6 +242,10 @@ async function load() {
   } catch (error) {
     if (!(error instanceof ApiError)) throw error; // the map says itself that it cannot be read
   }
+  const loading = byId("map-loading");
+  store.listen(["isWhole", "missions", "details"], (state) => {
+    loading.hidden ||= copiedAt !== null || hasArrived(state); // a mission that comes later is no reason to cover the map
+  });
   const approved =
     copiedAt !== null && page.mission
       ? await showCopy(store, page.mission, (position) => map.showPlace(position))

@@ -75,6 +75,22 @@ export const isPresent = (simulation) => simulation?.state === "wanted" || simul
 /** @param {Pick<SimulatedVehicle, "state">} vehicle */
 export const isFlown = (vehicle) => vehicle.state === "flying";
 
+/** Wind and faults of all UAVs of the mission, where somebody chooses that. */
+export const ALL = "all";
+
+/**
+ * Whom wind and faults are meant for: who was chosen in the panel, else the UAV that is selected on the page, else nobody.
+ *
+ * @param {string} wished id of a vehicle, ALL, or empty
+ * @param {number | null} selected UAV of the page
+ * @param {Pick<SimulatedVehicle, "id" | "uav">[]} vehicles that fly
+ * @returns {string} id of a vehicle, ALL, or empty
+ */
+export function meantFor(wished, selected, vehicles) {
+  if (wished === ALL || vehicles.some(({ id }) => id === wished)) return wished;
+  return vehicles.find(({ uav }) => uav !== null && uav.id === selected)?.id ?? "";
+}
+
 /**
  * How much of the flight so many seconds of the clock are; "" in real time.
  *

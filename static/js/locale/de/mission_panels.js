@@ -254,4 +254,5 @@ export default {
   "“{name}” holds the present targets now.": "„{name}“ enthält jetzt die gegenwärtigen Ziele.",
   "“{name}” is kept.": "„{name}“ ist gespeichert.",
   "There from {start} to {end}.": "Dort von {start} bis {end}.",
+  "Loading …": "Wird geladen …",
 };

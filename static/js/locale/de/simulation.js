@@ -57,4 +57,7 @@ export default {
     "{count} simulierte UAVs mit {speed}× Echtzeit.",
   ],
   "Wind speed|panel": "Windstärke",
+  "Choose first which UAV it is for.": "Wählen Sie zuerst, für welches UAV es gilt.",
+  "Choose a UAV": "UAV wählen",
+  "All UAVs of this mission": "Alle UAVs dieser Mission",
 };

@@ -75,9 +75,10 @@ function draw({ mission, commands, isDispatching, preflight }, context) {
   if (canFly) drawFoot(mission, preflight, isDispatching);
 }
 
-/** The next act, which is done on the page Fly. @param {Preflight | null} preflight null: not read yet */
-export function flyWords(preflight) {
-  const step = preflight && nextStep(preflight, true);
+/** The next act, which is done on the page Fly. @param {Preflight | null} preflight null: not read yet @param {boolean} isSimulated all its UAVs are */
+export function flyWords(preflight, isSimulated) {
+  const step = preflight && nextStep(preflight, true, isSimulated ? "off" : null);
+  if (step?.act === "simulate") return step.words;
   return step ? t("Fly: {act}", { act: step.words }) : t("Fly");
 }
 
@@ -86,7 +87,10 @@ function drawFoot(mission, preflight, isBusy) {
   const fly = byId("to-fly", HTMLAnchorElement);
   fly.hidden = !isFlown(mission);
   fly.href = `/missions/${mission.id}/fly`;
-  fly.textContent = flyWords(preflight);
+  fly.textContent = flyWords(
+    preflight,
+    mission.uavs.every(({ is_simulated }) => is_simulated),
+  );
   const revoke = byId("revoke", HTMLButtonElement);
   revoke.hidden = !canBeRevoked(mission);
   revoke.disabled = isBusy;

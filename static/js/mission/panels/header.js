@@ -11,6 +11,7 @@ import { t, tn } from "../../text.js";
 import { clockText } from "../../units.js";
 import { standingUavs } from "../fleet.js";
 import { departureText } from "../flight_options.js";
+import { factsOf } from "../head_facts.js";
 import { isPlanCurrent, isUnsaved, unreachedOf } from "../plan_view.js";
 import { inWords } from "../plan_words.js";
 import { showHistory } from "./history.js";
@@ -43,8 +44,6 @@ const STATE_WORDS = {
 const phone = matchMedia("(max-width: 720px)");
 const MOST_CAUSES = 3;
 const MOST_UNREACHED = 3;
-/** @param {number} count */
-const targetsText = (count) => tn(count, "{count} target", "{count} targets");
 
 /** The mission's address with the part of the map that is in sight. @param {Mission} mission */
 async function copyAddress(mission) {
@@ -93,7 +92,7 @@ export function mountHeader(store, actions, canPlan, { canCopy, showPlace }) {
     toggleMenu(more, () => menuOf(t("This mission"), itemsFor(store.state.mission, actions, { canPlan, canCopy }))),
   );
 
-  store.listen(["name", "mission", "selection", "fleet", "plan", "planIsStored", "savedBasis"], (state) => {
+  store.listen(["name", "mission", "selection", "fleet", "plan", "planIsStored", "savedBasis", "arrival"], (state) => {
     if (name.value !== state.name) name.value = state.name;
     drawHead(state, canPlan);
   });
@@ -149,27 +148,7 @@ function drawHead(state, canPlan) {
   const flown = standingUavs(state).filter(({ sequence }) => sequence !== null);
   markSimulated(chip, flown.length > 0 && flown.every(({ is_simulated }) => is_simulated));
   chip.hidden = !canPlan && !mission; // just the map: there is nothing that could be a draft
-  byId("mission-facts").textContent = chip.hidden ? t("no mission is open") : factsOf(state).join(" · ");
-}
-
-/** @param {MissionPageState} state */
-function factsOf(state) {
-  const { plan, mission } = state;
-  const targets = state.selection.targets.length;
-  if (!plan || !isPlanCurrent(state)) {
-    const picked = targets ? targetsText(targets) : t("nothing picked yet");
-    return plan ? [picked, t("changed since it was planned")] : [picked];
-  }
-  const missed = plan.result.unassigned.length;
-  const facts = [
-    missed
-      ? tn(targets, "{reached} of {count} target", "{reached} of {count} targets", { reached: targets - missed })
-      : targetsText(targets),
-  ];
-  if (state.planIsStored && mission?.planned_at)
-    facts.push(t("planned {time}", { time: clockText(mission.planned_at) }));
-  if (plan.result.flat_ground_assumed) facts.push(t("flat ground assumed"));
-  return facts;
+  byId("mission-facts").textContent = factsOf(state, canPlan).join(" · ");
 }
 
 /** @param {string} level @param {string} image @param {string} title @param {string} text @param {WayOut[]} [acts] */

@@ -11,6 +11,7 @@ import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, exactText } from "../../units.js";
 import { mountAlarm } from "../alarm.js";
+import { isNone } from "../arrival.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { AlertLevel, AlertPage } from "../../api_types.d.ts" */
@@ -245,7 +246,7 @@ class AlertPanel {
       filters.hidden = !filters.hidden;
       opener.setAttribute("aria-expanded", `${!filters.hidden}`);
     });
-    store.listen(["alerts", "uavs"], (state) => this.#draw(state));
+    store.listen(["alerts", "uavs", "isWhole"], (state) => this.#draw(state));
   }
 
   /** Of the alert that has focus, or the first. */
@@ -376,7 +377,7 @@ class AlertPanel {
     const open = unanswered.length;
     byId("alert-count").textContent = open ? t("{count} open", { count: open }) : "";
     showAlertCount({ all: open, critical: unanswered.filter(({ level }) => level === "critical").length });
-    byId("no-alerts").hidden = shown.length > 0;
+    byId("no-alerts").hidden = !isNone(state, shown);
     this.#drawList(shown);
   }
 }

@@ -9,6 +9,7 @@ import { profileOf } from "../../domain/route_profile.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, lengthText, numberText } from "../../units.js";
+import { isNone } from "../arrival.js";
 import { numbersOf, pillOf } from "../board.js";
 import { letterOf, prefixOf } from "../call_signs.js";
 import { batteryWords, figuresOf } from "../card_figures.js";
@@ -118,9 +119,11 @@ export function mountCards(store, acts) {
       "sending",
       "filter",
       "numbers",
+      "isWhole",
     ],
-    ({ uavs }) => {
-      byId("no-uavs").hidden = uavs.length > 0;
+    (state) => {
+      byId("no-uavs").hidden = !isNone(state, state.uavs);
+      byId("uavs-loading").hidden = state.isWhole;
       draw();
     },
   );

@@ -78,13 +78,13 @@ function drawStale(state) {
 /** @param {MonitorStore} store @param {MonitorPage} page */
 export function mountHead(store, page) {
   const chip = byId("mission-state");
-  store.listen(["missions", "uavs", "now_ms"], ({ missions, uavs, now_ms }) => {
+  store.listen(["missions", "uavs", "now_ms", "isWhole"], ({ missions, uavs, now_ms, isWhole }) => {
     const mission = missions.find(({ id }) => id === page.mission) ?? null;
     drawTitle(mission?.name ?? page.missionName ?? t("Live"));
     drawState(chip, mission);
     const iso = new Date(now_ms).toISOString(); // stands still while the device has no data
     const facts = byId("live-facts");
-    const said = [exactClockText(iso), countWords(uavs, missions, mission)];
+    const said = [exactClockText(iso), isWhole && countWords(uavs, missions, mission)];
     facts.textContent = said.filter(Boolean).join(" · ");
     facts.title = zoneText(iso);
   });

@@ -3,22 +3,24 @@
 import { ApiError, freshKey, get, post } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
 import { KINDS } from "../../domain/flying.js";
-import { nextStep, summaryOf, worstOf } from "../../domain/preflight_step.js";
+import { canUploadToAll, firstStep, nextStep, summaryOf, worstOf } from "../../domain/preflight_step.js";
 import { beginStarts } from "../../page/planned_starts.js";
 import { tellUav } from "../../page/tell_uav.js";
 import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
 import { heightText } from "../../units.js";
 
-import { beginSimulation, flyCopy } from "./simulation.js";
+import { flyCopy } from "./simulation.js";
 
 /** @import { Answer } from "../../api.js" */
 /** @import { Mission, MissionStarts, Preflight, PreflightCheck, Rehearsal, UavPreflight } from "../../api_types.d.ts" */
-/** @import { NextStep } from "../../domain/preflight_step.js" */
+/** @import { StandIns } from "./simulation.js" */
+/** @import { NextStep, Stand } from "../../domain/preflight_step.js" */
 /** @import { MonitorPage, MonitorStore } from "../types.d.ts" */
 
 const SEEN_AFTER_MS = 1_000; // what appears under the pointer is not sent by the press that was on its way
 const POLL_MS = 2500;
+const UPLOADS_NEXT = "spanwise-uploads-next"; // the mission whose simulated UAVs this window has started
 const BEFORE_FLIGHT = new Set(["approved", "dispatched", "active"]);
 
 /** @type {Record<PreflightCheck["state"], { image: string, words: string }>} */
@@ -84,8 +86,8 @@ function heightButton({ uav, name }, { safe_height_m }) {
  * The panel's elements. draw: what was read; drawStep: the button alone.
  *
  * @param {HTMLElement} place
- * @param {{ act: (button: HTMLElement) => unknown, tick: (isDone: boolean) => void, simulate: (() => unknown) | null, isCopied: boolean }} on
- *   simulate: null where it cannot be flown in simulation; isCopied: a copy of it is, as its UAVs are real
+ * @param {{ act: (button: HTMLElement) => unknown, tick: (isDone: boolean) => void, simulateCopy: (() => unknown) | null }} on
+ *   simulateCopy: null where no copy of it is flown in simulation, as its UAVs are simulated
  */
 function createPanel(place, on) {
   let drawn = "";
@@ -102,7 +104,7 @@ function createPanel(place, on) {
   const button = h("button", { type: "button", class: "button primary wide", onclick: () => void on.act(button) });
   const simulate = h(
     "button",
-    { type: "button", class: "button wide", hidden: true, onclick: () => void on.simulate?.() },
+    { type: "button", class: "button wide", hidden: on.simulateCopy === null, onclick: () => void on.simulateCopy?.() },
     icon("play", "small"),
     t("Fly in simulation"),
   );
@@ -138,17 +140,17 @@ function createPanel(place, on) {
         ...rows,
       );
     },
-    /** @param {NextStep} step @param {boolean} isActing */
-    drawStep({ act, words, image, why: reason, left }, isActing) {
-      button.disabled = isActing || act === "connect" || act === "wait" || reason !== "";
+    /** @param {NextStep} step @param {string} busy what is being done; empty: nothing */
+    drawStep({ act, words, image, why: reason, left }, busy) {
+      button.disabled = busy !== "" || act === "connect" || act === "wait" || reason !== "";
+      button.setAttribute("aria-busy", `${busy !== ""}`);
       button.dataset.act = act ?? "";
-      simulate.hidden = on.simulate === null || (act !== "connect" && !on.isCopied);
-      simulate.disabled = isActing;
+      simulate.disabled = busy !== "";
       if (button.dataset.words !== words) {
         button.dataset.words = words;
         button.replaceChildren(icon(image, "small"), words);
       }
-      const said = [reason, left.length > 0 && `${left.join("; ")}.`].filter(Boolean).join(" ");
+      const said = busy || [reason, left.length > 0 && `${left.join("; ")}.`].filter(Boolean).join(" ");
       why.hidden = said === "";
       if (why.textContent !== said) why.textContent = said;
     },
@@ -215,107 +217,175 @@ function uavPart(row, isOpen) {
   );
 }
 
-/** @param {MonitorStore} store @param {MonitorPage} page */
-export function mountPreflight(store, page) {
-  const { mission } = page;
-  if (mission === null || !page.canFly) return;
-  const place = byId("preflight");
-  /** @type {Preflight | null} */
-  let preflight = null;
-  /** @type {PreflightCheck | null} */
-  let rehearsal = null;
-  let [isPilotDone, isActing] = [false, false];
-  const panel = createPanel(place, {
-    act,
-    tick(isDone) {
-      isPilotDone = isDone;
-      draw();
-    },
-    simulate: page.hasReal ? simulateCopy : page.hasSimulated ? simulate : null,
-    isCopied: page.hasReal === true,
-  });
-  const isBeforeFlight = () => BEFORE_FLIGHT.has(store.state.missions.find(({ id }) => id === mission)?.state ?? "");
+/** @param {MonitorStore} store @param {MonitorPage} page @param {StandIns | null} standIns null where a UAV of the mission is real */
+export function mountPreflight(store, page, standIns) {
+  if (page.mission !== null && page.canFly) new BeforeStart(store, page, page.mission, standIns).open();
+}
 
-  function draw() {
-    const step = preflight && isBeforeFlight() ? nextStep(preflight, isPilotDone) : null;
-    place.hidden = !step;
-    if (!preflight || !step) return;
-    panel.draw(preflight, rehearsal);
-    panel.drawStep(step, isActing);
+class BeforeStart {
+  #store;
+  #mission;
+  #standIns;
+  #place = byId("preflight");
+  /** @type {Preflight | null} */
+  #preflight = null;
+  /** @type {PreflightCheck | null} */
+  #rehearsal = null;
+  #isPilotDone = false;
+  #busy = ""; // what is being done, until the checks are read anew
+  #uploadsNext; // to simulated UAVs that were just started, once all are connected
+  #panel;
+
+  /** @param {MonitorStore} store @param {MonitorPage} page @param {string} mission @param {StandIns | null} standIns */
+  constructor(store, page, mission, standIns) {
+    this.#store = store;
+    this.#mission = mission;
+    this.#standIns = standIns;
+    this.#uploadsNext = sessionStorage.getItem(UPLOADS_NEXT) === mission;
+    this.#panel = createPanel(this.#place, {
+      act: (button) => this.#act(button),
+      tick: (isDone) => {
+        this.#isPilotDone = isDone;
+        this.#draw();
+      },
+      simulateCopy: page.hasReal ? () => void this.#simulateCopy() : null,
+    });
+  }
+
+  open() {
+    this.#store.listen(["missions"], () => void (this.#preflight ? this.#draw() : this.#read()));
+    void this.#readRehearsal();
+    setInterval(() => this.#busy || this.#read(), POLL_MS);
+  }
+
+  get #state() {
+    return this.#store.state.missions.find(({ id }) => id === this.#mission)?.state ?? "";
+  }
+
+  get #isBeforeFlight() {
+    return BEFORE_FLIGHT.has(this.#state);
+  }
+
+  /** @returns {Stand} */
+  get #stand() {
+    if (!this.#standIns) return null;
+    if (this.#uploadsNext) return "starting";
+    if (this.#standIns.areThere()) return "running";
+    return this.#state === "active" ? null : "off"; // what flies already is flown by others
+  }
+
+  #step() {
+    if (!this.#isBeforeFlight) return null;
+    if (this.#preflight && this.#standIns?.areThere() !== null)
+      return nextStep(this.#preflight, this.#isPilotDone, this.#stand);
+    return this.#state === "active" ? null : firstStep();
+  }
+
+  #draw() {
+    const step = this.#step();
+    this.#place.hidden = !step;
+    if (!step) return;
+    if (this.#preflight) this.#panel.draw(this.#preflight, this.#rehearsal);
+    this.#panel.drawStep(step, this.#busy);
   }
 
   /** The page says itself that the server is away. @param {() => Promise<void>} reading */
-  const asFarAsItCan = (reading) =>
-    reading().then(draw, (error) => {
-      if (!(error instanceof ApiError)) throw error;
-    });
-  const read = () =>
-    asFarAsItCan(async () => {
-      if (document.hidden || isActing || !isBeforeFlight()) return;
-      preflight = /** @type {Answer<Preflight>} */ (await get(`/missions/${mission}/preflight`)).data;
-    });
-  const readRehearsal = () =>
-    asFarAsItCan(async () => {
-      const { data } = /** @type {Answer<{ results: Rehearsal[] }>} */ (await get(`/missions/${mission}/rehearsals`));
-      rehearsal = rehearsalCheck(data.results[0] ?? null);
-    });
-
-  /** One click: as planned, in real time; the drawer of the simulation changes that. */
-  async function simulate() {
-    isActing = true;
-    draw();
+  async #asFarAsItCan(reading) {
     try {
-      await beginSimulation(mission);
-      say(t("Simulated UAVs are being started."));
+      await reading();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error;
-      toast(error.message);
+    }
+    this.#draw();
+  }
+
+  #read() {
+    return this.#asFarAsItCan(async () => {
+      if (document.hidden || !this.#isBeforeFlight) return;
+      this.#preflight = /** @type {Answer<Preflight>} */ (await get(`/missions/${this.#mission}/preflight`)).data;
+      if (!this.#uploadsNext || this.#busy) return;
+      if (this.#standIns?.areThere() === false)
+        this.#setUploadsNext(false); // it could not be started, or was ended
+      else if (canUploadToAll(this.#preflight)) void this.#uploadNext();
+    });
+  }
+
+  #readRehearsal() {
+    return this.#asFarAsItCan(async () => {
+      const answer = await get(`/missions/${this.#mission}/rehearsals`);
+      const { data } = /** @type {Answer<{ results: Rehearsal[] }>} */ (answer);
+      this.#rehearsal = rehearsalCheck(data.results[0] ?? null);
+    });
+  }
+
+  /** Says what is being done until the checks are read anew. @param {string} words @param {() => Promise<void>} does @param {string} [failed] */
+  async #doing(words, does, failed = "") {
+    this.#busy = words;
+    this.#draw();
+    try {
+      await does();
+    } catch (error) {
+      if (!(error instanceof ApiError)) throw error;
+      toast(`${failed} ${error.message}`.trim());
     } finally {
-      isActing = false;
-      void read();
+      await this.#read();
+      this.#busy = "";
+      this.#draw();
     }
   }
 
-  /** One click: to the page of a copy that simulated twins fly. */
-  async function simulateCopy() {
-    isActing = true;
-    draw();
-    try {
-      location.assign(`/missions/${await flyCopy(mission)}/fly`);
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      toast(error.message);
-    } finally {
-      isActing = false;
-      draw();
-    }
+  /** @param {boolean} isNext */
+  #setUploadsNext(isNext) {
+    this.#uploadsNext = isNext;
+    if (isNext) sessionStorage.setItem(UPLOADS_NEXT, this.#mission);
+    else sessionStorage.removeItem(UPLOADS_NEXT);
+  }
+
+  /** One click: simulated UAVs as planned, in real time, and the mission to them; the drawer of the simulation changes wind and speed. */
+  #simulate() {
+    return this.#doing(t("Simulated UAVs are being started."), async () => {
+      await this.#standIns?.begin();
+      this.#setUploadsNext(true);
+      say(t("Simulated UAVs are being started."));
+    });
+  }
+
+  /** One click: to the page of a copy that simulated twins fly, which uploads it to them. */
+  #simulateCopy() {
+    return this.#doing(t("A simulated copy of the mission is being made."), async () => {
+      const copy = await flyCopy(this.#mission);
+      sessionStorage.setItem(UPLOADS_NEXT, copy);
+      location.assign(`/missions/${copy}/fly`);
+    });
+  }
+
+  #uploadNext() {
+    this.#setUploadsNext(false);
+    return this.#upload();
+  }
+
+  #upload() {
+    const heights = this.#panel.heights();
+    const does = async () => {
+      await upload(this.#mission);
+      for (const { uav, name, height_m } of heights) await setHeight(uav, name, height_m);
+    };
+    return this.#doing(t("The upload is being prepared."), does, t("Not sent."));
   }
 
   /** @param {HTMLElement} button */
-  async function act(button) {
-    const step = preflight && nextStep(preflight, isPilotDone);
-    if (!step || isActing || mission === null) return;
-    isActing = true;
-    draw();
-    try {
-      const heights = panel.heights();
-      if (step.act === "upload") {
-        await upload(mission);
-        for (const { uav, name, height_m } of heights) await setHeight(uav, name, height_m);
-      }
-      if (step.act === "start") await start(mission, step, button);
-    } catch (error) {
-      if (!(error instanceof ApiError)) throw error;
-      toast(`${step.act === "upload" ? t("Not sent.") : t("Not started.")} ${error.message}`);
-    } finally {
-      isActing = false;
-      void read();
-    }
+  #act(button) {
+    const step = this.#step();
+    if (!step || this.#busy) return;
+    if (step.act === "simulate") void this.#simulate();
+    if (step.act === "upload") void this.#upload();
+    if (step.act === "start")
+      void this.#doing(
+        t("The starts are being checked against UAVs in the air."),
+        () => start(this.#mission, step, button),
+        t("Not started."),
+      );
   }
-
-  store.listen(["missions"], () => void (preflight ? draw() : read()));
-  void readRehearsal();
-  setInterval(read, POLL_MS);
 }
 
 /** To all that have nothing yet; of the revision that was just read. @param {string} mission */

@@ -9,10 +9,12 @@ import { t } from "../../text.js";
 import { SPEED_UNIT } from "../../units.js";
 import {
   AIRS,
+  ALL,
   FAULTS,
   isFlown,
   isPresent,
   lastsWords,
+  meantFor,
   SPEEDS,
   stateWords,
   vehicleWords,
@@ -23,7 +25,7 @@ import {
 /** @import { Answer } from "../../api.js" */
 /** @import { SimulatedVehicle, Simulation, SimulationPage } from "../../api_types.d.ts" */
 /** @import { Fault } from "../simulation_words.js" */
-/** @import { MonitorPage } from "../types.d.ts" */
+/** @import { MonitorPage, MonitorStore } from "../types.d.ts" */
 
 /** Sends something, says so, and looks what has become of it. @typedef {(act: () => Promise<unknown>, words?: string) => Promise<void>} Do */
 
@@ -67,9 +69,20 @@ const number = (id, value, min, max) =>
 const group = (words, id, ...parts) =>
   h("div", { class: "simulation-group", role: "group", "aria-labelledby": id }, h("h3", { id }, words), parts);
 
-/** @param {MonitorPage} page */
-export function mountSimulation(page) {
-  if (page.hasSimulated && !page.hasReal) new SimulationPanel(page).open();
+/**
+ * The simulation of a mission: whether simulated UAVs stand in for its own, and how they are told to.
+ *
+ * @typedef {object} StandIns
+ * @property {() => boolean | null} areThere null: not read yet
+ * @property {() => Promise<void>} begin rejects with ApiError
+ */
+
+/** Returns null where a UAV of the mission is real. @param {MonitorStore} store @param {MonitorPage} page @returns {StandIns | null} */
+export function mountSimulation(store, page) {
+  if (!page.hasSimulated || page.hasReal) return null;
+  const panel = new SimulationPanel(store, page);
+  panel.open();
+  return { areThere: () => panel.isRunning, begin: () => panel.begin() };
 }
 
 class SimulationPanel {
@@ -77,6 +90,7 @@ class SimulationPanel {
   #state = byId("simulation-state");
   /** @type {Simulation | null} */
   #newest = null;
+  #isRead = false;
   #start;
   #changes;
   #drawVehicles = keyedList(
@@ -86,14 +100,25 @@ class SimulationPanel {
     (row, vehicle) => this.#drawVehicle(row, vehicle),
   );
 
-  /** @param {MonitorPage} page */
-  constructor(page) {
+  /** @param {MonitorStore} store @param {MonitorPage} page */
+  constructor(store, page) {
     this.#page = page;
     /** @type {Do} */
     const act = (send, words) => this.#done(send, words);
     this.#start = startForm(page, act);
     this.#changes = new ChangesInFlight(act);
     if (page.canFly) byId("simulation-acts").append(this.#start, this.#changes.element);
+    store.listen(["chosen"], ({ chosen }) => this.#changes.select(chosen));
+  }
+
+  get isRunning() {
+    return this.#isRead ? isPresent(this.#newest) : null;
+  }
+
+  /** As planned, in real time. Rejects with ApiError. */
+  async begin() {
+    await beginSimulation(this.#page.mission);
+    await this.#look();
   }
 
   open() {
@@ -119,6 +144,7 @@ class SimulationPanel {
     try {
       const answer = await get(`/missions/${this.#page.mission}/simulated-flights?state=all&limit=1`);
       this.#newest = /** @type {Answer<SimulationPage>} */ (answer).data.results[0] ?? null;
+      this.#isRead = true;
       this.#draw();
     } catch (error) {
       if (!(error instanceof ApiError)) throw error; // the head of the page says that nothing comes in
@@ -175,7 +201,7 @@ class SimulationPanel {
  * @param {number} [speed] times real time
  * @param {string} [conditions] wind
  */
-export const beginSimulation = (mission, speed = 1, conditions = AIRS[0][0]) =>
+const beginSimulation = (mission, speed = 1, conditions = AIRS[0][0]) =>
   post(`/missions/${mission}/simulated-flights`, { speed, conditions }, { headers: { "Idempotency-Key": freshKey() } });
 
 /**
@@ -217,6 +243,12 @@ class ChangesInFlight {
   #flown = null;
   #speed = choice("simulation-speed", SPEEDS);
   #whose = choice("simulation-whose", []);
+  #wished = ""; // who was chosen in the panel; see meantFor
+  /** @type {number | null} */
+  #selected = null; // UAV of the page
+  #nobody = h("p", { class: "caption", id: "simulation-nobody" }, t("Choose first which UAV it is for."));
+  /** @type {HTMLButtonElement[]} */
+  #ofSome = []; // buttons that need to know for whom
   #seconds = number("simulation-seconds", LASTS_S, 1, 3600);
   #lasts = h("p", { class: "caption", id: "simulation-lasts" });
 
@@ -227,6 +259,11 @@ class ChangesInFlight {
       const speed = Number(this.#speed.value);
       void this.#act(() => patch(this.#ofAll(), { speed }));
     });
+    this.#whose.addEventListener("change", () => {
+      this.#wished = this.#whose.value;
+      this.#drawMeant();
+    });
+    this.#whose.setAttribute("aria-describedby", this.#nobody.id);
     this.#seconds.setAttribute("aria-describedby", this.#lasts.id);
     this.#seconds.addEventListener("input", () => this.#drawLasts());
     const faults = [...FAULTS, WELL].map((fault) => this.#faultButton(fault));
@@ -239,6 +276,7 @@ class ChangesInFlight {
         field(t("Speed"), this.#speed),
         field(t("Wind and faults of"), this.#whose),
       ),
+      this.#nobody,
       group(t("Wind"), "simulation-wind-title", this.#windForm()),
       group(
         t("Faults"),
@@ -257,13 +295,30 @@ class ChangesInFlight {
     if (!flown) return;
     if (document.activeElement !== this.#speed) this.#speed.value = `${flown.speed}`;
     this.#drawLasts();
-    const vehicles = flown.vehicles.filter(isFlown);
-    const chosen = this.#whose.value;
+    this.#drawMeant();
+  }
+
+  /** The UAV that is selected on the page: wind and faults are for it, whoever was chosen here before. @param {number | null} uav */
+  select(uav) {
+    this.#selected = uav;
+    this.#wished = "";
+    this.#drawMeant();
+  }
+
+  #drawMeant() {
+    const vehicles = (this.#flown?.vehicles ?? []).filter(isFlown);
     refill(this.#whose, vehicles.map(({ id, name }) => `${id} ${name}`).join(), () => [
-      h("option", { value: "" }, t("All UAVs")),
+      h("option", { value: "" }, t("Choose a UAV")),
       vehicles.map(({ id, name }) => h("option", { value: id }, name)),
+      h("option", { value: ALL }, t("All UAVs of this mission")),
     ]);
-    this.#whose.value = vehicles.some(({ id }) => id === chosen) ? chosen : "";
+    this.#whose.value = meantFor(this.#wished, this.#selected, vehicles);
+    const isNobody = this.#whose.value === "";
+    this.#nobody.hidden = !isNobody;
+    for (const button of this.#ofSome) {
+      button.disabled = isNobody;
+      button.title = isNobody ? (this.#nobody.textContent ?? "") : "";
+    }
   }
 
   #drawLasts() {
@@ -277,7 +332,9 @@ class ChangesInFlight {
   /** UAVs that a fault is meant for. */
   #meant() {
     const vehicles = this.#flown?.vehicles ?? [];
-    return this.#whose.value ? vehicles.filter(({ id }) => id === this.#whose.value) : vehicles.filter(isPresent);
+    return this.#whose.value === ALL
+      ? vehicles.filter(isPresent)
+      : vehicles.filter(({ id }) => id === this.#whose.value);
   }
 
   #windForm() {
@@ -289,11 +346,13 @@ class ChangesInFlight {
     /** @param {Event} event */
     const onsubmit = (event) => {
       event.preventDefault();
-      const address = this.#whose.value ? `/simulated-vehicles/${this.#whose.value}` : this.#ofAll();
+      const address = this.#whose.value === ALL ? this.#ofAll() : `/simulated-vehicles/${this.#whose.value}`;
       const [speed_mps, gusts_mps] = [wind, gusts].map(({ valueAsNumber }) => valueAsNumber * SPEED_UNIT.mps);
       const conditions = windOf(speed_mps, from.valueAsNumber, gusts_mps);
       void this.#act(() => patch(address, { conditions }), t("The wind has changed."));
     };
+    const set = h("button", { class: "button small", type: "submit" }, t("Set the wind"));
+    this.#ofSome.push(set);
     return h(
       "form",
       { class: "simulation-wind", onsubmit },
@@ -304,7 +363,7 @@ class ChangesInFlight {
         field(t("From"), from, "°"),
         field(t("Gusts"), gusts, SPEED_UNIT.unit),
       ),
-      h("button", { class: "button small", type: "submit" }, t("Set the wind")),
+      set,
     );
   }
 
@@ -320,7 +379,9 @@ class ChangesInFlight {
       void this.#act(send, t("{fault}: done.", { fault: words }));
     };
     const properties = { class: "button small", type: "button", "data-fault": name, onclick };
-    return h("button", properties, icon(image, "small"), words);
+    const button = h("button", properties, icon(image, "small"), words);
+    this.#ofSome.push(button);
+    return button;
   }
 
   #endButton() {

@@ -96,7 +96,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     byId("show-more").hidden = rest === 0;
     byId("show-more").textContent = tn(rest, "Show {count} more", "Show {count} more");
     byId("target-count").textContent = all.length ? `${all.length}` : "";
-    byId("targets-empty").hidden = all.length > 0;
+    byId("targets-empty").hidden = all.length > 0 || state.arrival !== "whole";
     bar?.refresh(state);
   }
 
@@ -105,7 +105,7 @@ export function mountTargets(store, actions, canPlan, showOnMap) {
     refresh(store.state);
   });
   keepChosenKnown(store);
-  store.listen(["selection", "plan", "chosenTargets", "canUndo", "canRedo"], refresh);
+  store.listen(["selection", "plan", "chosenTargets", "canUndo", "canRedo", "arrival"], refresh);
 }
 
 /**

@@ -77,7 +77,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
     const uavs = shownOf(state);
     const visible = showAll ? uavs : uavs.filter((uav, index) => index < SHOWN_FIRST || uav.sequence !== null);
     draw(visible);
-    byId("uavs-empty").hidden = state.fleet.length > 0 || uavs.length > 0;
+    byId("uavs-empty").hidden = state.fleet.length > 0 || uavs.length > 0 || state.arrival !== "whole";
     byId("uav-count").textContent = countText(state, uavs, canPlan);
     if (!canPlan) return;
     filters.draw(state.fleet);
@@ -103,7 +103,7 @@ export function mountUavs(store, actions, canPlan, { mapCentre }) {
     });
     byId("all-uavs").addEventListener("click", filters.clear);
   }
-  store.listen(["fleet", "selection", "plan", "mission"], refresh);
+  store.listen(["fleet", "selection", "plan", "mission", "arrival"], refresh);
 
   return {
     /** Asks for the name of a UAV that takes off at a place; Enter takes the middle of the map. */
