@@ -19,6 +19,9 @@ class ReturnCheckSerializer(serializers.Serializer):
         allow_blank=True,
         help_text="that its autopilot ignores the fence of the mission; empty: it does not, or is not known to",
     )
+    detail = serializers.CharField(
+        allow_blank=True, help_text="parameters of the autopilot that were not read, for whoever sets it up; empty: none"
+    )
 
 
 class ReturnChecksSerializer(serializers.Serializer):

@@ -46,6 +46,7 @@ class ReturnCheck:
 
     `fence_warning` tells that its autopilot ignores the fence that goes with the mission; empty where it does not, or is not known to.
     `safe_height_m` is one at which nothing is in the way; None where it is clear, or where no height would be.
+    `detail` names parameters of the autopilot that were not read, for whoever sets it up; empty: none.
     """
 
     place: int | None
@@ -58,6 +59,7 @@ class ReturnCheck:
     safe_height_m: float | None = None
     read_at: datetime | None = None
     fence_warning: str = ""
+    detail: str = ""
 
 
 def note_own_return(*, uav_id: int, autopilot: str, parameters: dict[str, float]) -> None:
@@ -98,11 +100,12 @@ class ReportedReturn:
     parameter: str | None = None
     height_m: float | None = None
     read_at: datetime | None = None
+    detail: str = ""
 
     def check(self, place: int | None, name: str, uav: int | None) -> ReturnCheck:
         """Return the check of a UAV so far."""
         warnings = (self.why,) if self.why else ()
-        return ReturnCheck(place, name, uav, self.state, warnings, self.parameter, self.height_m, read_at=self.read_at)
+        return ReturnCheck(place, name, uav, self.state, warnings, self.parameter, self.height_m, read_at=self.read_at, detail=self.detail)
 
 
 def reported_return(uav: Uav | None, name: str, *, has_rally: bool) -> ReportedReturn:
@@ -117,11 +120,11 @@ def reported_return(uav: Uav | None, name: str, *, has_rally: bool) -> ReportedR
     told = uav.autopilot_return
     own = own_return(told.get("autopilot", ""), told.get("parameters", {}))
     if own is None:
-        words = _("Return altitude of %(uav)s unknown (%(parameter)s not read). Its return path is not checked against terrain and zones.")
-        return ReportedReturn(None, ReturnState.UNKNOWN, words % {**values, "parameter": _height_names()})
+        words = _("Return altitude of %(uav)s not reported by the autopilot. Its return path is not checked against terrain and zones.")
+        return ReportedReturn(None, ReturnState.UNKNOWN, words % values, detail=_height_names(told.get("autopilot", "")))
     reported = ReportedReturn(own, parameter=own.parameter, height_m=own.height_m, read_at=uav.autopilot_return_read_at)
     unknown = _why_unknown(own, name, has_rally=has_rally)
-    return replace(reported, own=None, state=ReturnState.UNKNOWN, why=unknown) if unknown else reported
+    return replace(reported, own=None, state=ReturnState.UNKNOWN, why=unknown, detail=own.untold) if unknown else reported
 
 
 def _check(mission: Mission, route: Route) -> ReturnCheck:
@@ -206,8 +209,8 @@ def zones_applying(table: ZoneTable, positions: NDArray[np.float64], window: tup
 def _why_unknown(own: OwnReturn, name: str, *, has_rally: bool) -> str:
     """Why nobody can say here where it flies on its way home; empty where that is known."""
     if own.untold:
-        words = _("Return path of %(uav)s unknown (%(parameter)s not read), and not checked.")
-        return words % {"uav": name, "parameter": own.untold}
+        words = _("Return path of %(uav)s unknown: its autopilot has not reported how it returns. It is not checked.")
+        return words % {"uav": name}
     if own.bends_by:
         words = _("By %(parameter)s %(uav)s does not return straight at one altitude: its return path is unknown, and not checked.")
         return words % {"uav": name, "parameter": own.bends_by}
@@ -217,8 +220,10 @@ def _why_unknown(own: OwnReturn, name: str, *, has_rally: bool) -> str:
     return ""
 
 
-def _height_names() -> str:
-    return " / ".join(dict.fromkeys(name for groups in PARAMETERS.values() for name in groups[0]))
+def _height_names(autopilot: str) -> str:
+    """Parameters that set the return altitude: the autopilot's own, or those of all where it is not known which one it is."""
+    own = {autopilot: PARAMETERS[autopilot]} if autopilot in PARAMETERS else PARAMETERS
+    return " / ".join(dict.fromkeys(name for groups in own.values() for name in groups[0]))
 
 
 def _ways(mission: Mission, route: Route, flights: Sequence[Flight], *, shuns_home: bool) -> tuple[ZoneTable, list[WaysHome]]:

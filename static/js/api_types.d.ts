@@ -50,6 +50,14 @@ export interface components {
         AcknowledgementInputRequest: {
             /** @default  */
             note: string;
+            /**
+             * @description that was seen: an alert that has risen above it since is not acknowledged
+             *
+             *     * `critical` - Critical
+             *     * `warning` - Warning
+             *     * `advisory` - Advisory
+             */
+            seen_level?: components["schemas"]["AlertLevel"];
         };
         /** @description What became of a command: it is here, it is done, it is not done and why. May be sent again. */
         AcknowledgementRequest: {
@@ -138,6 +146,10 @@ export interface components {
             details: unknown;
             /** @description what it would be answered with, the best first */
             acts: components["schemas"]["AlertAct"][];
+            /** @description in the reader's language: what an act costs or why it is not offered, what a silent UAV does by itself */
+            advice: string;
+            /** @description what the UAV does about it by itself; null: nothing, or not known */
+            own_act: components["schemas"]["AlertOwnAct"] | null;
             /** @description the worst that it has said; null: of an alert that is said once */
             worst: components["schemas"]["AlertWorst"] | null;
             /** Format: date-time */
@@ -198,6 +210,10 @@ export interface components {
             details: unknown;
             /** @description what it would be answered with, the best first */
             acts: components["schemas"]["AlertAct"][];
+            /** @description in the reader's language: what an act costs or why it is not offered, what a silent UAV does by itself */
+            advice: string;
+            /** @description what the UAV does about it by itself; null: nothing, or not known */
+            own_act: components["schemas"]["AlertOwnAct"] | null;
             /** @description the worst that it has said; null: of an alert that is said once */
             worst: components["schemas"]["AlertWorst"] | null;
             /** Format: date-time */
@@ -254,6 +270,23 @@ export interface components {
         AlertNoteInputRequest: {
             text: string;
         };
+        /** @description That it returns or lands already, by its failsafe, a pilot or a command. */
+        AlertOwnAct: {
+            kind: components["schemas"]["AlertOwnActKindEnum"];
+            /**
+             * Format: date-time
+             * @description by its reports; null: before it was watched
+             */
+            since: string | null;
+            /** @description a command from here leads to it; else its failsafe or a pilot */
+            is_commanded: boolean;
+        };
+        /**
+         * @description * `return` - return
+         *     * `land` - land
+         * @enum {string}
+         */
+        AlertOwnActKindEnum: "return" | "land";
         AlertPage: {
             results: components["schemas"]["Alert"][];
             next: string | null;
@@ -1081,6 +1114,32 @@ export interface components {
          * @enum {string}
          */
         EndEnum: "done" | "stopped" | "commanded" | "mission-over" | "interrupted";
+        EndedAlertOutcome: {
+            id: number;
+            /**
+             * @description still-open: left as it is, to be acknowledged singly
+             *
+             *     * `acknowledged` - acknowledged
+             *     * `still-open` - still-open
+             *     * `unknown` - unknown
+             */
+            outcome: components["schemas"]["EndedAlertOutcomeOutcomeEnum"];
+        };
+        /**
+         * @description * `acknowledged` - acknowledged
+         *     * `still-open` - still-open
+         *     * `unknown` - unknown
+         * @enum {string}
+         */
+        EndedAlertOutcomeOutcomeEnum: "acknowledged" | "still-open" | "unknown";
+        EndedAlerts: {
+            results: components["schemas"]["EndedAlertOutcome"][];
+        };
+        /** @description Refuses a field that it does not have, and names the one that is most like it; of long lists for the first few only. */
+        EndedAlertsInputRequest: {
+            /** @description ids of those that were seen */
+            alerts: number[];
+        };
         /**
          * @description * `flown` - flown
          *     * `failed` - failed
@@ -4019,6 +4078,8 @@ export interface components {
              * @description above take-off, of a return with something in its way: a height for set-return-height; null: none
              */
             safe_height_m: number | null;
+            /** @description parameters of the autopilot that were not read, for whoever sets it up; empty: none */
+            detail: string;
         };
         /**
          * @description * `ok` - ok
@@ -4108,6 +4169,8 @@ export interface components {
             read_at: string | null;
             /** @description that its autopilot ignores the fence of the mission; empty: it does not, or is not known to */
             fence_warning: string;
+            /** @description parameters of the autopilot that were not read, for whoever sets it up; empty: none */
+            detail: string;
             /** Format: uuid */
             mission: string | null;
             /** @description nothing in the way, nobody met, and the reserve is kept as far as that is known */
@@ -5324,6 +5387,8 @@ export interface components {
             read_at: string | null;
             /** @description that its autopilot ignores the fence of the mission; empty: it does not, or is not known to */
             fence_warning: string;
+            /** @description parameters of the autopilot that were not read, for whoever sets it up; empty: none */
+            detail: string;
         };
         ReturnChecks: {
             results: components["schemas"]["ReturnCheck"][];
@@ -7755,6 +7820,8 @@ export type AlertLevel = components['schemas']['AlertLevel'];
 export type AlertLimits = components['schemas']['AlertLimits'];
 export type AlertNote = components['schemas']['AlertNote'];
 export type AlertNoteInputRequest = components['schemas']['AlertNoteInputRequest'];
+export type AlertOwnAct = components['schemas']['AlertOwnAct'];
+export type AlertOwnActKindEnum = components['schemas']['AlertOwnActKindEnum'];
 export type AlertPage = components['schemas']['AlertPage'];
 export type AlertStep = components['schemas']['AlertStep'];
 export type AlertStepWhatEnum = components['schemas']['AlertStepWhatEnum'];
@@ -7823,6 +7890,10 @@ export type DrawnAreaRequest = components['schemas']['DrawnAreaRequest'];
 export type DrawnAreaTypeEnum = components['schemas']['DrawnAreaTypeEnum'];
 export type EndActionEnum = components['schemas']['EndActionEnum'];
 export type EndEnum = components['schemas']['EndEnum'];
+export type EndedAlertOutcome = components['schemas']['EndedAlertOutcome'];
+export type EndedAlertOutcomeOutcomeEnum = components['schemas']['EndedAlertOutcomeOutcomeEnum'];
+export type EndedAlerts = components['schemas']['EndedAlerts'];
+export type EndedAlertsInputRequest = components['schemas']['EndedAlertsInputRequest'];
 export type EndedFlightOutcomeEnum = components['schemas']['EndedFlightOutcomeEnum'];
 export type EndedFlightRequest = components['schemas']['EndedFlightRequest'];
 export type Error = components['schemas']['Error'];

@@ -15,6 +15,9 @@ class PreflightCheckSerializer(serializers.Serializer):
     safe_height_m = serializers.FloatField(
         allow_null=True, help_text="above take-off, of a return with something in its way: a height for set-return-height; null: none"
     )
+    detail = serializers.CharField(
+        allow_blank=True, help_text="parameters of the autopilot that were not read, for whoever sets it up; empty: none"
+    )
 
 
 class UavPreflightSerializer(serializers.Serializer):

@@ -118,6 +118,7 @@ def present_return_json(found: PresentReturn) -> dict[str, Any]:
         "safe_height_m": check.safe_height_m,
         "read_at": check.read_at,
         "fence_warning": check.fence_warning,
+        "detail": check.detail,
         "is_clear": found.is_clear,
         "present": _present_json(found.present),
         "distance_m": _rounded(found.distance_m),

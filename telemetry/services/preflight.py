@@ -65,12 +65,14 @@ class Check:
     """`code` is short and stable; `message` a sentence, or a few words where all is well.
 
     safe_height_m: of a return with something in its way, the height above take-off at which there is nothing.
+    detail: parameters of the autopilot that were not read, for whoever sets it up; empty: none.
     """
 
     code: str
     state: CheckState
     message: str
     safe_height_m: float | None = None
+    detail: str = ""
 
 
 @dataclass(frozen=True)
@@ -280,9 +282,8 @@ def _fence(uav: Uav, name: str, approval: Approval, link: UavLink) -> Iterator[C
     elif on_by := fence_on_by(autopilot, parameters):
         yield Check("fence", CheckState.OK, _("Fence active: %(parameter)s") % {"parameter": on_by})
     else:
-        words = _("%(parameter)s was not read from it: whether the fence is active is not known.")
         parameter = FENCE_PARAMETERS.get(autopilot or link.autopilot, " / ".join(FENCE_PARAMETERS.values()))
-        yield Check("fence", CheckState.UNKNOWN, words % {"parameter": parameter})
+        yield Check("fence", CheckState.UNKNOWN, _("Whether the fence is active: not reported by the autopilot."), detail=parameter)
 
 
 def _returns(check: ReturnCheck | None) -> Iterator[Check]:
@@ -293,7 +294,7 @@ def _returns(check: ReturnCheck | None) -> Iterator[Check]:
     if check.state == ReturnState.CLEAR and check.height_m is not None:
         words = _("Return at %(metres)s m is clear") % {"metres": f"{check.height_m:.0f}"}
     if words:
-        yield Check("return", states.get(check.state, CheckState.UNKNOWN), words, check.safe_height_m)
+        yield Check("return", states.get(check.state, CheckState.UNKNOWN), words, check.safe_height_m, check.detail)
 
 
 def _wind(mission: Mission, reported: Reported) -> Check:

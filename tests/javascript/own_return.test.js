@@ -8,11 +8,13 @@ import {
   holdLinesOfAll,
   landingLines,
   returnLines,
+  returnLinesOfAll,
   returnOf,
   returnSaid,
   saferReturn,
   separateReturns,
   togetherLine,
+  warningsOfAll,
 } from "../../static/js/domain/own_return.js";
 
 const check = (state, warnings = [], more = {}) => ({
@@ -192,4 +194,23 @@ test("a return that waits says until when its UAV holds", () => {
   };
   assert.match(commandWords(command).words, /^Return: holds until .*:00:40/);
   assert.match(commandWords({ ...command, parameters: {} }).words, /^Return: waiting/);
+});
+
+test("that no return altitude is reported is said once of several UAVs, and its parameter only in the tooltip", () => {
+  const unreported = (name) =>
+    check("unknown", [`Return altitude of ${name} not reported by the autopilot.`], {
+      name,
+      height_m: null,
+      detail: "RTL_ALT",
+    });
+  const [tern, kite] = [unreported("Tern"), unreported("Kite")];
+  assert.deepEqual(warningsOfAll([tern]), tern.warnings);
+  const lines = warningsOfAll([tern, kite, check("in_the_way", ["A zone is in the way."])]);
+  assert.equal(lines.length, 2);
+  assert.match(lines[0], /^Return altitude not reported by 2 UAVs: Tern, Kite\./);
+  const ofAll = returnLinesOfAll([tern, kite].map((one) => ({ name: one.name, check: one })));
+  assert.match(ofAll[0], /^Return altitude not reported by 2 UAVs/);
+  assert.equal(ofAll.filter((line) => line.includes("not reported")).length, 1);
+  assert.equal(returnSaid(tern).title, "Autopilot parameter: RTL_ALT");
+  assert.doesNotMatch(returnSaid(tern).words, /RTL/);
 });

@@ -41,7 +41,8 @@ def read(uav: Uav, **parameters: float) -> None:
 def test_a_height_that_was_never_read_is_not_known(mission):
     found = told(mission)
     assert (found["state"], found["height_m"], found["read_at"]) == ("unknown", None, None)
-    assert "Return altitude of Tern unknown" in found["warnings"][0] and "RTL_ALT" in found["warnings"][0]
+    assert found["warnings"][0].startswith("Return altitude of Tern not reported by the autopilot.")
+    assert "RTL" not in found["warnings"][0] and "RTL_ALT" in found["detail"]
 
 
 def test_a_free_way_home_is_told_with_its_height(mission, uav):
@@ -100,7 +101,8 @@ def test_a_way_home_that_is_not_the_straight_one_is_not_known(facts, words, miss
 def test_a_height_alone_does_not_say_that_it_flies_straight(mission, uav):
     note_own_return(uav_id=uav.pk, autopilot="px4", parameters={"RTL_RETURN_ALT": 60.0})
     found = told(mission)
-    assert found["state"] == "unknown" and "Return path of Tern unknown (RTL_TYPE not read)" in found["warnings"][0]
+    assert found["state"] == "unknown" and "its autopilot has not reported how it returns" in found["warnings"][0]
+    assert found["detail"] == "RTL_TYPE", "for whoever sets it up, and not in the sentence"
     note_own_return(uav_id=uav.pk, autopilot="px4", parameters={"RTL_RETURN_ALT": 60.0, "RTL_TYPE": 0.0})
     assert told(mission)["state"] == "clear"
 

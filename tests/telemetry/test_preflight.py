@@ -171,10 +171,10 @@ def test_a_home_position_away_from_the_planned_take_off_is_warned_of(two: tuple[
         ("ardupilot", {"FENCE_ENABLE": 1.0}, CheckState.OK, "Fence active: FENCE_ENABLE 1"),
         ("ardupilot", {"FENCE_ENABLE": 0.0, "FENCE_AUTOENABLE": 1.0}, CheckState.OK, "Fence active: FENCE_AUTOENABLE 1"),
         ("ardupilot", {"FENCE_ENABLE": 0.0}, CheckState.WARNING, "its autopilot has FENCE_ENABLE 0."),
-        ("ardupilot", {"RTL_ALT": 3_000.0}, CheckState.UNKNOWN, "FENCE_ENABLE was not read from it"),
+        ("ardupilot", {"RTL_ALT": 3_000.0}, CheckState.UNKNOWN, "not reported by the autopilot"),
         ("px4", {"GF_ACTION": 3.0}, CheckState.OK, "Fence active: GF_ACTION 3"),
         ("px4", {"GF_ACTION": 1.0}, CheckState.WARNING, "its autopilot has GF_ACTION 1."),
-        ("px4", {"RTL_RETURN_ALT": 60.0}, CheckState.UNKNOWN, "GF_ACTION was not read from it"),
+        ("px4", {"RTL_RETURN_ALT": 60.0}, CheckState.UNKNOWN, "not reported by the autopilot"),
     ],
 )
 def test_the_fence_is_active_off_or_not_known(
@@ -189,6 +189,8 @@ def test_the_fence_is_active_off_or_not_known(
     [fence_check] = [check for check in checks(mission).uavs[0].checks if check.code == "fence"]
     assert fence_check.state == state
     assert words in fence_check.message
+    parameter = "FENCE_ENABLE" if autopilot == "ardupilot" else "GF_ACTION"
+    assert fence_check.detail == (parameter if state == CheckState.UNKNOWN else "")
 
 
 def test_wind_is_compared_where_it_is_reported(two: tuple[Mission, Uav, Uav]) -> None:

@@ -123,9 +123,12 @@ function basisText(present) {
 export function returnLinesOfAll(uavs) {
   /** @type {Map<string, string[]>} */
   const said = new Map();
+  const known = uavs.flatMap(({ check }) => check ?? []);
+  const { lines, checks } = unreportedOnce(known);
+  const shown = new Map(known.map((check, place) => [check, checks[place]]));
   for (const { name, check } of uavs)
-    for (const line of returnLines(check)) said.set(line, [...(said.get(line) ?? []), name]);
-  return [...said].map(([line, names]) => `${names.join(", ")}: ${line}`);
+    for (const line of returnLines(check && shown.get(check))) said.set(line, [...(said.get(line) ?? []), name]);
+  return [...lines, ...[...said].map(([line, names]) => `${names.join(", ")}: ${line}`)];
 }
 
 /**
@@ -196,20 +199,51 @@ export function togetherLine(checks) {
     : t("All return at once: their return paths are not separated.");
 }
 
+/** What the tooltip of something that the autopilot has not reported says. @param {string} names of parameters */
+export const parametersText = (names) => t("Autopilot parameter: {names}", { names });
+
 /**
- * Under its name on the panel: { words, image, level }; null while nothing is known.
+ * That no return altitude is known, once for all UAVs of which that is so where they are several; and the checks without that warning.
+ *
+ * @template {Pick<ReturnCheck, "name" | "state" | "height_m" | "detail" | "warnings">} Check
+ * @param {Check[]} checks
+ * @returns {{ lines: string[], checks: Check[] }}
+ */
+function unreportedOnce(checks) {
+  const unreported = checks.filter(({ state, height_m, detail }) => state === "unknown" && height_m === null && detail);
+  if (unreported.length < 2) return { lines: [], checks };
+  const line = t(
+    "Return altitude not reported by {count} UAVs: {names}. Their return paths are not checked against terrain and zones.",
+    { count: unreported.length, names: unreported.map(({ name }) => name).join(", ") },
+  );
+  return {
+    lines: [line],
+    checks: checks.map((check) => (unreported.includes(check) ? { ...check, warnings: [] } : check)),
+  };
+}
+
+/** Warnings of a mission's UAVs, each sentence once. @param {ReturnCheck[]} all */
+export function warningsOfAll(all) {
+  const { lines, checks } = unreportedOnce(all);
+  const said = checks.flatMap(({ warnings, fence_warning }) => [...warnings, fence_warning]);
+  return [...new Set([...lines, ...said].filter(Boolean))];
+}
+
+/**
+ * Under its name on the panel: { words, image, level, title }; null while nothing is known.
  *
  * @param {ReturnCheck | null | undefined} check
  */
 export function returnSaid(check) {
   if (!check) return null;
-  const { state, warnings, fence_warning } = check;
+  const { state, warnings, fence_warning, detail } = check;
   const isGood = state === "clear" && !fence_warning;
   const isWarning = state === "in_the_way" || Boolean(fence_warning);
   return {
     words: [...(state === "clear" ? [clearText(check)] : warnings), fence_warning].filter(Boolean).join(" "),
     image: isGood ? "rotate-ccw" : isWarning ? "triangle-alert" : "info",
     level: isWarning ? "warning" : null,
+    title: detail ? parametersText(detail) : null,
   };
 }
 

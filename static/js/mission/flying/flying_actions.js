@@ -2,7 +2,7 @@
 
 import { ApiError, freshKey, post, signInAddress } from "../../api.js";
 import { flyersOf, isFrozen, isOnItsWay } from "../../domain/flying.js";
-import { returnOf } from "../../domain/own_return.js";
+import { returnOf, warningsOfAll } from "../../domain/own_return.js";
 import { confirmAct } from "../../page/confirm.js";
 import { t, tn } from "../../text.js";
 import { lengthText } from "../../units.js";
@@ -45,14 +45,12 @@ const asSeen = ({ state: { mission } }) => ({
 /** @param {Flyer[]} flyers */
 const uavsWords = (flyers) => flyers.map(({ name }) => name).join(", ");
 
-/** Warnings only, each once. @param {MissionPageState["returns"]} returns @param {Flyer[]} flyers */
+/** @param {MissionPageState["returns"]} returns @param {Flyer[]} flyers */
 function returnsOf(returns, flyers) {
-  const lines = flyers.flatMap(({ place }) => {
-    const check = returnOf(returns, place);
-    if (!check) return [t("Return path not checked: it flies straight, at its own return altitude.")];
-    return [...check.warnings, check.fence_warning].filter(Boolean);
-  });
-  return [...new Set(lines)];
+  const checks = flyers.flatMap(({ place }) => returnOf(returns, place) ?? []);
+  const isWhole = checks.length === flyers.length;
+  const unchecked = t("Return path not checked: it flies straight, at its own return altitude.");
+  return [...(isWhole ? [] : [unchecked]), ...warningsOfAll(checks)];
 }
 
 /**

@@ -127,7 +127,7 @@ function flyerRow(flyer, mission, read, context) {
       saidLine(onBoard, { role: board && isMixed(board) ? "alert" : null }),
       onBoard.share !== undefined && uploadBar(name, onBoard.share),
       flight && saidLine(commandWords(flight), { title: timesOf(flight, exactClockText) }),
-      home && saidLine(home),
+      home && saidLine(home, { title: home.title }),
       height && saidLine(commandWords(height), { title: timesOf(height, exactClockText) }),
     ),
   );

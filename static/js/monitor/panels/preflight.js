@@ -3,6 +3,7 @@
 import { ApiError, freshKey, get, post } from "../../api.js";
 import { byId, h, icon } from "../../dom.js";
 import { KINDS } from "../../domain/flying.js";
+import { parametersText } from "../../domain/own_return.js";
 import { canUploadToAll, firstStep, nextStep, summaryOf, worstOf } from "../../domain/preflight_step.js";
 import { beginStarts } from "../../page/planned_starts.js";
 import { tellUav } from "../../page/tell_uav.js";
@@ -38,22 +39,21 @@ const STATES = {
  * @returns {PreflightCheck}
  */
 export function rehearsalCheck(rehearsal) {
-  const [code, safe_height_m] = ["rehearsal", null];
+  const rest = { code: "rehearsal", safe_height_m: null, detail: "" };
   if (!rehearsal || rehearsal.is_outdated)
-    return { code, safe_height_m, state: "warning", message: t("This plan was not rehearsed") };
-  if (rehearsal.level === "fail") return { code, safe_height_m, state: "warning", message: t("Its rehearsal failed") };
-  if (rehearsal.level === "warnings")
-    return { code, safe_height_m, state: "warning", message: t("Rehearsed, with warnings") };
+    return { ...rest, state: "warning", message: t("This plan was not rehearsed") };
+  if (rehearsal.level === "fail") return { ...rest, state: "warning", message: t("Its rehearsal failed") };
+  if (rehearsal.level === "warnings") return { ...rest, state: "warning", message: t("Rehearsed, with warnings") };
   return rehearsal.level === "pass"
-    ? { code, safe_height_m, state: "ok", message: t("Rehearsed: passed") }
-    : { code, safe_height_m, state: "unknown", message: t("Its rehearsal has no result yet") };
+    ? { ...rest, state: "ok", message: t("Rehearsed: passed") }
+    : { ...rest, state: "unknown", message: t("Its rehearsal has no result yet") };
 }
 
 /** @param {PreflightCheck} check @param {HTMLElement | null} [remedy] */
-const checkRow = ({ code, state, message }, remedy = null) =>
+const checkRow = ({ code, state, message, detail }, remedy = null) =>
   h(
     "li",
-    { class: `preflight-check ${state}`, "data-check": code },
+    { class: `preflight-check ${state}`, "data-check": code, title: detail ? parametersText(detail) : null },
     icon(STATES[state].image, "small"),
     h("span", {}, h("span", { class: "unseen" }, `${STATES[state].words}: `), message, remedy),
   );
