@@ -7,6 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import dj_database_url
+from mavlink.timeouts import CommandRules as VehicleCommandRules
+from mavlink.timeouts import TransferRules
 
 from config.log_settings import log_settings
 from config.mail import mail_settings
@@ -20,8 +22,6 @@ from missions.command_rules import CommandRules
 from missions.flight_plan.rules import FlightRules, SeparationRules
 from missions.routing.rules import RoutingRules
 from operation.address_limits import operators_per_address, sockets_per_address, trusted_proxies
-from telemetry.ground_station.rules import CommandRules as VehicleCommandRules
-from telemetry.ground_station.rules import TransferRules
 
 BASE_DIR = Path(__file__).resolve().parent.parent
 STATE_DIR = state_directory()

@@ -10,6 +10,9 @@ import numpy as np
 from django.conf import settings
 from django.db.models.functions import Now
 from django.utils.translation import gettext as _
+from mavlink.approved_route import Flight, NotARoute
+from mavlink.fence import fence_of
+from mavlink.rtl import NAMES, PARAMETERS, OwnReturn, fence_off_by, own_return
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
@@ -20,9 +23,6 @@ from inspection.zones.reach import ZoneTable
 from missions.flight_plan.clearance import ZoneFacts
 from missions.flight_plan.ways_home import Haven, InTheWay, Places, Trouble, WaysHome
 from missions.flight_plan.zone_facts import zones_near
-from missions.mavlink.fence import fence_of
-from missions.mavlink.frozen import Flight, NotARoute
-from missions.mavlink.own_return import NAMES, PARAMETERS, OwnReturn, fence_off_by, own_return
 from missions.models import LinkKind, Mission, Route, Uav
 from missions.services.approval_document import frozen_route
 from missions.services.approved_fence import rally_points, zones_beside

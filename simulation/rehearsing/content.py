@@ -5,8 +5,9 @@ import json
 from collections.abc import Sequence
 from typing import Any
 
-from missions.mavlink.content import FlightLoad, load_to_json
-from missions.mavlink.frozen import route_to_json
+from mavlink.approved_route import route_to_json
+from mavlink.vehicle_plan import FlightLoad, load_to_json
+
 from simulation.rehearsing.flying import RouteToFly
 
 

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from missions.mavlink.content import MissionItem
+from mavlink.vehicle_plan import MissionItem
+
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.events import Crashed, Said
 from simulation.flight.states import Mode, Outcome, Severity, UavState

@@ -4,7 +4,8 @@ import time
 from dataclasses import dataclass, field
 from typing import Any
 
-from missions.mavlink.frames import message_of
+from mavlink.frames import message_of
+
 from simulation.flight.faults import Faults
 from simulation.flight.uav import SimulatedUav
 from simulation.flight.weather import Weather

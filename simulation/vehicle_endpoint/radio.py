@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from missions.mavlink.frames import Damage, Frame, frames_of_datagram
+from mavlink.frames import Damage, Frame, frames_of_datagram
 
 LARGEST_DATAGRAM = 65_535
 MOST_DATAGRAMS = 100  # that are heard before something else has its turn

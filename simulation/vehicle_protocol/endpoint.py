@@ -7,11 +7,11 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from mavlink.frames import Message
+from mavlink.mission_items import position_e7
+from mavlink.vehicle_plan import MissionItem, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from missions.mavlink.content import MissionItem, MissionType
-from missions.mavlink.frames import Message
-from missions.mavlink.items import position_e7
 from simulation.flight import events
 from simulation.flight.settings import Settings
 from simulation.flight.states import Refused, Severity, UavState

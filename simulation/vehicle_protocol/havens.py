@@ -2,8 +2,9 @@
 
 from collections.abc import Sequence
 
+from mavlink.vehicle_plan import MissionItem
+
 from inspection.geodesy import LonLat
-from missions.mavlink.content import MissionItem
 from simulation.flight.states import Haven
 from simulation.vehicle_protocol.item_rules import ABOVE_SEA
 

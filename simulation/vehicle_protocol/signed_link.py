@@ -2,8 +2,9 @@
 
 from dataclasses import dataclass, field
 
-from missions.mavlink.frames import Frame, Message
-from missions.mavlink.signing import EPOCH_UNIX_S, UNITS_PER_S, FrameWriter, Refusal, SignatureCheck
+from mavlink.frames import Frame, Message
+from mavlink.signing import EPOCH_UNIX_S, UNITS_PER_S, FrameWriter, Refusal, SignatureCheck
+
 from simulation.vehicle_protocol.stations import AUTOPILOT
 
 

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from missions.mavlink.frames import Message
+from mavlink.frames import Message
 
 AUTOPILOT = 1  # MAV_COMP_ID_AUTOPILOT1, the one component there is
 

@@ -1,8 +1,7 @@
 """Words for the people at the stations."""
 
+from mavlink.frames import Message
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from missions.mavlink.frames import Message
 
 PIECE = 50  # bytes of one STATUSTEXT
 MOST_PIECES = 5

@@ -2,8 +2,9 @@
 
 import math
 
+from mavlink.approved_route import FrozenRoute
+
 from missions.flight_plan.conditions import Conditions
-from missions.mavlink.frozen import FrozenRoute
 from simulation.verdict.finding import Finding, Level
 
 

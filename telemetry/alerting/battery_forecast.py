@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass
 
+from mavlink.decoding.measurement import Measurement
+
 from inspection.geodesy import LonLat
 from telemetry.alerting.consumption import Consumption, DrainMemory, FlightKind, Wind, east_north_m, kind_of
 from telemetry.alerting.memory import position_of
@@ -10,7 +12,6 @@ from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.route_line import NEAR_VERTEX_M
 from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import FlightModel
-from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.report import Report
 
 USUAL_RESERVE_PERCENT = 20.0

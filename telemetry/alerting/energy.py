@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from mavlink.approved_route import HOVER, Flight
 
 from missions.flight_plan.conditions import Conditions
 from missions.flight_plan.performance import Performance
@@ -10,7 +11,6 @@ from missions.flight_plan.power import NoHeadway
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.timing import timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, Waypoints
-from missions.mavlink.frozen import HOVER, Flight
 from telemetry.alerting.route_line import NEAR_VERTEX_M, Place
 
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from mavlink.approved_route import HOVER, Flight, FrozenWaypoint
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.graph.spans import Spans
@@ -16,7 +17,6 @@ from missions.flight_plan.heights import GroundHeights
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.tall_clearance import legs_too_near
 from missions.flight_plan.waypoints import FloatArray, RoutePoint, RoutePoints, WaypointKind, Waypoints
-from missions.mavlink.frozen import HOVER, Flight, FrozenWaypoint
 
 SAMPLED_EVERY_M = 10.0
 ROUNDING_M = 0.5  # heights are stored in tenths

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
 
+from mavlink.rtl import OwnReturn
+
 from inspection.geodesy import LonLat
-from missions.mavlink.own_return import OwnReturn
 from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import EnergyPlan
 from telemetry.alerting.route_line import RouteLine

@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass, field
 
+from mavlink.approved_route import Flight
+
 from inspection.geodesy import LonLat
 from missions.flight_plan.conditions import Conditions
 from missions.flight_plan.rules import FlightRules
-from missions.mavlink.frozen import Flight
 
 
 @dataclass(frozen=True)

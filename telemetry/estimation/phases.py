@@ -13,7 +13,7 @@ class Phase(StrEnum):
     GROUND = "ground"
 
 
-# As telemetry/ground_station/flavour.py names them: PX4's, then ArduCopter's, then what companions say.
+# As mavlink/autopilot_type.py names them: PX4's, then ArduCopter's, then what companions say.
 _PHASES = {
     "MISSION": Phase.MISSION, "TAKEOFF": Phase.TAKE_OFF, "LOITER": Phase.HOLD, "RTL": Phase.RETURN, "LAND": Phase.LAND,
     "PRECLAND": Phase.LAND,

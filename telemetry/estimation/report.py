@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, replace
 
-from telemetry.decoding.measurement import Measurement, believable
+from mavlink.decoding.measurement import Measurement, believable
 
 FUTURE_S = 2.0  # a time measured later than it was received by more than clocks differ is no time
 

@@ -1,11 +1,10 @@
 """With which item a UAV that is held in the air begins its route: it may be anywhere on the first part of the way."""
 
 from django.conf import settings
-
-from missions.mavlink.content import FlightLoad
-from missions.mavlink.points_between import FLOWN
-from telemetry.ground_station.leg import BesideLeg, beside_leg, beside_place
-from telemetry.ground_station.vehicle_state import VehicleState
+from mavlink.commands.leg import BesideLeg, beside_leg, beside_place
+from mavlink.intermediate_waypoints import FLOWN
+from mavlink.vehicle_plan import FlightLoad
+from mavlink.vehicle_state import VehicleState
 
 SAME_M = 1.0  # of two legs that are as near it is on the first
 

@@ -4,8 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from missions.mavlink.frames import Frame
-from missions.mavlink.signing import Refusal, SignatureCheck, stream_of, timestamp_at, unix_s_of
+from mavlink.frames import Frame
+from mavlink.signing import Refusal, SignatureCheck, stream_of, timestamp_at, unix_s_of
+
 from telemetry.gateway.addresses import Addresses
 from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.peers import Peer

@@ -4,10 +4,11 @@ import asyncio
 import time
 from collections.abc import Awaitable, Callable
 
+from mavlink.addressing import Ends
+from mavlink.commands.actions import Order
+from mavlink.commands.unacknowledged import blind_message, pause_s
+
 from telemetry.gateway.session import Session
-from telemetry.ground_station.blind import blind_message, pause_s
-from telemetry.ground_station.ends import Ends
-from telemetry.ground_station.orders import Order
 
 LOOK_EVERY_S = 0.25
 

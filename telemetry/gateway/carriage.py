@@ -13,9 +13,16 @@ from typing import Any
 
 from django.conf import settings
 from django.utils import timezone
+from mavlink.addressing import Ends
+from mavlink.commands.actions import Order
+from mavlink.commands.command import CommandEnd, CommandOutcome
+from mavlink.commands.driver import CommandKeeper
+from mavlink.mission_sync.outcome import KeeperOutcome, KeeperState
+from mavlink.mission_sync.sync import MissionKeeper
+from mavlink.parameters import ParameterSetting
+from mavlink.rtl import return_height_parameter
+from mavlink.vehicle_plan import FlightLoad, MissionType
 
-from missions.mavlink.content import FlightLoad, MissionType
-from missions.mavlink.own_return import return_height_parameter
 from missions.models import CommandKind, UavCommand
 from missions.services.commands import (
     is_wanted,
@@ -43,13 +50,6 @@ from telemetry.gateway.preparation import (
 from telemetry.gateway.reading import OTHER_LIST_READ, ask_for_the_present, read_aboard
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
 from telemetry.gateway.vehicle_limits import reason_not_to_load, warnings_of
-from telemetry.ground_station.command import CommandEnd, CommandOutcome
-from telemetry.ground_station.command_keeper import CommandKeeper
-from telemetry.ground_station.ends import Ends
-from telemetry.ground_station.keeper_outcome import KeeperOutcome, KeeperState
-from telemetry.ground_station.mission_keeper import MissionKeeper
-from telemetry.ground_station.orders import Order
-from telemetry.ground_station.parameters import ParameterSetting
 from telemetry.services.loads import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading
 from telemetry.services.mission_alerts import tell_of_mission, tell_of_other_list
 

@@ -6,7 +6,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from missions.mavlink.frames import Message
+from mavlink.frames import Message
+
 from telemetry.gateway.session import Session
 from workspace.timed_waits import wait_for_event
 

@@ -2,13 +2,12 @@
 
 from collections.abc import Mapping
 
+from mavlink.addressing import AUTOPILOT
+from mavlink.autopilot_type import Flavour
+from mavlink.frames import Message
+from mavlink.mission_sync.limits import PARAMETERS
+from mavlink.parameters import BY_NAME
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from missions.mavlink.frames import Message
-from telemetry.ground_station.ends import AUTOPILOT
-from telemetry.ground_station.flavour import Flavour
-from telemetry.ground_station.limits import PARAMETERS
-from telemetry.ground_station.parameters import BY_NAME
 
 INTERVALS_S = {
     mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: 0.2,

@@ -3,9 +3,10 @@
 import math
 from dataclasses import dataclass, field
 
-from missions.mavlink.frames import Message
+from mavlink.frames import Message
+from mavlink.vehicle_state import VehicleState
+
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
-from telemetry.ground_station.vehicle_state import VehicleState
 from telemetry.services.loads import Doubt
 
 TO_WHO_SENDS_A_LIST = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK"})  # reading one draws none of these

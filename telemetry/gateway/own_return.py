@@ -2,13 +2,12 @@
 
 from dataclasses import dataclass
 
+from mavlink.addressing import AUTOPILOT
+from mavlink.frames import Message
+from mavlink.parameters import BY_NAME
+from mavlink.rtl import NAMES, PARAMETERS
+from mavlink.vehicle_state import VehicleState
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from missions.mavlink.frames import Message
-from missions.mavlink.own_return import NAMES, PARAMETERS
-from telemetry.ground_station.ends import AUTOPILOT
-from telemetry.ground_station.parameters import BY_NAME
-from telemetry.ground_station.vehicle_state import VehicleState
 
 ASK_EVERY_S = 2.0
 MOST_QUESTIONS = 5  # a vehicle that has no such parameters says nothing

@@ -10,7 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from missions.mavlink.frames import Damage, Frame, StreamParser, frames_of_datagram
+from mavlink.frames import Damage, Frame, StreamParser, frames_of_datagram
+
 from telemetry.gateway.options import Address
 
 logger = logging.getLogger(__name__)

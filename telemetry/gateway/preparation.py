@@ -5,20 +5,20 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 
 from django.conf import settings
+from mavlink.approved_route import TakeOff
+from mavlink.autopilot_type import RESTARTS, Flavour, Mode
+from mavlink.commands.actions import ITEM, SPEED_MPS, Order
+from mavlink.commands.leg import beside_leg
+from mavlink.vehicle_plan import FlightLoad
+from mavlink.vehicle_state import VehicleState
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
 from missions.command_rules import ALONG_ROUTE
-from missions.mavlink.content import FlightLoad
-from missions.mavlink.frozen import TakeOff
 from missions.models import CommandKind, MissionState, UavCommand
 from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of
 from missions.services.start_slots import START_SLOT, reasons_to_carry_later
 from telemetry.gateway.begun_in_air import item_to_begin_with
-from telemetry.ground_station.flavour import RESTARTS, Flavour, Mode
-from telemetry.ground_station.leg import beside_leg
-from telemetry.ground_station.orders import ITEM, SPEED_MPS, Order
-from telemetry.ground_station.vehicle_state import VehicleState
 from telemetry.services.along_route import OnBoard, along_route, held_flight
 from telemetry.services.loads import Loaded, loaded_on
 

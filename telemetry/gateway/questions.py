@@ -4,14 +4,14 @@ import math
 from dataclasses import dataclass, field
 
 from django.conf import settings
+from mavlink.autopilot_type import Flavour
+from mavlink.frames import Message
+from mavlink.mission_sync.limits import PARAMETERS
+from mavlink.vehicle_state import VehicleState
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from missions.mavlink.frames import Message
 from telemetry.gateway import greeting
 from telemetry.gateway.own_return import OwnReturn
-from telemetry.ground_station.flavour import Flavour
-from telemetry.ground_station.limits import PARAMETERS
-from telemetry.ground_station.vehicle_state import VehicleState
 
 ASK_AGAIN_S = 5.0  # for positions that do not come; for other messages, and what is told once, after ever longer
 MISSING_INTERVALS = 3.0  # of a message, after which it does not come

@@ -8,18 +8,18 @@ from dataclasses import dataclass
 from functools import partial
 
 from django.conf import settings
+from mavlink.addressing import Ends
+from mavlink.autopilot_type import RESTARTS, Flavour
+from mavlink.commands.home_request import HomeReading
+from mavlink.mission_sync.compare import differences
+from mavlink.mission_sync.download import Download
+from mavlink.mission_sync.transfer import TransferState
+from mavlink.mission_sync.wire import held_list, held_sha256
+from mavlink.parameters import ParameterReading
+from mavlink.vehicle_plan import FlightLoad, MissionType
 
-from missions.mavlink.content import FlightLoad, MissionType
 from telemetry.gateway.conversation import Conversation, Keeper
 from telemetry.gateway.session import Session
-from telemetry.ground_station.compare import differences
-from telemetry.ground_station.download import Download
-from telemetry.ground_station.ends import Ends
-from telemetry.ground_station.flavour import RESTARTS, Flavour
-from telemetry.ground_station.home_reading import HomeReading
-from telemetry.ground_station.parameters import ParameterReading
-from telemetry.ground_station.transfer import TransferState
-from telemetry.ground_station.wire import held_list, held_sha256
 
 OTHER_LIST_READ = "other-list"  # a code: what is on board is known, and is not the approved list
 READINGS = 2  # a difference counts when a second reading shows it: the first may have been a late answer

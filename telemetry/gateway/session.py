@@ -8,15 +8,21 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
 
+from mavlink.addressing import AUTOPILOT
+from mavlink.autopilot_type import MISSION_MODES, Flavour
+from mavlink.decoding.boots import Stamp, VehicleTime
+from mavlink.decoding.link_quality import LinkQuality
+from mavlink.decoding.report import Flown, Reporter, is_place, is_vehicle
+from mavlink.decoding.status_texts import StatusText, TextCollector
+from mavlink.frames import Frame, Message, message_of
+from mavlink.mission_sync.flown_items import FlightWatch
+from mavlink.mission_sync.flown_items import Flown as FlownItem
+from mavlink.mission_sync.limits import PARAMETERS
+from mavlink.signing import FrameWriter, Refusal
+from mavlink.vehicle_state import VehicleState
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from missions.mavlink.frames import Frame, Message, message_of
-from missions.mavlink.signing import FrameWriter, Refusal
 from missions.models import LinkKind
-from telemetry.decoding.boots import Stamp, VehicleTime
-from telemetry.decoding.link_quality import LinkQuality
-from telemetry.decoding.report import Flown, Reporter, is_place, is_vehicle
-from telemetry.decoding.status_texts import StatusText, TextCollector
 from telemetry.gateway import greeting
 from telemetry.gateway.addresses import MAX_ADDRESSES
 from telemetry.gateway.belief import SENDER_SILENT_S, Belief, is_within
@@ -26,12 +32,6 @@ from telemetry.gateway.list_watch import ListWatch
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.questions import Questions
-from telemetry.ground_station.ends import AUTOPILOT
-from telemetry.ground_station.flavour import MISSION_MODES, Flavour
-from telemetry.ground_station.flown import FlightWatch
-from telemetry.ground_station.flown import Flown as FlownItem
-from telemetry.ground_station.limits import PARAMETERS
-from telemetry.ground_station.vehicle_state import VehicleState
 from telemetry.services.ingest import NewRecord
 from telemetry.services.links import Lease, LinkState
 

@@ -5,17 +5,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
+from mavlink.autopilot_type import COMMANDED, flavour_of
+from mavlink.decoding.report import E7, is_place, is_vehicle
+from mavlink.frames import Frame, Message, message_of
+from mavlink.signing import FrameWriter
+from mavlink.vehicle_class import type_name
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
-from missions.mavlink.frames import Frame, Message, message_of
-from missions.mavlink.signing import FrameWriter
-from telemetry.decoding.report import E7, is_place, is_vehicle
 from telemetry.gateway.greeting import position_request
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
-from telemetry.ground_station.flavour import COMMANDED, flavour_of
-from telemetry.ground_station.vehicle_class import type_name
 from telemetry.services.sightings import Sighting
 
 SYSTEMS = range(1, 255)

@@ -4,16 +4,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from django.conf import settings
+from mavlink.addressing import Ends
+from mavlink.autopilot_type import Flavour
+from mavlink.mission_sync.limits import FIRST_LEG, PARAMETERS, LimitWarning, count_warnings, leg_warnings
+from mavlink.parameters import ParameterReading
+from mavlink.rtl import fence_off_by
+from mavlink.vehicle_plan import FlightLoad
 
-from missions.mavlink.content import FlightLoad
-from missions.mavlink.own_return import fence_off_by
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.preparation import CannotCarry
 from telemetry.gateway.session import Session
-from telemetry.ground_station.ends import Ends
-from telemetry.ground_station.flavour import Flavour
-from telemetry.ground_station.limits import FIRST_LEG, PARAMETERS, LimitWarning, count_warnings, leg_warnings
-from telemetry.ground_station.parameters import ParameterReading
 
 RETRIES = 2  # a parameter that a vehicle does not have draws no answer
 ADVICE = {

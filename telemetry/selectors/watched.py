@@ -7,11 +7,11 @@ from typing import Any
 from uuid import UUID
 
 from django.db import connection
+from mavlink.decoding.measurement import Measurement
 
 from inspection.geodesy import LonLat
 from missions.command_selectors import SENT_LAST
 from missions.models import ENDED_STATES, MissionState
-from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.contact import PROMPT_S
 from telemetry.estimation.report import Boot, Report
 from telemetry.exports.logged_record import REPORTED

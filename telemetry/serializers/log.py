@@ -1,9 +1,9 @@
 """Shapes of the log's answers, for the OpenAPI document."""
 
+from mavlink.decoding.companion_reports import INTEGERS, NUMBERS
 from rest_framework import serializers
 
 from missions.serializers.uavs import PointSerializer
-from telemetry.decoding.companion_reports import INTEGERS, NUMBERS
 from telemetry.exports.logged_record import FLAGS
 
 

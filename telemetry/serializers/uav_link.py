@@ -3,13 +3,13 @@
 import json
 from typing import Any
 
+from mavlink.decoding.companion_reports import FLAGS, INTEGERS, LONGEST_MODE, NUMBERS, instant
 from rest_framework import serializers
 
 from missions.fields import PositionField
 from missions.models import CommandKind, TargetState
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.services.flying import FlightEnd
-from telemetry.decoding.companion_reports import FLAGS, INTEGERS, LONGEST_MODE, NUMBERS, instant
 from telemetry.services.results import NewResult
 from workspace.serializers import Declared
 

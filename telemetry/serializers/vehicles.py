@@ -3,10 +3,11 @@
 from datetime import datetime
 from typing import Any
 
+from mavlink.vehicle_class import type_name
+
 from missions.fields import PositionField
 from missions.models import LinkKind, Uav
 from missions.serializers.known_fields import KnownFieldsSerializer
-from telemetry.ground_station.vehicle_class import type_name
 from telemetry.models import UavLink, UnknownVehicle, UnknownVehicleState
 from telemetry.services.approved_vehicles import connection_warnings
 from telemetry.services.loads import Doubt

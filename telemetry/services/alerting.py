@@ -6,6 +6,8 @@ from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Any
 
+from mavlink.autopilot_type import Flavour
+
 from telemetry.alerting.book import Closed, Opened, changes
 from telemetry.alerting.detectors import down
 from telemetry.alerting.limits import Limits, sound_limits
@@ -15,7 +17,6 @@ from telemetry.alerting.order import CODES, DETECTORS
 from telemetry.alerting.situation import Situation
 from telemetry.alerting.surroundings import Held, LinkFacts, NearZone
 from telemetry.alerting.watched import WatchedUav
-from telemetry.ground_station.flavour import Flavour
 from telemetry.selectors.alert_facts import (
     Loaded,
     closed_by_people,

@@ -6,9 +6,10 @@ from datetime import datetime
 from typing import Any
 from uuid import UUID
 
+from mavlink.decoding.companion_reports import FaultyReport, Report, read_report
+from mavlink.decoding.measurement import Measurement
+
 from missions.models import LinkKind, MissionUav
-from telemetry.decoding.companion_reports import FaultyReport, Report, read_report
-from telemetry.decoding.measurement import Measurement
 from telemetry.models import TelemetryRecord
 from telemetry.services.heard import note_state_over_http
 from telemetry.services.ingest import NewRecord, StoredCount, store_records

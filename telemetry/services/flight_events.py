@@ -5,7 +5,8 @@ from datetime import datetime
 from typing import Protocol
 from uuid import UUID
 
-from telemetry.decoding.measurement import Measurement
+from mavlink.decoding.measurement import Measurement
+
 from telemetry.models import FlightEvent, FlightEventKind, TelemetryRecord, UavWatch
 
 

@@ -11,8 +11,7 @@ from datetime import UTC, datetime
 from typing import Any, Protocol
 
 from django.db import connection
-
-from telemetry.decoding.measurement import Measurement
+from mavlink.decoding.measurement import Measurement
 
 
 class Report(Protocol):

@@ -11,11 +11,11 @@ from uuid import UUID
 
 import numpy as np
 from django.db import close_old_connections, connection, transaction
+from mavlink.decoding.measurement import Measurement
 
 from operation import pulse
 from operation.metrics import ESTIMATOR_ROUND_SECONDS
 from telemetry.alerting.watched import WatchedUav
-from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import Tracker
 from telemetry.selectors.watched import WatchedFlight, newest_reports, places_heard, watched_flights

@@ -2,7 +2,7 @@
 
 from tests.chaos.rows import Elsewhere, Experiment, Row, Tests
 
-UPLOADS = "tests/telemetry/ground_station/test_lossy_upload.py"
+UPLOADS = "tests/mavlink/mission_sync/test_lossy_upload.py"
 GATEWAY = "tests/telemetry/gateway"
 LIVE = "tests/telemetry/live"
 WORKSPACE = "tests/workspace"
@@ -30,7 +30,7 @@ RELIABILITY = (
             Tests(
                 "either end dies at each message index",
                 "PX4: a whole list of one or the other in 100 %; ArduPilot, whose uploads are not atomic: a mix is named",
-                ("tests/telemetry/ground_station/test_cut_uploads.py",), "{passed} of {all} families of cuts",
+                ("tests/mavlink/mission_sync/test_cut_uploads.py",), "{passed} of {all} families of cuts",
             ),
         ),
     ),
@@ -205,7 +205,7 @@ SECURITY = (
         (
             Tests(
                 "replayed, unsigned, wrong key, old, future, after a restart", "100 % refused and counted; the key in no log",
-                (f"{GATEWAY}/test_signing.py", "tests/missions/mavlink/test_signing.py"), "{passed} of {all} tests",
+                (f"{GATEWAY}/test_signing.py", "tests/mavlink/test_signing.py"), "{passed} of {all} tests",
             ),
         ),
     ),

@@ -8,14 +8,15 @@ import pytest
 from django.utils import timezone
 from hypothesis import given
 from hypothesis import strategies as st
+from mavlink.approved_route import route_from_json
+from mavlink.intermediate_waypoints import with_points_between
+from mavlink.mission_items import flight_loads
+from mavlink.mission_sync.limits import leg_warnings
+from mavlink.vehicle_plan import load_from_json
 
 from inspection.geodesy import LonLat
 from inspection.models import NoFlyZone
 from missions.flight_plan.lost_link import LostLink
-from missions.mavlink.content import load_from_json
-from missions.mavlink.frozen import route_from_json
-from missions.mavlink.items import flight_loads
-from missions.mavlink.points_between import with_points_between
 from missions.models import Approval, CommandState, Mission, MissionState, TargetState, Uav, UavState, UavType
 from missions.services import (
     MissionChange,
@@ -33,7 +34,6 @@ from missions.services.approval_document import approval_document, content_sha25
 from missions.services.commands import note_applied, note_failed
 from missions.services.refused import Refused
 from missions.services.requests import LostLinkRequest
-from telemetry.ground_station.limits import leg_warnings
 from tests.missions import worlds
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, ground, planned
 from tests.missions.outbox import claim, fence, now

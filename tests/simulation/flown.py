@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import shapely
+from mavlink.approved_route import LAND, FrozenRoute, FrozenWaypoint, TakeOff
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
@@ -17,7 +18,6 @@ from inspection.zones.reach import ZoneTable, agl_band
 from inspection.zones.rules import ZoneRules
 from inspection.zones.schedule import Schedule
 from missions.flight_plan.waypoints import WaypointKind
-from missions.mavlink.frozen import LAND, FrozenRoute, FrozenWaypoint, TakeOff
 from missions.routing.problem import Task, TaskKind
 from simulation.verdict.flown import Ending, FlownFlight, FlownRoute, FlownTrack
 from simulation.verdict.judging import Surroundings

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from mavlink.approved_route import HOVER, LAND, FrozenRoute, FrozenWaypoint, TakeOff
+from mavlink.mission_items import flight_loads
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
@@ -13,8 +15,6 @@ from missions.flight_plan.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_
 from missions.flight_plan.rules import FlightRules
 from missions.flight_plan.timing import Timing, timing
 from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-from missions.mavlink.frozen import HOVER, LAND, FrozenRoute, FrozenWaypoint, TakeOff
-from missions.mavlink.items import flight_loads
 from missions.routing.problem import Task, TaskKind
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.flown import Ending, fly_mission

@@ -6,12 +6,12 @@ from datetime import datetime, timedelta
 from typing import Any
 
 from django.test import Client
+from mavlink.approved_route import FrozenRoute, FrozenWaypoint, route_from_json
+from mavlink.decoding.measurement import Measurement
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from missions.mavlink.frozen import FrozenRoute, FrozenWaypoint, route_from_json
 from missions.models import Approval, LinkKind, Mission, Uav
-from telemetry.decoding.measurement import Measurement
 from telemetry.services import NewRecord, store_records
 
 SPEED_MPS = 12.0

@@ -4,9 +4,9 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from django.utils import timezone
+from mavlink.decoding.measurement import Measurement
 
 from missions.models import LinkKind, Uav
-from telemetry.decoding.measurement import Measurement
 from telemetry.models import UavLink
 from telemetry.services import NewRecord
 from telemetry.services.ingest import store_records

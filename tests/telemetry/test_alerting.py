@@ -6,11 +6,11 @@ from datetime import timedelta
 import pytest
 from django.utils import timezone
 from django.utils.translation import override
+from mavlink.decoding.measurement import Measurement
 
 from missions.models import Approval, CommandKind, Mission, Uav, UavCommand, UavType
 from missions.services.outbox import queue_command
 from telemetry.alerting.watched import WatchedUav
-from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.report import Report
 from telemetry.models import Alert, UavLink, VehicleText
 from telemetry.selectors.alert_words import alert_words

@@ -61,7 +61,7 @@ import {
  */
 
 export const LATE = t("The command expires if it is not delivered in time.");
-// what a gateway sends: telemetry/ground_station/orders.py
+// what a gateway sends: mavlink/commands/actions.py
 const ABORT_DOES = t(
   "In the air: it returns and lands where it took off; an autopilot that refuses to return lands where it is. On the ground: its motors are switched off.",
 );

@@ -2,10 +2,11 @@
 
 import math
 
+from mavlink.decoding.measurement import Measurement
+
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.situation import Situation
-from telemetry.decoding.measurement import Measurement
 
 CODE = "weather"
 WORDS = "Wind %(wind)s m/s at %(uav)s (limit %(limit)s m/s)."

@@ -6,13 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from mavlink.approved_route import HOVER, LAND, FrozenRoute, FrozenWaypoint, TakeOff
+from mavlink.mission_items import flight_loads
+from mavlink.vehicle_plan import MissionItem
 from pymavlink.dialects.v20 import common as mavlink
 
 from inspection.geodesy.local_frame import LocalFrame
 from missions.flight_plan.waypoints import WaypointKind
-from missions.mavlink.content import MissionItem
-from missions.mavlink.frozen import HOVER, LAND, FrozenRoute, FrozenWaypoint, TakeOff
-from missions.mavlink.items import flight_loads
 from missions.routing.problem import Task, TaskKind
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.circle import around

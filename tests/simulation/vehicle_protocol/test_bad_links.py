@@ -3,16 +3,16 @@
 from typing import Any
 
 import pytest
+from mavlink.mission_sync.outcome import KeeperState
+from mavlink.mission_sync.sync import MissionKeeper
+from mavlink.timeouts import TransferRules
+from mavlink.vehicle_plan import MissionItem, MissionType
+from mavlink.vehicle_state import VehicleState
 
-from missions.mavlink.content import MissionItem, MissionType
 from simulation.vehicle_protocol.endpoint import Endpoint
 from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.item_wire import as_kept
 from simulation.vehicle_protocol.stations import Station
-from telemetry.ground_station.keeper_outcome import KeeperState
-from telemetry.ground_station.mission_keeper import MissionKeeper
-from telemetry.ground_station.rules import TransferRules
-from telemetry.ground_station.vehicle_state import VehicleState
 from tests.simulation.kinematic_uav import KinematicUav
 from tests.simulation.vehicle_protocol.talk import SYSTEM, UNIX_S, over_the_wire
 from tests.telemetry.vehicles.channel import Channel, Link

@@ -3,15 +3,15 @@
 import math
 
 import pytest
+from mavlink.decoding.measurement import Measurement
+from mavlink.rtl import own_return
 
 from inspection.geodesy import LonLat
-from missions.mavlink.own_return import own_return
 from telemetry.alerting.acts import acts_of
 from telemetry.alerting.detectors import battery
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.surroundings import LinkFacts
 from telemetry.alerting.watched import WatchedUav
-from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.truth import MISSION, START_S, TrueFlight, true_flight
 from tests.telemetry.alerting.watch import Watch

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mavlink.decoding.measurement import Measurement
 
 from telemetry.alerting.detector import LOOK_EVERY_S
 from telemetry.alerting.detectors.link import lost_after_s
@@ -11,7 +12,6 @@ from telemetry.alerting.finding import CRITICAL
 from telemetry.alerting.order import DETECTORS
 from telemetry.alerting.surroundings import LinkFacts
 from telemetry.alerting.watched import WatchedUav
-from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.faults import FAULTS, LIMITS, Fault, link_lost
 from tests.telemetry.alerting.truth import MISSION, START_S, Instruments, TrueFlight, true_flight

@@ -5,18 +5,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from mavlink.approved_route import LAND, Flight, FrozenWaypoint, TakeOff
+from mavlink.decoding.measurement import Measurement
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from missions.flight_plan.waypoints import WaypointKind
-from missions.mavlink.frozen import LAND, Flight, FrozenWaypoint, TakeOff
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
 from telemetry.alerting.finding import CRITICAL, WARNING
 from telemetry.alerting.meetings import MOST_MET, NEAR_M, STEP_S, Moving, meetings, ways_of
 from telemetry.alerting.route_line import RouteLine
 from telemetry.alerting.surroundings import FlightModel
 from telemetry.alerting.watched import WatchedUav
-from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.estimate import Ellipse, Estimate
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.faults import LIMITS

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from uuid import UUID
 
 import numpy as np
+from mavlink.approved_route import LAND, Flight, FrozenWaypoint, TakeOff
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
@@ -13,7 +14,6 @@ from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.performance import Performance
 from missions.flight_plan.rules import FlightRules, Manoeuvres
 from missions.flight_plan.waypoints import WaypointKind
-from missions.mavlink.frozen import LAND, Flight, FrozenWaypoint, TakeOff
 from missions.routing.problem import Task, TaskKind
 from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import energy_plan

@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import osmium
+from mavlink.approved_route import HOVER, RETURN, Flight, FrozenRoute, FrozenWaypoint, TakeOff
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from missions.flight_plan.conditions import Conditions, WindLayer
 from missions.flight_plan.waypoints import WaypointKind
-from missions.mavlink.frozen import HOVER, RETURN, Flight, FrozenRoute, FrozenWaypoint, TakeOff
 from missions.routing.problem import Task, TaskKind
 from telemetry.estimation.knowledge import Knowledge
 

@@ -10,14 +10,16 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from mavlink.approved_route import Flight, FrozenRoute
+from mavlink.autopilot_type import Flavour as HeardFlavour
+from mavlink.autopilot_type import mode_name
+from mavlink.mission_items import flight_loads
+from mavlink.vehicle_plan import MissionItem
 from pymavlink.dialects.v20 import common as mavlink
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from missions.flight_plan.conditions import Conditions, WindLayer
-from missions.mavlink.content import MissionItem
-from missions.mavlink.frozen import Flight, FrozenRoute
-from missions.mavlink.items import flight_loads
 from simulation.flight.airframe import AIRFRAMES, Airframe
 from simulation.flight.events import ItemReached
 from simulation.flight.states import MissionState, Mode
@@ -26,8 +28,6 @@ from simulation.flight.weather import Weather
 from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.mode_numbers import usual_number
 from telemetry.estimation.knowledge import Knowledge
-from telemetry.ground_station.flavour import Flavour as HeardFlavour
-from telemetry.ground_station.flavour import mode_name
 from tests.simulation.planned_flights import planned_timing, usable_wh
 from tests.telemetry.estimation.heard import reports_of
 from tests.telemetry.estimation.routes import drawn_route, route_on_line

@@ -3,15 +3,15 @@
 import time
 
 import pytest
+from mavlink.approved_route import TakeOff
+from mavlink.autopilot_type import RESTARTS, Flavour
+from mavlink.commands.actions import ITEM, Order, plan_of
+from mavlink.vehicle_plan import FlightLoad, MissionItem
+from mavlink.vehicle_state import VehicleState
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
-from missions.mavlink.content import FlightLoad, MissionItem
-from missions.mavlink.frozen import TakeOff
 from telemetry.gateway.preparation import CannotCarry, Task, as_begun, reason_not_to
-from telemetry.ground_station.flavour import RESTARTS, Flavour
-from telemetry.ground_station.orders import ITEM, Order, plan_of
-from telemetry.ground_station.vehicle_state import VehicleState
 
 HOME = LonLat(10.0, 56.0)
 HELD = {Flavour.PX4: 4 << 16 | 3 << 24, Flavour.ARDUPILOT: 17}

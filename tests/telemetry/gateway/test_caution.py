@@ -10,13 +10,18 @@ from uuid import uuid4
 import pytest
 from django.db.models import F
 from django.db.models.functions import Now
+from mavlink.approved_route import TakeOff
+from mavlink.autopilot_type import Flavour
+from mavlink.commands.actions import Order
+from mavlink.frames import frames_of_datagram
+from mavlink.mission_sync.flown_items import Flown
+from mavlink.signing import FrameWriter
+from mavlink.timeouts import CommandRules
+from mavlink.vehicle_plan import FlightLoad, MissionItem
+from mavlink.vehicle_state import MOST_PARAMETERS, VehicleState
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
-from missions.mavlink.content import FlightLoad, MissionItem
-from missions.mavlink.frames import frames_of_datagram
-from missions.mavlink.frozen import TakeOff
-from missions.mavlink.signing import FrameWriter
 from missions.models import CommandAxis, CommandKind
 from missions.services.commands import claim_commands, queue_command, renew_claims
 from telemetry.gateway.carriage import Carriage
@@ -27,11 +32,6 @@ from telemetry.gateway.preparation import Task, reason_not_to
 from telemetry.gateway.process import _link_id
 from telemetry.gateway.session import Session
 from telemetry.gateway.store import Store
-from telemetry.ground_station.flavour import Flavour
-from telemetry.ground_station.flown import Flown
-from telemetry.ground_station.orders import Order
-from telemetry.ground_station.rules import CommandRules
-from telemetry.ground_station.vehicle_state import MOST_PARAMETERS, VehicleState
 from telemetry.models import UavLink
 from telemetry.services.links import Lease, save_links, take_leases
 from tests.telemetry.gateway.station import unsigned_uav

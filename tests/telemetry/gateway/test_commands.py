@@ -1,17 +1,17 @@
 """Commands of the outbox reach vehicles through the gateway, and their rows tell what became of them."""
 
 import pytest
+from mavlink.autopilot_type import Flavour
+from mavlink.mission_sync.compare import differences
+from mavlink.mission_sync.wire import held_list
+from mavlink.vehicle_plan import FlightLoad, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
-from missions.mavlink.content import FlightLoad, MissionType
 from missions.models import Approval, CommandKind, CommandState, Mission, MissionState, TargetState, Uav, UavCommand
 from missions.services.commands import queue_command
 from missions.services.dispatch import dispatch_mission, load_of
 from telemetry.gateway import carriage
-from telemetry.ground_station.compare import differences
-from telemetry.ground_station.flavour import Flavour
-from telemetry.ground_station.wire import held_list
 from telemetry.models import Alert, UavLink
 from telemetry.selectors.alert_words import alert_words
 from tests.missions.flights import approved, ground

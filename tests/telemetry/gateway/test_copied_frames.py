@@ -5,13 +5,13 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 
 import pytest
+from mavlink.autopilot_type import PX4_AUTO
+from mavlink.signing import FrameWriter
 
-from missions.mavlink.signing import FrameWriter
 from missions.models import CommandKind, CommandState
 from missions.services.commands import queue_command
 from telemetry.gateway import addresses, belief
 from telemetry.gateway.addresses import MAX_ADDRESSES, Addresses
-from telemetry.ground_station.flavour import PX4_AUTO
 from telemetry.models import Alert, TelemetryRecord, UavLink
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, signed_uav, wait_for

@@ -1,10 +1,10 @@
 """What a vehicle's messages tell of somebody else who changes its lists."""
 
 import pytest
+from mavlink.vehicle_state import VehicleState
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from telemetry.gateway.list_watch import QUIET_S, ListWatch
-from telemetry.ground_station.vehicle_state import VehicleState
 from telemetry.services.loads import Doubt
 
 LOADED_S, LATER_S = 100.0, 100.0 + QUIET_S + 1.0

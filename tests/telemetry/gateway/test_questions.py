@@ -1,11 +1,11 @@
 """Which messages a vehicle is asked for: by intervals, by streams only where intervals bring nothing, and within a budget."""
 
+from mavlink.autopilot_type import Flavour
+from mavlink.vehicle_state import VehicleState
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from telemetry.gateway.greeting import FRAME_BYTES, INTERVALS_S, LONGEST_STRETCH, intervals_s
 from telemetry.gateway.questions import ASK_AGAIN_S, LISTENS_S, STATION_GONE_S, Questions
-from telemetry.ground_station.flavour import Flavour
-from telemetry.ground_station.vehicle_state import VehicleState
 
 POSITION, BATTERY = mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT, mavlink.MAVLINK_MSG_ID_BATTERY_STATUS
 WANTED = set(intervals_s(Flavour.ARDUPILOT, 0.0))

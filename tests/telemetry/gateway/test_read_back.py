@@ -4,14 +4,14 @@ import time
 from typing import Any
 
 import pytest
+from mavlink.timeouts import TransferRules
+from mavlink.vehicle_plan import MissionItem, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.command_rules import CommandRules
-from missions.mavlink.content import MissionItem, MissionType
 from missions.models import CommandState, Mission, Uav
 from missions.serializers.commands import command_json
 from missions.services.dispatch import dispatch_mission
-from telemetry.ground_station.rules import TransferRules
 from telemetry.models import UavLink
 from telemetry.services.loads import Doubt
 from tests.missions.flights import approved, ground

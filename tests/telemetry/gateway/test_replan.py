@@ -2,9 +2,12 @@
 
 import pytest
 from django.utils import timezone
+from mavlink.autopilot_type import Flavour
+from mavlink.mission_sync.compare import differences
+from mavlink.mission_sync.wire import held_list
+from mavlink.vehicle_plan import MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from missions.mavlink.content import MissionType
 from missions.models import CommandKind, CommandState, Mission, MissionState, OfferState, TargetState, Uav, UavCommand
 from missions.selectors import mission_of_organisation
 from missions.services.approval import approve_mission
@@ -12,9 +15,6 @@ from missions.services.dispatch import dispatch_mission, load_of
 from missions.services.flying import FlightEnd, mark_flight_ended
 from missions.services.replanning import accept_offer
 from missions.services.steering import command_uav
-from telemetry.ground_station.compare import differences
-from telemetry.ground_station.flavour import Flavour
-from telemetry.ground_station.wire import held_list
 from telemetry.models import Alert, UavLink
 from telemetry.services.command_alerts import settle_command_alerts
 from tests.cases import long

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from mavlink.autopilot_type import Flavour
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
@@ -9,7 +10,6 @@ from missions.models import CommandKind, CommandState, Mission, MissionState, Ua
 from missions.services.dispatch import load_of
 from missions.services.staggered_returns import stuck_returns
 from missions.services.steering import command_uav
-from telemetry.ground_station.flavour import Flavour
 from telemetry.models import Alert
 from telemetry.selectors.alert_words import alert_words
 from telemetry.services.command_alerts import settle_command_alerts

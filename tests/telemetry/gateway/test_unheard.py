@@ -5,17 +5,17 @@ from collections import Counter, deque
 from dataclasses import dataclass, replace
 
 import pytest
+from mavlink.autopilot_type import Flavour
+from mavlink.frames import frames_of_datagram
+from mavlink.signing import FrameWriter
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from missions.command_rules import HAND_OVER
-from missions.mavlink.frames import frames_of_datagram
-from missions.mavlink.signing import FrameWriter
 from missions.models import CommandKind, CommandState, UavCommand
 from missions.services.commands import queue_command
 from telemetry.gateway import carriage, desk
 from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.session import ADDRESS_GOOD_S, Session
-from telemetry.ground_station.flavour import Flavour
 from telemetry.models import UavLink
 from telemetry.services.links import Lease
 from tests.telemetry.gateway.flyer import Flyer

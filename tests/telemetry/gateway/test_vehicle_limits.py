@@ -1,16 +1,16 @@
 """What a vehicle would not fly by its own parameters is told before anything is sent to it."""
 
 import pytest
+from mavlink.autopilot_type import Flavour
+from mavlink.mission_sync import limits
+from mavlink.vehicle_plan import MissionType
 
 from inspection.geodesy import LonLat
-from missions.mavlink.content import MissionType
 from missions.models import CommandState, Mission
 from missions.serializers.commands import command_json
 from missions.services.approval import approve_mission
 from missions.services.dispatch import load_of
 from telemetry.gateway.vehicle_limits import UNTOLD
-from telemetry.ground_station import limits
-from telemetry.ground_station.flavour import Flavour
 from telemetry.models import UavLink
 from tests.missions.flights import ground, planned
 from tests.missions.worlds import UAV_AT, world

@@ -3,13 +3,13 @@
 import time
 
 import pytest
+from mavlink.autopilot_type import Flavour
 
 from missions.models import CommandKind, CommandState, Mission, MissionState
 from missions.routing.problem import Task, TaskKind
 from missions.services import TargetRequest
 from missions.services.commands import queue_command
 from missions.services.dispatch import load_of
-from telemetry.ground_station.flavour import Flavour
 from telemetry.models import TelemetryRecord, UavLink
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around

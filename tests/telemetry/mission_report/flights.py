@@ -4,10 +4,11 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
+from mavlink.approved_route import FrozenRoute, FrozenWaypoint, TakeOff
+
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from missions.flight_plan.waypoints import WaypointKind
-from missions.mavlink.frozen import FrozenRoute, FrozenWaypoint, TakeOff
 from missions.routing.problem import Task, TaskKind
 from telemetry.mission_report.fix import Fix
 

@@ -7,10 +7,11 @@ import time
 from dataclasses import dataclass, field
 from typing import Any
 
-from missions.mavlink.content import MissionType
-from missions.mavlink.frames import StreamParser, message_of
-from missions.mavlink.signing import FrameWriter
-from telemetry.ground_station.wire import HeldItem
+from mavlink.frames import StreamParser, message_of
+from mavlink.mission_sync.wire import HeldItem
+from mavlink.signing import FrameWriter
+from mavlink.vehicle_plan import MissionType
+
 from tests.missions.worlds import UAV_AT
 from tests.telemetry.scenarios.vehicle import HOME_AMSL_M
 from tests.telemetry.vehicles.copter import FlyingCopter

@@ -1,13 +1,14 @@
 """A flight of a scenario: brought, started, and in the air."""
 
+from mavlink.autopilot_type import Flavour
+from mavlink.mission_sync.compare import differences
+from mavlink.mission_sync.wire import held_list
+from mavlink.vehicle_plan import FlightLoad, MissionType
+
 from inspection.geodesy.wgs84 import short_distance_m
-from missions.mavlink.content import FlightLoad, MissionType
 from missions.models import CommandKind, CommandState, Mission, Uav, UavCommand
 from missions.services.commands import queue_command
 from missions.services.dispatch import load_of
-from telemetry.ground_station.compare import differences
-from telemetry.ground_station.flavour import Flavour
-from telemetry.ground_station.wire import held_list
 from tests.telemetry.gateway.station import wait_for
 from tests.telemetry.gateway.test_commands import begin, dispatch, ended
 from tests.telemetry.scenarios.vehicle import ScenarioVehicle

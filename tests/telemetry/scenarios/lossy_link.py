@@ -8,7 +8,7 @@ import threading
 from collections import Counter
 from dataclasses import dataclass
 
-from missions.mavlink.frames import Frame, StreamParser, frames_of_datagram
+from mavlink.frames import Frame, StreamParser, frames_of_datagram
 
 LOOK_S = 0.1
 PIECE = 65_535

@@ -2,9 +2,10 @@
 
 from typing import Protocol
 
+from mavlink.mission_sync.wire import HeldItem
+from mavlink.vehicle_plan import MissionType
+
 from inspection.geodesy import LonLat
-from missions.mavlink.content import MissionType
-from telemetry.ground_station.wire import HeldItem
 from tests.missions.worlds import UAV_AT
 
 HOME_AMSL_M = 100.0

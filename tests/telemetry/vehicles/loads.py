@@ -3,11 +3,11 @@
 import math
 from collections.abc import Sequence
 
+from mavlink.addressing import Ends
+from mavlink.vehicle_plan import FlightLoad, MissionItem
+from mavlink.vehicle_state import VehicleState
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from missions.mavlink.content import FlightLoad, MissionItem
-from telemetry.ground_station.ends import Ends
-from telemetry.ground_station.vehicle_state import VehicleState
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.px4 import Px4
 from tests.telemetry.vehicles.vehicle import Vehicle

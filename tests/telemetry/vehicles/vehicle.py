@@ -4,10 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from mavlink.mission_sync.wire import HeldItem, held_item
+from mavlink.vehicle_plan import MissionItem, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from missions.mavlink.content import MissionItem, MissionType
-from telemetry.ground_station.wire import HeldItem, held_item
 
 GROUND = (255, mavlink.MAV_COMP_ID_MISSIONPLANNER)
 

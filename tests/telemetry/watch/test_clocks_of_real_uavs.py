@@ -3,10 +3,10 @@
 from datetime import UTC, datetime, timedelta
 
 import pytest
+from mavlink.decoding.boots import VehicleTime
+from mavlink.decoding.measurement import Measurement
 
 from missions.models import Mission, MissionState, Uav
-from telemetry.decoding.boots import VehicleTime
-from telemetry.decoding.measurement import Measurement
 from telemetry.models import Alert, UavLink
 from telemetry.selectors.alert_facts import links_of
 from telemetry.selectors.watched import watched_flights

@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import pytest
 from django.utils import timezone
+from mavlink.decoding.measurement import Measurement
 
 from missions.models import Mission, MissionState, Uav
-from telemetry.decoding.measurement import Measurement
 from telemetry.models import PositionEstimate, UavWatch
 from telemetry.services import NewRecord, store_records
 from tests.missions.flights import carry, dispatched, fleet, ground

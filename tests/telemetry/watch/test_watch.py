@@ -5,9 +5,9 @@ from unittest.mock import MagicMock
 
 import pytest
 from django.db import OperationalError
+from mavlink.decoding.measurement import Measurement
 
 from missions.models import Mission, MissionState, Uav
-from telemetry.decoding.measurement import Measurement
 from telemetry.estimation.tracker import Tracker
 from telemetry.models import PositionEstimate, UavLink, UavWatch
 from telemetry.services import NewRecord, store_records

@@ -1,0 +1,85 @@
+"""Kinds of autopilot, and how each numbers its modes."""
+
+from enum import StrEnum
+
+from mavlink.vehicle_class import ARDUPILOT_NAMES, VehicleClass
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+
+class Flavour(StrEnum):
+    PX4 = "px4"
+    ARDUPILOT = "ardupilot"
+    OTHER = "other"
+
+
+COMMANDED = frozenset({Flavour.PX4, Flavour.ARDUPILOT})  # what another autopilot does is not known
+
+
+def flavour_of(autopilot: int) -> Flavour:
+    """autopilot: MAV_AUTOPILOT, of a heartbeat."""
+    if autopilot == mavlink.MAV_AUTOPILOT_PX4:
+        return Flavour.PX4
+    return Flavour.ARDUPILOT if autopilot == mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA else Flavour.OTHER
+
+
+class Mode(StrEnum):
+    """What the ground station asks for or must know; each flavour has its own number for it."""
+
+    MISSION = "mission"
+    HOLD = "hold"
+    RETURN = "return"
+    LAND = "land"
+    TAKE_OFF = "take-off"
+    GUIDED = "guided"
+
+
+# PX4: main mode and sub mode; sources: its px4_custom_mode.h, and findings of MAVSDK
+PX4_AUTO = 4
+PX4_SUB_MODES = {Mode.TAKE_OFF: 2, Mode.HOLD: 3, Mode.MISSION: 4, Mode.RETURN: 5, Mode.LAND: 6}
+PX4_MAIN_NAMES = {1: "MANUAL", 2: "ALTCTL", 3: "POSCTL", 5: "ACRO", 6: "OFFBOARD", 7: "STABILIZED", 8: "RATTITUDE"}
+PX4_AUTO_NAMES = {1: "READY", 2: "TAKEOFF", 3: "LOITER", 4: "MISSION", 5: "RTL", 6: "LAND", 8: "FOLLOW", 9: "PRECLAND"}
+
+# ArduCopter: BRAKE holds without a pilot, whereas LOITER sinks when no stick holds the throttle
+COPTER_MODES = {Mode.MISSION: 3, Mode.GUIDED: 4, Mode.RETURN: 6, Mode.LAND: 9, Mode.HOLD: 17}
+COPTER_NAMES = {
+    0: "STABILIZE", 1: "ACRO", 2: "ALT_HOLD", 3: "AUTO", 4: "GUIDED", 5: "LOITER", 6: "RTL", 7: "CIRCLE", 9: "LAND", 11: "DRIFT",
+    13: "SPORT", 14: "FLIP", 15: "AUTOTUNE", 16: "POSHOLD", 17: "BRAKE", 18: "THROW", 19: "AVOID_ADSB", 20: "GUIDED_NOGPS",
+    21: "SMART_RTL", 22: "FLOWHOLD", 23: "FOLLOW", 24: "ZIGZAG", 25: "SYSTEMID", 26: "AUTOROTATE", 27: "AUTO_RTL",
+}  # fmt: skip
+COPTER_HOLDING = frozenset({4, 5, 16, 17})  # the list is not flown: GUIDED, LOITER, POSHOLD, BRAKE
+COPTER_NOT_ARMABLE = frozenset({3, 6, 9, 17, 21, 27})  # from which a start begins by GUIDED
+RESTARTS = "MIS_RESTART"  # ArduPilot: unless 0, each change to AUTO begins the list anew
+COPTER_RETURNING = frozenset({6, 21, 27})
+OTHERS_NAMES = {Mode.MISSION: "AUTO", Mode.RETURN: "RTL", Mode.GUIDED: "GUIDED"}  # of ArduPilot's planes and rovers, which are only watched
+
+
+MISSION_MODES = frozenset({PX4_AUTO_NAMES[PX4_SUB_MODES[Mode.MISSION]], COPTER_NAMES[COPTER_MODES[Mode.MISSION]]})  # by their names
+
+
+def px4_mode(custom_mode: int) -> tuple[int, int]:
+    """Main mode and sub mode."""
+    return custom_mode >> 16 & 0xFF, custom_mode >> 24 & 0xFF
+
+
+def mode_name(flavour: Flavour, custom_mode: int, vehicle_class: VehicleClass = VehicleClass.COPTER) -> str:
+    if flavour is Flavour.PX4:
+        main, sub = px4_mode(custom_mode)
+        return PX4_AUTO_NAMES.get(sub, f"AUTO {sub}") if main == PX4_AUTO else PX4_MAIN_NAMES.get(main, f"MODE {main}")
+    if flavour is Flavour.ARDUPILOT:
+        names = COPTER_NAMES if vehicle_class is VehicleClass.COPTER else ARDUPILOT_NAMES.get(vehicle_class, {})
+        return names.get(custom_mode, f"MODE {custom_mode}")
+    return f"MODE {custom_mode}"
+
+
+def is_in_mode(flavour: Flavour, custom_mode: int, mode: Mode, vehicle_class: VehicleClass = VehicleClass.COPTER) -> bool:
+    if flavour is Flavour.PX4:
+        return px4_mode(custom_mode) == (PX4_AUTO, PX4_SUB_MODES.get(mode))
+    if flavour is Flavour.ARDUPILOT and vehicle_class is not VehicleClass.COPTER:
+        return mode_name(flavour, custom_mode, vehicle_class) == OTHERS_NAMES.get(mode)
+    if flavour is Flavour.ARDUPILOT:
+        if mode is Mode.HOLD:
+            return custom_mode in COPTER_HOLDING - {COPTER_MODES[Mode.GUIDED]}
+        if mode is Mode.RETURN:
+            return custom_mode in COPTER_RETURNING
+        return COPTER_MODES.get(mode) == custom_mode
+    return False

@@ -1,0 +1,251 @@
+"""What a UAV can be told, and the commands by which each flavour of autopilot does it."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+from mavlink.autopilot_type import COMMANDED, COPTER_MODES, COPTER_NOT_ARMABLE, PX4_AUTO, PX4_SUB_MODES, Flavour, Mode
+from mavlink.commands.command import CommandStep, Effect, Seven
+from mavlink.vehicle_class import VehicleClass, refusal_words
+from mavlink.vehicle_state import VehicleState
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
+NAN = math.nan
+ABORT_ROUNDS = 3
+ITEM, SPEED_MPS = "item", "speed_mps"
+
+
+class Order(StrEnum):
+    """As a UAV's commands are called."""
+
+    ARM = "arm"
+    DISARM = "disarm"
+    TAKE_OFF = "take-off"
+    START = "start"
+    PAUSE = "pause"
+    RESUME = "resume"
+    HOLD = "hold"
+    RETURN = "return"
+    LAND = "land"
+    ABORT = "abort"
+    CHANGE_SPEED = "change-speed"
+
+
+STOPS = frozenset({Order.ABORT, Order.LAND, Order.RETURN, Order.HOLD, Order.PAUSE})
+
+
+class CannotOrder(ValueError):
+    """This cannot be asked of this vehicle now; `code` names why."""
+
+    def __init__(self, code: str, words: str) -> None:
+        super().__init__(words)
+        self.code = code
+
+
+@dataclass(frozen=True)
+class OrderPlan:
+    """`goal` is what the vehicle's state shows once it is done. `ways` are tried one after the other, each step by step.
+
+    After so many `rounds` in which all of them failed it is given up; each is planned from the state as it is then.
+    """
+
+    goal: Effect | None
+    ways: tuple[tuple[CommandStep, ...], ...]
+    rounds: int = 1
+
+
+def plan_of(order: Order, state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
+    """For the vehicle as it is now. Raises CannotOrder.
+
+    parameters: `altitude_relative_m` to take off to, `speed_mps` to fly at, `item` with which a list is begun in the air, from 0 without
+    home. A return with an `item` goes on with the list from there, at `speed_mps`: the rest of it is the way home.
+    """
+    if state.flavour not in COMMANDED:
+        raise CannotOrder("autopilot", "Only PX4 and ArduPilot are commanded: what another autopilot does is not known.")
+    if state.vehicle_class is not VehicleClass.COPTER and not (order in STOPS and state.can_be_stopped):
+        raise CannotOrder("vehicle-class", refusal_words(state.vehicle_class))
+    if order in (Order.PAUSE, Order.HOLD):
+        return OrderPlan(_or_on_ground(_is_in(Mode.HOLD)), ((_mode(state, Mode.HOLD),),))
+    if order is Order.RETURN and ITEM in parameters:
+        return _return_by_list(state, parameters)
+    if order is Order.RETURN:
+        return OrderPlan(_or_on_ground(_is_in(Mode.RETURN)), ((_mode(state, Mode.RETURN),),))
+    if order is Order.LAND:
+        return OrderPlan(_or_on_ground(_is_in(Mode.LAND)), ((_mode(state, Mode.LAND),),))
+    if order is Order.ABORT:
+        return _abort(state)
+    if order is Order.CHANGE_SPEED:
+        return OrderPlan(None, ((_speed(parameters),),))
+    if order is Order.ARM:
+        return OrderPlan(_is_armed, ((*_armable(state), _ARM),))
+    if order is Order.DISARM:
+        return OrderPlan(_is_disarmed, ((_DISARM,),))
+    if order is Order.RESUME:
+        if not _is_told_to_fly(state):
+            raise CannotOrder("not-flying", "The UAV is on the ground: a mission is started there, not resumed.")
+        return OrderPlan(_is_in(Mode.MISSION), ((_mode(state, Mode.MISSION),),))
+    if order is Order.TAKE_OFF:
+        return _take_off(state, parameters)
+    return _begin_in_air(state, int(parameters[ITEM])) if ITEM in parameters else _start(state)
+
+
+# effects
+
+
+def _is_armed(state: VehicleState) -> bool:
+    return bool(state.is_armed)
+
+
+def _is_disarmed(state: VehicleState) -> bool:
+    return state.is_armed is False
+
+
+def _is_down(state: VehicleState) -> bool:
+    return state.is_armed is False and not state.is_in_air
+
+
+def _is_flying(state: VehicleState) -> bool:
+    return bool(state.is_armed and state.is_in_air)
+
+
+def _flies_mission(state: VehicleState) -> bool:
+    return _is_flying(state) and state.is_in(Mode.MISSION)
+
+
+def _is_in(mode: Mode) -> Effect:
+    return lambda state: state.is_in(mode)
+
+
+def _or_on_ground(effect: Effect) -> Effect:
+    """A UAV that stands disarmed holds, has returned, and has landed."""
+    return lambda state: effect(state) or _is_down(state)
+
+
+# steps
+
+_ARM = CommandStep("arm", mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), _is_armed)
+_DISARM = CommandStep("disarm", mavlink.MAV_CMD_COMPONENT_ARM_DISARM, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), _is_disarmed)
+_STAY_DOWN = replace(_DISARM, is_too_late=lambda state: state.is_in_air)
+_LEAVE_GROUND = CommandStep("leave the ground", None, effect=_is_flying, is_slow=True)
+_MISSION_START = CommandStep("start the mission", mavlink.MAV_CMD_MISSION_START, effect=_flies_mission, is_slow=True)
+
+
+def mode_numbers(flavour: Flavour | None, mode: Mode) -> Seven:
+    """Of MAV_CMD_DO_SET_MODE. Source of PX4's numbers: main mode and sub mode are the second and third parameter."""
+    if flavour is Flavour.PX4:
+        return (OWN_MODE, float(PX4_AUTO), float(PX4_SUB_MODES[mode]), 0.0, 0.0, 0.0, 0.0)
+    return (OWN_MODE, float(COPTER_MODES[mode]), 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def _mode(state: VehicleState, mode: Mode) -> CommandStep:
+    return CommandStep(f"mode {mode.value}", mavlink.MAV_CMD_DO_SET_MODE, mode_numbers(state.flavour, mode), _is_in(mode))
+
+
+def _armable(state: VehicleState) -> tuple[CommandStep, ...]:
+    """ArduCopter cannot be armed in AUTO and others, and is by GUIDED."""
+    is_barred = state.flavour is Flavour.ARDUPILOT and not state.is_armed and state.custom_mode in COPTER_NOT_ARMABLE
+    return (_mode(state, Mode.GUIDED),) if is_barred else ()
+
+
+def _start(state: VehicleState) -> OrderPlan:
+    """The first item; PX4: the mission's mode, then arming. ArduCopter: GUIDED, arming, AUTO, and then it must be told to start.
+
+    ArduCopter agrees to start while it is disarmed, and does nothing: only flying is a start.
+    """
+    if _is_told_to_fly(state):
+        return OrderPlan(_flies_mission, ((_mode(state, Mode.MISSION),),))
+    first = _first_item(state)
+    if state.flavour is Flavour.PX4:
+        return OrderPlan(_flies_mission, ((first, _mode(state, Mode.MISSION), _ARM, _LEAVE_GROUND),))
+    begin = () if state.is_armed else (_mode(state, Mode.GUIDED), _ARM)
+    return OrderPlan(_flies_mission, ((first, *begin, _mode(state, Mode.MISSION), _MISSION_START),))
+
+
+def _begin_in_air(state: VehicleState, item: int) -> OrderPlan:
+    """Of a UAV that is held: it is on its way to the item. Told again while it flies its list, nothing is sent."""
+    if not _is_told_to_fly(state):
+        raise CannotOrder("not-flying", "The UAV is on the ground: this route begins in the air.")
+    return OrderPlan(_flies_mission, ((_item(state, item), _mode(state, Mode.MISSION)),))
+
+
+def _return_by_list(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
+    """It is on its way to the item, or past it. The speed goes first: items that set it may be left out."""
+    if state.vehicle_class is not VehicleClass.COPTER:
+        raise CannotOrder("vehicle-class", refusal_words(state.vehicle_class))
+    if not _is_told_to_fly(state):
+        raise CannotOrder("not-flying", "The UAV is on the ground.")
+    place = int(parameters[ITEM])
+    number = _number_of(state, place)
+
+    def is_past(seen: VehicleState) -> bool:
+        return _flies_mission(seen) and seen.mission_item is not None and seen.mission_item >= number
+
+    return OrderPlan(_or_on_ground(is_past), ((_speed(parameters), _item(state, place), _mode(state, Mode.MISSION)),))
+
+
+def _is_told_to_fly(state: VehicleState) -> bool:
+    """Raises CannotOrder where it is not known."""
+    if state.is_in_air is None:
+        raise CannotOrder("not-told", "The UAV does not tell whether it stands or flies.")
+    return state.is_in_air
+
+
+def _first_item(state: VehicleState) -> CommandStep:
+    """Else a list that was flown before goes on where it was left, by a leg from here that nobody checked. ArduPilot's item 0 is home."""
+    return _item(state, 0)
+
+
+def _item(state: VehicleState, place: int) -> CommandStep:
+    """place: from 0 without home."""
+    item = _number_of(state, place)
+    return CommandStep(
+        "begin with the first item" if place == 0 else f"begin with item {place + 1}",
+        mavlink.MAV_CMD_DO_SET_MISSION_CURRENT,
+        (float(item), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        effect=lambda seen: seen.mission_item == item,
+        told_at_s=lambda seen: seen.mission_item_at_s,
+        instead=lambda ends: mavlink.MAVLink_mission_set_current_message(ends.system, ends.component, item),
+    )
+
+
+def _number_of(state: VehicleState, place: int) -> int:
+    """Of an item, as the vehicle counts."""
+    return place if state.flavour is Flavour.PX4 else place + 1
+
+
+def _take_off(state: VehicleState, parameters: Mapping[str, float]) -> OrderPlan:
+    """PX4 wants the height above sea level, and is armed afterwards; ArduCopter wants it above home, armed in GUIDED before."""
+    relative_m = _positive(parameters, "altitude_relative_m")
+    if state.flavour is Flavour.PX4:
+        ground_m = state.altitude_amsl_m if state.home_amsl_m is None else state.home_amsl_m
+        if ground_m is None:
+            raise CannotOrder("no-home", "The UAV has not told its height above sea level.")
+        numbers = (-1.0, 0.0, 0.0, NAN, NAN, NAN, ground_m + relative_m)
+        up = CommandStep("take off", mavlink.MAV_CMD_NAV_TAKEOFF, numbers, _is_in(Mode.TAKE_OFF))
+        return OrderPlan(_is_flying, ((up, _ARM, _LEAVE_GROUND),))
+    numbers = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, relative_m)
+    up = CommandStep("take off", mavlink.MAV_CMD_NAV_TAKEOFF, numbers, _is_flying, is_slow=True)
+    return OrderPlan(_is_flying, ((_mode(state, Mode.GUIDED), _ARM, up),))
+
+
+def _abort(state: VehicleState) -> OrderPlan:
+    """Return, and land where that is refused. On the ground: disarm; it may be about to leave it, so the others are left to try."""
+    down = ((_mode(state, Mode.RETURN),), (_mode(state, Mode.LAND),))
+    if state.is_in_air is False:
+        return OrderPlan(_is_down, ((_STAY_DOWN,), *down), ABORT_ROUNDS)
+    return OrderPlan(lambda seen: seen.is_in(Mode.RETURN) or seen.is_in(Mode.LAND) or _is_down(seen), down, ABORT_ROUNDS)
+
+
+def _speed(parameters: Mapping[str, float]) -> CommandStep:
+    """Over ground; no message of every vehicle shows it, so its yes has to be enough."""
+    numbers = (1.0, _positive(parameters, SPEED_MPS), -1.0, 0.0, 0.0, 0.0, 0.0)
+    return CommandStep("change speed", mavlink.MAV_CMD_DO_CHANGE_SPEED, numbers)
+
+
+def _positive(parameters: Mapping[str, float], name: str) -> float:
+    value = parameters.get(name)
+    if value is None or not (math.isfinite(value) and value > 0):
+        raise CannotOrder("parameters", f"{name} must be above 0.")
+    return float(value)

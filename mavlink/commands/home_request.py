@@ -1,0 +1,42 @@
+"""Asking a vehicle where its home is now: it may have got another one since it told, by a boot, or where it was armed."""
+
+from mavlink.addressing import Ends, Message, Messages
+from mavlink.timeouts import TransferRules
+from mavlink.vehicle_state import VehicleState
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+
+class HomeReading:
+    """`outcome` is whether it was told. `state` is to have taken a message before."""
+
+    def __init__(self, state: VehicleState, ends: Ends, rules: TransferRules) -> None:
+        self.outcome: bool | None = None
+        self.wake_at_s: float | None = None
+        self._state = state
+        self._ends = ends
+        self._rules = rules
+        self._tries = 0
+        self._begun_s = 0.0
+
+    def start(self, now_s: float) -> Messages:
+        self._begun_s = now_s
+        return self._asked(now_s)
+
+    def receive(self, message: Message, now_s: float) -> Messages:
+        if self.outcome is None and self._state.home_at_s is not None and self._state.home_at_s >= self._begun_s:
+            self.outcome, self.wake_at_s = True, None
+        return []
+
+    def tick(self, now_s: float) -> Messages:
+        return [] if self.outcome is not None or self.wake_at_s is None or now_s < self.wake_at_s else self._asked(now_s)
+
+    def _asked(self, now_s: float) -> Messages:
+        """The older command in turn: not every vehicle knows the newer one."""
+        if self._tries > self._rules.retries:
+            self.outcome, self.wake_at_s = False, None
+            return []
+        self._tries += 1
+        self.wake_at_s = now_s + self._rules.timeout_s
+        newer = (mavlink.MAV_CMD_REQUEST_MESSAGE, float(mavlink.MAVLINK_MSG_ID_HOME_POSITION))
+        command, first = newer if self._tries % 2 else (mavlink.MAV_CMD_GET_HOME_POSITION, 0.0)
+        return [mavlink.MAVLink_command_long_message(self._ends.system, self._ends.component, command, 0, first, 0, 0, 0, 0, 0, 0)]

@@ -1,0 +1,137 @@
+"""From an approved route to the mission items of its flights.
+
+Written so that both flavours of autopilot keep what is sent: ArduPilot cuts a waypoint's hold to whole seconds (so it is rounded up) and
+an altitude to centimetres (so it is sent in centimetres), and forgets a waypoint's radius and yaw (so they are left to the autopilot).
+Items without a place have the frame MISSION, in which alone PX4 takes them.
+"""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+from mavlink.approved_route import HOVER, Flight, FrozenRoute, FrozenWaypoint
+from mavlink.vehicle_plan import FlightLoad, MissionItem
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from inspection.geodesy import LonLat
+from missions.routing.problem import Task, TaskKind
+
+RELATIVE = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
+NO_PLACE = mavlink.MAV_FRAME_MISSION
+E7 = 1e7
+GROUND_SPEED, NO_THROTTLE = 1.0, -1.0  # of DO_CHANGE_SPEED
+NOT_BY_THE_CLOCK = -1.0  # of NAV_DELAY: hour, minute and second
+
+
+class CannotBeFlown(ValueError):
+    """A plain autopilot cannot fly this route; `code` names why."""
+
+    def __init__(self, code: str, words: str) -> None:
+        super().__init__(words)
+        self.code = code
+
+
+@dataclass(frozen=True)
+class ItemRules:
+    """How tasks become items. A photo is taken after `settle_s` of standing still, then one each `photo_interval_s`."""
+
+    settle_s: float = 2.0
+    photo_interval_s: float = 2.0
+    speed_step_mps: float = 0.01  # speeds that differ by less are one
+
+
+def flight_loads(
+    route: FrozenRoute,
+    *,
+    fence: tuple[MissionItem, ...] = (),
+    rally: tuple[MissionItem, ...] = (),
+    rules: ItemRules | None = None,
+) -> tuple[FlightLoad, ...]:
+    """One for each of `route.flights`, in their order; fence and rally points are those of all of them.
+
+    Rally points' heights are given above the route's first take-off, and sent above the one of each flight: an autopilot counts from its
+    own home.
+
+    Each flight: the take-off, its waypoints with speeds and tasks, and how it ends. The way back is among the waypoints, so a flight that
+    returns lands under the last of them: an autopilot's own return would climb to a height of its own and fly straight, over wires and
+    through zones. A flight that ends in hovering has no item for it: both flavours hover after their last waypoint. Raises CannotBeFlown.
+
+    A route that is begun in the air has no take-off: no vehicle leaves the ground by it. As it may be begun at any waypoint until
+    `begun_by`, the speed is told again after each of these.
+    """
+    if route.charging_stops:
+        raise CannotBeFlown("charging", "The route charges at towers on its way, which a plain autopilot cannot do.")
+    rules = rules or ItemRules()
+    return tuple(FlightLoad(tuple(_items(flight, route, rules)), fence=fence, rally=_rally_of(flight, rally)) for flight in route.flights)
+
+
+def _rally_of(flight: Flight, rally: tuple[MissionItem, ...]) -> tuple[MissionItem, ...]:
+    """In whole metres, as ArduPilot keeps them, and rather higher than lower."""
+    heights_m = [float(math.ceil(item.altitude_m - flight.above_first_m)) for item in rally]
+    if any(height_m <= 0 for height_m in heights_m):
+        raise CannotBeFlown("rally-height", "A rally point is not above the take-off of one of the flights.")
+    return tuple(replace(item, altitude_m=height_m) for item, height_m in zip(rally, heights_m, strict=True))
+
+
+def _items(flight: Flight, route: FrozenRoute, rules: ItemRules) -> Iterator[MissionItem]:
+    first, last = flight.waypoints[0], flight.waypoints[-1]
+    begun_by = -1 if route.begun_by is None else route.begun_by
+    if first.altitude_relative_m <= 0:
+        raise CannotBeFlown("take-off-height", "The route's first waypoint is not above its take-off.")
+    if route.begun_by is None:
+        yield _at(mavlink.MAV_CMD_NAV_TAKEOFF, first, (0.0, 0.0, 0.0, math.nan))
+    flown_mps = 0.0
+    for place, waypoint in enumerate(flight.waypoints):
+        wanted_mps = route.cruise_speed_mps if waypoint.speed_mps is None else waypoint.speed_mps
+        if waypoint.sequence <= begun_by + 1 or abs(wanted_mps - flown_mps) > rules.speed_step_mps:
+            yield _plain(mavlink.MAV_CMD_DO_CHANGE_SPEED, (GROUND_SPEED, wanted_mps, NO_THROTTLE, 0.0), waypoint)
+            flown_mps = wanted_mps
+        follows = flight.waypoints[place + 1] if place + 1 < len(flight.waypoints) else None
+        yield from _waypoint(waypoint, waypoint.task, is_stretch=_same_target(waypoint, follows), rules=rules)
+    if flight.end_action != HOVER:
+        yield _item(mavlink.MAV_CMD_NAV_LAND, last, (0.0, 0.0, 0.0, math.nan), last.ground_relative_m)
+
+
+def _waypoint(waypoint: FrozenWaypoint, task: Task | None, *, is_stretch: bool, rules: ItemRules) -> Iterator[MissionItem]:
+    if task is None:
+        yield _hold_at(waypoint, 0.0)
+    elif task.kind is TaskKind.PHOTO:
+        settle_s = min(rules.settle_s, task.hold_s)
+        rest_s = float(math.ceil(task.hold_s - settle_s))
+        photos = max(1, math.floor(rest_s / rules.photo_interval_s))
+        yield _hold_at(waypoint, settle_s)
+        yield _plain(mavlink.MAV_CMD_IMAGE_START_CAPTURE, (0.0, 0.0 if photos == 1 else rules.photo_interval_s, photos, 0.0), waypoint)
+        if rest_s:
+            yield _plain(mavlink.MAV_CMD_NAV_DELAY, (rest_s, NOT_BY_THE_CLOCK, NOT_BY_THE_CLOCK, NOT_BY_THE_CLOCK), waypoint)
+    elif task.kind is TaskKind.LOOK and not is_stretch:
+        yield _item(mavlink.MAV_CMD_DO_SET_ROI_LOCATION, waypoint, (0.0, 0.0, 0.0, 0.0), waypoint.ground_relative_m)
+        yield _hold_at(waypoint, task.hold_s)
+        yield _plain(mavlink.MAV_CMD_DO_SET_ROI_NONE, (0.0, 0.0, 0.0, 0.0), waypoint)
+    else:  # hovering, or a stretch: along a line the camera looks where the UAV goes
+        yield _hold_at(waypoint, task.hold_s)
+
+
+def _same_target(waypoint: FrozenWaypoint, follows: FrozenWaypoint | None) -> bool:
+    return follows is not None and waypoint.target is not None and follows.target == waypoint.target
+
+
+def _hold_at(waypoint: FrozenWaypoint, hold_s: float) -> MissionItem:
+    return _at(mavlink.MAV_CMD_NAV_WAYPOINT, waypoint, (float(math.ceil(hold_s)), 0.0, 0.0, math.nan))
+
+
+def _at(command: int, waypoint: FrozenWaypoint, parameters: tuple[float, float, float, float]) -> MissionItem:
+    return _item(command, waypoint, parameters, waypoint.altitude_relative_m)
+
+
+def _item(command: int, waypoint: FrozenWaypoint, parameters: tuple[float, float, float, float], altitude_relative_m: float) -> MissionItem:
+    longitude_e7, latitude_e7 = position_e7(waypoint.position)
+    altitude_m = round(altitude_relative_m, 2) + 0.0  # no minus before zero
+    return MissionItem(command, RELATIVE, parameters, longitude_e7, latitude_e7, altitude_m, waypoint.sequence)
+
+
+def _plain(command: int, parameters: tuple[float, float, float, float], waypoint: FrozenWaypoint) -> MissionItem:
+    return MissionItem(command, NO_PLACE, parameters, waypoint=waypoint.sequence)
+
+
+def position_e7(position: LonLat) -> tuple[int, int]:
+    return round(position.lon * E7), round(position.lat * E7)

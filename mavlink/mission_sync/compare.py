@@ -1,0 +1,190 @@
+"""Whether a vehicle holds what was approved, item by item.
+
+What a flavour is known to change is no difference; everything else is, and is named. ArduPilot (seen in ArduCopter 4.6.0-dev and read in
+its AP_Mission.cpp) cuts an altitude to whole centimetres and some parameters to whole numbers, gives items without a place the frame
+GLOBAL, and forgets parameters: that is no difference where 0 or "as you choose" was asked for, but one where a figure was. It may have
+been given DO_SET_ROI in place of newer commands (see known_items). PX4 (read in its mavlink_mission.cpp) forgets some of them likewise and
+keeps a yaw in radians. Fence and rally items have no `autocontinue`: ArduPilot gives them back with 0. On the wire all figures are 32 bits
+long.
+"""
+
+import math
+import struct
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from mavlink.autopilot_type import Flavour
+from mavlink.mission_sync.supported_items import as_old_roi
+from mavlink.mission_sync.wire import Held, HeldItem
+from mavlink.vehicle_plan import MissionItem
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+CENTIMETRE_M = 0.01
+YAW_DEG = 0.001  # by way of radians in 32 bits
+
+
+class Keeps(Enum):
+    """What becomes of a parameter."""
+
+    ALL = auto()
+    WHOLE = auto()  # its whole part
+    NOTHING = auto()
+    YAW = auto()
+    NOT_YAW = auto()  # overwritten, where no yaw was asked for
+
+
+ALL, WHOLE, NOTHING, YAW, NOT_YAW = Keeps
+FOUR_ALL = (ALL, ALL, ALL, ALL)
+ARDUPILOT_KEEPS = {
+    mavlink.MAV_CMD_NAV_WAYPOINT: (WHOLE, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_NAV_TAKEOFF: (WHOLE, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_NAV_LAND: (WHOLE, NOTHING, NOTHING, NOT_YAW),
+    mavlink.MAV_CMD_NAV_RETURN_TO_LAUNCH: (NOTHING, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_NAV_LOITER_TIME: (WHOLE, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_DO_CHANGE_SPEED: (WHOLE, ALL, ALL, NOTHING),
+    mavlink.MAV_CMD_DO_SET_ROI_LOCATION: (WHOLE, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_DO_SET_ROI_NONE: (WHOLE, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_DO_SET_ROI: (WHOLE, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_IMAGE_START_CAPTURE: (WHOLE, ALL, WHOLE, WHOLE),
+    mavlink.MAV_CMD_DO_SET_SERVO: (WHOLE, WHOLE, NOTHING, NOTHING),
+    mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION: (WHOLE, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION: (WHOLE, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_NAV_RALLY_POINT: (NOTHING, NOTHING, NOTHING, NOTHING),
+}
+PX4_KEEPS = {
+    mavlink.MAV_CMD_NAV_WAYPOINT: (ALL, ALL, NOTHING, YAW),
+    mavlink.MAV_CMD_NAV_TAKEOFF: (NOTHING, NOTHING, NOTHING, YAW),
+    mavlink.MAV_CMD_NAV_LAND: (NOTHING, ALL, NOTHING, YAW),
+    mavlink.MAV_CMD_DO_SET_ROI_LOCATION: (NOTHING, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION: (WHOLE, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION: (WHOLE, NOTHING, NOTHING, NOTHING),
+    mavlink.MAV_CMD_NAV_RALLY_POINT: (NOTHING, NOTHING, NOTHING, NOTHING),
+}
+KEEPS = {Flavour.ARDUPILOT: ARDUPILOT_KEEPS, Flavour.PX4: PX4_KEEPS}
+
+NOT_FLOWN = frozenset({
+    mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT, mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION,
+    mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION,
+    mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION, mavlink.MAV_CMD_NAV_RALLY_POINT,
+})  # fmt: skip
+PLACELESS_ON_ARDUPILOT = frozenset({mavlink.MAV_FRAME_MISSION, mavlink.MAV_FRAME_GLOBAL})
+SAME_FRAME: dict[int, int] = {
+    mavlink.MAV_FRAME_GLOBAL_INT: mavlink.MAV_FRAME_GLOBAL,
+    mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT: mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT,
+    mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT: mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT,
+}
+
+
+@dataclass(frozen=True)
+class Difference:
+    """`item` is the place in the approved list, from 0; `field` what is otherwise there."""
+
+    item: int
+    field: str
+    wanted: str
+    held: str
+    waypoint: int | None = None
+
+    def __str__(self) -> str:
+        return f"item {self.item}: {self.field} is {self.held} instead of {self.wanted}"
+
+
+def differences(wanted: Sequence[MissionItem], held: Held, flavour: Flavour) -> tuple[Difference, ...]:
+    """All of them, in the order of the list; empty where the vehicle holds what is wanted. `held` without home (see `held_list`)."""
+    return tuple(_differences(wanted, held, flavour))
+
+
+def _differences(wanted: Sequence[MissionItem], held: Held, flavour: Flavour) -> Iterator[Difference]:
+    for place, (item, there) in enumerate(zip(wanted, held, strict=False)):
+        for name, asked_for, found in _of_item(item, there.item, flavour):
+            yield Difference(place, name, asked_for, found, item.waypoint)
+        if not there.goes_on and item.command not in NOT_FLOWN:
+            yield Difference(place, "going on afterwards", "yes", "no", item.waypoint)
+    for place in range(len(held), len(wanted)):
+        yield Difference(place, "command", str(wanted[place].command), "missing", wanted[place].waypoint)
+    for place in range(len(wanted), len(held)):
+        yield Difference(place, "command", "nothing", str(held[place].item.command))
+
+
+def is_identical(one: HeldItem, other: HeldItem) -> bool:
+    """Two items that were read, figure by figure; NaN is NaN."""
+    left, right = one.item, other.item
+    return (
+        (left.command, left.frame, left.longitude_e7, left.latitude_e7, one.goes_on)
+        == (right.command, right.frame, right.longitude_e7, right.latitude_e7, other.goes_on)
+        and _is_float32(left.altitude_m, right.altitude_m)
+        and all(map(_is_float32, left.parameters, right.parameters))
+    )
+
+
+def are_identical(one: Held, other: Held) -> bool:
+    return len(one) == len(other) and all(map(is_identical, one, other))
+
+
+def is_same(wanted: MissionItem, held: MissionItem, flavour: Flavour) -> bool:
+    return next(_of_item(wanted, held, flavour), None) is None
+
+
+def _of_item(wanted: MissionItem, held: MissionItem, flavour: Flavour) -> Iterator[tuple[str, str, str]]:
+    if flavour is Flavour.ARDUPILOT and held.command == mavlink.MAV_CMD_DO_SET_ROI:
+        wanted = as_old_roi(wanted)
+    if wanted.command != held.command:
+        yield "command", str(wanted.command), str(held.command)
+        return
+    if not _is_same_frame(wanted, held, flavour):
+        yield "frame", str(wanted.frame), str(held.frame)
+    if wanted.longitude_e7 != held.longitude_e7:
+        yield "longitude", f"{wanted.longitude_e7 / 1e7:.7f}", f"{held.longitude_e7 / 1e7:.7f}"
+    if wanted.latitude_e7 != held.latitude_e7:
+        yield "latitude", f"{wanted.latitude_e7 / 1e7:.7f}", f"{held.latitude_e7 / 1e7:.7f}"
+    if not _is_same_altitude(wanted.altitude_m, held.altitude_m, flavour):
+        yield "altitude", f"{wanted.altitude_m:g} m", f"{held.altitude_m:g} m"
+    keeps = KEEPS.get(flavour, {}).get(wanted.command, FOUR_ALL)
+    for number, (asked_for, found, kept) in enumerate(zip(wanted.parameters, held.parameters, keeps, strict=True), 1):
+        if not _is_kept(asked_for, found, kept):
+            yield f"parameter {number}", f"{asked_for:g}", f"{found:g}"
+
+
+def _is_same_frame(wanted: MissionItem, held: MissionItem, flavour: Flavour) -> bool:
+    if flavour is Flavour.ARDUPILOT and wanted.frame == mavlink.MAV_FRAME_MISSION:
+        return held.frame in PLACELESS_ON_ARDUPILOT
+    return _plain_frame(wanted.frame) == _plain_frame(held.frame)
+
+
+def _plain_frame(frame: int) -> int:
+    return SAME_FRAME.get(frame, frame)
+
+
+def _is_same_altitude(wanted_m: float, held_m: float, flavour: Flavour) -> bool:
+    if _is_float32(wanted_m, held_m):
+        return True
+    if flavour is not Flavour.ARDUPILOT or not (math.isfinite(wanted_m) and math.isfinite(held_m)):
+        return False
+    rounding_m = max(abs(wanted_m), 1.0) * 2.0**-22  # of two figures of 32 bits
+    lost_m = abs(wanted_m) - abs(held_m)
+    return wanted_m * held_m >= 0 and -rounding_m <= lost_m < CENTIMETRE_M + rounding_m
+
+
+def _is_kept(wanted: float, held: float, keeps: Keeps) -> bool:
+    is_open = wanted == 0 or math.isnan(wanted)
+    if keeps is NOTHING:
+        return held == 0 and is_open
+    if keeps is NOT_YAW:
+        return is_open and held in (0.0, 1.0, -1.0)
+    if _is_float32(wanted, held):
+        return True
+    if keeps is WHOLE:
+        return (math.isfinite(wanted) and held == math.trunc(wanted)) or (math.isnan(wanted) and held == 0)
+    return keeps is YAW and abs(wanted - held) < YAW_DEG
+
+
+def _is_float32(wanted: float, held: float) -> bool:
+    if math.isnan(wanted) or math.isnan(held):
+        return math.isnan(wanted) and math.isnan(held)
+    if wanted == held:
+        return True
+    try:
+        return bool(struct.pack("<f", wanted) == struct.pack("<f", held))
+    except OverflowError:
+        return False

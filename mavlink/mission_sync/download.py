@@ -1,0 +1,123 @@
+"""Reading a list of items back from a vehicle."""
+
+from mavlink.addressing import Ends, Message, Messages
+from mavlink.mission_sync.transfer import UNCERTAIN, TransferOutcome, TransferState
+from mavlink.mission_sync.wire import Held, HeldItem, ack_message, held_item, result_name
+from mavlink.timeouts import TransferRules
+from mavlink.vehicle_plan import MissionType
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+
+class Download:
+    """A list on its way from a vehicle: `read` once the outcome is `done`.
+
+    PX4 breaks a reading off when an old request reaches it late. It is then begun anew, and each request waits for `item_timeout_s`, so
+    that whatever is late arrives before it. ArduPilot needs no beginning anew: its items can be read in any order.
+    """
+
+    def __init__(self, kind: MissionType, ends: Ends, rules: TransferRules) -> None:
+        self.kind = kind
+        self.outcome: TransferOutcome | None = None
+        self.wake_at_s: float | None = None
+        self.read: Held = ()
+        self._ends = ends
+        self._rules = rules
+        self._count: int | None = None
+        self._counted_before: int | None = None
+        self._items: list[HeldItem] = []
+        self._is_paced = self._is_pausing = False
+        self._refused: tuple[int, float] | None = None
+        self._restarts = 0
+        self._progress_s = self._asked_anew_s = 0.0
+
+    @property
+    def items_done(self) -> int:
+        return len(self._items)
+
+    def start(self, now_s: float) -> Messages:
+        self._progress_s = now_s
+        return self._asked(now_s)
+
+    def receive(self, message: Message, now_s: float) -> Messages:
+        if self.outcome is not None or not self._ends.has_sent(message) or getattr(message, "mission_type", None) != self.kind:
+            return []
+        name = message.get_type()
+        if name == "MISSION_COUNT":
+            return self._counted(message.count, now_s)
+        if name == "MISSION_ITEM_INT" and self._count is not None and message.seq == len(self._items):
+            return self._got(held_item(message), now_s)
+        if name == "MISSION_ACK" and message.type != mavlink.MAV_MISSION_ACCEPTED:
+            return self._said_no(message.type, now_s)
+        return []
+
+    def tick(self, now_s: float) -> Messages:
+        if self.outcome is not None or self.wake_at_s is None or now_s < self.wake_at_s:
+            return []
+        if self._refused is not None and now_s >= self._refused[1] + self._rules.timeout_s:
+            return self._end(TransferState.REFUSED, result_name(self._refused[0]))
+        if now_s >= self._progress_s + self._rules.silence_s:
+            return self._end(TransferState.SILENT, "silent")
+        if self._count is None or now_s >= max(self._progress_s, self._asked_anew_s) + self._rules.restart_s:
+            self._count = None
+            return self._asked(now_s)
+        return self._request(now_s)
+
+    def cancel(self, now_s: float) -> Messages:
+        if self.outcome is not None:
+            return []
+        self._end(TransferState.CANCELLED, "cancelled")
+        return [ack_message(mavlink.MAV_MISSION_OPERATION_CANCELLED, self.kind, self._ends)]
+
+    def _counted(self, count: int, now_s: float) -> Messages:
+        if self._count is not None:
+            return []
+        self._refused = None
+        self._count, self._progress_s = count, now_s
+        if count != self._counted_before:
+            self._items = []
+        self._counted_before = count
+        return self._next(now_s)
+
+    def _got(self, item: HeldItem, now_s: float) -> Messages:
+        self._refused = None
+        self._items.append(item)
+        self._progress_s = now_s
+        return self._next(now_s)
+
+    def _next(self, now_s: float) -> Messages:
+        if len(self._items) == self._count:
+            self.read = tuple(self._items)
+            self._end(TransferState.DONE, "")
+            return [ack_message(mavlink.MAV_MISSION_ACCEPTED, self.kind, self._ends)]
+        if self._is_paced and not self._is_pausing:
+            self._is_pausing, self.wake_at_s = True, now_s + self._rules.item_timeout_s
+            return []
+        return self._request(now_s)
+
+    def _said_no(self, result: int, now_s: float) -> Messages:
+        if result not in UNCERTAIN:
+            self._refused = self._refused or (result, now_s)
+            self.wake_at_s = now_s + self._rules.timeout_s
+            return []
+        if self._count is None:
+            return []  # busy: it is asked again in time
+        self._restarts += 1
+        if self._restarts > self._rules.retries * self._rules.attempts:
+            return self._end(TransferState.REFUSED, result_name(result))
+        self._count, self._items, self._is_paced, self._progress_s = None, [], True, now_s
+        return self._asked(now_s)
+
+    def _asked(self, now_s: float) -> Messages:
+        self._asked_anew_s = now_s
+        self._is_pausing = False
+        self.wake_at_s = now_s + self._rules.timeout_s
+        return [mavlink.MAVLink_mission_request_list_message(self._ends.system, self._ends.component, int(self.kind))]
+
+    def _request(self, now_s: float) -> Messages:
+        self._is_pausing = False
+        self.wake_at_s = now_s + self._rules.item_timeout_s
+        return [mavlink.MAVLink_mission_request_int_message(self._ends.system, self._ends.component, len(self._items), int(self.kind))]
+
+    def _end(self, state: TransferState, code: str) -> Messages:
+        self.outcome, self.wake_at_s = TransferOutcome(state, code, len(self._items)), None
+        return []

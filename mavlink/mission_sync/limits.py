@@ -1,0 +1,69 @@
+"""What a vehicle cannot take: lists that are too long, and legs longer than its parameters allow."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+from mavlink.autopilot_type import Flavour
+from mavlink.intermediate_waypoints import FLOWN, length_on_sphere_m, position_of
+from mavlink.vehicle_plan import FlightLoad, MissionType
+
+from inspection.geodesy import LonLat
+
+# ArduPilot: 650 with home, seen on its simulator. PX4's dataman.h and navigation.h: what boards have is fixed when it is built, so that
+# the usual figures are only warned of; a vehicle that has less space says so at once, and keeps what it has.
+MOST_ITEMS = {(Flavour.ARDUPILOT, MissionType.MISSION): 649}
+USUAL_ITEMS = {(Flavour.PX4, MissionType.MISSION): 500, (Flavour.PX4, MissionType.FENCE): 64, (Flavour.PX4, MissionType.RALLY): 8}
+FIRST_LEG = "MIS_DIST_1WP"  # PX4, in metres; 0 or below: not limited
+ANY_LEG = "MIS_DIST_WPS"
+PARAMETERS = (FIRST_LEG, ANY_LEG)
+
+
+@dataclass(frozen=True)
+class LimitWarning:
+    """`code` is short and stable; `item` the place in the mission."""
+
+    code: str
+    words: str
+    item: int | None = None
+
+
+def too_many(load: FlightLoad, flavour: Flavour) -> LimitWarning | None:
+    """The first list that no vehicle of the flavour takes."""
+    return next(_longer(load, flavour, MOST_ITEMS, "takes", "too-many-items"), None)
+
+
+def count_warnings(load: FlightLoad, flavour: Flavour) -> tuple[LimitWarning, ...]:
+    """Lists that are longer than most vehicles of the flavour take."""
+    return tuple(_longer(load, flavour, USUAL_ITEMS, "on most boards takes", "many-items"))
+
+
+def _longer(
+    load: FlightLoad, flavour: Flavour, most_items: Mapping[tuple[Flavour, MissionType], int], takes: str, code: str
+) -> Iterator[LimitWarning]:
+    for kind in MissionType:
+        most = most_items.get((flavour, kind))
+        if most is not None and len(load.of(kind)) > most:
+            yield LimitWarning(code, f"The {kind.name.lower()} has {len(load.of(kind))} items; {flavour.value} {takes} {most}.")
+
+
+def leg_warnings(load: FlightLoad, parameters: Mapping[str, float], stands_at: LonLat | None) -> tuple[LimitWarning, ...]:
+    """Legs that the vehicle would refuse to fly; parameters as it reported them. `stands_at` is where it would take off."""
+    warnings = []
+    flown = [(place, item) for place, item in enumerate(load.mission) if item.command in FLOWN]
+    most_m = parameters.get(FIRST_LEG, 0.0)
+    if most_m > 0 and flown and stands_at is not None:
+        length_m = length_on_sphere_m(stands_at, position_of(flown[0][1]))
+        if length_m >= most_m:
+            warnings.append(
+                LimitWarning("far-first-waypoint", f"The first waypoint is {length_m:.0f} m away; {FIRST_LEG} allows {most_m:.0f} m.", 0)
+            )
+    most_m = parameters.get(ANY_LEG, 0.0)
+    if most_m > 0:
+        for (_, left), (place, right) in pairwise(flown):
+            length_m = length_on_sphere_m(position_of(left), position_of(right))
+            if length_m > most_m:
+                warnings.append(
+                    LimitWarning("long-leg", f"The leg to item {place} is {length_m:.0f} m; {ANY_LEG} allows {most_m:.0f} m.", place)
+                )
+    return tuple(warnings)

@@ -1,0 +1,71 @@
+"""Which mission items the firmware of a vehicle knows, and what it is sent in place of those that it does not.
+
+ArduPilot takes DO_SET_ROI_LOCATION and DO_SET_ROI_NONE as mission items since 4.7 (its pull request 29567), IMAGE_START_CAPTURE since 4.4
+(23147), and DO_SET_ROI in every version; one with neither position nor altitude ends the looking there (its AC_AutoYaw::set_roi).
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from mavlink.autopilot_type import Flavour
+from mavlink.vehicle_plan import MissionItem
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+Version = tuple[int, int, int]
+ROI_SINCE: Version = (4, 7, 0)
+KNOWN_SINCE: Mapping[Flavour, Mapping[int, Version]] = {Flavour.ARDUPILOT: {mavlink.MAV_CMD_IMAGE_START_CAPTURE: (4, 4, 0)}}
+NAMES = {Flavour.ARDUPILOT: "ArduPilot", Flavour.PX4: "PX4"}
+
+
+@dataclass(frozen=True)
+class UnknownItem:
+    """An item of a mission, by its place from 0, that the firmware refuses."""
+
+    place: int
+    item: MissionItem
+
+
+def as_old_roi(item: MissionItem) -> MissionItem:
+    """The same by DO_SET_ROI; other items as they are."""
+    if item.command == mavlink.MAV_CMD_DO_SET_ROI_LOCATION:
+        return replace(item, command=mavlink.MAV_CMD_DO_SET_ROI, parameters=(float(mavlink.MAV_ROI_LOCATION), 0.0, 0.0, 0.0))
+    if item.command == mavlink.MAV_CMD_DO_SET_ROI_NONE:
+        frame = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
+        return MissionItem(mavlink.MAV_CMD_DO_SET_ROI, frame, (float(mavlink.MAV_ROI_NONE), 0.0, 0.0, 0.0), waypoint=item.waypoint)
+    return item
+
+
+def as_known(items: Sequence[MissionItem], flavour: Flavour, firmware: Version | None) -> tuple[MissionItem, ...]:
+    """The items as this firmware takes them. A version that is not told is taken for an old one."""
+    if flavour is not Flavour.ARDUPILOT or (firmware is not None and firmware >= ROI_SINCE):
+        return tuple(items)
+    return tuple(map(as_old_roi, items))
+
+
+def unknown_items(items: Sequence[MissionItem], flavour: Flavour, firmware: Version | None) -> list[UnknownItem]:
+    """Those that this firmware refuses; none while its version is not told."""
+    if firmware is None:
+        return []
+    since = KNOWN_SINCE.get(flavour, {})
+    return [UnknownItem(place, item) for place, item in enumerate(items) if firmware < since.get(item.command, firmware)]
+
+
+def firmware_words(flavour: Flavour | None, firmware: Version | None) -> str:
+    """ "ArduPilot 4.6.0"."""
+    name = "The autopilot" if flavour is None else NAMES.get(flavour, "The autopilot")
+    return name if firmware is None else f"{name} {'.'.join(map(str, firmware))}"
+
+
+def command_words(command: int) -> str:
+    """ "DO_SET_ROI (201)"."""
+    entry = mavlink.enums["MAV_CMD"].get(command)
+    return f"command {command}" if entry is None else f"{entry.name.removeprefix('MAV_CMD_')} ({command})"
+
+
+def version_of(words: str) -> Version | None:
+    """Of "4.6.0"; None for anything else."""
+    parts = words.split(".")
+    if len(parts) != 3 or not all(part.isdecimal() for part in parts):
+        return None
+    major, minor, patch = map(int, parts)
+    return major, minor, patch

@@ -1,0 +1,340 @@
+"""Bringing one flight's load onto one vehicle, whole or not at all."""
+
+from collections.abc import Generator, Sequence
+from typing import Any
+
+from mavlink.addressing import Ends, Message, Messages
+from mavlink.autopilot_type import Flavour, Mode
+from mavlink.mission_sync.clear import Clear
+from mavlink.mission_sync.compare import Difference, are_identical, differences
+from mavlink.mission_sync.download import Download
+from mavlink.mission_sync.limits import too_many
+from mavlink.mission_sync.onboard_list import Found, found, mix_in_words
+from mavlink.mission_sync.outcome import KeeperOutcome, KeeperState, Mix, Progress
+from mavlink.mission_sync.supported_items import command_words, firmware_words, unknown_items
+from mavlink.mission_sync.transfer import TransferOutcome, TransferState
+from mavlink.mission_sync.upload import REQUESTS, Upload
+from mavlink.mission_sync.wire import Held, has_home, held_list, held_sha256, sent_list
+from mavlink.script import Course, Machine, Steps
+from mavlink.timeouts import TransferRules
+from mavlink.vehicle_class import VehicleClass, refusal_words
+from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
+from mavlink.vehicle_state import VehicleState
+
+ORDER = (MissionType.FENCE, MissionType.MISSION, MissionType.RALLY)  # never a new mission under an old fence
+SENDING, READING, CLEARING, RESTORING = "sending", "reading", "clearing", "restoring"
+
+
+class MissionKeeper:
+    """Reads what the vehicle holds, sends what differs, reads it back, and compares; what fails is put back or taken off, and read again.
+
+    Ready means: all three lists were read back and are the approved ones. A vehicle that is armed is only sent anything while it is held
+    (see `VehicleState.is_held`): ArduPilot flies a new item as soon as it has it, even of an upload that it then refuses, and PX4 flies a
+    new mission from its first item. Of one that leaves its hold meanwhile `is_endangered` says whether to go on.
+
+    A load without a fence or without rally points leaves those that somebody else gave the vehicle; those of `known` loads are taken off.
+
+    After a failure fence and rally points are put back as they were. The mission is left alone where it is the one from before, whole;
+    anything else is taken off, for the vehicle would fly it. `mixes` tells at once what was found, while the keeper still works on it.
+
+    `known` are other loads that were approved for this vehicle: what it holds and nobody knows is named from the beginning. Messages that
+    are late or come twice change nothing: requests for a list are answered as long as the keeper lives, and a difference counts when a
+    second reading shows it.
+    """
+
+    def __init__(
+        self, load: FlightLoad, state: VehicleState, ends: Ends, rules: TransferRules, *, known: Sequence[FlightLoad] = ()
+    ) -> None:
+        self.load = load
+        self.mixes: list[Mix] = []
+        self.before: dict[MissionType, Held] = {}
+        self.found_before: dict[MissionType, Found] = {}
+        self._state = state
+        self._ends = ends
+        self._rules = rules
+        self._known = tuple(known)
+        self._now: dict[MissionType, Held | None] = {}  # as last read; None: it was touched since
+        self._sent: dict[MissionType, Upload] = {}
+        self._touched: list[MissionType] = []
+        self._reason = ""
+        self._why = ""  # in words: what the vehicle refused, or keeps otherwise than it was sent
+        self._is_cancelled = self._is_restoring = False
+        self._kind = MissionType.FENCE
+        self._stage = READING
+        self._steps = Steps(self._course())
+
+    @property
+    def outcome(self) -> KeeperOutcome | None:
+        return self._steps.outcome
+
+    @property
+    def wake_at_s(self) -> float | None:
+        return self._steps.wake_at_s
+
+    @property
+    def progress(self) -> Progress:
+        """Of what is under way now."""
+        total = len(self.load.of(self._kind))
+        step = self._steps.step
+        done = min(step.items_done, total) if isinstance(step, Upload | Download) else 0
+        return Progress(self._kind, RESTORING if self._is_restoring else self._stage, done, total)
+
+    def start(self, now_s: float) -> Messages:
+        return self._steps.start(now_s)
+
+    def receive(self, message: Message, now_s: float) -> Messages:
+        answers = self._steps.receive(message, now_s)
+        if message.get_type() in REQUESTS and not isinstance(self._steps.step, Upload):
+            late = self._sent.get(MissionType(message.mission_type)) if message.mission_type in set(MissionType) else None
+            answers += [] if late is None else late.receive(message, now_s)
+        return answers
+
+    def tick(self, now_s: float) -> Messages:
+        return self._steps.tick(now_s)
+
+    @property
+    def is_endangered(self) -> bool:
+        """Whether the vehicle has left its hold, so that this is to be cancelled.
+
+        One that flies its list while that is replaced gets the rest: half a list would be worse, and ArduPilot lets none be taken off
+        then. PX4 keeps the old list until the new one is whole.
+        """
+        state = self._state
+        if not state.is_armed or state.is_held:
+            return False
+        if not state.is_in(Mode.MISSION) or MissionType.MISSION not in self._touched:
+            return True
+        return state.flavour is Flavour.PX4 and isinstance(self._steps.step, Upload) and self._kind is MissionType.MISSION
+
+    def cancel(self, now_s: float) -> Messages:
+        """Ends by a failure like others: what was begun is put back."""
+        if self.outcome is not None or self._is_restoring:
+            return []
+        self._is_cancelled, self._reason = True, "left-hold" if self.is_endangered else "cancelled"
+        self._sent.clear()
+        step = self._steps.step
+        messages = step.cancel(now_s) if isinstance(step, Upload | Download) else []
+        return messages + self._steps.go_on(now_s)
+
+    # the course of events
+
+    def _course(self) -> Course[KeeperOutcome]:
+        refused = self._cannot_begin()
+        if refused is not None:
+            return refused
+        for kind in ORDER:
+            read = yield from self._read(kind)
+            if read is None:
+                return KeeperOutcome(KeeperState.INTACT, self._reason, "Nothing was sent: what the vehicle holds could not be read.")
+            self.before[kind] = read
+            known = [load.of(kind) for load in self._known]
+            self.found_before[kind] = found(read, self.load.of(kind), known, self._flavour)
+            if self.found_before[kind] is Found.MIXED:
+                self._note_mix(kind, read)
+        for kind in ORDER:
+            if not (yield from self._bring(kind)) and not (yield from self._has_come_unseen(kind)):
+                return (yield from self._give_up())
+        held = f"the approved mission: {len(self.load.mission)} items" if self.load.mission else "no mission, as was wanted"
+        words, left = f"The vehicle holds {held}.", self._left_alone_in_words()
+        lists = {kind: held_sha256(self.before[kind]) for kind in ORDER if self._is_left_alone(kind)}
+        sha256, mixes = self.load.content_sha256, tuple(self.mixes)
+        return KeeperOutcome(KeeperState.READY, "", words, sha256, mixes=mixes, left_alone=left, left_sha256=lists)
+
+    def _cannot_begin(self) -> KeeperOutcome | None:
+        state = self._state
+        code = words = ""
+        if state.flavour is None:
+            code, words = "not-heard", "The vehicle has not said what it is."
+        elif state.flavour is Flavour.OTHER:
+            code, words = "autopilot", "Missions are sent to PX4 and ArduPilot only: how this autopilot keeps them is not known."
+        elif state.vehicle_class is not VehicleClass.COPTER:
+            code, words = "vehicle-class", refusal_words(state.vehicle_class)
+        elif state.is_armed and not state.is_held:
+            code, words = "not-held", f"The vehicle is armed and in mode {state.mode}: it must be disarmed or held first."
+        else:
+            limit = too_many(self.load, state.flavour)
+            unknown = unknown_items(self.load.mission, state.flavour, state.firmware)
+            if limit is not None:
+                code, words = limit.code, limit.words
+            elif unknown:
+                autopilot, first = firmware_words(state.flavour, state.firmware), unknown[0]
+                code, words = "unknown-command", f"Not known to {autopilot}: item {first.place}, {command_words(first.item.command)}."
+        return KeeperOutcome(KeeperState.INTACT, code, f"Nothing was sent. {words}") if code else None
+
+    @property
+    def _flavour(self) -> Flavour:
+        return self._state.flavour or Flavour.OTHER
+
+    def _bring(self, kind: MissionType) -> Generator[Machine, None, bool]:
+        """Whether the vehicle holds the approved list of this kind."""
+        wanted = self.load.of(kind)
+        if self._is_cancelled:
+            return False
+        if not differences(wanted, self.before[kind], self._flavour) or self._is_left_alone(kind):
+            return True
+        self._touched.append(kind)
+        self._reason = ""
+        for _ in range(self._rules.attempts):
+            state = yield from self._put(kind, wanted)
+            if self._is_cancelled:
+                return False
+            held = yield from self._read(kind)
+            if held is not None and self._differs(kind, held):
+                held = yield from self._read(kind)  # it may have been a late answer
+            if held is not None and not self._differs(kind, held):
+                return True
+            if held is not None:
+                self._note_mix(kind, held)
+                self._why = self._why if state is TransferState.REFUSED else self._difference_in_words(kind)
+            if self._is_cancelled or state is TransferState.REFUSED:
+                return False
+            self._reason = self._reason or "differs"
+        return False
+
+    def _is_left_alone(self, kind: MissionType) -> bool:
+        """A fence or rally points of somebody else, where the load has none."""
+        if kind is MissionType.MISSION or self.load.of(kind):
+            return False
+        return self.found_before[kind] is Found.FOREIGN
+
+    def _left_alone_in_words(self) -> str:
+        names = {MissionType.FENCE: "fence", MissionType.RALLY: "rally points"}
+        left = [kind for kind in ORDER if self._is_left_alone(kind)]
+        return " ".join(f"Of its own {names[kind]} {len(self.before[kind])} items were left as they are." for kind in left)
+
+    def _has_come_unseen(self, kind: MissionType) -> Generator[Machine, None, bool]:
+        """Where no reading got through after the last sending: whether it is there all the same."""
+        if self._is_cancelled or self._now.get(kind) is not None:
+            return False
+        held = yield from self._read(kind)
+        return held is not None and not self._differs(kind, held)
+
+    def _put(self, kind: MissionType, items: Sequence[MissionItem]) -> Generator[Machine, None, TransferState]:
+        self._now[kind] = None
+        self._kind, self._stage = kind, SENDING if items else CLEARING
+        step: Upload | Clear
+        if items:
+            step = self._sent[kind] = Upload(sent_list(items, kind, self._flavour, self._state.firmware), kind, self._ends, self._rules)
+        else:
+            self._sent.pop(kind, None)
+            step = Clear(kind, self._ends, self._rules)
+        yield step
+        if isinstance(step, Upload) and not self._is_restoring:
+            self._why = self._refusal_in_words(step)
+        return self._ended(step.outcome)
+
+    def _refusal_in_words(self, upload: Upload) -> str:
+        """Which item, by its command, which firmware would not take; empty where none was refused."""
+        ended: TransferOutcome | None = upload.outcome
+        if ended is None or ended.state is not TransferState.REFUSED or ended.item is None:
+            return ""
+        autopilot, command = firmware_words(self._state.flavour, self._state.firmware), command_words(upload.items[ended.item].command)
+        place = ended.item - has_home(upload.kind, self._flavour)
+        return f"Refused by {autopilot}: item {place} of the {_name(upload.kind)}, {command} ({ended.code})."
+
+    def _difference_in_words(self, kind: MissionType) -> str:
+        found = self._differences(kind)
+        if not found:
+            return ""
+        first, name = found[0], _name(kind)
+        words = f"Of the {name}, item {first.item}: {first.field} was sent as {first.wanted} and came back as {first.held}."
+        return f"{words} There are {len(found) - 1} more differences." if len(found) > 1 else words
+
+    def _read(self, kind: MissionType) -> Generator[Machine, None, Held | None]:
+        """As often as there are attempts. A list that the vehicle does not have at all is empty."""
+        self._kind, self._stage = kind, READING
+        for _ in range(self._rules.attempts):
+            if self._is_cancelled and not self._is_restoring:
+                return None
+            step = Download(kind, self._ends, self._rules)
+            yield step
+            if step.outcome is not None and step.outcome.code == "unsupported":
+                self._now[kind] = ()
+                return ()
+            if self._ended(step.outcome) is TransferState.DONE:
+                self._now[kind] = held_list(step.read, kind, self._flavour)
+                return self._now[kind]
+        return None
+
+    def _ended(self, outcome: Any) -> TransferState:
+        if outcome.state is not TransferState.DONE and not self._is_restoring and not self._is_cancelled:
+            self._reason = outcome.code
+        return TransferState(outcome.state)
+
+    # after a failure
+
+    def _give_up(self) -> Course[KeeperOutcome]:
+        self._is_restoring = True
+        self._sent.clear()
+        unread = []
+        for kind in self._touched:
+            held = yield from self._settle(kind)
+            if held is None:
+                unread.append(kind)
+        return self._verdict(unread)
+
+    def _settle(self, kind: MissionType) -> Generator[Machine, None, Held | None]:
+        """Makes of a list that was touched either the one before or none, and tells what it is now."""
+        held = yield from self._read(kind)
+        if held is None or are_identical(held, self.before[kind]):
+            return held
+        self._note_mix(kind, held)
+        back = () if kind is MissionType.MISSION else tuple(there.item for there in self.before[kind])
+        for _ in range(self._rules.attempts):
+            yield from self._put(kind, back)
+            held = yield from self._read(kind)
+            if held is not None and (not held if kind is MissionType.MISSION else are_identical(held, self.before[kind])):
+                break
+        return held
+
+    def _verdict(self, unread: Sequence[MissionType]) -> KeeperOutcome:
+        kept = [kind for kind in self._touched if kind not in unread and are_identical(self._now[kind] or (), self.before[kind])]
+        mixed = [
+            kind
+            for kind in self._touched
+            if kind not in unread and kind not in kept and not (kind is MissionType.MISSION and not self._now[kind])
+        ]
+        reason, mixes = self._reason or "differs", tuple(self.mixes)
+        if mixed:
+            words = " ".join(self._left_in_words(kind, self._now[kind] or ()) for kind in mixed)
+            lost = " ".join(f"Its {_name(kind)} could not be read." for kind in unread)
+            shown = self._differences(mixed[0])
+            return KeeperOutcome(KeeperState.MIXED, reason, self._with_why(f"{words} {lost}".strip()), "", True, mixes, shown)
+        if unread:
+            is_critical = self._flavour is Flavour.ARDUPILOT
+            may = "part of the new one and part of the old" if is_critical else "the old one or the new one, whole"
+            words = f"The vehicle fell silent while its {_name(unread[0])} was sent: it may hold {may}. Read it back before any flight."
+            return KeeperOutcome(KeeperState.UNREAD, reason, self._with_why(words), "", is_critical, mixes)
+        if MissionType.MISSION in self._touched and MissionType.MISSION not in kept:
+            words = "The mission could not be sent whole, and what was there of it was taken off: the vehicle holds none."
+            return KeeperOutcome(KeeperState.CLEARED, reason, self._with_why(words), mixes=mixes)
+        return KeeperOutcome(KeeperState.INTACT, reason, self._with_why("The vehicle holds what it held before."), mixes=mixes)
+
+    def _with_why(self, words: str) -> str:
+        return f"{self._why} {words}".strip()
+
+    def _differs(self, kind: MissionType, held: Held) -> bool:
+        return bool(differences(self.load.of(kind), held, self._flavour))
+
+    def _differences(self, kind: MissionType) -> tuple[Difference, ...]:
+        return differences(self.load.of(kind), self._now[kind] or (), self._flavour)
+
+    def _note_mix(self, kind: MissionType, held: Held) -> None:
+        """Of what was read while the list was being replaced, or found to be mixed before."""
+        if not held or not self._differs(kind, held) or (kind in self._touched and are_identical(held, self.before[kind])):
+            return
+        mix = Mix(kind, self._mix_words(kind, held))
+        if mix not in self.mixes:
+            self.mixes.append(mix)
+
+    def _left_in_words(self, kind: MissionType, held: Held) -> str:
+        if not held:
+            return f"Its {_name(kind)} could not be put back: it holds none."
+        return f"Its {_name(kind)} is a mix: {self._mix_words(kind, held)}."
+
+    def _mix_words(self, kind: MissionType, held: Held) -> str:
+        return mix_in_words(held, self.load.of(kind), self.before.get(kind), self._flavour)
+
+
+def _name(kind: MissionType) -> str:
+    return kind.name.lower()

@@ -1,0 +1,128 @@
+"""Sending a list of items to a vehicle, which asks for them one by one."""
+
+from collections.abc import Sequence
+
+from mavlink.addressing import Ends, Message, Messages
+from mavlink.mission_sync.transfer import UNCERTAIN, TransferOutcome, TransferState
+from mavlink.mission_sync.wire import ack_message, item_message, result_name
+from mavlink.timeouts import TransferRules
+from mavlink.vehicle_plan import MissionItem, MissionType
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+REQUESTS = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT"})
+
+
+class Upload:
+    """A list on its way to a vehicle; an empty one takes off what is there.
+
+    Whatever the vehicle asks for it gets, be it again or out of turn. When it is silent, the item that it asked for last is sent again,
+    and where it said INVALID_SEQUENCE (it has that one, its next request was lost) the one after it, too. An acknowledgement is believed
+    only where it fits: a yes after the last item was sent, a definite no when no request follows it within `timeout_s`. What an error
+    like ERROR means is not known (PX4 says so to a repeated MISSION_COUNT and goes on, ArduPilot says so to an item after the end), so the
+    announcement is made again when the vehicle falls silent after it. Therefore even `done` is a claim: read the list back.
+    """
+
+    def __init__(self, items: Sequence[MissionItem], kind: MissionType, ends: Ends, rules: TransferRules) -> None:
+        """items: as they go over the wire (see `sent_list`)."""
+        self.items = tuple(items)
+        self.kind = kind
+        self.outcome: TransferOutcome | None = None
+        self.wake_at_s: float | None = None
+        self.items_done = 0  # the most that were asked for beyond them
+        self._ends = ends
+        self._rules = rules
+        self._at: int | None = None  # the item asked for last
+        self._may_be_ahead = False
+        self._has_sent_last = not self.items
+        self._refused: tuple[int, float] | None = None  # by which result, and when
+        self._restarts = 0
+        self._begun_s = self._progress_s = 0.0
+
+    def start(self, now_s: float) -> Messages:
+        self._begun_s = self._progress_s = now_s
+        return self._announced(now_s)
+
+    def receive(self, message: Message, now_s: float) -> Messages:
+        if not self._ends.has_sent(message) or getattr(message, "mission_type", None) != self.kind:
+            return []
+        if message.get_type() in REQUESTS:
+            return self._requested(message.seq, now_s)
+        if self.outcome is None and message.get_type() == "MISSION_ACK":
+            self._acknowledged(message.type, now_s)
+        return []
+
+    def tick(self, now_s: float) -> Messages:
+        if self.outcome is not None or self.wake_at_s is None or now_s < self.wake_at_s:
+            return []
+        if self._refused is not None and now_s >= self._refused[1] + self._rules.timeout_s:
+            return self._after_refusal(self._refused[0], now_s)
+        if now_s >= self._progress_s + self._rules.silence_s:
+            return self._end(TransferState.SILENT, "silent")
+        if self._at is None:
+            return self._announced(now_s)
+        self._wait(now_s)
+        if self._refused is not None and self._refused[0] not in UNCERTAIN:
+            return []
+        ahead = self._may_be_ahead and self._at + 1 < len(self.items)
+        return [self._item(number) for number in ((self._at, self._at + 1) if ahead else (self._at,))]
+
+    def cancel(self, now_s: float) -> Messages:
+        """PX4 then forgets what it was sent; ArduPilot keeps what it has, and waits for more for 8 s."""
+        if self.outcome is not None:
+            return []
+        self._end(TransferState.CANCELLED, "cancelled")
+        return [ack_message(mavlink.MAV_MISSION_OPERATION_CANCELLED, self.kind, self._ends)]
+
+    def _requested(self, number: int, now_s: float) -> Messages:
+        if number >= len(self.items):
+            return []
+        if self.outcome is None and now_s >= self._begun_s + self._rules.longest_s(len(self.items)):
+            return self._end(TransferState.SILENT, "too-slow")
+        if self.outcome is None:
+            if number != self._at:
+                self._at, self._progress_s, self._may_be_ahead = number, now_s, False
+                self.items_done = max(self.items_done, number)
+            self._refused = None
+            self._wait(now_s)
+        return [self._item(number)]
+
+    def _acknowledged(self, result: int, now_s: float) -> None:
+        if result == mavlink.MAV_MISSION_ACCEPTED:
+            if self._has_sent_last:
+                self.items_done = len(self.items)
+                self._end(TransferState.DONE, "")
+            elif self._at is not None and self._refused is None:  # it took another, shorter announcement for ours
+                self._refused = (mavlink.MAV_MISSION_ERROR, now_s)
+        elif result == mavlink.MAV_MISSION_INVALID_SEQUENCE:
+            self._may_be_ahead = True
+        elif self._refused is None or self._refused[0] in UNCERTAIN:
+            self._refused = (result, now_s)
+
+    def _after_refusal(self, result: int, now_s: float) -> Messages:
+        """It said no and has not asked since."""
+        if result not in UNCERTAIN:
+            return self._end(TransferState.REFUSED, result_name(result))
+        if self._at is not None and self._has_sent_last:
+            return self._end(TransferState.UNSURE, result_name(result))
+        self._restarts += 1
+        if self._restarts > self._rules.retries:
+            return self._end(TransferState.REFUSED, result_name(result))
+        self._refused, self._at, self._may_be_ahead = None, None, False
+        self._has_sent_last = not self.items
+        self._progress_s = now_s
+        return self._announced(now_s)
+
+    def _announced(self, now_s: float) -> Messages:
+        self._wait(now_s)
+        return [mavlink.MAVLink_mission_count_message(self._ends.system, self._ends.component, len(self.items), int(self.kind))]
+
+    def _item(self, number: int) -> Message:
+        self._has_sent_last = self._has_sent_last or number == len(self.items) - 1
+        return item_message(self.items[number], number, self.kind, self._ends)
+
+    def _wait(self, now_s: float) -> None:
+        self.wake_at_s = now_s + (self._rules.timeout_s if self._at is None else self._rules.item_timeout_s)
+
+    def _end(self, state: TransferState, code: str) -> Messages:
+        self.outcome, self.wake_at_s = TransferOutcome(state, code, self._at), None
+        return []

@@ -1,0 +1,100 @@
+"""Lists of items as they go over the wire, with home in front where the flavour wants it."""
+
+import hashlib
+import math
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mavlink.addressing import Ends, Message
+from mavlink.autopilot_type import Flavour
+from mavlink.mission_sync.supported_items import Version, as_known
+from mavlink.vehicle_plan import MissionItem, MissionType
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+NOTHING = MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_FRAME_GLOBAL_INT, (0.0, 0.0, 0.0, 0.0))
+
+
+@dataclass(frozen=True)
+class HeldItem:
+    """An item as a vehicle holds it; without `goes_on` it would stop there for good."""
+
+    item: MissionItem
+    goes_on: bool = True
+
+
+Held = tuple[HeldItem, ...]
+
+
+def has_home(kind: MissionType, flavour: Flavour) -> bool:
+    """Whether item 0 is home: ArduPilot ignores what is sent there, and a list sent without it loses its first item."""
+    return kind is MissionType.MISSION and flavour is Flavour.ARDUPILOT
+
+
+def sent_list(
+    items: Sequence[MissionItem], kind: MissionType, flavour: Flavour, firmware: Version | None = None
+) -> tuple[MissionItem, ...]:
+    """What is sent for a list, by commands that the firmware knows; nothing for an empty one."""
+    items = as_known(items, flavour, firmware)
+    if not items or not has_home(kind, flavour):
+        return items
+    placed = next((item for item in items if item.longitude_e7 or item.latitude_e7), NOTHING)
+    home = MissionItem(NOTHING.command, NOTHING.frame, NOTHING.parameters, placed.longitude_e7, placed.latitude_e7)
+    return (home, *items)
+
+
+def held_list(read: Held, kind: MissionType, flavour: Flavour) -> Held:
+    """What was read, without home."""
+    return read[1:] if has_home(kind, flavour) else read
+
+
+def held_sha256(held: Held) -> str:
+    """Names exactly what was read; figures as they are on the wire, where all NaN are one."""
+    rows = [
+        (
+            there.item.command, there.item.frame, there.item.longitude_e7, there.item.latitude_e7, there.goes_on,
+            *(None if math.isnan(value) else struct.pack("<f", value).hex() for value in (*there.item.parameters, there.item.altitude_m)),
+        )
+        for there in held
+    ]  # fmt: skip
+    return hashlib.sha256(repr(rows).encode()).hexdigest()
+
+
+def item_message(item: MissionItem, sequence: int, kind: MissionType, ends: Ends) -> Message:
+    return mavlink.MAVLink_mission_item_int_message(
+        ends.system,
+        ends.component,
+        sequence,
+        item.frame,
+        item.command,
+        0,
+        1,
+        *item.parameters,
+        item.latitude_e7,
+        item.longitude_e7,
+        item.altitude_m,
+        int(kind),
+    )
+
+
+def held_item(message: Message) -> HeldItem:
+    """Of a MISSION_ITEM_INT."""
+    item = MissionItem(
+        command=message.command,
+        frame=message.frame,
+        parameters=(message.param1, message.param2, message.param3, message.param4),
+        longitude_e7=message.y,
+        latitude_e7=message.x,
+        altitude_m=message.z,
+    )
+    return HeldItem(item, bool(message.autocontinue))
+
+
+def ack_message(result: int, kind: MissionType, ends: Ends) -> Message:
+    return mavlink.MAVLink_mission_ack_message(ends.system, ends.component, result, int(kind))
+
+
+def result_name(result: int) -> str:
+    """Of a MAV_MISSION_RESULT, for codes: `no-space`."""
+    entry = mavlink.enums["MAV_MISSION_RESULT"].get(result)
+    return f"result-{result}" if entry is None else entry.name.removeprefix("MAV_MISSION_").lower().replace("_", "-")

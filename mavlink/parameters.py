@@ -1,0 +1,112 @@
+"""Reading a few parameters of a vehicle by name, and setting one."""
+
+import math
+from collections.abc import Sequence
+
+from mavlink.addressing import Ends, Message, Messages
+from mavlink.commands.command import CommandEnd, CommandOutcome
+from mavlink.timeouts import TransferRules
+from mavlink.vehicle_state import VehicleState
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+BY_NAME = -1  # in place of a parameter's number
+
+
+class ParameterReading:
+    """Asks until each was told or said not to exist; `outcome` has those that were. `state` is to have taken a message before.
+
+    A parameter that a vehicle does not have draws no answer from many: it is missing from the outcome once the tries are used up.
+    """
+
+    def __init__(self, names: Sequence[str], state: VehicleState, ends: Ends, rules: TransferRules) -> None:
+        self.outcome: dict[str, float] | None = None
+        self.wake_at_s: float | None = None
+        self._open = list(dict.fromkeys(names))
+        self._state = state
+        self._ends = ends
+        self._rules = rules
+        self._tries = 0
+        self._read: dict[str, float] = {}
+
+    def start(self, now_s: float) -> Messages:
+        return self._asked(now_s)
+
+    def receive(self, message: Message, now_s: float) -> Messages:
+        if self.outcome is None and message.get_type() == "PARAM_VALUE" and self._ends.has_sent(message) and message.param_id in self._open:
+            if message.param_id in self._state.parameters:
+                self._read[message.param_id] = self._state.parameters[message.param_id]
+            self._open.remove(message.param_id)
+            if not self._open:
+                self._end()
+        return []
+
+    def tick(self, now_s: float) -> Messages:
+        return [] if self.outcome is not None or self.wake_at_s is None or now_s < self.wake_at_s else self._asked(now_s)
+
+    def _asked(self, now_s: float) -> Messages:
+        if not self._open or self._tries > self._rules.retries:
+            return self._end()
+        self._tries += 1
+        self.wake_at_s = now_s + self._rules.timeout_s
+        return [
+            mavlink.MAVLink_param_request_read_message(self._ends.system, self._ends.component, name.encode(), BY_NAME)
+            for name in self._open
+        ]
+
+    def _end(self) -> Messages:
+        self.outcome, self.wake_at_s = self._read, None
+        return []
+
+
+class ParameterSetting:
+    """Sets a parameter until the vehicle tells the value, and then reads it once more; `outcome` tells whether it has it.
+
+    `state` is to have taken a message before.
+    """
+
+    def __init__(self, name: str, value: float, state: VehicleState, ends: Ends, rules: TransferRules) -> None:
+        self.outcome: CommandOutcome | None = None
+        self.wake_at_s: float | None = None
+        self._name, self._value = name, value
+        self._state = state
+        self._ends = ends
+        self._rules = rules
+        self._tries = 0
+        self._is_set = False  # by its own word: it is read back
+        self._other: float | None = None  # that it told instead
+
+    def start(self, now_s: float) -> Messages:
+        return self._asked(now_s)
+
+    def receive(self, message: Message, now_s: float) -> Messages:
+        if self.outcome is not None or message.get_type() != "PARAM_VALUE" or not self._ends.has_sent(message):
+            return []
+        if message.param_id != self._name:
+            return []
+        told = self._state.parameters.get(self._name)
+        if told is None or not math.isclose(told, self._value, rel_tol=1e-5, abs_tol=1e-3):
+            self._other, self._is_set = told, False
+            return []
+        if self._is_set:
+            self.outcome, self.wake_at_s = CommandOutcome(CommandEnd.APPLIED, words=f"{self._name} is {self._value:g}, read back."), None
+            return []
+        self._is_set, self._tries = True, 0
+        return self._asked(now_s)
+
+    def tick(self, now_s: float) -> Messages:
+        return [] if self.outcome is not None or self.wake_at_s is None or now_s < self.wake_at_s else self._asked(now_s)
+
+    def _asked(self, now_s: float) -> Messages:
+        if self._tries > self._rules.retries:
+            self.wake_at_s = None
+            if self._other is None:
+                self.outcome = CommandOutcome(CommandEnd.FAILED, "silent", f"The vehicle does not answer about {self._name}.")
+            else:
+                self.outcome = CommandOutcome(CommandEnd.FAILED, "denied", f"{self._name} stays {self._other:g}.")
+            return []
+        self._tries += 1
+        self.wake_at_s = now_s + self._rules.timeout_s
+        system, component, name = self._ends.system, self._ends.component, self._name.encode()
+        if self._is_set:
+            return [mavlink.MAVLink_param_request_read_message(system, component, name, BY_NAME)]
+        return [mavlink.MAVLink_param_set_message(system, component, name, self._value, mavlink.MAV_PARAM_TYPE_REAL32)]

@@ -1,0 +1,113 @@
+"""MAVLink 2 message signing: what a signature says, which ones are believed, and frames signed by us.
+
+Source: MAVLink developer guide, "Message signing". Beyond it a time of more than a minute ahead is refused: it would move the clock of
+the link, and whatever came after it would be too old. Only a right signature moves anything.
+"""
+
+import hashlib
+import hmac
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from mavlink.frames import Frame, Message
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+UNITS_PER_S = 100_000  # 10 us each
+EPOCH_UNIX_S = 1_420_070_400  # 2015-01-01
+LONGEST_AGO_S = 60.0
+FURTHEST_AHEAD_S = 60.0
+MOST_STREAMS = 64  # components and links of one vehicle
+TAG = 6
+_LARGEST_TIMESTAMP = 2**48 - 1
+
+
+class Refusal(StrEnum):
+    """Why a frame is not taken for the UAV's whose system id it bears."""
+
+    UNSIGNED = "unsigned"
+    NO_KEY = "no-key"
+    WRONG_SIGNATURE = "wrong-signature"
+    REPLAYED = "replayed"
+    TOO_OLD = "too-old"
+    BEFORE_START = "before-start"
+    FROM_THE_FUTURE = "from-the-future"
+    TOO_MANY_STREAMS = "too-many-streams"
+
+
+def timestamp_at(unix_s: float) -> int:
+    """In 10 us since 2015, as frames bear it."""
+    return min(max(round((unix_s - EPOCH_UNIX_S) * UNITS_PER_S), 0), _LARGEST_TIMESTAMP)
+
+
+def unix_s_of(timestamp: int) -> float:
+    """Seconds since 1970, of what frames bear."""
+    return timestamp / UNITS_PER_S + EPOCH_UNIX_S
+
+
+def stream_of(frame: Frame) -> str:
+    """Component and link: timestamps go on within these."""
+    return f"{frame.component}:{frame.link_id}"
+
+
+def tag_of(raw_without_tag: bytes, key: bytes) -> bytes:
+    return hashlib.sha256(key + raw_without_tag).digest()[:TAG]
+
+
+@dataclass
+class SignatureCheck:
+    """Which signed frames of one vehicle are believed. `last` is the newest timestamp by component and link, as "1:0".
+
+    Frames of before `since`, a timestamp, may have been recorded while nobody here took them: they are refused.
+    """
+
+    key: bytes = field(repr=False)
+    last: dict[str, int] = field(default_factory=dict)
+    since: int = 0
+
+    def refusal(self, frame: Frame, now_unix_s: float) -> Refusal | None:
+        """None for a frame to be taken; only then is its timestamp the newest of its stream."""
+        if frame.timestamp is None:
+            return Refusal.UNSIGNED
+        if not self.is_signed_right(frame):
+            return Refusal.WRONG_SIGNATURE
+        stream = stream_of(frame)
+        before = self.last.get(stream)
+        if before is not None and frame.timestamp <= before:
+            return Refusal.REPLAYED
+        if frame.timestamp < timestamp_at(now_unix_s - LONGEST_AGO_S):
+            return Refusal.TOO_OLD
+        if frame.timestamp < self.since:
+            return Refusal.BEFORE_START
+        if frame.timestamp > timestamp_at(now_unix_s + FURTHEST_AHEAD_S):
+            return Refusal.FROM_THE_FUTURE
+        if before is None and len(self.last) >= MOST_STREAMS:
+            return Refusal.TOO_MANY_STREAMS
+        self.last[stream] = frame.timestamp
+        return None
+
+    def is_signed_right(self, frame: Frame) -> bool:
+        return frame.is_signed and hmac.compare_digest(tag_of(frame.raw[:-TAG], self.key), frame.raw[-TAG:])
+
+
+@dataclass
+class FrameWriter:
+    """Messages of ours to frames. With a key they are signed, each with a later time than the one before, whatever the clock does."""
+
+    system: int
+    component: int
+    link_id: int = 0
+    key: bytes | None = field(default=None, repr=False)
+    last_timestamp: int = 0
+    _sequence: int = 0
+
+    def frame_of(self, message: Message, now_unix_s: float) -> bytes:
+        packer = dialect.MAVLink(None, srcSystem=self.system, srcComponent=self.component)
+        packer.seq = self._sequence
+        self._sequence = (self._sequence + 1) % 256
+        if self.key is not None:
+            self.last_timestamp = min(max(timestamp_at(now_unix_s), self.last_timestamp + 1), _LARGEST_TIMESTAMP)
+            packer.signing.secret_key = self.key
+            packer.signing.link_id = self.link_id
+            packer.signing.timestamp = self.last_timestamp
+            packer.signing.sign_outgoing = True
+        return bytes(message.pack(packer))

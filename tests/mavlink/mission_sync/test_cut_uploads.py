@@ -1,0 +1,105 @@
+"""Uploads that are cut at each message, by the death of either end."""
+
+import pytest
+from mavlink.autopilot_type import Flavour
+from mavlink.mission_sync.compare import differences
+from mavlink.mission_sync.onboard_list import Found
+from mavlink.mission_sync.outcome import KeeperState
+from mavlink.mission_sync.sync import MissionKeeper
+from mavlink.mission_sync.wire import held_list
+from mavlink.timeouts import TransferRules
+from mavlink.vehicle_plan import MissionType
+from tests.mavlink.mission_sync.test_lossy_upload import said_what_is_there
+
+from tests.telemetry.vehicles.channel import Channel
+from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon
+from tests.telemetry.vehicles.vehicle import Vehicle
+
+NEW = load(12, fence=polygon(0, 5))
+OLD = load(9, east=40_000, fence=polygon(9_000))
+
+
+def vehicle_with_old(flavour: str) -> Vehicle:
+    vehicle = FLAVOURS[flavour]()
+    for kind in MissionType:
+        vehicle.lists[kind] += OLD.of(kind)
+    return vehicle
+
+
+def keeper_for(vehicle: Vehicle) -> MissionKeeper:
+    return MissionKeeper(NEW, known(vehicle), ENDS, TransferRules(), known=[OLD])
+
+
+def messages_in_all(flavour: str) -> int:
+    vehicle = vehicle_with_old(flavour)
+    channel = Channel(keeper_for(vehicle), vehicle)
+    assert channel.run().state is KeeperState.READY
+    return len(channel.to_vehicle)
+
+
+def contents(vehicle: Vehicle, kind: MissionType) -> Found:
+    flavour = Flavour(type(vehicle).__name__.lower())
+    held = held_list(tuple(vehicle.held(kind)), kind, flavour)
+    if not differences(NEW.of(kind), held, flavour):
+        return Found.APPROVED
+    if not differences(OLD.of(kind), held, flavour):
+        return Found.KNOWN
+    return Found.MIXED if held else Found.NOTHING
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_ground_station_dies_at_each_message(flavour: str):
+    """PX4 holds a whole list of one or the other after each cut; ArduPilot may hold a mix, which the next ground station names."""
+    mixes = 0
+    for sent in range(messages_in_all(flavour)):
+        vehicle = vehicle_with_old(flavour)
+        channel = Channel(keeper_for(vehicle), vehicle, ground_dies_after=sent)
+        channel.run()
+        channel.let_pass(20.0)
+        found = {kind: contents(vehicle, kind) for kind in MissionType}
+        next_one = keeper_for(vehicle)
+        outcome = Channel(next_one, vehicle).run()
+        mixed = {kind for kind in MissionType if found[kind] is Found.MIXED}
+        assert not mixed or flavour == "ardupilot", sent
+        assert {mix.kind for mix in outcome.mixes} == mixed, sent
+        assert {kind: next_one.found_before[kind] for kind in (MissionType.MISSION, MissionType.FENCE)} == {
+            kind: found[kind] for kind in (MissionType.MISSION, MissionType.FENCE)
+        }, sent
+        assert outcome.state is KeeperState.READY
+        mixes += len(mixed)
+    assert mixes > 0 if flavour == "ardupilot" else mixes == 0
+
+
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_vehicle_dies_at_each_message(flavour: str):
+    """What the ground station says of a vehicle that fell silent agrees with what is in its memory; back again, it is put right."""
+    states = set()
+    for heard in range(messages_in_all(flavour)):
+        vehicle = vehicle_with_old(flavour)
+        outcome = Channel(keeper_for(vehicle), vehicle, vehicle_dies_after=heard).run()
+        states.add(outcome.state)
+        if outcome.state is KeeperState.READY:
+            continue  # only the last acknowledgement, of what was read, was lost
+        if flavour == "px4":
+            assert all(contents(vehicle, kind) in (Found.APPROVED, Found.KNOWN) for kind in MissionType), heard
+        assert said_what_is_there(outcome, vehicle, NEW, OLD), (heard, outcome)
+        vehicle.restart()
+        assert Channel(keeper_for(vehicle), vehicle).run().state is KeeperState.READY
+    assert states == {KeeperState.INTACT, KeeperState.UNREAD, KeeperState.READY}
+
+
+@pytest.mark.parametrize("number", range(1, 12))
+@pytest.mark.parametrize("flavour", FLAVOURS)
+def test_item_that_the_vehicle_refuses_leaves_the_old_mission_or_none(flavour: str, number: int):
+    vehicle = vehicle_with_old(flavour)
+    on_the_wire = number + 1 if flavour == "ardupilot" else number
+    vehicle.refuses = {on_the_wire: 3}  # type: ignore[attr-defined]
+    keeper = MissionKeeper(load(12), known(vehicle), ENDS, TransferRules(), known=[OLD])
+    outcome = Channel(keeper, vehicle).run()
+    assert outcome.code == "unsupported"
+    if flavour == "px4":
+        assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (KeeperState.INTACT, Found.KNOWN)
+    else:
+        assert (outcome.state, contents(vehicle, MissionType.MISSION)) == (KeeperState.CLEARED, Found.NOTHING)
+        assert "are new" in outcome.mixes[-1].words or "is new" in outcome.mixes[-1].words
+    assert contents(vehicle, MissionType.FENCE) is Found.KNOWN

@@ -1,0 +1,151 @@
+"""Approved routes as mission items."""
+
+import json
+import math
+from dataclasses import replace
+
+import pytest
+from mavlink.approved_route import BASE, HOVER, LAND, RETURN, NotARoute, route_from_json, route_to_json
+from mavlink.mission_items import CannotBeFlown, flight_loads
+from mavlink.vehicle_plan import FlightLoad, MissionItem, load_from_json, load_to_json
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+from tests.mavlink.routes import START, route, start_and_end, waypoint
+
+from missions.flight_plan.waypoints import WaypointKind
+from missions.routing.problem import Task, TaskKind
+
+TAKEOFF, WAYPOINT, SPEED = mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_DO_CHANGE_SPEED
+LANDING, DELAY = mavlink.MAV_CMD_NAV_LAND, mavlink.MAV_CMD_NAV_DELAY
+PHOTO, LOOK_AT, LOOK_AHEAD = mavlink.MAV_CMD_IMAGE_START_CAPTURE, mavlink.MAV_CMD_DO_SET_ROI_LOCATION, mavlink.MAV_CMD_DO_SET_ROI_NONE
+
+
+def commands(items: tuple[MissionItem, ...]) -> list[int]:
+    return [item.command for item in items]
+
+
+def with_task(task: Task, **more: object) -> tuple[MissionItem, ...]:
+    (load,) = flight_loads(start_and_end(waypoint(1, WaypointKind.TARGET, task=task, target=0, **more)))
+    return load.mission
+
+
+def test_flight_takes_off_sets_its_speed_flies_each_waypoint_and_returns():
+    (load,) = flight_loads(start_and_end(waypoint(1, WaypointKind.PASS, relative_m=61.234)))
+    assert commands(load.mission) == [TAKEOFF, SPEED, WAYPOINT, WAYPOINT, WAYPOINT, LANDING]
+    assert load.mission[1].parameters[:3] == (1.0, 12.0, -1.0)
+    passed = load.mission[3]
+    assert (passed.longitude_e7, passed.latitude_e7, passed.altitude_m) == (98010000, 554000000, 61.23)
+    assert passed.frame == mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
+    assert [item.waypoint for item in load.mission] == [0, 0, 0, 1, 2, 2]
+
+
+def test_items_without_a_place_have_the_frame_mission():
+    (load,) = flight_loads(start_and_end(waypoint(1, WaypointKind.TARGET, task=Task(TaskKind.PHOTO, 10.0), target=0)))
+    placeless = {SPEED, PHOTO, DELAY}
+    assert {item.command for item in load.mission if item.frame == mavlink.MAV_FRAME_MISSION} == placeless
+
+
+def test_speed_changes_only_where_a_leg_is_flown_otherwise():
+    (load,) = flight_loads(start_and_end(waypoint(1, WaypointKind.PASS, speed_mps=5.0), waypoint(2, WaypointKind.PASS, speed_mps=5.0)))
+    assert commands(load.mission) == [TAKEOFF, SPEED, WAYPOINT, SPEED, WAYPOINT, WAYPOINT, SPEED, WAYPOINT, LANDING]
+    assert [item.parameters[1] for item in load.mission if item.command == SPEED] == [12.0, 5.0, 12.0]
+
+
+def test_hover_lasts_whole_seconds_rounded_up():
+    mission = with_task(Task(TaskKind.HOLD, 12.2))
+    assert mission[3].command == WAYPOINT and mission[3].parameters[0] == 13.0
+
+
+def test_photos_are_taken_while_the_uav_stands_still():
+    mission = with_task(Task(TaskKind.PHOTO, 9.5))
+    assert commands(mission[3:6]) == [WAYPOINT, PHOTO, DELAY]
+    assert mission[3].parameters[0] == 2.0
+    assert mission[4].parameters == (0.0, 2.0, 4.0, 0.0)
+    assert mission[5].parameters == (8.0, -1.0, -1.0, -1.0)
+
+
+def test_short_photo_is_one_picture_without_a_delay():
+    mission = with_task(Task(TaskKind.PHOTO, 1.0))
+    assert commands(mission[3:5]) == [WAYPOINT, PHOTO]
+    assert mission[4].parameters[1:3] == (0.0, 1)
+
+
+def test_camera_looks_at_the_ground_under_a_target_on_the_way_there_and_ahead_afterwards():
+    mission = with_task(Task(TaskKind.LOOK, 5.0), relative_m=70.0, agl_m=65.0)
+    assert commands(mission[3:6]) == [LOOK_AT, WAYPOINT, LOOK_AHEAD]
+    assert (mission[3].altitude_m, mission[4].parameters[0]) == (5.0, 5.0)
+
+
+def test_camera_is_not_turned_back_along_a_stretch():
+    stretch = [
+        waypoint(1, WaypointKind.TARGET, task=Task(TaskKind.LOOK, 0.0), target=0),
+        waypoint(2, WaypointKind.PASS, target=0),
+    ]
+    (load,) = flight_loads(start_and_end(*stretch))
+    assert LOOK_AT not in commands(load.mission)
+
+
+@pytest.mark.parametrize("end_action", [RETURN, LAND, BASE])
+def test_flight_lands_on_the_ground_under_its_last_waypoint(end_action: str):
+    (load,) = flight_loads(start_and_end(end_action=end_action))
+    last = load.mission[-1]
+    assert (last.command, last.altitude_m, last.longitude_e7) == (LANDING, 0.0, 98000000)
+
+
+def test_hovering_flight_ends_with_its_last_waypoint():
+    (load,) = flight_loads(start_and_end(end_action=HOVER))
+    assert load.mission[-1].command == WAYPOINT
+
+
+@pytest.mark.parametrize("end_action", [RETURN, LAND, BASE, HOVER])
+def test_flight_before_another_lands_at_the_base_however_the_route_ends(end_action: str):
+    kinds = [WaypointKind.START, WaypointKind.END, WaypointKind.BASE, WaypointKind.START, WaypointKind.END]
+    points = [waypoint(number, kind, lon=START.lon) for number, kind in enumerate(kinds)]
+    points[2] = waypoint(2, WaypointKind.BASE, lon=START.lon, relative_m=4.0, agl_m=0.0)
+    first, _ = flight_loads(replace(route(points), end_action=end_action))
+    assert (first.mission[-1].command, first.mission[-1].longitude_e7, first.mission[-1].altitude_m) == (LANDING, 98000000, 0.0)
+
+
+def test_route_over_a_base_is_two_flights_each_from_its_own_take_off():
+    kinds = [WaypointKind.START, WaypointKind.END, WaypointKind.BASE, WaypointKind.START, WaypointKind.END]
+    points = [waypoint(number, kind, lon=START.lon) for number, kind in enumerate(kinds)]
+    points[2] = waypoint(2, WaypointKind.BASE, lon=START.lon, relative_m=4.0, agl_m=0.0)
+    whole = route(points)
+    first, second = flight_loads(whole)
+    assert commands(first.mission) == commands(second.mission) == [TAKEOFF, SPEED, WAYPOINT, WAYPOINT, LANDING]
+    assert (first.mission[0].altitude_m, second.mission[0].altitude_m) == (60.0, 56.0)
+    assert [flight.take_off.altitude_amsl_m for flight in whole.flights] == [20.0, 24.0]
+    assert [item.waypoint for item in second.mission] == [3, 3, 3, 4, 4]
+
+
+def test_route_without_waypoints_has_no_flight():
+    assert flight_loads(route([])) == ()
+
+
+def test_charging_route_is_refused():
+    with pytest.raises(CannotBeFlown, match="charges"):
+        flight_loads(route([waypoint(0, WaypointKind.START)], charging_stops=(0,)))
+
+
+def test_route_that_does_not_rise_is_refused():
+    with pytest.raises(CannotBeFlown):
+        flight_loads(route([waypoint(0, WaypointKind.START, relative_m=0.0)]))
+
+
+def test_base_without_a_flight_before_it_is_no_route():
+    with pytest.raises(NotARoute):
+        flight_loads(route([waypoint(0, WaypointKind.BASE), waypoint(1, WaypointKind.START)]))
+
+
+def test_route_is_the_same_after_json():
+    stored = start_and_end(waypoint(1, WaypointKind.TARGET, task=Task(TaskKind.PHOTO, 10.0), target=3, speed_mps=4.5))
+    again = route_from_json(json.loads(json.dumps(route_to_json(stored))))
+    assert again == stored
+    assert flight_loads(again)[0].content_sha256 == flight_loads(stored)[0].content_sha256
+
+
+def test_load_is_the_same_after_json_with_nan_left_to_the_autopilot():
+    (load,) = flight_loads(start_and_end())
+    again = load_from_json(json.loads(json.dumps(load_to_json(load))))
+    assert again.content_sha256 == load.content_sha256
+    assert math.isnan(again.mission[0].parameters[3])
+    assert FlightLoad(load.mission[:-1]).content_sha256 != load.content_sha256
