@@ -20,7 +20,7 @@ Values = dict[str, Any]
 
 @dataclass(frozen=True)
 class Flown:
-    """What the vehicle's own state says; see ground_station/vehicle_state.py."""
+    """What the vehicle's own state says; see mavlink/vehicle_state.py."""
 
     mode: str = ""
     is_armed: bool | None = None

@@ -7,6 +7,7 @@ from uuid import UUID
 from mavlink.rtl import OwnReturn
 
 from inspection.geodesy import LonLat
+from missions.flight_plan.lost_link import LostLinkPlan
 from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import EnergyPlan
 from telemetry.alerting.route_line import RouteLine
@@ -17,7 +18,7 @@ class LinkFacts:
     """What is known of the UAV's link. `heard_s` is when anything was last received, by the server's clock.
 
     `clock_rate`: the vehicle's seconds a second of the server's; not 1 where it is flown faster than real time.
-    `battery_state`: as the vehicle itself has it, a name of ground_station/vehicle_state.py; empty: it does not tell.
+    `battery_state`: as the vehicle itself has it, a name of mavlink/vehicle_state.py; empty: it does not tell.
     """
 
     heard_s: float | None = None
@@ -26,7 +27,7 @@ class LinkFacts:
     is_in_air: bool | None = None
     clock_rate: float = 1.0
     battery_state: str = ""
-    autopilot: str = ""  # a name of ground_station/flavour.py
+    autopilot: str = ""  # a name of mavlink/autopilot_type.py
     own_return: OwnReturn | None = None  # how high it flies home by itself; None: not known
 
 
@@ -59,6 +60,7 @@ class FlightModel:
     """What was approved of the flight, worked out once. `max_airspeed_mps` is the highest that the UAV flies through the air.
 
     rally_points: where it may land by itself beside its home. consumption: what the way home takes; None: an endurance is assumed.
+    lost_link: what was planned for a lost link; None: not known.
     """
 
     line: RouteLine
@@ -67,6 +69,7 @@ class FlightModel:
     reserve_percent: float
     rally_points: tuple[LonLat, ...] = ()
     consumption: Consumption | None = None
+    lost_link: LostLinkPlan | None = None
 
 
 @dataclass(frozen=True, slots=True)

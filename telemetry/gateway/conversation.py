@@ -15,7 +15,7 @@ LONGEST_NAP_S = 0.5
 
 
 class Keeper(Protocol):
-    """A machine of telemetry/ground_station. Times are monotonic seconds."""
+    """A state machine of mavlink. Times are monotonic seconds."""
 
     @property
     def outcome(self) -> Any: ...

@@ -46,7 +46,7 @@ class UavLink(models.Model):
     clock_offset_s = models.FloatField(null=True, blank=True, help_text="server's time at the vehicle's time since boot of 0")
     clock_rate = models.FloatField(null=True, blank=True, help_text="vehicle's seconds a second; a simulation may run faster")
     boots = models.JSONField(
-        default=list, db_default=[], blank=True, help_text="runs of the vehicle's clock, the last one last; see decoding/boots.py"
+        default=list, db_default=[], blank=True, help_text="runs of the vehicle's clock, the last one last; see mavlink/decoding/boots.py"
     )
     signing = models.JSONField(default=dict, blank=True, help_text="last timestamps by link, so that nothing is taken twice")
     losses = models.JSONField(default=dict, blank=True, help_text="what was refused or lost, by cause")
@@ -54,7 +54,7 @@ class UavLink(models.Model):
         default=dict,
         db_default={},
         blank=True,
-        help_text="what it would not fly, by its parameters' names [m]; see ground_station/limits.py",
+        help_text="what it would not fly, by its parameters' names [m]; see mavlink/mission_sync/limits.py",
     )
 
     battery_state = models.CharField(
