@@ -134,6 +134,7 @@ TEMPLATES = (
     gettext_noop("Taken over by %(mission)s."),
     gettext_noop("Continues %(mission)s."),
     gettext_noop("%(uav)s was given another command since."),
+    gettext_noop("Its reason has ended: %(uav)s continues its mission."),
     gettext_noop("%(target)s was done meanwhile."),
     gettext_noop("%(uav)s is not where it was reckoned to be."),
     gettext_noop("%(uav)s has passed the diversion point."),

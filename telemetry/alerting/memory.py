@@ -7,6 +7,7 @@ from typing import Any
 
 from inspection.geodesy import LonLat
 from telemetry.alerting.consumption import DrainMemory
+from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.route_line import Place, RouteLine
 from telemetry.estimation.report import Report
 
@@ -49,6 +50,8 @@ class Memory:
     down_s: float | None = None  # since when it is on the ground after it was in flight on this line; measured, too
     down_at: LonLat | None = None  # where it came down then
     has_ended: bool = False  # that flight, and its mission knows
+    mode: ModeKind | None = None  # the last that was known
+    mode_since_s: float | None = None  # when it was first reported, measured; None: it was in it before it was watched
     mode_words: tuple[str, str] = ("", "")  # a mode, and what the vehicle said about the time at which it changed to it
     drain: DrainMemory = field(default_factory=DrainMemory)
     battery: dict[str, Any] | None = None  # as live pages show it
@@ -81,6 +84,12 @@ class Memory:
         elif self.was_in_flight and self.newest is not None:
             self.down_s = self.newest.measured_s if self.down_s is None else self.down_s
             self.down_at = position_of(self.newest) if self.down_at is None else self.down_at
+
+    def note_mode(self, mode: ModeKind | None, measured_s: float) -> None:
+        """One that is not told changes nothing."""
+        if mode is not None and mode is not self.mode:
+            self.mode_since_s = None if self.mode is None else measured_s
+            self.mode = mode
 
     @property
     def usual_interval_s(self) -> float:

@@ -23,6 +23,7 @@ TEMPLATES = (
     gettext_noop("%(uav)s: battery %(percent)s %%, below the reserve of %(reserve)s %%."),
     gettext_noop("%(uav)s: battery %(percent)s %%, below the reserve of %(reserve)s %% within a minute."),
     gettext_noop("%(uav)s: battery %(percent)s %%, not enough to return (%(home)s %%)."),
+    gettext_noop("%(uav)s: battery %(percent)s %%, after a return (%(home)s %%) hardly any would be left."),
     gettext_noop(
         "%(uav)s: battery %(percent)s %%, not enough to return home (%(home)s %%). The landing place %(metres)s m away is in reach."
     ),
@@ -90,6 +91,31 @@ OWN_ACTS = (
     gettext_noop("PX4 usually descends by itself 5 s after it lost its position (EKF2_NOAID_TOUT) and drifts with the wind."),
     gettext_noop("What its autopilot does by itself is not known."),
 )
+ADVICES = (
+    gettext_noop("A return lands with about %(landing)s %% of the battery, below the reserve of %(reserve)s %%."),
+    gettext_noop(
+        "A return leads to the landing place %(metres)s m away and lands there with about %(landing)s %% of the battery;"
+        " home takes about %(home)s %%."
+    ),
+    gettext_noop("A return lands with about %(landing)s %% of the battery only: land here if the ground allows it."),
+    gettext_noop("How much of the battery the return takes is not known."),
+    gettext_noop("Return is not offered: it takes about %(home)s %% of the battery, and %(percent)s %% is left."),
+    gettext_noop("Return is not offered: the UAV makes no headway against the wind."),
+    gettext_noop("It lands with about %(landing)s %% of the battery (reserve %(reserve)s %%)."),
+    gettext_noop("Its battery does not last for the return, which takes about %(home)s %%: %(percent)s %% is left."),
+    gettext_noop("Planned for link loss: it continues its mission by itself. %(failsafe)s"),
+    gettext_noop("Planned for link loss: it holds for %(seconds)s s, then returns. %(failsafe)s"),
+    gettext_noop("Planned for link loss: it returns. %(failsafe)s"),
+    gettext_noop("It was returning when last heard, and should continue by itself."),
+    gettext_noop("It was landing when last heard, and should continue by itself."),
+    gettext_noop("It was holding when last heard: it holds until its failsafe or its battery ends that."),
+    gettext_noop("It was under other control when last heard (mode %(mode)s): ask the pilot."),
+    gettext_noop("What it does by itself is not known."),
+    gettext_noop("The failsafe set on the autopilot (FS_GCS_ENABLE, FS_THR_ENABLE) comes first."),
+    gettext_noop("The failsafe set on the autopilot (NAV_DLL_ACT, NAV_RCL_ACT) comes first."),
+    gettext_noop("A failsafe set on the UAV comes first."),
+)
+TRANSLATED_VALUES = ("step", "state", "why", "own", "failsafe")
 STATES = (gettext_noop("low"), gettext_noop("critical"), gettext_noop("emergency"), gettext_noop("failed"), gettext_noop("unhealthy"))
 
 
@@ -98,7 +124,7 @@ def alert_words(message: str, values: Mapping[str, Any]) -> str:
     if not values:
         return message
     read = {
-        name: outcome_in_words(value) if name == "words" else _(value) if name in ("step", "state", "why", "own") else value
+        name: outcome_in_words(value) if name == "words" else _(value) if name in TRANSLATED_VALUES else value
         for name, value in values.items()
     }
     try:

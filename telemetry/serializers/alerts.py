@@ -2,8 +2,11 @@
 
 from typing import Any
 
+from django.utils.translation import gettext as _
+
 from missions.serializers.known_fields import KnownFieldsSerializer
-from telemetry.alerting.acts import ACTS, KINDS, acts_of
+from telemetry.alerting.acts import ACTS, KINDS, LAND, RETURN, acts_of
+from telemetry.alerting.advice import ADVICE, OWN_ACT
 from telemetry.models import Alert, AlertLevel, AlertNote
 from telemetry.selectors.alert_words import alert_words
 from telemetry.selectors.alerts import WORST
@@ -11,12 +14,21 @@ from telemetry.services.alerts import ACKNOWLEDGED, STILL_OPEN, UNKNOWN
 from workspace import strict_serializers as serializers
 from workspace.models import User
 
+NO_FIGURES = (ACTS, ADVICE, OWN_ACT, WORST)  # of an alert's details: shown in fields of their own
 MAX_ACKNOWLEDGED = 500  # alerts in one request
 
 
 class AlertActSerializer(serializers.Serializer):
     kind = serializers.ChoiceField(choices=KINDS, help_text="a command, or take-over: a pilot on site flies it")
     uav = serializers.IntegerField(help_text="whom it is for")
+
+
+class AlertOwnActSerializer(serializers.Serializer):
+    """That it returns or lands already, by its failsafe, a pilot or a command."""
+
+    kind = serializers.ChoiceField(choices=[RETURN, LAND])
+    since = serializers.DateTimeField(allow_null=True, help_text="by its reports; null: before it was watched")
+    is_commanded = serializers.BooleanField(help_text="a command from here leads to it; else its failsafe or a pilot")
 
 
 class AlertWorstSerializer(serializers.Serializer):
@@ -44,6 +56,10 @@ class AlertSerializer(serializers.Serializer):
     message = serializers.CharField(help_text="in the reader's language")
     details = serializers.JSONField(help_text="figures of the cause")
     acts = AlertActSerializer(many=True, help_text="what it would be answered with, the best first")
+    advice = serializers.CharField(
+        allow_blank=True, help_text="in the reader's language: what an act costs or why it is not offered, what a silent UAV does by itself"
+    )
+    own_act = AlertOwnActSerializer(allow_null=True, help_text="what the UAV does about it by itself; null: nothing, or not known")
     worst = AlertWorstSerializer(allow_null=True, help_text="the worst that it has said; null: of an alert that is said once")
     opened_at = serializers.DateTimeField()
     closed_at = serializers.DateTimeField(allow_null=True)
@@ -130,8 +146,10 @@ def alert_json(alert: Alert, *, note_count: int) -> dict[str, Any]:
         "code": alert.code,
         "subject": alert.subject,
         "message": alert_words(alert.message, alert.values),
-        "details": {name: value for name, value in alert.details.items() if name not in (ACTS, WORST)},
+        "details": {name: value for name, value in alert.details.items() if name not in NO_FIGURES},
         "acts": acts_of(alert.code, alert.uav_id, alert.details),
+        "advice": _advice_words(alert.details.get(ADVICE)),
+        "own_act": alert.details.get(OWN_ACT),
         "worst": _worst_json(alert.details.get(WORST)),
         "opened_at": alert.opened_at,
         "closed_at": alert.closed_at,
@@ -141,6 +159,12 @@ def alert_json(alert: Alert, *, note_count: int) -> dict[str, Any]:
         "revision": alert.revision,
         "notes": note_count,
     }
+
+
+def _advice_words(advice: dict[str, Any] | None) -> str:
+    if advice is None:
+        return ""
+    return alert_words(advice["message"], advice["values"]) if advice["values"] else _(advice["message"])
 
 
 def _worst_json(worst: dict[str, Any] | None) -> dict[str, Any] | None:

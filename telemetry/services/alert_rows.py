@@ -10,6 +10,7 @@ from django.db.models import Exists, F, OuterRef
 from django.db.models.functions import Now
 
 from missions.models import MissionState
+from telemetry.alerting.advice import answer_of
 from telemetry.alerting.book import Closed, Opened
 from telemetry.alerting.detectors import down
 from telemetry.alerting.finding import RANK, Finding
@@ -64,10 +65,11 @@ def settle(found: Sequence[tuple[WatchedUav, Opened | Closed]], *, open_rows: Ma
                 )
             )  # fmt: skip
             organisations.add(uav.organisation_id)
-        elif _is_worth_writing(row, change, now):
+        elif (written := _words_to_write(row, change, now)) is not None:
             is_raised = RANK[finding.level] > RANK[row.level]
             details = json.dumps(_with_worst(finding, row.worst, now))
-            renewed.append((row.id, finding.level, finding.message, json.dumps(finding.values), details, is_raised))
+            message, values = written
+            renewed.append((row.id, finding.level, message, json.dumps(values), details, is_raised))
             organisations.add(uav.organisation_id)
     if not organisations:
         return organisations
@@ -115,11 +117,17 @@ def _with_worst(finding: Finding, worst: Mapping[str, Any] | None, now: datetime
     return finding.details | {WORST: worst}
 
 
-def _is_worth_writing(row: OpenRow, change: Opened, now: datetime) -> bool:
-    """Where an alert keeps a level that was worse, the words that told of it stay."""
+def _words_to_write(row: OpenRow, change: Opened, now: datetime) -> tuple[str, Mapping[str, Any]] | None:
+    """Message and values that an open alert is to have with the details of the finding; None: nothing is written.
+
+    Where an alert keeps a level that was worse, the words that told of it stay. What it is answered with is always that of now.
+    """
     finding = change.finding
-    if finding.level != row.level or finding.message != row.message:
-        return not change.is_held
-    if finding.severity != 0.0 and is_worse(finding, row.worst) and finding.values != row.values:
-        return True
-    return finding.values != row.values and now - row.written_at >= WORDS_STAND_FOR
+    is_answered_otherwise = answer_of(finding.details) != row.answer
+    if change.is_held and finding.message != row.message:
+        return (row.message, row.values) if is_answered_otherwise else None
+    is_other = is_answered_otherwise or finding.level != row.level or finding.message != row.message
+    has_changed = finding.values != row.values
+    is_worst = finding.severity != 0.0 and is_worse(finding, row.worst)
+    is_due = now - row.written_at >= WORDS_STAND_FOR
+    return (finding.message, finding.values) if is_other or (has_changed and (is_worst or is_due)) else None

@@ -30,7 +30,7 @@ from telemetry.selectors.alerts import MIXED, OTHER_LIST, OpenRow, open_alerts_o
 from telemetry.services.alert_rows import close_alerts_of_ended_missions, settle
 from telemetry.services.approved_flights import approved_content, flight_model
 from telemetry.services.flown import note_down_off_plan
-from telemetry.services.replan_hooks import suggest_for_findings
+from telemetry.services.replan_hooks import suggest_for_findings, withdraw_for_closed
 from telemetry.services.zones_about import ZonesAbout, zones_about
 from workspace.live import publish_live
 
@@ -67,6 +67,7 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
         found: list[tuple[WatchedUav, Opened | Closed]] = [
             (situation.uav, change) for situation in situations for change in changes(situation, DETECTORS)
         ]
+        in_mission = {situation.uav.uav_id for situation in situations if situation.is_in_flight and situation.flies_mission}
         told |= settle(found, open_rows=open_rows, now=now)
         batteries = {situation.uav.uav_id: situation.memory.battery if situation.is_in_flight else None for situation in situations}
         _end_flights(situations)
@@ -74,6 +75,9 @@ def look(*, watched: Sequence[WatchedUav], now: datetime, memories: Memories | N
             (uav.mission_id, uav.uav_id, change.finding)
             for uav, change in found
             if isinstance(change, Opened) and _is_new(change, open_rows.get(uav.uav_id, ()))
+        )
+        withdraw_for_closed(
+            (uav.mission_id, uav.uav_id, change) for uav, change in found if isinstance(change, Closed) and uav.uav_id in in_mission
         )
     for organisation_id in told:
         publish_live(organisation_id)

@@ -1,5 +1,6 @@
 """What detectors know of an approved flight, worked out once: an approval never changes."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
@@ -8,9 +9,11 @@ from django.conf import settings
 
 from inspection.geodesy import LonLat
 from missions.flight_plan.conditions import conditions_from_json
+from missions.flight_plan.lost_link import LostLinkPlan
 from missions.flight_plan.performance import performance_from_json
 from missions.models import Approval
 from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load
+from missions.services.requests import lost_link_from_json
 from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import energy_plan
 from telemetry.alerting.route_line import RouteLine
@@ -52,8 +55,16 @@ def flight_model(approval_id: UUID, uav_id: int, flight: int) -> FlightModel | N
         rally_points=tuple(
             LonLat(item.longitude_e7 / 1e7, item.latitude_e7 / 1e7) for item in (approved.load.rally if approved.load else ())
         ),
+        lost_link=_lost_link(document),
         consumption=Consumption(route.cruise_speed_mps, performance, conditions.wind_at(HEIGHT_OF_WAY_M)),
     )
+
+
+def _lost_link(document: Mapping[str, Any]) -> LostLinkPlan | None:
+    if "lost_link" not in document:
+        return None
+    planned = lost_link_from_json(document["lost_link"])
+    return LostLinkPlan(planned.behaviour, planned.rally_points, planned.hold_s)
 
 
 @OfFlight

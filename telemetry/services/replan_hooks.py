@@ -1,16 +1,19 @@
 """Alerts after which the rest of a mission is planned anew and offered: a UAV is lost, down off its plan or comes back by itself, or its
-battery is short.
+battery is short. When that has ended, the offer is withdrawn.
 """
 
 from collections.abc import Iterable
 from uuid import UUID
 
-from missions.services.replanning import suggest
+from missions.services.replanning import suggest, withdraw
+from telemetry.alerting.book import CLEARED, Closed
 from telemetry.alerting.detectors import battery, down, link, mode_changed
 from telemetry.alerting.finding import CRITICAL, Finding
 from telemetry.alerting.modes import ModeKind, mode_kind
+from telemetry.models import Alert
 
 UAV_OUT, BATTERY_SHORT = "uav-out", "battery-short"
+CODES_OF = {link.CODE: UAV_OUT, mode_changed.CODE: UAV_OUT, battery.CODE: BATTERY_SHORT}  # a UAV that was down stays out
 COMES_DOWN = frozenset({ModeKind.RETURN, ModeKind.LAND})
 
 
@@ -20,6 +23,20 @@ def suggest_for_findings(findings: Iterable[tuple[UUID, int, Finding]]) -> None:
         code = code_of(finding)
         if code is not None:
             suggest(mission_id=mission_id, code=code, cause={"figures": finding.values, "uav": uav_id, "alert": finding.code})
+
+
+def withdraw_for_closed(closed: Iterable[tuple[UUID, int, Closed]]) -> None:
+    """Mission, UAV that flies its mission, and an alert of it that has just closed. Safe to call again.
+
+    An offer stays as long as another open alert of the UAV is a reason for it.
+    """
+    for mission_id, uav_id, change in closed:
+        code = CODES_OF.get(change.code)
+        if code is None or change.reason != CLEARED:
+            continue
+        rows = Alert.objects.filter(mission=mission_id, uav=uav_id, closed_at=None)
+        if all(code_of(Finding(row.code, row.level, row.message, row.values, row.subject, row.details)) != code for row in rows):
+            withdraw(mission_id=mission_id, code=code, uav_id=uav_id)
 
 
 def code_of(finding: Finding) -> str | None:

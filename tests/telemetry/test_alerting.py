@@ -413,3 +413,40 @@ def test_a_landing_that_was_asked_for_is_none(uav, approval):
     for second in range(5, 20):
         in_flight(second, uav, approval, memories, altitude_relative_m=0.0, is_armed=False, is_in_air=False, **away)
     assert ("down-off-plan", "critical") not in open_ones()
+
+
+def test_an_open_battery_alert_is_answered_by_what_the_uav_does_at_that_moment(uav, approval):
+    """Its percentage stays the same: it is neither returning nor commanded, then its failsafe returns it."""
+    memories = watching(uav, approval)
+    for second in range(1, 9):
+        in_flight(second, uav, approval, memories, battery_percent=15.0, mode="AUTO")
+    alert = Alert.objects.get(code="battery-short")
+    assert [act["kind"] for act in alert.details["acts"]] == ["return"]
+    assert "own_act" not in alert.details
+    in_flight(9, uav, approval, memories, battery_percent=15.0, mode="RTL")
+    alert.refresh_from_db()
+    assert (alert.level, alert.details["acts"]) == ("critical", [])
+    assert alert.details["own_act"] == {"kind": "return", "since": at(9).isoformat(), "is_commanded": False}
+
+
+def test_an_alert_that_keeps_a_worse_level_keeps_its_words_and_is_answered_as_of_now(uav, approval):
+    memories = watching(uav, approval)
+    for second in range(1, 9):
+        in_flight(second, uav, approval, memories, battery_percent=15.0, mode="AUTO")
+    words = Alert.objects.get(code="battery-short").message
+    for second in range(9, 12):
+        in_flight(second, uav, approval, memories, battery_percent=24.0, mode="RTL")
+    alert = Alert.objects.get(code="battery-short")
+    assert (alert.level, alert.message, alert.details["acts"], alert.details["own_act"]["kind"]) == ("critical", words, [], "return")
+
+
+def test_of_a_uav_that_came_down_the_position_is_said_as_it_is_copied(uav, approval):
+    place = seen(uav, approval).newest.measurement
+    memories = watching(uav, approval)
+    for second in range(1, 9):
+        fallen = {"longitude_deg": place.longitude_deg + 0.01, "altitude_relative_m": 8.0, "is_armed": False, "is_in_air": False}
+        in_flight(second, uav, approval, memories, **(fallen if second > 3 else {}))
+    alert = Alert.objects.get(code="down-off-plan")
+    lon, lat = alert.details["position"]
+    assert (lat > 0.0, lon > 0.0) == (True, True)
+    assert f"last at {lat:.5f}° N, {lon:.5f}° E:" in alert_words(alert.message, alert.values)

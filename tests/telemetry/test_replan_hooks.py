@@ -2,12 +2,17 @@
 
 import pytest
 
-from missions.models import ReplanOffer
+from missions.models import Mission, OfferState, ReplanOffer
+from missions.services.replanning import REPLAN, settle_offers
+from telemetry.alerting.book import CLEARED, LANDED, Closed
 from telemetry.alerting.finding import ADVISORY, CRITICAL, WARNING, Finding
-from telemetry.services.replan_hooks import code_of, suggest_for_findings
+from telemetry.models import AlertLevel
+from telemetry.services.alerts import open_alert
+from telemetry.services.replan_hooks import code_of, suggest_for_findings, withdraw_for_closed
 from tests.missions.flights import ground
-from tests.missions.replanning.in_flight import two_in_the_air
+from tests.missions.replanning.in_flight import Flight, two_in_the_air, worked_out
 from tests.workspace.people import somebody
+from workspace.services import create_job
 
 
 @pytest.mark.parametrize(
@@ -28,13 +33,64 @@ def test_a_finding_is_a_reason_when_its_uav_will_not_finish(code, level, details
     assert code_of(Finding(code, level, "%(uav)s …", {"uav": "Tern"}, details=details)) == reason
 
 
-@pytest.mark.django_db
-def test_a_lost_link_makes_one_offer(settings, tmp_path):
+@pytest.fixture
+def flight(settings, tmp_path) -> Flight:
     settings.GRAPH_CACHE_DIR = tmp_path / "graphs"
     ground(tmp_path / "hill.tif", 100.0)
-    flight = two_in_the_air(somebody())
+    return two_in_the_air(somebody())
+
+
+def lose_the_link(flight: Flight, seconds: int = 31) -> None:
+    finding = Finding("link-lost", CRITICAL, "%(uav)s", {"uav": "Tern", "seconds": seconds}, details={})
+    suggest_for_findings([(flight.mission.pk, flight.uavs[0].pk, finding)])
+
+
+def hear_it_again(flight: Flight, reason: str = CLEARED) -> None:
+    withdraw_for_closed([(flight.mission.pk, flight.uavs[0].pk, Closed("link-lost", "", reason))])
+
+
+@pytest.mark.django_db
+def test_a_lost_link_makes_one_offer(flight):
     for seconds in (31, 32):
-        finding = Finding("link-lost", CRITICAL, "%(uav)s", {"uav": "Tern", "seconds": seconds}, details={})
-        suggest_for_findings([(flight.mission.pk, flight.uavs[0].pk, finding)])
+        lose_the_link(flight, seconds)
     offer = ReplanOffer.objects.get()
     assert (offer.code, offer.cause["uav"], offer.cause["alert"]) == ("uav-out", flight.uavs[0].pk, "link-lost")
+
+
+@pytest.mark.django_db
+def test_an_offer_is_withdrawn_when_its_uav_is_heard_again_and_its_plan_is_put_away(flight):
+    lose_the_link(flight)
+    offer = worked_out(ReplanOffer.objects.get(), create_job(organisation=flight.mission.organisation, created_by=None, task=REPLAN,
+        parameters={"offer": str(ReplanOffer.objects.get().pk)}, message=""))  # fmt: skip
+    assert offer.state == OfferState.OPEN, offer.outcome
+    hear_it_again(flight)
+    offer.refresh_from_db()
+    assert (offer.state, offer.outcome) == (OfferState.OUTDATED, "Its reason has ended: Tern continues its mission.")
+    assert Mission.objects.get(pk=offer.continuation_id).deleted_at is not None
+    assert (settle_offers(), ReplanOffer.objects.count()) == (0, 1), "it is not worked out again"
+    lose_the_link(flight, 40)
+    assert ReplanOffer.objects.count() == 2, "the same cause may come back"
+
+
+@pytest.mark.django_db
+def test_an_offer_that_is_being_worked_out_is_withdrawn_too(flight):
+    lose_the_link(flight)
+    hear_it_again(flight)
+    assert ReplanOffer.objects.get().state == OfferState.OUTDATED
+
+
+@pytest.mark.django_db
+@pytest.mark.parametrize("why", ["landed", "another UAV", "another reason"])
+def test_an_offer_stays_while_its_reason_lasts(why, flight):
+    lose_the_link(flight)
+    if why == "landed":
+        hear_it_again(flight, LANDED)
+    elif why == "another UAV":
+        withdraw_for_closed([(flight.mission.pk, flight.uavs[1].pk, Closed("link-lost", "", CLEARED))])
+    else:
+        open_alert(
+            uav=flight.uavs[0], level=AlertLevel.CRITICAL, code="mode-changed", message="%(uav)s", values={"uav": "Tern"},
+            mission=flight.mission, details={"mode": "RTL"},
+        )  # fmt: skip
+        hear_it_again(flight)
+    assert ReplanOffer.objects.get().state == OfferState.COMPUTING

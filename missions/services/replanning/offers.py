@@ -9,7 +9,7 @@ from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
-from missions.models import Mission, MissionState, OfferState, ReplanOffer
+from missions.models import Mission, MissionState, OfferState, ReplanOffer, Uav
 from missions.services.missions import note
 from missions.services.refused import refuse
 from missions.services.replanning.staleness import why_outdated
@@ -51,6 +51,22 @@ def suggest(*, mission_id: UUID, code: str, cause: dict[str, Any]) -> ReplanOffe
         _set_aside(held, "Something else has happened since.")
         offer, _job = _begin(held, code, {**cause, **named}, None)
     return offer
+
+
+def withdraw(*, mission_id: UUID, code: str, uav_id: int) -> bool:
+    """End the undecided offer for a UAV that was out or short of battery, and is so no more; returns whether there was one.
+
+    It is outdated, and not worked out again. The same cause makes another offer when it comes back.
+    """
+    with transaction.atomic():
+        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
+        undecided = held.replan_offers.select_for_update(of=("self",)).select_related("mission")
+        offer = undecided.filter(state__in=UNDECIDED, code=code, cause__uav=uav_id).first()
+        if offer is None:
+            return False
+        name = Uav.objects.values_list("name", flat=True).get(pk=uav_id)
+        end_offer(offer, OfferState.OUTDATED, f"Its reason has ended: {name} continues its mission.")
+    return True
 
 
 def decline_offer(*, offer: ReplanOffer, actor: User) -> ReplanOffer:

@@ -1,9 +1,22 @@
 """The battery: the reserve and the way home are reached, or the vehicle itself reports that it is low."""
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
 from telemetry.alerting.acts import ACTS, LAND, RETURN, acts
+from telemetry.alerting.advice import (
+    COMES_DOWN_LOW,
+    FALLS_SHORT,
+    LOW_RETURN,
+    NO_HEADWAY,
+    NO_RETURN,
+    TIGHT_RETURN,
+    TO_LANDING_PLACE,
+    UNKNOWN_RETURN,
+    advice,
+    own_act,
+)
 from telemetry.alerting.battery_forecast import BatteryForecast, battery_forecast
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, RANK, WARNING, Finding
@@ -18,6 +31,7 @@ EMPTY = "The battery of %(uav)s is not enough for its route: it would be empty b
 BELOW = "%(uav)s: battery %(percent)s %%, below the reserve of %(reserve)s %%."
 SOON = "%(uav)s: battery %(percent)s %%, below the reserve of %(reserve)s %% within a minute."
 NO_WAY_HOME = "%(uav)s: battery %(percent)s %%, not enough to return (%(home)s %%)."
+TIGHT = "%(uav)s: battery %(percent)s %%, after a return (%(home)s %%) hardly any would be left."
 NO_WAY_BUT_LANDING = (
     "%(uav)s: battery %(percent)s %%, not enough to return home (%(home)s %%). The landing place %(metres)s m away is in reach."
 )
@@ -39,13 +53,15 @@ class _Judged:
 
 def detect(situation: Situation) -> list[Finding] | None:
     """By the vehicle's own word, which may go by voltage while its percentage stays high, and by what is left; the worse of both."""
+    newest = situation.uav.newest
+    situation.memory.note_mode(situation.mode, situation.now_s if newest is None else newest.measured_s)
     forecast = _forecast(situation)
     expected = None if forecast is None else _expected(situation, forecast)
     stated = _stated(situation)
     situation.memory.battery = None if forecast is None else forecast.as_json(expected[0].level if expected else "")
     if stated is None or (expected and RANK[expected[0].level] >= RANK[stated.level]):
         return expected
-    return [Finding(CODE, stated.level, stated.message, stated.values, details=stated.details | {ACTS: _acts(situation, forecast)})]
+    return [Finding(CODE, stated.level, stated.message, stated.values, details=stated.details | _answer(situation, forecast))]
 
 
 def _forecast(situation: Situation) -> BatteryForecast | None:
@@ -78,15 +94,15 @@ def _expected(situation: Situation, forecast: BatteryForecast) -> list[Finding]:
     values: dict[str, object] = {"uav": situation.uav.name}
     if judged.message is not EMPTY:
         values["percent"] = str(round(judged.percent if judged.message is EXPECTED else forecast.left_percent))
-    if judged.message not in (EMPTY, NO_WAY_HOME, NO_WAY_BUT_LANDING):
+    if judged.message not in (EMPTY, TIGHT, NO_WAY_HOME, NO_WAY_BUT_LANDING):
         values["reserve"] = str(round(forecast.reserve_percent))
-    if judged.message in (TURN_BACK, NO_WAY_HOME, NO_WAY_BUT_LANDING):
+    if judged.message in (TURN_BACK, TIGHT, NO_WAY_HOME, NO_WAY_BUT_LANDING):
         values["home"] = _share(forecast.home_percent)
     if judged.message is NO_WAY_BUT_LANDING:
         values["metres"] = round(forecast.landing_m or 0.0)
     details = {
         **forecast.as_json(judged.level),
-        ACTS: _acts(situation, forecast),
+        **_answer(situation, forecast),
         "expected_percent": round(judged.percent, 1),
         "rate": round(situation.memory.drain.ratio(situation.memory.drain.kind), 2),
         "route_short": judged.is_route_short,
@@ -120,6 +136,8 @@ def _worst(situation: Situation, forecast: BatteryForecast, more: float) -> _Jud
     if _falls_soon(situation, forecast, reserve):
         return _Judged(CRITICAL, SOON, left)
     if best < floor:
+        if at_home is not None and at_home >= more:
+            return _Judged(CRITICAL, TIGHT, best, is_route_short=True)
         is_reachable = forecast.landing_percent is not None and left - forecast.landing_percent >= floor
         return _Judged(CRITICAL, NO_WAY_BUT_LANDING if is_reachable else NO_WAY_HOME, best, is_route_short=True)
     margin, is_short = limits.battery_margin_percent, rest is not None and left - rest < floor
@@ -141,16 +159,59 @@ def _falls_soon(situation: Situation, forecast: BatteryForecast, below_percent: 
     return forecast.left_percent - (drained if need is None else min(drained, need)) < below_percent
 
 
-def _acts(situation: Situation, forecast: BatteryForecast | None) -> list[dict[str, Any]]:
-    """What can still be reached: home, the nearest landing place (to which a return leads as well), or the ground below.
+def _answer(situation: Situation, forecast: BatteryForecast | None) -> dict[str, Any]:
+    """What an operator would do, what that costs, and what the UAV does by itself; as an alert has it in its details."""
+    mode, uav_id = situation.mode, situation.uav.uav_id
+    own = own_act(mode, situation.memory.mode_since_s, situation.order)
+    if mode is ModeKind.LAND:
+        return {ACTS: [], **own}
+    if mode is ModeKind.RETURN:
+        falls_short = forecast is not None and (best := _best_landing(forecast)) is not None and best < 0.0
+        return {ACTS: acts(LAND, uav_id=uav_id) if falls_short else [], **own, **_advice_of_return(forecast)}
+    kinds, said = _ways_down(forecast, situation.limits.battery_critical_percent)
+    return {ACTS: acts(*kinds, uav_id=uav_id), **said}
 
-    Nothing is proposed for a UAV that comes down already, by its own failsafe or as it was told.
+
+def _best_landing(forecast: BatteryForecast) -> float | None:
+    """What is left after a return home or to the nearest landing place [%], whichever is more; None where neither is known."""
+    needs = [need for need in (forecast.home_percent, forecast.landing_percent) if need is not None]
+    return forecast.left_percent - min(needs) if needs else None
+
+
+def _advice_of_return(forecast: BatteryForecast | None) -> dict[str, Any]:
+    """Of a UAV that returns already."""
+    best = None if forecast is None else _best_landing(forecast)
+    if forecast is None or best is None:
+        return {}
+    if best < 0.0:
+        return advice(FALLS_SHORT, home=_share(forecast.home_percent), percent=_whole(forecast.left_percent))
+    return advice(COMES_DOWN_LOW, landing=_whole(best), reserve=_whole(forecast.reserve_percent))
+
+
+def _ways_down(forecast: BatteryForecast | None, floor_percent: float) -> tuple[tuple[str, ...], dict[str, Any]]:
+    """Acts for a UAV that flies on, the best first, with what is said to them: home, else the nearest landing place, to which a return
+    leads as well, else the ground below. A return that leaves less than floor_percent stands beside a landing here.
     """
-    ways = [] if forecast is None else [way for way in (forecast.home_percent, forecast.landing_percent) if way is not None]
-    is_reachable = forecast is None or not ways or forecast.left_percent - min(ways) >= situation.limits.battery_critical_percent
-    if situation.mode is ModeKind.LAND or (situation.mode is ModeKind.RETURN and is_reachable):
-        return []
-    return acts(RETURN if is_reachable else LAND, uav_id=situation.uav.uav_id)
+    best = None if forecast is None else _best_landing(forecast)
+    if forecast is None or best is None:
+        return (RETURN,), advice(UNKNOWN_RETURN)
+    left, home, landing = forecast.left_percent, forecast.home_percent, forecast.landing_percent
+    if home is not None and left - home >= forecast.reserve_percent:
+        return (RETURN,), {}
+    if home is not None and left - home >= floor_percent:
+        return (RETURN,), advice(LOW_RETURN, landing=_whole(left - home), reserve=_whole(forecast.reserve_percent))
+    if landing is not None and left - landing >= floor_percent:
+        metres = round(forecast.landing_m or 0.0)
+        return (RETURN,), advice(TO_LANDING_PLACE, metres=metres, landing=_whole(left - landing), home=_share(home))
+    if best >= 0.0:
+        return (RETURN, LAND), advice(TIGHT_RETURN, landing=_whole(best))
+    if home is not None and not math.isfinite(home):
+        return (LAND,), advice(NO_HEADWAY)
+    return (LAND,), advice(NO_RETURN, home=_share(home), percent=_whole(left))
+
+
+def _whole(percent: float) -> str:
+    return str(round(percent))
 
 
 def _share(percent: float | None) -> str:

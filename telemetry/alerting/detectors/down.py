@@ -63,9 +63,15 @@ def _away(situation: Situation) -> tuple[LonLat, float] | None:
 
 
 def finding(name: str, flight: int, position: LonLat, away_m: float) -> Finding:
-    values = {"uav": name, "metres": round(away_m), "place": f"{position.lon:.5f}, {position.lat:.5f}"}
+    values = {"uav": name, "metres": round(away_m), "place": degrees_text(position)}
     details = {"position": [position.lon, position.lat], "away_m": round(away_m, 1), "flight": flight}
     return Finding(CODE, CRITICAL, WORDS, values, subject=str(flight), details=details)
+
+
+def degrees_text(position: LonLat) -> str:
+    """Return a position as map programs take it and people tell its halves apart: latitude first, as in ISO 6709, to 1 m."""
+    north, east = "N" if position.lat >= 0.0 else "S", "E" if position.lon >= 0.0 else "W"
+    return f"{abs(position.lat):.5f}° {north}, {abs(position.lon):.5f}° {east}"
 
 
 def away_from_plan_m(line: RouteLine, position: LonLat, rally_points: Iterable[LonLat] = ()) -> float:

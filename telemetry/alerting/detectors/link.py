@@ -1,13 +1,31 @@
 """Nothing is heard of a UAV in flight: late first, then lost."""
 
+from typing import Any
+
+from missions.flight_plan.lost_link import LostLink
+from telemetry.alerting.advice import (
+    FAILSAFE_UNKNOWN,
+    FAILSAFES,
+    GOES_ON,
+    HOLDS_THEN_RETURNS,
+    NOT_PLANNED,
+    RETURNS_PLANNED,
+    WAS_FLOWN,
+    WAS_HOLDING,
+    WAS_LANDING,
+    WAS_RETURNING,
+    advice,
+)
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.limits import Limits
+from telemetry.alerting.modes import ModeKind
 from telemetry.alerting.situation import Situation
 
 CODE = "link-lost"
 LATE = "%(uav)s: no telemetry for %(seconds)s s."
 LOST = "Link to %(uav)s lost: no telemetry for %(seconds)s s."
+_LAST_HEARD: dict[ModeKind | None, str] = {ModeKind.RETURN: WAS_RETURNING, ModeKind.LAND: WAS_LANDING, ModeKind.HOLD: WAS_HOLDING}
 LATE_INTERVALS, LOST_INTERVALS = 2.5, 5.0
 
 
@@ -34,9 +52,31 @@ def detect(situation: Situation) -> list[Finding]:
             CRITICAL if is_lost else WARNING,
             LOST if is_lost else LATE,
             {"uav": situation.uav.name, "seconds": round(silent_s)},
-            details={"heard_s": heard_s, "silent_s": round(silent_s, 1), "contact_expected_s": expected_s},
+            details={
+                "heard_s": heard_s,
+                "silent_s": round(silent_s, 1),
+                "contact_expected_s": expected_s,
+                **_does_by_itself(situation),
+            },
         )
     ]
+
+
+def _does_by_itself(situation: Situation) -> dict[str, Any]:
+    """What it does meanwhile: as it was last heard, and as was planned for a lost link. Failsafes of autopilots are not read."""
+    mode, model = situation.mode, situation.model
+    if mode in _LAST_HEARD:
+        return advice(_LAST_HEARD[mode])
+    if mode in (ModeKind.BY_HAND, ModeKind.GUIDED):
+        newest = situation.uav.newest
+        return advice(WAS_FLOWN, mode=(newest.measurement.mode if newest is not None else "") or situation.link.mode)
+    planned = None if model is None else model.lost_link
+    if planned is None:
+        return advice(NOT_PLANNED)
+    failsafe = FAILSAFES.get(situation.link.autopilot, FAILSAFE_UNKNOWN)
+    if planned.behaviour is LostLink.HOLD:
+        return advice(HOLDS_THEN_RETURNS, seconds=round(planned.hold_s), failsafe=failsafe)
+    return advice(RETURNS_PLANNED if planned.behaviour is LostLink.RETURN else GOES_ON, failsafe=failsafe)
 
 
 DETECTOR = Detector(CODE, detect, raise_after_s=0.0, clear_after_s=2.0, reports=0, own_delay_s=late_after_s)

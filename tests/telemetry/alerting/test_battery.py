@@ -1,6 +1,7 @@
 """What is said of a battery, and what is proposed."""
 
 import math
+from datetime import UTC, datetime
 
 import pytest
 from mavlink.decoding.measurement import Measurement
@@ -8,9 +9,10 @@ from mavlink.rtl import own_return
 
 from inspection.geodesy import LonLat
 from telemetry.alerting.acts import acts_of
+from telemetry.alerting.advice import ADVICE, OWN_ACT
 from telemetry.alerting.detectors import battery
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
-from telemetry.alerting.surroundings import LinkFacts
+from telemetry.alerting.surroundings import LinkFacts, Order
 from telemetry.alerting.watched import WatchedUav
 from telemetry.estimation.report import Report
 from tests.telemetry.alerting.truth import MISSION, START_S, TrueFlight, true_flight
@@ -103,17 +105,48 @@ def test_reserve_and_the_way_home_reached_is_a_warning_that_proposes_to_return(f
     assert (finding.level, finding.message, proposed(finding)) == (WARNING, battery.TURN_BACK, [("return", 7)])
 
 
-def test_where_home_is_out_of_reach_the_nearest_landing_place_is_proposed_and_else_the_ground(flight):
-    second = far_from_home(flight)
-    state = flight.states[second]
+def home_percent_of(flight: TrueFlight, second: int) -> float:
     watch = Watch()
     found(flight, told(flight, second, 60.0, "LOITER", moves=False), watch)
-    left = watch.memory.battery["home_percent"] + 2.0
+    return watch.memory.battery["home_percent"]
+
+
+def advised(finding: Finding) -> str | None:
+    said = finding.details.get(ADVICE)
+    return said and said["message"] % said["values"]
+
+
+def test_below_its_reserve_a_return_that_reaches_home_is_proposed_with_what_is_left_there(flight):
+    second = next(second for second in flight.cruising(20) if 8.0 < home_percent_of(flight, second) < 13.5)
+    finding = found(flight, told(flight, second, 19.0, "LOITER", moves=False))
+    lands = round(19.0 - home_percent_of(flight, second))
+    assert proposed(finding) == [("return", 7)]
+    assert advised(finding) == f"A return lands with about {lands} % of the battery, below the reserve of 20 %."
+
+
+def test_a_return_that_leaves_hardly_any_stands_beside_a_landing_here(flight):
+    second = far_from_home(flight)
+    finding = found(flight, told(flight, second, home_percent_of(flight, second) + 2.4, "LOITER", moves=False))
+    assert (finding.level, proposed(finding)) == (CRITICAL, [("return", 7), ("land", 7)])
+    assert advised(finding) == "A return lands with about 2 % of the battery only: land here if the ground allows it."
+
+
+def test_where_home_is_out_of_reach_the_alert_says_why_return_is_missing(flight):
+    second = far_from_home(flight)
+    home = home_percent_of(flight, second)
+    finding = found(flight, told(flight, second, home - 1.0, "LOITER", moves=False))
+    assert proposed(finding) == [("land", 7)]
+    assert advised(finding) == f"Return is not offered: it takes about {home:.0f} % of the battery, and {home - 1.0:.0f} % is left."
+
+
+def test_where_home_is_out_of_reach_the_nearest_landing_place_is_proposed(flight):
+    second = far_from_home(flight)
+    state, home = flight.states[second], home_percent_of(flight, second)
     near = flight.position(state.east + 60.0, state.north)
-    low = told(flight, second, left, "LOITER", moves=False)
-    assert proposed(found(flight, low)) == [("land", 7)]
     with_landing = TrueFlight(**{**vars(flight), "model": _with_rally(flight, near)})
-    assert proposed(found(with_landing, low)) == [("return", 7)]
+    finding = found(with_landing, told(flight, second, home + 2.0, "LOITER", moves=False))
+    assert proposed(finding) == [("return", 7)]
+    assert advised(finding).startswith("A return leads to the landing place 60 m away and lands there with about")
 
 
 def _with_rally(flight: TrueFlight, point: LonLat):
@@ -121,10 +154,27 @@ def _with_rally(flight: TrueFlight, point: LonLat):
     return type(flight.model)(**{**fields, "rally_points": (point,)})
 
 
-@pytest.mark.parametrize("mode", ["LAND", "RTL"])
-def test_a_uav_that_comes_down_by_its_own_failsafe_is_left_alone(mode, flight):
-    finding = found(flight, told(flight, flight.cruising(20)[-1], 15.0, mode), link=LinkFacts(battery_state="critical"))
+@pytest.mark.parametrize(("mode", "kind"), [("LAND", "land"), ("RTL", "return")])
+def test_a_uav_that_comes_down_by_its_own_failsafe_is_left_alone_and_the_alert_says_since_when(mode, kind, flight):
+    watch, second = Watch(), flight.cruising(20)[-1]
+    link = LinkFacts(battery_state="critical")
+    found(flight, told(flight, second, 15.0), watch, link=link)
+    finding = found(flight, told(flight, second, 15.0, mode), watch, 3.0, link=link)
     assert (finding.level, proposed(finding)) == (CRITICAL, [])
+    since = datetime.fromtimestamp(START_S + 3.0, UTC).isoformat()
+    assert finding.details[OWN_ACT] == {"kind": kind, "since": since, "is_commanded": False}
+    finding = found(flight, told(flight, second, 15.0, mode), watch, 9.0, link=link, order=Order("return", START_S))
+    assert finding.details[OWN_ACT] == {"kind": kind, "since": since, "is_commanded": True}
+
+
+def test_a_return_that_is_too_short_of_battery_to_reach_home_can_be_cut_by_a_landing(flight):
+    second = far_from_home(flight)
+    home = home_percent_of(flight, second)
+    returning = told(flight, second, home - 2.0, "RTL")
+    finding = found(flight, returning)
+    assert (proposed(finding), finding.details[OWN_ACT]["since"]) == ([("land", 7)], None)
+    assert advised(finding).startswith("Its battery does not last for the return")
+    assert proposed(found(flight, told(flight, second, home + 2.0, "RTL"))) == [], "it gets home"
 
 
 def test_a_uav_whose_battery_is_not_known_by_its_energy_is_judged_by_what_it_reports():

@@ -1,7 +1,8 @@
 """Whatever a detector or a service may say is known to the catalogues."""
 
+from telemetry.alerting import advice
 from telemetry.alerting.order import DETECTORS
-from telemetry.selectors.alert_words import TEMPLATES
+from telemetry.selectors.alert_words import ADVICES, TEMPLATES
 from telemetry.services import alerts, command_alerts, mission_alerts, uav_outbox
 
 
@@ -12,3 +13,8 @@ def test_every_template_is_named_for_the_catalogues():
     ]
     said = {value for names in modules for value in names.values() if isinstance(value, str) and "%(uav)s" in value}
     assert said == set(TEMPLATES)
+
+
+def test_every_advice_is_named_for_the_catalogues():
+    said = {value for name, value in vars(advice).items() if name.isupper() and isinstance(value, str) and " " in value}
+    assert said == set(ADVICES)
