@@ -17,6 +17,21 @@ from time import perf_counter, thread_time
 from typing import Any
 
 import numpy as np
+from planning.connection_points import Ways
+from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
+from planning.energy.conditions import Conditions, WindLayer
+from planning.energy.path_cost import FlightClass, graph_taken
+from planning.energy.performance import Performance
+from planning.file_plans import FileGraph, plan_json, read_graph, read_mission
+from planning.problem import Amounts, End, Objective, Problem, Routes, Task, TaskKind, UavStart, Visit
+from planning.rules import FlightRules
+from planning.solver.exact import best_routes
+from planning.solver.problem_arrays import Arcs
+from planning.trajectory.heights import pass_agl_m, with_heights
+from planning.trajectory.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
+from planning.trajectory.timing import timing
+from planning.trajectory.warm_up import rehearse
+from planning.trajectory.waypoints import Waypoints
 
 from benchmarks.make_graph import make, missions
 from benchmarks.report import machine, table, write_section
@@ -27,21 +42,6 @@ from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKin
 from inspection.graph.legs import Attachments
 from inspection.graph.route_index import route_index
 from inspection.graph.ways import travel_of_legs
-from missions.flight_plan.conditions import Conditions, WindLayer
-from missions.flight_plan.costs import Finish, FlightCosts, flight_costs
-from missions.flight_plan.heights import pass_agl_m, with_heights
-from missions.flight_plan.performance import Performance
-from missions.flight_plan.rehearsal import rehearse
-from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs
-from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.timing import timing
-from missions.flight_plan.waypoints import Waypoints
-from missions.flight_plan.ways_taken import FlightClass, graph_taken
-from missions.routing.arcs import Arcs
-from missions.routing.exact import best_routes
-from missions.routing.file_plans import FileGraph, plan_json, read_graph, read_mission
-from missions.routing.problem import Amounts, End, Objective, Problem, Routes, Task, TaskKind, UavStart, Visit
-from missions.routing.terminals import Ways
 
 UAVS, TARGETS = 2, 4
 NEAR_M = 30_000.0

@@ -5,10 +5,9 @@ from time import process_time
 
 import numpy as np
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
-
-from missions.routing.arcs import Arcs
-from missions.routing.problem import BoolArray, FloatArray, Problem, Routes
-from missions.routing.quantities import NO_WAY_M
+from planning.problem import BoolArray, FloatArray, Problem, Routes
+from planning.solver.cost_matrices import NO_WAY_M
+from planning.solver.problem_arrays import Arcs
 
 UNITS_PER_M = 10
 UNITS_PER_S = 100

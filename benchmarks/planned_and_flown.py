@@ -4,7 +4,7 @@
 
 Missions past towers and back, with photos, looks and holds at some of them, along power lines of OSM files with --lines; each is timed as
 plans time it, by the mean wind and the rules' speeds up and down, and flown by JSBSim in three kinds of air, by the Iris or the Inspector.
-Beside it the same without what `Manoeuvres` count (missions/flight_plan/rules.py). With --write the table goes to docs/performance.md.
+Beside it the same without what `Manoeuvres` count (planning/rules.py). With --write the table goes to docs/performance.md.
 Exits with 1 where the mean of a row is more than 10 % off, or where one of 20 flights takes over 10 % more than planned.
 """
 
@@ -17,10 +17,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from planning.rules import AT_ONCE, FlightRules
 
 from benchmarks.report import machine, table, write_section
 from inspection.geodesy import LonLat
-from missions.flight_plan.rules import AT_ONCE, FlightRules
 from simulation.flight.airframe import AIRFRAMES
 from tests.simulation.planned_flights import CALM, ROUGH, WINDY, air_of, compared, mission, planned_timing
 from tests.telemetry.estimation.routes import lines_of

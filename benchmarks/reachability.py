@@ -18,6 +18,15 @@ from time import perf_counter
 import numpy as np
 import orjson
 import shapely
+from planning.connection_points import AccessRules
+from planning.energy.conditions import Conditions, WindLayer
+from planning.energy.path_cost import FlightClass
+from planning.energy.performance import Performance
+from planning.problem import End
+from planning.reachability.reachability import Flight, reach
+from planning.reachability.reachable_assets import Reach, Verdict
+from planning.rules import FlightRules
+from planning.solver.rules import RoutingRules
 
 from benchmarks.make_graph import make
 from benchmarks.report import machine, table, write_section
@@ -30,15 +39,6 @@ from inspection.graph.network import Network
 from inspection.graph.route_index import route_index
 from inspection.graph.rules import LinkingRules
 from inspection.graph.zone_index import ZoneIndex
-from missions.flight_plan.conditions import Conditions, WindLayer
-from missions.flight_plan.performance import Performance
-from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.ways_taken import FlightClass
-from missions.routing.problem import End
-from missions.routing.reachability import Flight, reach
-from missions.routing.reached_assets import Reach, Verdict
-from missions.routing.rules import RoutingRules
-from missions.routing.terminals import AccessRules
 
 MOST_S = 1.0
 RANGE_M = 40_000.0

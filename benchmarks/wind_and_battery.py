@@ -13,12 +13,11 @@ from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
-
-from missions.routing import exact
-from missions.routing.arcs import Arcs
-from missions.routing.problem import Amounts, End, FloatArray, Objective, Problem, UavStart, Visit
-from missions.routing.rehearsal import rehearse
-from missions.routing.solver import solve
+from planning.problem import Amounts, End, FloatArray, Objective, Problem, UavStart, Visit
+from planning.solver import exact
+from planning.solver.problem_arrays import Arcs
+from planning.solver.solver import solve
+from planning.solver.warm_up import rehearse
 
 SQUARE_M = 6_000.0
 WIND_MPS = 6.0

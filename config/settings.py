@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import dj_database_url
-from mavlink.timeouts import CommandRules as VehicleCommandRules
-from mavlink.timeouts import TransferRules
+from planning.rules import FlightRules, SeparationRules
+from planning.solver.rules import RoutingRules
 
 from config.log_settings import log_settings
 from config.mail import mail_settings
@@ -18,9 +18,9 @@ from config.secret_files import secret
 from inspection.graph.flown_heights import FlownHeights
 from inspection.graph.rules import LinkingRules
 from inspection.zones.rules import ZoneRules
+from mavlink.timeouts import CommandRules as VehicleCommandRules
+from mavlink.timeouts import TransferRules
 from missions.command_rules import CommandRules
-from missions.flight_plan.rules import FlightRules, SeparationRules
-from missions.routing.rules import RoutingRules
 from operation.address_limits import operators_per_address, sockets_per_address, trusted_proxies
 
 BASE_DIR = Path(__file__).resolve().parent.parent

@@ -4,9 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from planning.problem import Task, TaskKind
+from planning.trajectory.waypoints import WaypointKind
+
 from inspection.geodesy import LonLat
-from missions.flight_plan.waypoints import WaypointKind
-from missions.routing.problem import Task, TaskKind
 
 RETURN, LAND, HOVER, BASE = "return", "land", "hover", "base"
 END_ACTIONS = (RETURN, LAND, HOVER, BASE)

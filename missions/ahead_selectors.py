@@ -4,9 +4,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute
+from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
+
 from inspection.geodesy import LonLat
-from missions.flight_plan.clearance import TAKE_OFF, FlownRoute
-from missions.flight_plan.rest_of_route import PassedPoint, PlaceOnRoute, place_on_route
 from missions.models import InspectionTarget, Mission, Route, TargetState, Uav, Waypoint, WaypointKind
 from missions.zone_selectors import flown_route
 

@@ -4,14 +4,14 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from django.db.models import Count, Prefetch, Q, QuerySet
-
-from missions.flight_plan.performance import (
+from planning.energy.performance import (
     OWN_PERFORMANCE_KEYS,
     PERFORMANCE_KEYS,
     Performance,
     performance_from_json,
     performance_to_json,
 )
+
 from missions.models import Base, Mission, Uav, UavCredential, UavState, UavType
 from workspace.models import AuditEntry, Organisation
 

@@ -10,8 +10,8 @@ from uuid import UUID
 import numpy as np
 from django.conf import settings
 from django.db.models import DateTimeField, DurationField, ExpressionWrapper, F, Value
+from planning.separation.separation import TimedRoute
 
-from missions.flight_plan.separation import TimedRoute
 from missions.models import EndAction, Mission, MissionState, Route, Waypoint, WaypointKind
 
 FLYING_STATES = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)

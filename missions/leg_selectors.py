@@ -7,6 +7,13 @@ from typing import Any, NamedTuple
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
+from planning.clearance.zone_clearance import FlownRoute
+from planning.energy.conditions import Conditions
+from planning.energy.performance import Performance
+from planning.trajectory.heights import with_heights
+from planning.trajectory.leg_speeds import SpeedRange, speeds_out_of_range
+from planning.trajectory.obstacles import too_low
+from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import FloatArray
@@ -15,13 +22,6 @@ from inspection.selectors import NoGraph, ground_heights_m, has_terrain
 from inspection.selectors.planning import planning_read
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
-from missions.flight_plan.clearance import FlownRoute
-from missions.flight_plan.conditions import Conditions
-from missions.flight_plan.heights import with_heights
-from missions.flight_plan.leg_speeds import SpeedRange, speeds_out_of_range
-from missions.flight_plan.obstacles import too_low
-from missions.flight_plan.performance import Performance
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from missions.zone_selectors import zones_met
 from workspace.number_text import number_text
 

@@ -35,10 +35,10 @@ class Part:
 
 # Those that take longest come first.
 PARTS = (
-    Part("search", ("missions.routing.rehearsal:rehearse_search",)),
+    Part("search", ("planning.solver.warm_up:rehearse_search",)),
     Part("graph", ("inspection.graph.rehearsal:rehearse",)),
-    Part("ways and energy", ("missions.routing.rehearsal:rehearse_ways", "missions.flight_plan.rehearsal:rehearse"), after=("graph",)),
-    Part("proofs", ("missions.routing.rehearsal:rehearse_proof", "missions.routing.file_plans:rehearse"), after=("search",)),
+    Part("ways and energy", ("planning.solver.warm_up:rehearse_ways", "planning.trajectory.warm_up:rehearse"), after=("graph",)),
+    Part("proofs", ("planning.solver.warm_up:rehearse_proof", "planning.file_plans:rehearse"), after=("search",)),
 )
 ALL = Part("whole", tuple(name for part in PARTS for name in part.warm_up))  # also compiles what two parts disagreed about
 

@@ -31,13 +31,13 @@ django.setup()
 from django.contrib.auth.hashers import make_password  # noqa: E402 (Django first)
 from django.core.management import call_command  # noqa: E402
 from django.utils import timezone  # noqa: E402
+from planning.problem import Objective  # noqa: E402
 
 from deploy.load.day.in_air import put_in_air  # noqa: E402
 from deploy.load.day.site import Desk, InAir, Person, Site  # noqa: E402
 from inspection.geodesy import LonLat  # noqa: E402
 from inspection.models import Asset, AssetKind, GraphSnapshot  # noqa: E402
 from missions.models import CredentialKind, EndAction, LinkKind, Mission, Uav, UavType  # noqa: E402
-from missions.routing.problem import Objective  # noqa: E402
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, make_plan, plan_mission  # noqa: E402
 from missions.services.approval import approve_mission  # noqa: E402
 from missions.services.credentials import make_credential  # noqa: E402

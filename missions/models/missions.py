@@ -188,7 +188,7 @@ class InspectionTarget(models.Model):
     label = models.CharField(max_length=255, help_text="the asset's name when it was picked")
     position = models.PointField(srid=4326, null=True, blank=True, help_text="empty: the asset's centre, or the whole line")
     stretch = models.LineStringField(srid=4326, null=True, blank=True, help_text="two points on the asset; empty = not a stretch")
-    task = models.JSONField(default=dict, help_text="see missions/routing/problem.py, Task")
+    task = models.JSONField(default=dict, help_text="see planning/problem.py, Task")
     priority = models.CharField(max_length=6, choices=TargetPriority.choices, default=TargetPriority.NORMAL)
     uav_name = models.CharField(max_length=100, blank=True, help_text="the only UAV that may do it; empty = any")
     sensor = models.CharField(max_length=LONGEST_SENSOR, blank=True, help_text="that its UAV must have; empty = any")

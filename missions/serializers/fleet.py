@@ -3,9 +3,7 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
-
-from missions.fields import AboveZeroField, BetweenField, PositionField
-from missions.flight_plan.performance import (
+from planning.energy.performance import (
     AIRSPEEDS_MPS,
     BATTERIES_WH,
     MASSES_KG,
@@ -15,6 +13,8 @@ from missions.flight_plan.performance import (
     InvalidPerformance,
     performance_from_json,
 )
+
+from missions.fields import AboveZeroField, BetweenField, PositionField
 from missions.models import Base, CredentialKind, UavCredential, UavType
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
 from missions.serializers.known_fields import KnownFieldsSerializer

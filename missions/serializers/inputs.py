@@ -7,12 +7,9 @@ from typing import Any
 from django.conf import settings
 from django.utils import timezone
 from django.utils.translation import gettext as _
-
-from missions.fields import AboveZeroField, BetweenField, PositionField
-from missions.fleet_selectors import FIGURES, figures_of, uavs_of_organisation
-from missions.flight_plan.conditions import Conditions, InvalidConditions, conditions_from_json
-from missions.flight_plan.lost_link import LostLink
-from missions.flight_plan.performance import (
+from planning.clearance.lost_link import LostLink
+from planning.energy.conditions import Conditions, InvalidConditions, conditions_from_json
+from planning.energy.performance import (
     AIRSPEEDS_MPS,
     BATTERIES_WH,
     MASSES_KG,
@@ -22,9 +19,12 @@ from missions.flight_plan.performance import (
     InvalidPerformance,
     performance_from_json,
 )
+from planning.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
+from planning.problem import Objective as RoutingObjective
+
+from missions.fields import AboveZeroField, BetweenField, PositionField
+from missions.fleet_selectors import FIGURES, figures_of, uavs_of_organisation
 from missions.models import EndAction, Objective, TargetPriority, Uav
-from missions.routing.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
-from missions.routing.problem import Objective as RoutingObjective
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.serializers.limits import (
     FARTHEST_RANGE_M,

@@ -7,12 +7,12 @@ import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema_field
+from planning.clearance.zone_clearance import FlownRoute
 
 from inspection.serializers.schedule_words import schedule_sentence
 from inspection.serializers.zones import ScheduleField
 from inspection.zones.activity import Span
 from missions.fields import PositionField
-from missions.flight_plan.clearance import FlownRoute
 from missions.models import EndAction
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.zone_selectors import LegalWindows

@@ -3,8 +3,7 @@
 import math
 
 from django.utils.translation import gettext as _
-
-from missions.flight_plan.performance import InvalidPerformance
+from planning.energy.performance import InvalidPerformance
 
 
 def fault_words(error: InvalidPerformance) -> str:

@@ -8,10 +8,10 @@ import math
 from typing import Any
 
 from django.conf import settings
+from planning.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Objective, Task, TaskKind
 
 from inspection.geodesy import LonLat
 from missions.models import EndAction
-from missions.routing.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Objective, Task, TaskKind
 from missions.serializers.limits import FARTHEST_RANGE_M, FASTEST_MPS, LARGEST_KEY, LONGEST_UAV_NAME
 from missions.services import PlanRequest, TargetRequest, UavRequest
 

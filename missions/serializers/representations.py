@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from planning.energy.conditions import conditions_from_json, conditions_to_json
+from planning.energy.performance import performance_from_json, performance_to_json
+from planning.trajectory.waypoints import KINDS, NONE
 
 from inspection.selectors import asset_detail, asset_label
-from missions.flight_plan.conditions import conditions_from_json, conditions_to_json
-from missions.flight_plan.performance import performance_from_json, performance_to_json
-from missions.flight_plan.waypoints import KINDS, NONE
 from missions.list_selectors import ListedMission, sketch
 from missions.models import EndAction, InspectionTarget, Mission, MissionUav, Route, Waypoint, WaypointKind
 from missions.selectors import approval_in_force, open_plan_of_mission

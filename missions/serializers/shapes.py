@@ -1,12 +1,12 @@
 """What goes out: plans and missions."""
 
+from planning.clearance.lost_link import LostLink, Trouble
+from planning.problem import TaskKind
 from rest_framework import serializers
 
 from missions.fields import PositionField
 from missions.fleet_selectors import FIGURES
-from missions.flight_plan.lost_link import LostLink, Trouble
 from missions.models import EndAction, MissionState, Objective, TargetPriority, TargetState, WaypointKind
-from missions.routing.problem import TaskKind
 from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializer
 from missions.serializers.commands import MissionApprovalSerializer
 from workspace.external_data import AttributesField

@@ -3,10 +3,7 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
-
-from missions.fields import AboveZeroField, BetweenField, PositionField
-from missions.fleet_selectors import UavWithUse, bases_of_organisation, performance_with, types_of_organisation
-from missions.flight_plan.performance import (
+from planning.energy.performance import (
     AIRSPEEDS_MPS,
     BATTERIES_WH,
     MASSES_KG,
@@ -14,6 +11,9 @@ from missions.flight_plan.performance import (
     RESERVES_PERCENT,
     InvalidPerformance,
 )
+
+from missions.fields import AboveZeroField, BetweenField, PositionField
+from missions.fleet_selectors import UavWithUse, bases_of_organisation, performance_with, types_of_organisation
 from missions.models import CredentialKind, EndAction, LinkKind, Uav, UavState
 from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
 from missions.serializers.known_fields import KnownFieldsSerializer

@@ -10,19 +10,19 @@ from typing import Any
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from mavlink.approved_route import FrozenRoute, FrozenWaypoint, NotARoute, TakeOff, flight_to_json, route_to_json
-from mavlink.fence import fence_of, rally_items
-from mavlink.intermediate_waypoints import with_points_between
-from mavlink.mission_items import CannotBeFlown, flight_loads
-from mavlink.vehicle_plan import FlightLoad, MissionItem, load_to_json
+from planning.clearance.nearby_zones import zones_near
+from planning.energy.conditions import conditions_from_json, conditions_to_json
+from planning.trajectory.waypoints import WaypointKind
 
 from inspection.geodesy import LonLat
 from inspection.selectors import ground_revision, terrain_edition
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
-from missions.flight_plan.conditions import conditions_from_json, conditions_to_json
-from missions.flight_plan.waypoints import WaypointKind
-from missions.flight_plan.zone_facts import zones_near
+from mavlink.approved_route import FrozenRoute, FrozenWaypoint, NotARoute, TakeOff, flight_to_json, route_to_json
+from mavlink.fence import fence_of, rally_items
+from mavlink.intermediate_waypoints import with_points_between
+from mavlink.mission_items import CannotBeFlown, flight_loads
+from mavlink.vehicle_plan import FlightLoad, MissionItem, load_to_json
 from missions.models import EndAction, LinkKind, Mission, Route, Waypoint
 from missions.services.approved_fence import rally_points, zones_beside
 from missions.services.approved_targets import approved_targets

@@ -3,12 +3,12 @@
 from dataclasses import replace
 
 from django.conf import settings
-from mavlink.fence import FenceRules, FenceZone
+from planning.clearance.lost_link import LostLink
+from planning.clearance.nearby_zones import zones_near
 
 from inspection.geodesy import LonLat
 from inspection.selectors.zone_table import zone_table
-from missions.flight_plan.lost_link import LostLink
-from missions.flight_plan.zone_facts import zones_near
+from mavlink.fence import FenceRules, FenceZone
 from missions.models import Mission, Route
 from missions.services.requests import lost_link_from_json
 from missions.zone_selectors import flown_route, zone_margins

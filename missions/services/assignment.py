@@ -5,17 +5,17 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from planning.connection_points import Ways
+from planning.energy.assignment_costs import FlightCosts
+from planning.energy.duration import ready_s
+from planning.problem import Amounts, BoolArray, End, Lock, Objective, Priority, Problem, Solution, UavStart, Visit
+from planning.rules import FlightRules
+from planning.solver.exact import MAX_TARGETS
+from planning.solver.progress import OnProgress, Progress
+from planning.solver.solver import PROVEN_GAP, Stop, solve
+from planning.solver.sorties import merit_of
 
-from missions.flight_plan.costs import FlightCosts
-from missions.flight_plan.duration import ready_s
-from missions.flight_plan.rules import FlightRules
 from missions.models import EndAction
-from missions.routing.exact import MAX_TARGETS
-from missions.routing.problem import Amounts, BoolArray, End, Lock, Objective, Priority, Problem, Solution, UavStart, Visit
-from missions.routing.progress import OnProgress, Progress
-from missions.routing.solver import PROVEN_GAP, Stop, solve
-from missions.routing.sorties import merit_of
-from missions.routing.terminals import Ways
 from missions.services.places import Place
 from missions.services.plan_json import ALL_PLANS, WITHOUT_TIMED_ZONES
 from missions.services.refusals import Grounding

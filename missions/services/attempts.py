@@ -3,13 +3,14 @@
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-from missions.flight_plan.duration import target_s
-from missions.flight_plan.heights import GroundHeights, inspection_agl_m
+from planning.connection_points import Terminal, ways_between
+from planning.energy.duration import target_s
+from planning.problem import Problem, Solution
+from planning.solver.progress import OnProgress, Progress
+from planning.solver.solver import Stop
+from planning.trajectory.heights import GroundHeights, inspection_agl_m
+
 from missions.models import EndAction
-from missions.routing.problem import Problem, Solution
-from missions.routing.progress import OnProgress, Progress
-from missions.routing.solver import Stop
-from missions.routing.terminals import Terminal, ways_between
 from missions.services.assignment import LockCost, assignment, least_ready_s, solve_assignment
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, Sketch
 from missions.services.counted import counted, needs_counting

@@ -4,8 +4,9 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
-from missions.flight_plan.heights import GroundHeights
-from missions.flight_plan.sorties import wh_of_sorties
+from planning.trajectory.heights import GroundHeights
+from planning.trajectory.sorties import wh_of_sorties
+
 from missions.services.attempts import Attempt
 from missions.services.least_lacks import LeastLacks, lack_wh
 from missions.services.plan_json import PlannedRoute

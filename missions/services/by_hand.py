@@ -7,8 +7,8 @@ from django.contrib.gis.geos import LineString, Point
 from django.db import transaction
 from django.db.models import Q
 from django.utils.translation import gettext as _
+from planning.trajectory.waypoints import RoutePoint, RoutePoints
 
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints
 from missions.models import Mission, Route, Waypoint
 from missions.services.hand_checks import (
     HIGHER_M,

@@ -3,14 +3,14 @@
 from collections.abc import Sequence
 
 import numpy as np
+from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
+from planning.energy.path_cost import FlightClass, NodeGround
+from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from inspection.selectors.node_ground import node_ground_m
 from inspection.selectors.planning import heights_at, terrain_at
-from missions.flight_plan.costs import Finish, FlightCosts, flight_costs
-from missions.flight_plan.ways_taken import FlightClass, NodeGround
 from missions.models import EndAction
-from missions.routing.problem import Objective
 from missions.services.assignment import route_end
 from missions.services.laid_out import LaidOut
 from missions.services.refusals import Scene

@@ -7,22 +7,22 @@ from itertools import accumulate, chain, pairwise
 
 import numpy as np
 from django.utils.translation import gettext as _
+from planning.energy.charging import CannotCharge, ChargingStop, charging_stops, places_over, with_stops
+from planning.energy.power import NoHeadway
+from planning.problem import Routes
+from planning.trajectory.heights import GroundHeights, pass_agl_m, with_heights
+from planning.trajectory.obstacles import rising_over
+from planning.trajectory.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs, without_idle_points
+from planning.trajectory.sorties import joined_sorties, timing_of_route
+from planning.trajectory.timing import Timing
+from planning.trajectory.waypoints import NONE, RoutePoints, Waypoints
 
 from inspection.geodesy import LonLat
 from inspection.graph.flyable import node_heights_m
 from inspection.graph.inspection_graph import NodeKind
 from inspection.graph.passed import BEND, passed_on
 from inspection.graph.spans import spans_of
-from missions.flight_plan.charging import CannotCharge, ChargingStop, charging_stops, places_over, with_stops
-from missions.flight_plan.heights import GroundHeights, pass_agl_m, with_heights
-from missions.flight_plan.obstacles import rising_over
-from missions.flight_plan.power import NoHeadway
-from missions.flight_plan.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs, without_idle_points
-from missions.flight_plan.sorties import joined_sorties, timing_of_route
-from missions.flight_plan.timing import Timing
-from missions.flight_plan.waypoints import NONE, RoutePoints, Waypoints
 from missions.models import EndAction
-from missions.routing.problem import Routes
 from missions.services.assignment import route_end
 from missions.services.laid_out import LaidOut
 from missions.services.plan_json import PlannedRoute

@@ -4,9 +4,10 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from planning.trajectory.heights import GroundHeights
+
 from inspection.geodesy import LonLat
 from inspection.graph.zone_index import ZoneIndex
-from missions.flight_plan.heights import GroundHeights
 from missions.services.attempts import Attempt
 from missions.services.battery import battery_overruns, not_lasting_for, without_overruns
 from missions.services.over_wires import (

@@ -6,24 +6,24 @@ from dataclasses import dataclass, field
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
+from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
+from planning.clearance.zone_clearance import TAKE_OFF
+from planning.connection_points import tallest_support_m
+from planning.energy.power import NoHeadway
+from planning.trajectory.heights import GroundHeights, asset_height_m, with_heights
+from planning.trajectory.leg_speeds import ground_speeds, speeds_out_of_range
+from planning.trajectory.obstacles import too_low
+from planning.trajectory.route_points import line_of, with_short_legs
+from planning.trajectory.sorties import lengths_of_sorties, timing_of_route, wh_of_sorties
+from planning.trajectory.timing import Timing
+from planning.trajectory.waypoints import RoutePoints, WaypointKind, Waypoints
 
 from inspection.graph.network import Network
 from inspection.graph.spans import spans_of
 from inspection.models import AssetKind
 from inspection.selectors.planning import Edition, heights_at, planning_read
-from missions.flight_plan.clearance import TAKE_OFF
-from missions.flight_plan.heights import GroundHeights, asset_height_m, with_heights
-from missions.flight_plan.leg_speeds import ground_speeds, speeds_out_of_range
-from missions.flight_plan.obstacles import too_low
-from missions.flight_plan.power import NoHeadway
-from missions.flight_plan.route_points import line_of, with_short_legs
-from missions.flight_plan.sorties import lengths_of_sorties, timing_of_route, wh_of_sorties
-from missions.flight_plan.tall_clearance import legs_too_near, spans_too_near
-from missions.flight_plan.timing import Timing
-from missions.flight_plan.waypoints import RoutePoints, WaypointKind, Waypoints
 from missions.leg_selectors import LegFlyer, speed_words, too_low_text
 from missions.models import EndAction, Mission
-from missions.routing.terminals import tallest_support_m
 from missions.services.hand_points import HandPoint, are_moved, list_faults, route_points
 from missions.services.kept_route import KeptWaypoint, kept_route
 from missions.services.last_look import flown_route

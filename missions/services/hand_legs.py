@@ -6,9 +6,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+from planning.trajectory.waypoints import RoutePoint, WaypointKind
+
 from inspection.geodesy import LonLat
 from inspection.models import Asset
-from missions.flight_plan.waypoints import RoutePoint, WaypointKind
 from missions.models import Mission, Route, Waypoint
 from missions.services.requests import task_from_json
 

@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 from django.utils.translation import gettext as _
+from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind
 from missions.services.kept_route import KeptWaypoint
 from workspace.number_text import number_text
 

@@ -4,7 +4,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from missions.flight_plan.waypoints import RoutePoints
+from planning.trajectory.waypoints import RoutePoints
+
 from missions.models import Mission, Route
 from missions.services.by_hand import checked_by_hand, place_of, settle_by_hand, store_by_hand
 from missions.services.hand_checks import HandGround, hand_ground

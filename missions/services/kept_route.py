@@ -6,11 +6,12 @@ from functools import lru_cache
 from typing import NamedTuple
 from uuid import UUID
 
+from planning.problem import Task
+from planning.trajectory.waypoints import WaypointKind
+
 from inspection.geodesy import LonLat
 from inspection.selectors.planning import Edition
-from missions.flight_plan.waypoints import WaypointKind
 from missions.models import Mission, Waypoint
-from missions.routing.problem import Task
 from missions.services.missions import request_of_mission
 from missions.services.requests import PlanRequest, task_from_json
 

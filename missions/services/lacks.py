@@ -3,9 +3,10 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from missions.flight_plan.heights import GroundHeights
-from missions.routing.problem import End, Reason
-from missions.routing.reach import NOT_ON_ONE_ROUTE, RANGE_ALONE
+from planning.problem import End, Reason
+from planning.solver.reach import NOT_ON_ONE_ROUTE, RANGE_ALONE
+from planning.trajectory.heights import GroundHeights
+
 from missions.services.assignment import route_end
 from missions.services.attempts import Attempt
 from missions.services.battery import KEPT_BACK

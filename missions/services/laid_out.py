@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from planning.connection_points import Ways
+from planning.problem import Visit
+
 from inspection.geodesy import LonLat
-from missions.routing.problem import Visit
-from missions.routing.terminals import Ways
 from missions.services.places import Place
 from missions.services.refusals import Scene
 from missions.services.requests import BaseRequest, PlanRequest

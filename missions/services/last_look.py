@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from django.conf import settings
+from planning.clearance.zone_clearance import FlownRoute
 
 from inspection.zones.reach import ZoneTable
-from missions.flight_plan.clearance import FlownRoute
 from missions.models import EndAction
 from missions.services.plan_json import PlannedRoute
 from missions.zone_selectors import zones_met

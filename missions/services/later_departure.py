@@ -7,10 +7,10 @@ from datetime import UTC, datetime
 from typing import Any
 
 from django.conf import settings
+from planning.problem import Objective, Priority
 
 from inspection.geodesy import LonLat
 from inspection.selectors.planning import planning_read
-from missions.routing.problem import Objective, Priority
 from missions.services.places import places_of
 from missions.services.planning import make_plan
 from missions.services.requests import PlanRequest, moment_to_json

@@ -6,11 +6,12 @@ from dataclasses import replace
 from itertools import permutations, product
 from typing import NamedTuple
 
-from missions.flight_plan.heights import GroundHeights
-from missions.flight_plan.sorties import wh_of_sorties
-from missions.routing.least_route import LeastRoutes
-from missions.routing.problem import RANGE_RESERVE
-from missions.routing.quantities import NO_WAY_M, Kind
+from planning.problem import RANGE_RESERVE
+from planning.solver.cheapest_route import LeastRoutes
+from planning.solver.cost_matrices import NO_WAY_M, Kind
+from planning.trajectory.heights import GroundHeights
+from planning.trajectory.sorties import wh_of_sorties
+
 from missions.services.assignment import COUNTED_CLOSE
 from missions.services.attempts import Attempt
 from missions.services.over_wires import spans_in_the_way

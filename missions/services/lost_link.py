@@ -5,15 +5,15 @@ from typing import Any
 
 import numpy as np
 from django.conf import settings
+from planning.clearance.lost_link import LostLink, LostLinkPlan, checked_returns
+from planning.clearance.nearby_zones import zones_near
+from planning.trajectory.heights import GroundHeights
 
 from inspection.graph.network import Network
 from inspection.graph.spans import spans_of
 from inspection.selectors.graph import zones_of_table
 from inspection.selectors.planning import heights_at, planning_read
 from inspection.zones.reach import ZoneTable
-from missions.flight_plan.heights import GroundHeights
-from missions.flight_plan.lost_link import LostLink, LostLinkPlan, checked_returns
-from missions.flight_plan.zone_facts import zones_near
 from missions.models import Mission
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import PlanRequest, lost_link_to_json

@@ -7,10 +7,10 @@ from typing import Any
 from django.contrib.gis.geos import LineString, Point
 from django.db import transaction
 from django.utils import timezone
+from planning.solver.solver import Stop
 
 from inspection.models import Asset
 from missions.models import Mission, MissionState, Route, Waypoint
-from missions.routing.solver import Stop
 from missions.services.best_so_far import OnPlanProgress
 from missions.services.kept_by_hand import keep_by_hand
 from missions.services.missions import check_lost_link, drop_plan, lock_mission, request_of_mission

@@ -10,12 +10,12 @@ from uuid import UUID
 from django.contrib.gis.geos import LineString, Point
 from django.db import transaction
 from django.utils import timezone
+from planning.energy.conditions import Conditions, conditions_from_json, conditions_to_json
+from planning.energy.performance import InvalidPerformance, Performance, performance_from_json, performance_to_json
+from planning.problem import Objective
 
 from inspection.geodesy import LonLat
-from missions.flight_plan.conditions import Conditions, conditions_from_json, conditions_to_json
-from missions.flight_plan.performance import InvalidPerformance, Performance, performance_from_json, performance_to_json
 from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
-from missions.routing.problem import Objective
 from missions.services.last_plan import summary_of_plan
 from missions.services.lost_link import lost_link_of_stored
 from missions.services.own_figures import as_said_before

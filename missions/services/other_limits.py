@@ -5,10 +5,10 @@ from dataclasses import replace
 from enum import StrEnum
 
 import numpy as np
+from planning.problem import BoolArray, Reason
+from planning.solver.reach import NO_WAY, least_needs, needed_range_m
+from planning.trajectory.heights import GroundHeights
 
-from missions.flight_plan.heights import GroundHeights
-from missions.routing.problem import BoolArray, Reason
-from missions.routing.reach import NO_WAY, least_needs, needed_range_m
 from missions.services.assignment import allowed_visits
 from missions.services.attempts import Attempt
 from missions.services.least_lacks import LeastLacks

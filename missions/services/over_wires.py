@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 from django.conf import settings
 from numpy.typing import NDArray
+from planning.clearance.obstacle_clearance import spans_too_near
+from planning.problem import Reason
+from planning.trajectory.heights import GroundHeights
+from planning.trajectory.waypoints import FloatArray
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.graph.network import Network
 from inspection.graph.spans import BESIDE_M, spans_of
 from inspection.graph.walls import index_of_walls, walls_along
 from inspection.graph.zone_index import ZoneIndex
-from missions.flight_plan.heights import GroundHeights
-from missions.flight_plan.tall_clearance import spans_too_near
-from missions.flight_plan.waypoints import FloatArray
-from missions.routing.problem import Reason
 from missions.services.attempts import Attempt
 from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import LeftOut

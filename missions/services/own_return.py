@@ -10,19 +10,19 @@ import numpy as np
 from django.conf import settings
 from django.db.models.functions import Now
 from django.utils.translation import gettext as _
-from mavlink.approved_route import Flight, NotARoute
-from mavlink.fence import fence_of
-from mavlink.rtl import NAMES, PARAMETERS, OwnReturn, fence_off_by, own_return
 from numpy.typing import NDArray
+from planning.clearance.nearby_zones import zones_near
+from planning.clearance.rtl_paths import Haven, InTheWay, Places, Trouble, WaysHome
+from planning.clearance.zone_clearance import ZoneFacts
 
 from inspection.geodesy import LonLat
 from inspection.graph.spans import spans_of
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import planning_read
 from inspection.zones.reach import ZoneTable
-from missions.flight_plan.clearance import ZoneFacts
-from missions.flight_plan.ways_home import Haven, InTheWay, Places, Trouble, WaysHome
-from missions.flight_plan.zone_facts import zones_near
+from mavlink.approved_route import Flight, NotARoute
+from mavlink.fence import fence_of
+from mavlink.rtl import NAMES, PARAMETERS, OwnReturn, fence_off_by, own_return
 from missions.models import LinkKind, Mission, Route, Uav
 from missions.services.approval_document import frozen_route
 from missions.services.approved_fence import rally_points, zones_beside

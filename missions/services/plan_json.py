@@ -6,12 +6,12 @@ from itertools import repeat
 from typing import Any
 
 import numpy as np
+from planning.energy.charging import ChargingStop
+from planning.energy.conditions import conditions_to_json
+from planning.trajectory.heights import FloatArray
+from planning.trajectory.timing import Timing
+from planning.trajectory.waypoints import KINDS, NONE, IntArray, Waypoints
 
-from missions.flight_plan.charging import ChargingStop
-from missions.flight_plan.conditions import conditions_to_json
-from missions.flight_plan.heights import FloatArray
-from missions.flight_plan.timing import Timing
-from missions.flight_plan.waypoints import KINDS, NONE, IntArray, Waypoints
 from missions.models import EndAction
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest, lock_to_json, moment_to_json, task_to_json

@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 from django.conf import settings
+from planning.separation.report import separation_json
+from planning.separation.separation import Separation
+from planning.solver.solver import Stop, never
 
 from inspection.geodesy import LonLat
 from inspection.graph.walls import at_all_heights, with_walls
 from inspection.graph.zone_index import ZoneIndex
 from inspection.selectors.planning import PlanningGround, edition_now, heights_at, planning_read, terrain_at
-from missions.flight_plan.separation import Separation
-from missions.flight_plan.separation_report import separation_json
 from missions.flight_selectors import OtherFlights, flights_at_the_same_time
-from missions.routing.solver import Stop, never
 from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt

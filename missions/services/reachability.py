@@ -7,13 +7,13 @@ from typing import Any
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
+from planning.energy.path_cost import FlightClass
+from planning.problem import End, UavStart
+from planning.reachability.reachability import Flight, reach
+from planning.reachability.reachable_assets import Reach, Verdict
 
 from inspection.selectors.planning import planning_read
-from missions.flight_plan.ways_taken import FlightClass
 from missions.models import EndAction
-from missions.routing.problem import End, UavStart
-from missions.routing.reachability import Flight, reach
-from missions.routing.reached_assets import Reach, Verdict
 from missions.services.refusals import Scene, column_m, groundings, zone_at
 from missions.services.requests import BaseRequest, PlanRequest, UavRequest
 from missions.services.scenes import scene_on

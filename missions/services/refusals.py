@@ -5,6 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from django.conf import settings
+from planning.connection_points import AccessRules, tallest_support_m
+from planning.rules import FlightRules
+from planning.trajectory.heights import inspection_agl_m, is_above_limit
 
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
@@ -13,10 +16,7 @@ from inspection.graph.route_index import asset_places
 from inspection.graph.zone_index import ZoneIndex
 from inspection.selectors.planning import Edition
 from missions.fleet_selectors import states_out_of_service
-from missions.flight_plan.heights import inspection_agl_m, is_above_limit
-from missions.flight_plan.rules import FlightRules
 from missions.models import UavState
-from missions.routing.terminals import AccessRules, tallest_support_m
 from missions.services.places import Place
 from missions.services.requests import UavRequest
 from missions.services.shortfall import Shortfall

@@ -2,14 +2,14 @@
 
 import numpy as np
 from django.conf import settings
+from planning.clearance.flyable_graph import flyable_graph
+from planning.connection_points import AccessRules
 
 from inspection.graph.by_length import by_length
 from inspection.graph.walls import too_tall_walls, with_walls
 from inspection.graph.zone_index import ZoneIndex
 from inspection.selectors.planning import PlanningGround, planning_read
 from inspection.zones.reach import BoolArray
-from missions.flight_plan.flyable_graph import flyable_graph
-from missions.routing.terminals import AccessRules
 from missions.services.refusals import Scene
 from missions.services.requests import PlanRequest
 from missions.services.zone_choice import zone_choice

@@ -3,7 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from missions.flight_plan.power import power_w
+from planning.energy.power import power_w
+
 from missions.services.requests import UavRequest
 
 

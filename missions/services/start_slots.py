@@ -10,11 +10,11 @@ from django.db import connection
 from django.db.models import Max, Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
+from planning.rules import SeparationRules
+from planning.separation.separation import TimedRoute, conflicts, keep_apart
 
 from inspection.geodesy import LonLat
 from inspection.graph.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
-from missions.flight_plan.rules import SeparationRules
-from missions.flight_plan.separation import TimedRoute, conflicts, keep_apart
 from missions.flight_selectors import STILL_FLOWN, route_in_time
 from missions.in_air_hooks import places_in_the_air
 from missions.models import CommandAxis, CommandKind, CommandState, Route, Uav, UavCommand, UavState

@@ -3,9 +3,9 @@
 from typing import Any
 
 from django.conf import settings
+from planning.separation.report import separation_json
+from planning.separation.separation import Separation, closest_encounter, conflicts
 
-from missions.flight_plan.separation import Separation, closest_encounter, conflicts
-from missions.flight_plan.separation_report import separation_json
 from missions.flight_selectors import OtherFlights, flights_at_the_same_time, routes_of_mission_in_time
 from missions.models import Mission
 

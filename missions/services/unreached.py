@@ -4,10 +4,10 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+from planning.connection_points import Ways, is_near_network
+from planning.problem import End, Objective, Problem, Reason, Unassigned
+from planning.solver.reach import NEAREST, needed_range_m, reachable
 
-from missions.routing.problem import End, Objective, Problem, Reason, Unassigned
-from missions.routing.reach import NEAREST, needed_range_m, reachable
-from missions.routing.terminals import Ways, is_near_network
 from missions.services.assignment import Assignment
 from missions.services.places import Place
 from missions.services.refusals import Grounding, LeftOut, Scene

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
+from planning.problem import Visit
 
 from inspection.geodesy import LonLat, path_length_m
-from missions.routing.problem import Visit
 from missions.services.places import Place
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 import orjson
+from planning.trajectory.waypoints import KINDS, NONE, PASS, FloatArray, IntArray, Waypoints
 
-from missions.flight_plan.waypoints import KINDS, NONE, PASS, FloatArray, IntArray, Waypoints
 from missions.services.requests import task_to_json
 
 _OPENING, _NEXT, _CLOSING = b'[{"position":[', b'},{"position":[', b"}]"

@@ -4,10 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from missions.flight_plan.costs import FlightCosts
-from missions.flight_plan.heights import inspection_agl_m
-from missions.routing.problem import Amounts, Objective
-from missions.routing.terminals import Ways
+from planning.connection_points import Ways
+from planning.energy.assignment_costs import FlightCosts
+from planning.problem import Amounts, Objective
+from planning.trajectory.heights import inspection_agl_m
+
 from missions.services.counted import counted
 from missions.services.laid_out import LaidOut
 from missions.services.places import Place

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import shapely
 from django.utils.translation import gettext as _
+from planning.connection_points import Terminal, Ways, ways_between
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.zone_index import ZoneIndex
 from missions.models import EndAction
-from missions.routing.terminals import Terminal, Ways, ways_between
 from missions.services.places import Place, places_of
 from missions.services.refusals import Scene, zone_at
 from missions.services.requests import InvalidRequest, PlanRequest

@@ -5,6 +5,10 @@ from typing import Any
 
 import numpy as np
 import shapely
+from planning.connection_points import Terminal, Ways, ways_between
+from planning.problem import Objective, Problem, UavStart
+from planning.solver.reach import needed_range_m
+from planning.trajectory.heights import is_above_limit
 from shapely.geometry import LineString
 from shapely.ops import nearest_points
 
@@ -13,11 +17,7 @@ from inspection.graph.route_index import node_tree
 from inspection.graph.walls import NO_ZONE
 from inspection.graph.zone_index import widen
 from missions.fleet_selectors import uavs_of_organisation
-from missions.flight_plan.heights import is_above_limit
 from missions.models import EndAction, UavState
-from missions.routing.problem import Objective, Problem, UavStart
-from missions.routing.reach import needed_range_m
-from missions.routing.terminals import Terminal, Ways, ways_between
 from missions.services.assignment import route_end
 from missions.services.counted import needs_counting
 from missions.services.places import Place, places_of

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from missions.routing.problem import Objective, Priority
+from planning.problem import Objective, Priority
+
 from missions.services.attempts import Attempt
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import PlanRequest

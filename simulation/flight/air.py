@@ -2,7 +2,8 @@
 
 import math
 
-from missions.flight_plan.conditions import LAPSE_K_PER_M, SEA_LEVEL_K
+from planning.energy.conditions import LAPSE_K_PER_M, SEA_LEVEL_K
+
 from simulation.flight.gusts import Gusts
 from simulation.flight.plant import GUIDANCE_STEP_S, Plant
 from simulation.flight.weather import Weather

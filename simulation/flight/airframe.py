@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from missions.flight_plan.rules import FlightRules
+from planning.rules import FlightRules
 
 AS_PLANNED = FlightRules()
 

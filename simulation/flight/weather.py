@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass, field
 
-from missions.flight_plan.conditions import Conditions
+from planning.energy.conditions import Conditions
 
 MOST_GUSTS_MPS = 15.0
 MOST_TURBULENCE_MPS = 40.0  # at 20 ft: MIL-F-8785C calls 45 knots severe

@@ -4,8 +4,8 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from missions.flight_plan.performance import Performance
-from missions.flight_plan.power import power_w
+from planning.energy.performance import Performance
+from planning.energy.power import power_w
 
 AS_FAST_SHARE = 0.8  # of the planned speed
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
-from missions.flight_plan.conditions import MAX_WIND_MPS, Conditions, InvalidConditions, WindLayer, conditions_from_json, conditions_to_json
+from planning.energy.conditions import MAX_WIND_MPS, Conditions, InvalidConditions, WindLayer, conditions_from_json, conditions_to_json
 
 FRESH_BREEZE_MPS = 8.0  # Beaufort 5 begins there (WMO-No. 306, code table 1100)
 STRONGER = 1.5  # than planned, where that is more

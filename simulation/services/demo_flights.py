@@ -6,8 +6,8 @@ from django.db import transaction
 from django.db.models import QuerySet
 from django.utils import timezone
 from django.utils.translation import gettext as _
+from planning.energy.conditions import Conditions
 
-from missions.flight_plan.conditions import Conditions
 from missions.models import CommandKind, CommandState, Mission, MissionState, UavCommand
 from missions.selectors import mission_of_organisation
 from missions.services.approval import approve_mission

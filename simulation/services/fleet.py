@@ -3,7 +3,8 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from missions.flight_plan.performance import PERFORMANCE_KEYS, performance_from_json
+from planning.energy.performance import PERFORMANCE_KEYS, performance_from_json
+
 from missions.models import MissionUav, UavType
 from simulation.flight.airframe import AIRFRAMES
 from simulation.models import SimulatedAirframe

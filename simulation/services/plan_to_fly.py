@@ -5,15 +5,15 @@ from typing import Any
 
 from django.conf import settings
 from django.utils.translation import gettext as _
-from mavlink.approved_route import FrozenRoute, NotARoute, route_from_json
-from mavlink.mission_items import CannotBeFlown, flight_loads
-from mavlink.vehicle_plan import FlightLoad, load_from_json
+from planning.energy.conditions import Conditions, conditions_from_json
+from planning.energy.performance import performance_from_json
+from planning.trajectory.heights import asset_height_m
 
 from inspection.geodesy import LonLat
 from inspection.models import AssetKind
-from missions.flight_plan.conditions import Conditions, conditions_from_json
-from missions.flight_plan.heights import asset_height_m
-from missions.flight_plan.performance import performance_from_json
+from mavlink.approved_route import FrozenRoute, NotARoute, route_from_json
+from mavlink.mission_items import CannotBeFlown, flight_loads
+from mavlink.vehicle_plan import FlightLoad, load_from_json
 from missions.models import Approval, Mission, MissionUav
 from missions.services.approval_document import frozen_route
 from missions.services.refused import Reason, Refused, refuse

@@ -5,7 +5,8 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from missions.flight_plan.conditions import Conditions, InvalidConditions, WindLayer
+from planning.energy.conditions import Conditions, InvalidConditions, WindLayer
+
 from simulation.flight.faults import Faults
 from simulation.flight.faults_told import WrongFaults, faults_told
 from simulation.flight.weather import ImpossibleWeather, Weather

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 
-from missions.flight_plan.rules import FlightRules, SeparationRules
+from planning.rules import FlightRules, SeparationRules
 
 
 @dataclass(frozen=True)

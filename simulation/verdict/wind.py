@@ -2,9 +2,9 @@
 
 import math
 
-from mavlink.approved_route import FrozenRoute
+from planning.energy.conditions import Conditions
 
-from missions.flight_plan.conditions import Conditions
+from mavlink.approved_route import FrozenRoute
 from simulation.verdict.finding import Finding, Level
 
 

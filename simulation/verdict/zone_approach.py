@@ -1,6 +1,6 @@
 """How near flights came to no-fly zones: each moment against each zone as it is stated, at its time and height.
 
-Shares no code with the planner's own look (missions/flight_plan/clearance.py): a moment is a point, not a leg, and heights are the
+Shares no code with the planner's own look (planning/clearance/zone_clearance.py): a moment is a point, not a leg, and heights are the
 flown ones, above the ground that is below them then.
 """
 

@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
+from planning.energy.conditions import Conditions, InvalidConditions
+
 from inspection.views.parameters import invalid
-from missions.flight_plan.conditions import Conditions, InvalidConditions
 from simulation.rehearsing.sky import Named, Sky, named_sky, own_sky
 
 

@@ -1,4 +1,4 @@
-/** What a UAV's flight takes: bounds of its figures, and what counts where nothing is stated. As in missions/flight_plan/performance.py. */
+/** What a UAV's flight takes: bounds of its figures, and what counts where nothing is stated. As in planning/energy/performance.py. */
 
 export const USUAL_RESERVE_PERCENT = 20;
 /** The PX4 Iris. */

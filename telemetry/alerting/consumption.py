@@ -5,9 +5,10 @@ from collections import deque
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from planning.energy.performance import Performance
+from planning.energy.power import ground_speed_mps, power_w
+
 from inspection.geodesy import LonLat
-from missions.flight_plan.performance import Performance
-from missions.flight_plan.power import ground_speed_mps, power_w
 
 USUAL_ENDURANCE_S = 1_200.0  # where nothing is known of the battery: small multicopters fly for 20 to 40 minutes
 J_PER_WH = 3_600.0
@@ -22,7 +23,7 @@ RATIOS = (0.7, 4.0)  # of observed to expected drain
 CLIMB_MPS = 2.5  # ArduCopter's WPNAV_SPEED_UP; PX4's MPC_Z_V_AUTO_UP is 3
 CLIMB_FACTOR = 1.3  # of the drain of a climb to that of level flight, where the UAV's power is not known
 DESCENT_MPS = 1.5  # PX4's MPC_Z_V_AUTO_DN, ArduCopter's WPNAV_SPEED_DN
-LANDING_MPS, SLOW_BELOW_M = 0.7, 8.0  # PX4's MPC_LAND_SPEED; missions/flight_plan/rules.py
+LANDING_MPS, SLOW_BELOW_M = 0.7, 8.0  # PX4's MPC_LAND_SPEED; planning/rules.py
 Wind = tuple[float, float]  # velocity of the air to east and north [m/s]
 
 

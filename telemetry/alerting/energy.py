@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from mavlink.approved_route import HOVER, Flight
+from planning.energy.conditions import Conditions
+from planning.energy.performance import Performance
+from planning.energy.power import NoHeadway
+from planning.rules import FlightRules
+from planning.trajectory.timing import timing
+from planning.trajectory.waypoints import RoutePoint, RoutePoints, Waypoints
 
-from missions.flight_plan.conditions import Conditions
-from missions.flight_plan.performance import Performance
-from missions.flight_plan.power import NoHeadway
-from missions.flight_plan.rules import FlightRules
-from missions.flight_plan.timing import timing
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints, Waypoints
+from mavlink.approved_route import HOVER, Flight
 from telemetry.alerting.route_line import NEAR_VERTEX_M, Place
 
 

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
 
-from mavlink.rtl import OwnReturn
+from planning.clearance.lost_link import LostLinkPlan
 
 from inspection.geodesy import LonLat
-from missions.flight_plan.lost_link import LostLinkPlan
+from mavlink.rtl import OwnReturn
 from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import EnergyPlan
 from telemetry.alerting.route_line import RouteLine

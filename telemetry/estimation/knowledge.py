@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass, field
 
-from mavlink.approved_route import Flight
+from planning.energy.conditions import Conditions
+from planning.rules import FlightRules
 
 from inspection.geodesy import LonLat
-from missions.flight_plan.conditions import Conditions
-from missions.flight_plan.rules import FlightRules
+from mavlink.approved_route import Flight
 
 
 @dataclass(frozen=True)

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from mavlink.approved_route import HOVER, Flight
 from numpy.typing import NDArray
+from planning.energy.power import TOO_STRONG, ground_and_air_speed
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from missions.flight_plan.power import TOO_STRONG, ground_and_air_speed
+from mavlink.approved_route import HOVER, Flight
 from telemetry.estimation.knowledge import Knowledge
 
 FloatArray = NDArray[np.float64]

@@ -6,11 +6,11 @@ from typing import Any
 from uuid import UUID
 
 from django.conf import settings
+from planning.clearance.lost_link import LostLinkPlan
+from planning.energy.conditions import conditions_from_json
+from planning.energy.performance import performance_from_json
 
 from inspection.geodesy import LonLat
-from missions.flight_plan.conditions import conditions_from_json
-from missions.flight_plan.lost_link import LostLinkPlan
-from missions.flight_plan.performance import performance_from_json
 from missions.models import Approval
 from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load
 from missions.services.requests import lost_link_from_json

@@ -9,12 +9,12 @@ from uuid import UUID
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
+from planning.clearance.rtl_paths import Places
+from planning.rules import SeparationRules
+from planning.separation.separation import TimedRoute, conflicts
 
 from inspection.geodesy import LonLat
 from inspection.selectors import ground_heights_m
-from missions.flight_plan.rules import SeparationRules
-from missions.flight_plan.separation import TimedRoute, conflicts
-from missions.flight_plan.ways_home import Places
 from missions.models import CommandKind, EndAction, Route, Uav
 from missions.services.approved_fence import rally_points
 from missions.services.own_return import ReturnCheck, ReturnState, reported_return, return_checks, ways_now

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from mavlink.rtl import OwnReturn
+from planning.rules import SeparationRules
+from planning.separation.separation import TimedRoute
 
 from inspection.geodesy import LonLat, distance_m
-from missions.flight_plan.rules import SeparationRules
-from missions.flight_plan.separation import TimedRoute
+from mavlink.rtl import OwnReturn
 from missions.models import Mission, MissionUav
 from missions.services.own_return import ReturnCheck, ReturnState, WaysNow
 from missions.services.start_slots import KEPT_SHARE

@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
-from mavlink.approved_route import RETURN, FrozenRoute, FrozenWaypoint, TakeOff
+from planning.problem import Task
+from planning.trajectory.waypoints import WaypointKind
 
 from inspection.geodesy import LonLat
-from missions.flight_plan.waypoints import WaypointKind
-from missions.routing.problem import Task
+from mavlink.approved_route import RETURN, FrozenRoute, FrozenWaypoint, TakeOff
 
 START = LonLat(9.8, 55.4)
 GROUND_AMSL_M = 20.0

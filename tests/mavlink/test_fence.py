@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from planning.trajectory.waypoints import WaypointKind
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+from shapely import LineString, Point, Polygon
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import FrozenRoute
 from mavlink.fence import Fence, FenceRules, FenceZone, fence_of, rally_items
 from mavlink.mission_items import CannotBeFlown, flight_loads
 from mavlink.vehicle_plan import MissionItem
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-from shapely import LineString, Point, Polygon
 from tests.mavlink.routes import START, route, start_and_end, waypoint
-
-from inspection.geodesy import LonLat
-from inspection.geodesy.local_frame import LocalFrame
-from missions.flight_plan.waypoints import WaypointKind
 
 FRAME = LocalFrame.around(*START)
 ROUTE = start_and_end(waypoint(1, WaypointKind.PASS, lon=START.lon + 0.01))

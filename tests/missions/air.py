@@ -9,9 +9,9 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+from planning.energy.performance import Performance
 from scipy.optimize import brentq
 
-from missions.flight_plan.performance import Performance
 from missions.services import PlanRequest
 
 CLIMB_MPS = 2.5

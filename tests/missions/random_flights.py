@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from planning.clearance.lost_link import LostLink
+from planning.energy.conditions import Conditions, WindLayer
+from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
+from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import current_graph
 from inspection.services import build_graph, import_osm, mark_ground_changed
-from missions.flight_plan.conditions import Conditions, WindLayer
-from missions.flight_plan.lost_link import LostLink
-from missions.flight_plan.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
 from missions.models import EndAction, Mission, MissionState
-from missions.routing.problem import Objective
 from missions.services import PlanRequest, UavRequest, create_mission, make_plan, store_plan
 from missions.services.requests import LostLinkRequest
 from tests.missions.ground_judge import Hills

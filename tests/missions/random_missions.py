@@ -5,14 +5,14 @@ import random
 import numpy as np
 import shapely
 from django.contrib.gis.geos import GEOSGeometry, MultiPolygon
+from planning.energy.performance import Performance
+from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind, NoFlyZone
 from inspection.selectors import current_graph
 from inspection.services import build_graph, mark_ground_changed
-from missions.flight_plan.performance import Performance
 from missions.models import EndAction
-from missions.routing.problem import Objective
 from missions.services import BaseRequest, PlanRequest, TargetRequest, UavRequest
 from missions.services.requests import NO_BATTERY
 

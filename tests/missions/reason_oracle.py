@@ -6,7 +6,8 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise, permutations, product
 from typing import Any
 
-from missions.routing.problem import End
+from planning.problem import End
+
 from missions.services import LockRequest, PlanRequest
 from tests.missions.test_random_missions import MissionModel
 

@@ -8,15 +8,15 @@ import pytest
 from django.utils import timezone
 from hypothesis import given
 from hypothesis import strategies as st
+from planning.clearance.lost_link import LostLink
+
+from inspection.geodesy import LonLat
+from inspection.models import NoFlyZone
 from mavlink.approved_route import route_from_json
 from mavlink.intermediate_waypoints import with_points_between
 from mavlink.mission_items import flight_loads
 from mavlink.mission_sync.limits import leg_warnings
 from mavlink.vehicle_plan import load_from_json
-
-from inspection.geodesy import LonLat
-from inspection.models import NoFlyZone
-from missions.flight_plan.lost_link import LostLink
 from missions.models import Approval, CommandState, Mission, MissionState, TargetState, Uav, UavState, UavType
 from missions.services import (
     MissionChange,

@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 import pytest
 from django.contrib.gis.gdal import GDALRaster
+from planning.energy.conditions import Conditions, WindLayer
+from planning.energy.performance import Performance
+from planning.problem import Objective, Priority
 
 from inspection.geodesy import LonLat
 from inspection.services import import_terrain
-from missions.flight_plan.conditions import Conditions, WindLayer
-from missions.flight_plan.performance import Performance
 from missions.models import EndAction
-from missions.routing.problem import Objective, Priority
 from missions.services import TargetRequest, make_plan
 from missions.services.lacks import least_missing
 from missions.services.refusals import LeftOut

@@ -7,10 +7,10 @@ import pytest
 from django.contrib.gis.geos import MultiPolygon, Polygon
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from planning.problem import Objective
 
 from inspection.models import Asset, NoFlyZone
 from missions.models import EndAction
-from missions.routing.problem import Objective
 from missions.services import TargetRequest, make_plan
 from missions.services.requests import NO_BATTERY
 from tests.exact_geometry import segment_meets_polygon

@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from planning.clearance.lost_link import LostLink
+from planning.energy.conditions import Conditions, WindLayer
+from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
+from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from inspection.models import NoFlyZone
-from missions.flight_plan.conditions import Conditions, WindLayer
-from missions.flight_plan.lost_link import LostLink
-from missions.flight_plan.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
 from missions.models import EndAction, Mission, MissionState
-from missions.routing.problem import Objective
 from missions.services import PlanRequest, TargetRequest, make_plan
 from missions.services.requests import LostLinkRequest
 from tests.inspection import ground

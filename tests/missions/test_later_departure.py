@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 from django.test import Client
+from planning.problem import Objective
 
 from inspection.models import NoFlyZone
 from inspection.services import mark_ground_changed
-from missions.routing.problem import Objective
 from missions.services.later_departure import better_departure
 from tests.missions.api import plan_body, post
 from tests.missions.test_timed_zones import MONDAY_NOON, timed_zone

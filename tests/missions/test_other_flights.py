@@ -4,9 +4,9 @@ from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
+from planning.rules import SeparationRules
+from planning.separation.separation import conflicts
 
-from missions.flight_plan.rules import SeparationRules
-from missions.flight_plan.separation import conflicts
 from missions.flight_selectors import flights_at_the_same_time
 from missions.models import EndAction, Mission, MissionState, Waypoint
 from missions.services import create_mission, duplicate_mission, plan_mission

@@ -10,7 +10,7 @@ import pytest
 from django.core.management import CommandError, call_command
 
 from config.private_servers import PROJECT_DIR
-from tests.missions.routing.test_file_plans import graph_file
+from tests.planning.test_file_plans import graph_file
 
 MISSIONS = [{"uavs": [[55.049, 10.001], [54.951, 9.999]], "targets": [0, 13, 5, 10]}]
 

@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from django.contrib.gis.gdal import GDALRaster
 from django.contrib.gis.geos import LineString, MultiPolygon, Point, Polygon
+from planning.problem import Objective, Task, TaskKind
 
 from inspection.geodesy import LonLat, path_length_m
 from inspection.models import NoFlyZone
 from inspection.selectors import NoGraph
 from inspection.services import import_terrain
 from missions.models import EndAction, Uav
-from missions.routing.problem import Objective, Task, TaskKind
 from missions.services import NO_SHORTFALL, BaseRequest, InvalidRequest, TargetRequest, make_plan
 from missions.services.best_so_far import PlanProgress
 from tests.exact_geometry import segment_meets_polygon

@@ -7,11 +7,11 @@ from unittest import mock
 import pytest
 from django.db import OperationalError
 from django.test import Client
+from planning.solver import solver
+from planning.solver.progress import Progress
 
 from missions import tasks
 from missions.models import Mission
-from missions.routing import solver
-from missions.routing.progress import Progress
 from missions.services import NO_SHORTFALL
 from tests.missions.api import TERN, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world

@@ -11,14 +11,14 @@ import networkx as nx
 import numpy as np
 import pytest
 import shapely
+from planning.connection_points import Terminal, Ways, access_legs, attachments, direct_legs, ways_between
+from planning.problem import Objective, Problem, UavStart, Visit
 
 from inspection.geodesy import distance_m, path_length_m
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.selectors import zones_in_force
 from inspection.selectors.planning import planning_read
 from inspection.services import import_osm
-from missions.routing.problem import Objective, Problem, UavStart, Visit
-from missions.routing.terminals import Terminal, Ways, access_legs, attachments, direct_legs, ways_between
 from missions.services import PlanRequest, make_plan
 from missions.services.assignment import route_end
 from missions.services.places import Place, places_of
@@ -27,7 +27,7 @@ from missions.services.scenes import current_scene, scene_on
 from tests.cases import long
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.random_missions import Region, put_random_zones
-from tests.missions.routing.random_problems import best_merit
+from tests.planning.solver.random_problems import best_merit
 
 pytestmark = pytest.mark.django_db
 

@@ -8,22 +8,22 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
+from planning.connection_points import Terminal, ways_between
+from planning.problem import End, Objective, Priority, Problem, Routes, UavStart, Visit
 
 from inspection.geodesy import LonLat, path_length_m
 from inspection.selectors import zones_in_force
 from inspection.selectors.planning import planning_read
 from missions.models import EndAction
-from missions.routing.problem import End, Objective, Priority, Problem, Routes, UavStart, Visit
-from missions.routing.terminals import Terminal, ways_between
 from missions.services import BaseRequest, LockRequest, PlanRequest, TargetRequest, UavRequest, make_plan
 from missions.services.places import places_of
 from missions.services.requests import NO_BATTERY
 from missions.services.scenes import current_scene, scene_on
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.random_missions import AMPLE
-from tests.missions.routing.random_problems import every_plan
 from tests.missions.test_random_missions import is_on_shortest_ways
 from tests.missions.worlds import LINE_LAT, TOWER_LONS, World, island, world, zone_around
+from tests.planning.solver.random_problems import every_plan
 
 pytestmark = pytest.mark.django_db
 

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from planning.energy.performance import Performance
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import ground_heights_m
 from inspection.services import build_graph, import_osm, import_terrain, mark_ground_changed
-from missions.flight_plan.performance import Performance
 from missions.models import EndAction
 from missions.services import TargetRequest, make_plan
 from tests.cases import long

@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 from django.contrib.gis.geos import LineString
+from planning.problem import Objective
 
 from inspection.models import NoFlyZone
 from missions.models import EndAction
-from missions.routing.problem import Objective
 from missions.services import make_plan
 from tests.missions.worlds import request, uav, world, zone_around
 

@@ -6,12 +6,12 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from planning.energy.performance import Performance
+from planning.problem import Objective
 
 from inspection.selectors.planning import planning_read
 from inspection.services import import_osm
-from missions.flight_plan.performance import Performance
 from missions.models import EndAction
-from missions.routing.problem import Objective
 from missions.services import LockRequest, PlanRequest, TargetRequest, make_plan
 from missions.services.scenes import current_scene, scene_on
 from tests.cases import long

@@ -4,10 +4,10 @@ import numpy as np
 import orjson
 from hypothesis import given
 from hypothesis import strategies as st
+from planning.problem import Task, TaskKind
+from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 
 from inspection.geodesy import LonLat
-from missions.flight_plan.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-from missions.routing.problem import Task, TaskKind
 from missions.services.plan_json import waypoints_to_json
 from missions.services.waypoint_text import line_text, waypoints_text
 

@@ -4,10 +4,10 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from planning.problem import Objective, Priority
 
 from inspection.geodesy import LonLat
 from missions.models import EndAction
-from missions.routing.problem import Objective, Priority
 from missions.services import (
     BaseRequest,
     InvalidRequest,

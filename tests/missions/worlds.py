@@ -10,11 +10,12 @@ UAVs        x                          55.995
 from dataclasses import dataclass
 from typing import Any
 
+from planning.problem import Objective
+
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
 from inspection.services import build_graph, mark_ground_changed
 from missions.models import EndAction
-from missions.routing.problem import Objective
 from missions.services import PlanRequest, TargetRequest, UavRequest
 from tests.inspection import ground
 

@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 import shapely
-from mavlink.approved_route import LAND, FrozenRoute, FrozenWaypoint, TakeOff
+from planning.problem import Task, TaskKind
+from planning.trajectory.waypoints import WaypointKind
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
@@ -17,8 +18,7 @@ from inspection.zones.reach import Limits as ZoneLimits
 from inspection.zones.reach import ZoneTable, agl_band
 from inspection.zones.rules import ZoneRules
 from inspection.zones.schedule import Schedule
-from missions.flight_plan.waypoints import WaypointKind
-from missions.routing.problem import Task, TaskKind
+from mavlink.approved_route import LAND, FrozenRoute, FrozenWaypoint, TakeOff
 from simulation.verdict.flown import Ending, FlownFlight, FlownRoute, FlownTrack
 from simulation.verdict.judging import Surroundings
 from simulation.verdict.limits import Limits

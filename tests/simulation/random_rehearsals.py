@@ -7,13 +7,13 @@ from pathlib import Path
 
 from django.contrib.gis.measure import D
 from django.core.management import call_command
+from planning.energy.performance import Performance
+from planning.problem import Objective, Task, TaskKind
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
 from inspection.selectors.planning import heights_at, planning_read
-from missions.flight_plan.performance import Performance
 from missions.models import EndAction, Mission
-from missions.routing.problem import Objective, Task, TaskKind
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
 from missions.services.refused import Refused
 from simulation.rehearsing.flying import fly

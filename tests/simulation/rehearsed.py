@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from missions.flight_plan.conditions import conditions_from_json
+from planning.energy.conditions import conditions_from_json
+
 from missions.models import Mission
 from missions.selectors import mission_of_organisation
 from simulation.models import Rehearsal

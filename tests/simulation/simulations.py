@@ -4,9 +4,9 @@ from datetime import timedelta
 from typing import Any
 
 from django.utils import timezone
+from planning.energy.conditions import Conditions
 
 from inspection.geodesy import LonLat
-from missions.flight_plan.conditions import Conditions
 from missions.models import Mission
 from missions.selectors import mission_of_organisation
 from simulation.models import Simulation

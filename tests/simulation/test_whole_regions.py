@@ -6,14 +6,14 @@ from typing import Any
 import numpy as np
 import pytest
 from django.contrib.gis.geos import Point
+from planning.energy.performance import Performance
+from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors.planning import heights_at, planning_read
 from inspection.services import build_graph, import_osm, mark_ground_changed
-from missions.flight_plan.performance import Performance
 from missions.models import EndAction
-from missions.routing.problem import Objective
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
 from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly

@@ -1,9 +1,9 @@
 """What a UAV's autopilot would refuse is said before its mission is approved."""
 
 import pytest
+from planning.problem import Task, TaskKind
 
 from missions.models import Mission, MissionState, Uav
-from missions.routing.problem import Task, TaskKind
 from missions.services import TargetRequest
 from missions.services.approval import approve_mission
 from missions.services.refused import Reason, Refused

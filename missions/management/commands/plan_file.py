@@ -8,9 +8,8 @@ from time import perf_counter
 from typing import Any
 
 from django.core.management import BaseCommand, CommandError, CommandParser
-
-from missions.routing.file_plans import PHASES, FileGraph, InvalidFile, plan_json, read_graph
-from missions.routing.problem import Objective
+from planning.file_plans import PHASES, FileGraph, InvalidFile, plan_json, read_graph
+from planning.problem import Objective
 
 OBJECTIVES = {"sum": Objective.TOTAL, "max": Objective.MAKESPAN}
 

@@ -7,11 +7,11 @@ from datetime import datetime, timedelta
 from typing import Any
 
 from django.utils.translation import gettext as _
+from planning.energy.conditions import conditions_from_json
+from planning.problem import Objective, Priority
+from planning.solver.solver import Stop, never
 
-from missions.flight_plan.conditions import conditions_from_json
 from missions.models import Mission
-from missions.routing.problem import Objective, Priority
-from missions.routing.solver import Stop, never
 from missions.services.missions import request_of_mission
 from missions.services.planning import make_plan
 from missions.services.replanning.composing import Continued, continued_route

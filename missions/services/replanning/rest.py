@@ -7,11 +7,11 @@ from itertools import pairwise
 from typing import Any
 
 from django.utils.translation import gettext as _
+from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
 from missions.ahead_selectors import HEARD_WITHIN_S, OFF_ROUTE_M, first_ahead, passed_point
-from missions.flight_plan.rest_of_route import PassedPoint, PlaceOnRoute, place_on_route
 from missions.models import (
     Approval,
     CommandAxis,

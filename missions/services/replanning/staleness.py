@@ -6,10 +6,10 @@ from typing import Any
 
 from django.utils.dateparse import parse_datetime
 from django.utils.translation import gettext as _
+from planning.trajectory.remaining_route import NEAR_M, PassedPoint, place_on_route
 
 from inspection.geodesy import LonLat
 from missions.ahead_selectors import HEARD_WITHIN_S
-from missions.flight_plan.rest_of_route import NEAR_M, PassedPoint, place_on_route
 from missions.models import CommandAxis, CommandState, Mission, MissionState, ReplanOffer, Route, TargetState, UavCommand, Waypoint
 from missions.services.replanning.rest import HOLDING, LEFT, distance_apart_m
 

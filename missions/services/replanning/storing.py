@@ -5,11 +5,11 @@ from datetime import datetime
 from typing import Any
 
 from django.db import transaction
+from planning.energy.conditions import conditions_from_json
+from planning.problem import Objective
 
-from missions.flight_plan.conditions import conditions_from_json
 from missions.models import Mission, MissionUav, Route
 from missions.models.missions import LONGEST_NAME
-from missions.routing.problem import Objective
 from missions.selectors import mission_of_organisation
 from missions.services.approval_checks import reasons_against
 from missions.services.mission_plans import store_plan

@@ -7,9 +7,9 @@ from functools import partial
 from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
+from planning.solver.solver import Stop
 
 from missions.models import MissionState, OfferState, ReplanOffer
-from missions.routing.solver import Stop
 from missions.selectors import mission_of_organisation
 from missions.services.refused import Reason
 from missions.services.replanning.difference import difference_of

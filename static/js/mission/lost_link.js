@@ -31,7 +31,7 @@ import { durationText, exactHeightText, numberText } from "../units.js";
  */
 
 export const MOST_RALLY_POINTS = 50; // missions/serializers/limits.py
-export const LONGEST_HOLD_S = 3600; // missions/routing/problem.py
+export const LONGEST_HOLD_S = 3600; // planning/problem.py
 const USUAL_HOLD_S = 60;
 const LEAST_WAY_M = 20; // a shorter one is not seen
 const DIGITS = 6; // some 0.1 m

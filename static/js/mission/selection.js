@@ -22,7 +22,7 @@ export const EMPTY = Object.freeze({
   ...UNSAID,
 });
 
-export const MOST_TARGETS = 500; // of a mission: missions/routing/rules.py
+export const MOST_TARGETS = 500; // of a mission: planning/solver/rules.py
 
 /**
  * Two picks of the same place are one target: the asset whole, or one point of it.
@@ -115,7 +115,7 @@ export function withoutTargets(selection, keys) {
   return { ...selection, targets: selection.targets.filter((target) => !gone.has(target.key)) };
 }
 
-/** Seconds at a target where nobody names them, as in missions/routing/problem.py. */
+/** Seconds at a target where nobody names them, as in planning/problem.py. */
 export const HOLD_S = { look: 5, photo: 10, hold: 30 };
 export const LONGEST_HOLD_S = 3600;
 
@@ -218,7 +218,7 @@ export function sensorsKnown(selection, fleet) {
 }
 
 /**
- * What a UAV's flying takes: missions/flight_plan/performance.py.
+ * What a UAV's flying takes: planning/energy/performance.py.
  *
  * @type {("battery_wh" | "mass_kg" | "reserve_percent" | "max_airspeed_mps" | "rotor_disk_m2" | "hover_power_w")[]}
  */

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from missions.flight_plan.lost_link import LostLink
+from planning.clearance.lost_link import LostLink
+
 from telemetry.alerting.advice import (
     FAILSAFE_UNKNOWN,
     FAILSAFES,

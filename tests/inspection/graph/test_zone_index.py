@@ -154,7 +154,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from missions.flight_plan.clearance import legs_that_meet
+from planning.clearance.zone_clearance import legs_that_meet
 from tests.inspection.graph.test_zone_index import index, jagged
 
 zones = [jagged(lon) for lon in (0.0, 3.0)]

@@ -1,6 +1,10 @@
 """From an approved route to a vehicle that holds it: every kind of item is taken, and kept, by both flavours."""
 
 import pytest
+from planning.problem import Task, TaskKind
+from planning.trajectory.waypoints import WaypointKind
+
+from inspection.geodesy import LonLat
 from mavlink.approved_route import END_ACTIONS
 from mavlink.fence import fence_of, rally_items
 from mavlink.intermediate_waypoints import with_points_between
@@ -10,10 +14,6 @@ from mavlink.mission_sync.sync import MissionKeeper
 from mavlink.timeouts import TransferRules
 from tests.mavlink.routes import start_and_end, waypoint
 from tests.mavlink.test_fence import square
-
-from inspection.geodesy import LonLat
-from missions.flight_plan.waypoints import WaypointKind
-from missions.routing.problem import Task, TaskKind
 from tests.telemetry.vehicles.channel import Channel
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known
 

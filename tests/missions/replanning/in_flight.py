@@ -5,11 +5,11 @@ from typing import Any
 
 from django.contrib.gis.geos import Point
 from django.utils import timezone
+from planning.energy.performance import Performance
+from planning.problem import Objective
+from planning.solver.solver import never
 
-from missions.flight_plan.performance import Performance
 from missions.models import CommandKind, EndAction, Mission, ReplanOffer, Route, Uav
-from missions.routing.problem import Objective
-from missions.routing.solver import never
 from missions.selectors import mission_of_organisation
 from missions.services import create_mission, plan_mission
 from missions.services.approval import approve_mission

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
 from inspection.selectors import current_graph
 from inspection.services import build_graph, mark_ground_changed
 from missions.models import EndAction, Mission, OfferState, ReplanOffer, Route
-from missions.routing.problem import Objective
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
 from missions.services.flying import FlightEnd, mark_flight_ended
 from missions.services.refused import Refused

@@ -3,10 +3,10 @@
 import time
 
 import pytest
-from mavlink.autopilot_type import Flavour
+from planning.problem import Task, TaskKind
 
+from mavlink.autopilot_type import Flavour
 from missions.models import CommandKind, CommandState, Mission, MissionState
-from missions.routing.problem import Task, TaskKind
 from missions.services import TargetRequest
 from missions.services.commands import queue_command
 from missions.services.dispatch import load_of

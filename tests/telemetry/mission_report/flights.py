@@ -4,12 +4,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from mavlink.approved_route import FrozenRoute, FrozenWaypoint, TakeOff
+from planning.problem import Task, TaskKind
+from planning.trajectory.waypoints import WaypointKind
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from missions.flight_plan.waypoints import WaypointKind
-from missions.routing.problem import Task, TaskKind
+from mavlink.approved_route import FrozenRoute, FrozenWaypoint, TakeOff
 from telemetry.mission_report.fix import Fix
 
 FRAME = LocalFrame.around(9.5, 47.1)

@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from planning.clearance.lost_link import LostLink
+from planning.problem import Task, TaskKind
 
-from missions.flight_plan.lost_link import LostLink
 from missions.models import Mission, Uav
-from missions.routing.problem import Task, TaskKind
 from missions.services import TargetRequest
 from missions.services.requests import LostLinkRequest
 from tests.missions.flights import approved, ground

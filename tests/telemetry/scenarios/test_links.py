@@ -3,8 +3,8 @@
 import signal
 
 import pytest
+from planning.clearance.lost_link import LostLink
 
-from missions.flight_plan.lost_link import LostLink
 from missions.models import CommandKind, CommandState, MissionState
 from missions.services.approval import approve_mission
 from missions.services.dispatch import load_of

@@ -1,0 +1,11 @@
+"""The part of the inspection graph that a plan's height limit leaves."""
+
+from planning.rules import FlightRules
+
+from inspection.graph.flyable import flyable_part
+from inspection.graph.inspection_graph import InspectionGraph
+
+
+def flyable_graph(graph: InspectionGraph, rules: FlightRules) -> InspectionGraph:
+    """The graph without nodes too tall to be flown over with clearance, and without their edges."""
+    return flyable_part(graph, rules.tallest_m)

@@ -1,0 +1,259 @@
+"""Seconds and watt-hours of everything that an assignment may choose, in wind and over tall assets, before any route is drawn.
+
+They follow the ways that are least in cost, which the wind does not change. A way that the wind closes is no way.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import accumulate, chain
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+from planning.connection_points import Ways
+from planning.energy.conditions import Conditions, air_density
+from planning.energy.leg_cost import J_PER_WH, Speeds, landing_taken, leg_taken, stay_taken, take_off_taken
+from planning.energy.path_cost import FlightClass, NodeGround, bends_of_ways, graph_taken, taken_on_ways
+from planning.problem import End
+from planning.rules import FlightRules
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.short_vector import short_vector_m
+from inspection.graph.along_ways import chain_arrays
+from inspection.graph.condensed import NumberArray
+from inspection.graph.inspection_graph import InspectionGraph
+
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Taken:
+    """Seconds or Wh of u UAVs in c classes and v visits; inf where there is no way. Nothing else has to be added to them.
+
+    first   (u, v)     take-off, and the way from each start to each visit
+    onward  (c, v, v)  from the row's visit, up to transit height if it lies lower, on to the column's
+    end     (v, u)     from each visit to where each UAV's route ends, and the landing
+    along   (c, v)     along the stretch of each visit
+    service (c, v)     what is done at each visit, and the way down to it from transit height
+    """
+
+    first: FloatArray
+    onward: FloatArray
+    end: FloatArray
+    along: FloatArray
+    service: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class FlightCosts:
+    """class_of (u,) numbers the classes in order of their first UAV; usable_wh (u,) is inf where a battery is not known."""
+
+    seconds: Taken
+    wh: Taken
+    class_of: tuple[int, ...]
+    usable_wh: FloatArray
+
+
+@dataclass(frozen=True)
+class Finish:
+    """How a UAV's route ends: where, and whether on the ground."""
+
+    end: End
+    lands: bool
+
+
+def flight_costs(
+    graph: InspectionGraph,
+    ways: Ways,
+    *,
+    classes: Sequence[FlightClass],
+    finishes: Sequence[Finish],
+    starts: Sequence[LonLat],
+    bases: Sequence[LonLat],
+    courses: Sequence[Sequence[LonLat]],
+    agl_m: Sequence[float],
+    hold_s: Sequence[float],
+    conditions: Conditions,
+    rules: FlightRules,
+    ground: NodeGround | None = None,
+    homes: Sequence[LonLat] | None = None,
+) -> FlightCosts:
+    """classes, finishes, starts: of each UAV of the ways; courses, agl_m, hold_s: of each visit; bases and homes as the ways have them.
+
+    Timing a drawn route finds the same, but for turns of its course that drawing leaves out, waypoints that the terrain asks for, and
+    wind that changes with height along a leg. Without the ground nothing is known of hills, and the air is that of the sea's level.
+    """
+    uavs, visits, travel = ways.uavs, ways.visits, ways.travel
+    numbers: dict[FlightClass, int] = {}
+    class_of = tuple(numbers.setdefault(flying, len(numbers)) for flying in classes)
+    course = np.array(list(chain.from_iterable(courses)), dtype=np.float64).reshape(-1, 2)
+    course_first = np.array([0, *accumulate(map(len, courses))], dtype=np.int64)
+    begins = np.array(starts, dtype=np.float64).reshape(-1, 2)
+    stands = np.array([*(starts if homes is None else homes), *bases], dtype=np.float64).reshape(-1, 2)
+    flown = np.array([agl_m, hold_s], dtype=np.float64)
+    ends = np.array([(_ENDS[finish.end], finish.lands) for finish in finishes], dtype=np.int64).reshape(-1, 2)
+    source_m, sink_m = (_NOT_KNOWN, _NOT_KNOWN) if ground is None else (ground.source_m, ground.sink_m)
+    own_class = np.array(class_of, dtype=np.int64)
+    first, end = np.empty((2, uavs, visits)), np.empty((2, visits, uavs))
+    onward, at_visit = np.empty((2, len(numbers), visits, visits)), np.empty((2, 2, len(numbers), visits))
+    bends = bends_of_ways(travel, float(rules.transit_agl_m))
+    for flying, number in numbers.items():
+        taken = graph_taken(graph, flying, conditions, rules, ground)
+        _fill(
+            number, own_class, ends, ways.nearest_base, course, course_first, begins, stands, flown,
+            source_m, sink_m, float(rules.transit_agl_m),
+            travel.way, travel.entry_leg, travel.entry_label, travel.leg_node, *chain_arrays(travel.index),
+            taken.sums.place, taken.sums.label, graph.position, taken.passed_m, taken.ground_m,
+            *bends, taken.air.wind, taken.air.temperature_c, taken.air.own, taken.air.table, first, onward, end, at_visit,
+        )  # fmt: skip
+    seconds, wh = (Taken(first[part], onward[part], end[part], *at_visit[part]) for part in range(2))
+    usable_wh = [flying.performance.usable_wh for flying in classes]
+    return FlightCosts(seconds, wh, class_of, np.array([np.inf if one is None else one for one in usable_wh], dtype=np.float64))
+
+
+_NOT_KNOWN = np.zeros(0)
+_ENDS = {End.OPEN: 0, End.RETURN: 1, End.ANY_BASE: 2}
+_OPEN, _RETURN = _ENDS[End.OPEN], _ENDS[End.RETURN]
+
+# What _at_visits tells of each visit: the stretch; what is done there, with the way down; the way up again; the landing there.
+ALONG, SERVICE, UP, LANDING_THERE = range(4)
+TAKE_OFF, LANDING = range(2)
+
+
+@njit(cache=True, nogil=True)
+def _fill(
+    number: int,
+    class_of: IntArray,
+    ends: IntArray,
+    nearest_base: IntArray,
+    course: FloatArray,
+    course_first: IntArray,
+    begins: FloatArray,
+    stands: FloatArray,
+    flown: FloatArray,
+    source_ground_m: FloatArray,
+    sink_ground_m: FloatArray,
+    transit_m: float,
+    way: NumberArray,
+    entry_leg: NumberArray,
+    entry_label: IntArray,
+    leg_node: NumberArray,
+    node_chain: NumberArray,
+    node_place: NumberArray,
+    chain_first: NumberArray,
+    place_sum: FloatArray,
+    label_sum: FloatArray,
+    node_position: FloatArray,
+    passed_m: FloatArray,
+    node_ground_m: FloatArray,
+    bend: FloatArray,
+    bend_first: IntArray,
+    direct_number: NumberArray,
+    wind: FloatArray,
+    temperature_c: float,
+    own: Speeds,
+    table: FloatArray,
+    first: FloatArray,
+    onward: FloatArray,
+    end: FloatArray,
+    at_visit: FloatArray,
+) -> None:
+    """Write what UAVs of one class take into first (2, u, v), onward (2, c, v, v), end (2, v, u) and at_visit (2, along or service, c, v).
+
+    course: the visits' courses one after another; begins: the starts; stands: the homes, then the bases; flown: height and hold of
+    each visit; ends (u, 2): where each UAV ends, and whether it lands.
+    """
+    uavs, visits = len(class_of), len(course_first) - 1
+    source, sink = np.full((uavs + visits, 4), np.nan), np.full((visits + len(stands), 4), np.nan)
+    for uav in range(len(stands)):
+        sink[visits + uav, :2], sink[visits + uav, 2] = stands[uav], transit_m
+    for uav in range(uavs):
+        source[uav, :2], source[uav, 2] = begins[uav], transit_m
+    for visit in range(visits):
+        source[uavs + visit, :2], sink[visit, :2] = course[course_first[visit + 1] - 1], course[course_first[visit]]
+        source[uavs + visit, 2] = sink[visit, 2] = max(flown[0, visit], transit_m)
+    if len(source_ground_m):
+        source[:, 3], sink[:, 3] = source_ground_m, sink_ground_m
+    taken = taken_on_ways(
+        way, entry_leg, entry_label, leg_node, node_chain, node_place, chain_first, place_sum, label_sum,
+        node_position, passed_m, node_ground_m, source, sink, bend, bend_first, direct_number, wind, temperature_c, own, table,
+    )  # fmt: skip
+    parts, columns = _at_visits(course, course_first, flown, source[:, 3], transit_m, wind, temperature_c, own, table)
+    for part in range(2):
+        for visit in range(visits):
+            # What cannot be done in this wind cannot be flown to.
+            is_closed = math.isinf(parts[part, SERVICE, visit]) or math.isinf(parts[part, ALONG, visit])
+            for kind in (ALONG, SERVICE):
+                at_visit[part, kind, number, visit] = 0.0 if is_closed else parts[part, kind, visit]
+            for other in range(visits):
+                onward[part, number, other, visit] = np.inf if is_closed else parts[part, UP, other] + taken[part, uavs + other, visit]
+            for uav in range(uavs):
+                if class_of[uav] != number:
+                    continue
+                first[part, uav, visit] = np.inf if is_closed else columns[part, TAKE_OFF] + taken[part, uav, visit]
+                landing = columns[part, LANDING]
+                if ends[uav, 0] == _OPEN:
+                    end[part, visit, uav], landing = 0.0, parts[part, LANDING_THERE, visit]
+                else:
+                    home = visits + (uav if ends[uav, 0] == _RETURN else uavs + nearest_base[visit])
+                    there = taken[part, uavs + visit, home] if home < len(sink) else np.inf  # no base is free
+                    end[part, visit, uav] = parts[part, UP, visit] + there
+                if ends[uav, 1]:
+                    end[part, visit, uav] += landing
+
+
+@njit(cache=True, nogil=True)
+def _at_visits(
+    course: FloatArray,
+    course_first: IntArray,
+    flown: FloatArray,
+    ground_m: FloatArray,
+    transit_m: float,
+    wind: FloatArray,
+    temperature_c: float,
+    own: Speeds,
+    table: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Seconds and Wh of each visit's parts, (2, 4, v), and of take-off to transit height and landing from there, (2, 2).
+
+    ground_m is of the starts and then of the visits, NaN where not known. The columns are those of the highest start: in the thinnest air.
+    """
+    visits = len(course_first) - 1
+    uavs = len(ground_m) - visits
+    parts, columns = np.zeros((2, 4, visits)), np.zeros((2, 2))
+    for visit in range(visits):
+        level_m = flown[0, visit]
+        low_m = min(level_m, transit_m)
+        known_m = ground_m[uavs + visit]
+        density = air_density(0.0 if math.isnan(known_m) else known_m + level_m, temperature_c)
+        parts[0, SERVICE, visit], parts[1, SERVICE, visit] = stay_taken(flown[1, visit], level_m, wind, density, own, table)
+        for vertex in range(course_first[visit] + 1, course_first[visit + 1]):
+            east, north = short_vector_m(course[vertex - 1, 0], course[vertex - 1, 1], course[vertex, 0], course[vertex, 1])
+            length_m = math.hypot(east, north)
+            if length_m > 0.0:
+                along = leg_taken(length_m, east / length_m, north / length_m, level_m, level_m, 0.0, wind, density, own, table)
+                parts[0, ALONG, visit] += along[0]
+                parts[1, ALONG, visit] += along[1]
+        down = leg_taken(0.0, 0.0, 0.0, transit_m, low_m, low_m - transit_m, wind, density, own, table)
+        up = leg_taken(0.0, 0.0, 0.0, low_m, transit_m, transit_m - low_m, wind, density, own, table)
+        landing = leg_taken(0.0, 0.0, 0.0, level_m, 0.0, -level_m, wind, density, own, table)
+        touching = landing_taken(level_m, wind, density, own, table)
+        for part in range(2):
+            parts[part, SERVICE, visit] += down[part]
+            parts[part, UP, visit], parts[part, LANDING_THERE, visit] = up[part], landing[part] + touching[part]
+    highest_m = 0.0
+    for uav in range(uavs):
+        if not math.isnan(ground_m[uav]):
+            highest_m = max(highest_m, ground_m[uav])
+    density = air_density(highest_m, temperature_c)
+    columns[0, TAKE_OFF], columns[1, TAKE_OFF] = leg_taken(0.0, 0.0, 0.0, 0.0, transit_m, transit_m, wind, density, own, table)
+    columns[0, LANDING], columns[1, LANDING] = leg_taken(0.0, 0.0, 0.0, transit_m, 0.0, -transit_m, wind, density, own, table)
+    lifting, touching = take_off_taken(transit_m, wind, density, own, table), landing_taken(transit_m, wind, density, own, table)
+    for part in range(2):
+        columns[part, TAKE_OFF] += lifting[part]
+        columns[part, LANDING] += touching[part]
+    parts[1] /= J_PER_WH
+    columns[1] /= J_PER_WH
+    return parts, columns

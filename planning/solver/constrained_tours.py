@@ -1,0 +1,269 @@
+"""One UAV's shortest routes over every set of targets, where range or battery is limited beside what the objective counts.
+
+The shortest tour over a set may take more Wh than the battery has while another keeps it. Most sets are settled without a search: where
+their shortest tour keeps every limit, it is the best; where even the tour of the least Wh does not, there is none. For those between,
+labels are kept: of each set and last visit all tours of which none is shorter and takes less (as in resource constrained shortest paths,
+M. Desrochers and F. Soumis, INFOR 26, 1988). Their number is bounded; where the bound is met, the tours are good but not proven.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from planning.problem import BoolArray, FloatArray, IntArray
+from planning.solver.cost_matrices import NO_WAY_M
+from planning.solver.problem_arrays import Arcs
+from planning.solver.reach import least_ways
+from planning.solver.tours import shortest_tours, walk_back
+
+MOST_LABELS = 96  # of one set and last visit
+ALL_LABELS = 300_000  # some tenths of a second; beyond, each set and last visit keeps but the shortest tour and those that take least
+ALIKE = 1e-10  # the share of a limit by which tours may differ and count as taking the same: rounding
+
+
+@dataclass(frozen=True, eq=False)
+class Tours:
+    """The least length over each set that keeps every limit, (sets,), inf if none does; the tours of some sets are labels."""
+
+    length_m: FloatArray
+    is_whole: bool
+    _reach_m: FloatArray
+    _arcs: tuple[FloatArray, FloatArray, FloatArray, IntArray, BoolArray]
+    _label_of: IntArray
+    _parent: IntArray
+    _visit: IntArray
+
+    def route(self, members: int) -> tuple[int, ...]:
+        """Visits in order of the best tour over a set that has one."""
+        label = int(self._label_of[members])
+        if label < 0:
+            first_m, back_m, end_m, target, allowed = self._arcs
+            order = np.empty(len(target), dtype=np.int64)
+            count = walk_back(members, self._reach_m, first_m, back_m, end_m, target, allowed, order)
+            return tuple(order[:count].tolist())
+        visits = []
+        while label >= 0:
+            visits.append(int(self._visit[label]))
+            label = int(self._parent[label])
+        return tuple(reversed(visits))
+
+
+def limited_tours(arcs: Arcs, uav: int, counts: IntArray, most_labels: int = MOST_LABELS) -> Tours:
+    """counts (sets,) are the targets done by each set; most_labels those kept of each set and last visit."""
+    burden, number = arcs.burden, int(arcs.class_of[uav])
+    back_m = np.ascontiguousarray(arcs.onward_m[number].T)
+    own = arcs.first_m[uav], back_m, arcs.end_m[uav], arcs.target, arcs.allowed[uav]
+    more = len(burden)
+    home = np.empty((more, len(arcs.target)))
+    back = np.empty((more, *back_m.shape))
+    for at in range(more):
+        back[at] = burden.onward[at, number].T
+        home[at] = (least_ways(np.where(arcs.allowed[uav], burden.onward[at, number], np.inf)) + burden.end[at, uav]).min(axis=1)
+    first, end = np.ascontiguousarray(burden.first[:, uav]), np.ascontiguousarray(burden.end[:, uav])
+    found = _limited(
+        *own, float(arcs.limit_m[uav]), int(arcs.most[uav]), counts, first, back, end, home, burden.limit[:, uav].copy(), most_labels
+    )
+    length_m, reach_m, label_of, parent, visit, is_whole = found
+    return Tours(length_m, is_whole, reach_m, own, label_of, parent, visit)
+
+
+@njit(cache=True, nogil=True)
+def settled_tours(
+    first_m: FloatArray,
+    back_m: FloatArray,
+    end_m: FloatArray,
+    target: IntArray,
+    allowed: BoolArray,
+    limit_m: float,
+    most: int,
+    counts: IntArray,
+    first: FloatArray,
+    back: FloatArray,
+    end: FloatArray,
+    limit: FloatArray,
+    reach_m: FloatArray,
+    length_m: FloatArray,
+    is_contested: BoolArray,
+) -> bool:
+    """Fill in reach and lengths as `shortest_tours`, inf for the sets of which no tour keeps every limit. Whether any set is contested.
+
+    Of a contested one the shortest tour breaks a limit that another of its tours keeps.
+    """
+    sets, visits, more = len(counts), len(target), len(limit)
+    shortest_tours(first_m, back_m, end_m, target, allowed, reach_m, length_m)
+    can_be = np.ones(sets, dtype=np.bool_)
+    reach, least = np.empty((sets, visits)), np.empty(sets)
+    for at in range(more):
+        shortest_tours(first[at], back[at], end[at], target, allowed, reach, least)
+        for members in range(sets):
+            can_be[members] &= least[members] <= limit[at]
+    order = np.empty(visits, dtype=np.int64)
+    any_contested = False
+    for members in range(1, sets):
+        if not can_be[members] or length_m[members] > limit_m or counts[members] > most:
+            length_m[members] = np.inf
+            continue
+        if not more:
+            continue
+        count = walk_back(members, reach_m, first_m, back_m, end_m, target, allowed, order)
+        for at in range(more):
+            taken = first[at, order[0]] + end[at, order[count - 1]]
+            for place in range(1, count):
+                taken += back[at, order[place], order[place - 1]]
+            if taken > limit[at]:
+                is_contested[members] = any_contested = True
+    return any_contested
+
+
+@njit(cache=True, nogil=True)
+def _limited(
+    first_m: FloatArray,
+    back_m: FloatArray,
+    end_m: FloatArray,
+    target: IntArray,
+    allowed: BoolArray,
+    limit_m: float,
+    most: int,
+    counts: IntArray,
+    first: FloatArray,
+    back: FloatArray,
+    end: FloatArray,
+    home: FloatArray,
+    limit: FloatArray,
+    most_labels: int,
+) -> tuple[FloatArray, FloatArray, IntArray, IntArray, IntArray, bool]:
+    """Lengths (sets,), reach as of `shortest_tours`, each set's label or -1, parents and visits of labels, whether all are there."""
+    sets, visits = len(counts), len(target)
+    reach_m, length_m = np.empty((sets, visits)), np.empty(sets)
+    label_of = np.full(sets, -1, dtype=np.int64)
+    is_contested = np.zeros(sets, dtype=np.bool_)
+    if not settled_tours(
+        first_m, back_m, end_m, target, allowed, limit_m, most, counts, first, back, end, limit, reach_m, length_m, is_contested
+    ):
+        nothing = np.empty(0, dtype=np.int64)
+        return length_m, reach_m, label_of, nothing, nothing, True
+    is_wanted = is_contested.copy()
+    for members in range(sets - 1, 0, -1):
+        if is_wanted[members]:
+            rest = members
+            while rest:
+                is_wanted[members ^ (rest & -rest)] = True
+                rest &= rest - 1
+    parent, visit, is_whole = _labels(
+        first_m,
+        back_m,
+        end_m,
+        target,
+        allowed,
+        limit_m,
+        first,
+        back,
+        end,
+        home,
+        limit,
+        is_wanted,
+        is_contested,
+        length_m,
+        label_of,
+        most_labels,
+    )
+    return length_m, reach_m, label_of, parent, visit, is_whole
+
+
+@njit(cache=True, nogil=True)
+def _labels(
+    first_m: FloatArray,
+    back_m: FloatArray,
+    end_m: FloatArray,
+    target: IntArray,
+    allowed: BoolArray,
+    limit_m: float,
+    first: FloatArray,
+    back: FloatArray,
+    end: FloatArray,
+    home: FloatArray,
+    limit: FloatArray,
+    is_wanted: BoolArray,
+    is_contested: BoolArray,
+    length_m: FloatArray,
+    label_of: IntArray,
+    most_labels: int,
+) -> tuple[IntArray, IntArray, bool]:
+    """Fill in lengths and labels of the contested sets.
+
+    A label is a tour up to its last visit: its length, then what it takes of each limit. Returns parents, last visits, and whether no
+    label had to be dropped.
+    """
+    sets, visits, more = len(length_m), len(target), len(limit)
+    label = np.empty((1024, 1 + more))
+    parent, last = np.empty(1024, dtype=np.int64), np.empty(1024, dtype=np.int64)
+    begin, count = np.zeros((sets, visits), dtype=np.int64), np.zeros((sets, visits), dtype=np.int64)
+    tried, tried_from = np.empty((64, 1 + more)), np.empty(64, dtype=np.int64)
+    total, is_whole = 0, True
+    for members in range(1, sets):
+        if not is_wanted[members]:
+            continue
+        best_m = np.inf
+        for visit in range(visits):
+            bit = 1 << target[visit]
+            if members & bit == 0 or not allowed[visit]:
+                continue
+            rest, trials = members ^ bit, 0
+            for other in range(visits if rest else 1):
+                if rest and (count[rest, other] == 0 or back_m[visit, other] >= NO_WAY_M):
+                    continue
+                for number in range(count[rest, other] if rest else 1):
+                    before = begin[rest, other] + number if rest else -1
+                    if trials == len(tried):
+                        tried, tried_from = np.append(tried, tried, axis=0), np.append(tried_from, tried_from)
+                    tried[trials, 0] = label[before, 0] + back_m[visit, other] if rest else first_m[visit]
+                    may = tried[trials, 0] < NO_WAY_M
+                    for at in range(more):
+                        tried[trials, 1 + at] = label[before, 1 + at] + back[at, visit, other] if rest else first[at, visit]
+                        may = may and tried[trials, 1 + at] + home[at, visit] <= limit[at]
+                    if may:
+                        tried_from[trials] = before
+                        trials += 1
+            if trials == 0:
+                continue
+            most = max(most_labels, 1 + more) if total < ALL_LABELS else 1 + more
+            begin[members, visit] = total
+            kept = 0
+            for at in np.argsort(tried[:trials, 0]):
+                is_beaten = False
+                for number in range(total, total + kept):
+                    is_beaten = True
+                    for place in range(1, 1 + more):
+                        if label[number, place] > tried[at, place] + ALIKE * limit[place - 1]:
+                            is_beaten = False
+                            break
+                    if is_beaten:
+                        break
+                if is_beaten:
+                    continue
+                if kept == most:
+                    is_whole = False
+                    for place in range(1, 1 + more):  # the last places are for those that take least
+                        if tried[at, place] < label[total + kept - place, place]:
+                            label[total + kept - place], parent[total + kept - place] = tried[at], tried_from[at]
+                            break
+                    continue
+                if total + kept == len(last):
+                    label, parent, last = np.append(label, label, axis=0), np.append(parent, parent), np.append(last, last)
+                label[total + kept], parent[total + kept], last[total + kept] = tried[at], tried_from[at], visit
+                kept += 1
+            count[members, visit] = kept
+            if is_contested[members]:
+                for number in range(total, total + kept):
+                    closed_m = label[number, 0] + end_m[visit]
+                    may = closed_m < best_m
+                    for at in range(more):
+                        may = may and label[number, 1 + at] + end[at, visit] <= limit[at]
+                    if may:
+                        best_m, label_of[members] = closed_m, number
+            total += kept
+        if is_contested[members]:
+            length_m[members] = best_m if best_m <= limit_m else np.inf
+            if length_m[members] == np.inf:
+                label_of[members] = -1
+    return parent, last, is_whole

@@ -1,0 +1,139 @@
+"""Assignment and order: proven for a few targets, else the best plan of several searches side by side, with a bound below it."""
+
+from collections.abc import Callable
+
+from planning.problem import BoolArray, FloatArray, Objective, Problem, Routes, Solution, Unassigned
+from planning.solver import exact
+from planning.solver.locks import reduced
+from planning.solver.lower_bounds import lower_bound
+from planning.solver.problem_arrays import Arcs
+from planning.solver.progress import OnProgress, Progress
+from planning.solver.reach import needed_range_m, reachable, reasons
+from planning.solver.search import Found, best_found
+from planning.solver.sorties import by_uav, joined, unfolded
+
+PROVEN_GAP = 1e-8  # the bound stays a hair below what it proves
+EXACT, SEARCH = "exact", "ruin and recreate"  # what Solution.method says
+
+Stop = Callable[[], bool]
+
+
+def never() -> bool:
+    return False
+
+
+def no_report(progress: Progress) -> None:
+    """For callers that do not watch."""
+
+
+def solve(problem: Problem, *, stop: Stop = never, on_progress: OnProgress = no_report, seed: int = 7, search_s: float = 0.0) -> Solution:
+    """The best plan found: first it leaves out as little as possible, high priorities last, then the objective counts.
+
+    Every route keeps its UAV's limits, and a locked run is flown as it is wished or left out whole. Up to 12 targets, a locked run being
+    one, the plan is the best there is; only where battery or range leave too many tours to weigh (see `limited_tours.py`) the gap tells
+    what is not proven. Beyond, the answer depends on the problem and the seed alone as long as `search_s` is 0; with it the search takes
+    about so many seconds. `stop` is asked several times a second; once it is true, the best plan so far is returned. Progress tells the
+    visits of each UAV over all its sorties. Raises InvalidProblem.
+    """
+    rows = unfolded(problem)
+
+    def of_uavs(routes: Routes) -> Routes:
+        return joined(by_uav(rows, routes)) if rows.owner else routes
+
+    if problem.locks:
+        whole = reduced(rows)
+        routes, left_out, bound, method = _solved(
+            whole.problem,
+            stop=stop,
+            on_progress=lambda told: on_progress(_expanded(told, lambda routes: of_uavs(whole.expanded(routes)))),
+            seed=seed,
+            search_s=search_s,
+        )
+        routes, left_out = whole.expanded(routes), whole.expanded_reasons(left_out)
+        bound = bound if whole.is_whole else 0.0  # nothing is known of the ways through the runs that were not looked at
+    else:
+        tell = (lambda told: on_progress(_expanded(told, of_uavs))) if rows.owner else on_progress
+        routes, left_out, bound, method = _solved(rows, stop=stop, on_progress=tell, seed=seed, search_s=search_s)
+    return _solution(rows, routes, left_out, bound, method)
+
+
+def _solved(
+    problem: Problem, *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float
+) -> tuple[Routes, tuple[Unassigned, ...], float | None, str]:
+    """Routes, what they leave out, a bound (none: the plan is the best there is), and the method."""
+    if problem.target_count <= exact.MAX_TARGETS:
+        routes, is_proven = exact.proven_routes(Arcs.of(problem))
+        if is_proven and sum(len(route) for route in routes) == problem.target_count:
+            return routes, (), None, EXACT
+        needed_m = needed_range_m(problem)
+        bound = None if is_proven else lower_bound(problem, reachable(problem, needed_m), needed_m, routes, seed=seed)
+        return routes, reasons(problem, needed_m, routes), bound, EXACT
+    needed_m = needed_range_m(problem)
+    usable = reachable(problem, needed_m)
+    if not usable.any():
+        routes = ((),) * len(problem.uavs)
+        return routes, reasons(problem, needed_m, routes), None, EXACT
+    found = searched_plan(problem, usable, needed_m, stop=stop, on_progress=on_progress, seed=seed, search_s=search_s)
+    return found.routes, reasons(problem, needed_m, found.routes), found.bound, SEARCH
+
+
+def searched_plan(
+    problem: Problem, usable: BoolArray, needed_m: FloatArray, *, stop: Stop, on_progress: OnProgress, seed: int, search_s: float
+) -> Found:
+    """The best plan of the search; usable (u, v) says which UAV can fly which visit at all, needed_m (u, v) with what range."""
+    on_progress(Progress(0.0, "Looking for a first plan"))
+
+    def on_look(share: float, found: Found) -> None:
+        on_progress(Progress(min(share, 0.99), progress_message(problem, found.routes), found.routes, found.bound))
+
+    found = best_found(problem, usable, needed_m, seed=seed, search_s=search_s, stop=stop, on_look=on_look)
+    on_progress(Progress(1.0, progress_message(problem, found.routes), found.routes, found.bound))
+    return found
+
+
+def _expanded(told: Progress, expanded: Callable[[Routes], Routes]) -> Progress:
+    return told if told.best_routes is None else Progress(told.share, told.message, expanded(told.best_routes), told.bound)
+
+
+def _solution(rows: Problem, routes: Routes, left_out: tuple[Unassigned, ...], bound: float | None, method: str) -> Solution:
+    """Of a problem with a row for each sortie."""
+    lengths_m = _lengths_m(rows, routes)
+    durations_s = rows.durations_s(routes)
+    value = rows.value(routes)
+    least = value if bound is None else min(value, bound)
+    sorties = by_uav(rows, routes)
+    return Solution(
+        joined(sorties),
+        left_out,
+        total_m=sum(lengths_m),
+        longest_m=max(lengths_m, default=0.0),
+        longest_s=max(durations_s, default=0.0),
+        lower_bound=least,
+        gap=(value - least) / value if value else 0.0,
+        is_proven=value - least <= PROVEN_GAP * value,
+        method=method,
+        sorties=sorties,
+        total_s=sum(durations_s),
+        total_wh=rows.total_wh(routes),
+    )
+
+
+def _lengths_m(rows: Problem, routes: Routes) -> list[float]:
+    """Metres of each UAV."""
+    lengths_m = [rows.route_length_m(uav, route) for uav, route in enumerate(routes)]
+    if not rows.owner:
+        return lengths_m
+    return [sum(lengths_m[row] for row, owner in enumerate(rows.owner) if owner == uav) for uav in dict.fromkeys(rows.owner)]
+
+
+def progress_message(problem: Problem, routes: Routes) -> str:
+    missed = problem.target_count - sum(len(route) for route in routes)
+    left_out = f", {missed} not reached" if missed else ""
+    lengths_m = _lengths_m(problem, routes)
+    if problem.objective is Objective.MAKESPAN:
+        return f"longest route {max(lengths_m, default=0.0) / 1_000:,.1f} km{left_out}"
+    if problem.objective is Objective.TIME:
+        return f"{problem.value(routes) / 60:,.1f} min in total{left_out}"
+    if problem.objective is Objective.ENERGY:
+        return f"{problem.value(routes):,.0f} Wh in total{left_out}"
+    return f"{sum(lengths_m) / 1_000:,.1f} km in total{left_out}"

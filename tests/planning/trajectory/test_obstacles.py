@@ -1,0 +1,223 @@
+"""Towers and wires beside a route: it rises over them, and nothing else changes."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
+from planning.problem import Task, TaskKind
+from planning.rules import FlightRules
+from planning.trajectory.beside_spans import AT_M
+from planning.trajectory.obstacles import rising_over, too_low
+from planning.trajectory.waypoints import NONE, RoutePoint, RoutePoints, WaypointKind, Waypoints
+
+from inspection.geodesy import LonLat
+from inspection.graph.spans import Spans, spans_between
+
+HERE = 56.0
+METRE_DEG = 1.0 / 111_320.0  # of latitude, about
+EAST_DEG = METRE_DEG / math.cos(math.radians(HERE))
+RULES = FlightRules()
+
+
+def at(north_m: float, east_m: float) -> LonLat:
+    return LonLat(10.0 + east_m * EAST_DEG, HERE + north_m * METRE_DEG)
+
+
+def over_flat_ground(*points: RoutePoint) -> Waypoints:
+    drawn = RoutePoints.of(points)
+    return Waypoints(drawn, None, drawn.agl_m)
+
+
+def route(*agl_m: float) -> Waypoints:
+    """Points 400 m apart to the north."""
+    return over_flat_ground(*(RoutePoint(at(400.0 * n, 0.0), WaypointKind.PASS, height) for n, height in enumerate(agl_m)))
+
+
+def spans(*rows: tuple[float, float, float, float, float, float], asset: int = NONE) -> Spans:
+    """Each from north, east, height to north, east, height; all of one line."""
+    drawn = np.array(rows).reshape(-1, 6)
+    start, end = (np.array([at(north, east) for north, east in drawn[:, side : side + 2]]).reshape(-1, 2) for side in (0, 3))
+    return spans_between(start, end, drawn[:, 2], drawn[:, 5], np.full(len(drawn), asset))
+
+
+def tower(north_m: float, east_m: float, height_m: float) -> tuple[float, float, float, float, float, float]:
+    return (north_m, east_m, height_m, north_m, east_m, height_m)
+
+
+def profile(waypoints: Waypoints) -> list[tuple[int, float]]:
+    """Metres north and above ground."""
+    return [
+        (round((lat - HERE) / METRE_DEG), agl_m) for (_, lat), agl_m in zip(waypoints.points.position, waypoints.points.agl_m, strict=True)
+    ]
+
+
+def test_a_leg_climbs_before_a_tower_beside_it_and_comes_down_behind_it() -> None:
+    flown, blocked = rising_over(route(60.0, 60.0), spans(tower(100.0, 15.0, 80.0)), None, RULES)
+    assert profile(flown) == [(0, 60.0), (80, 60.0), (80, 95.0), (120, 95.0), (120, 60.0), (400, 60.0)]  # 20² + 15² = 25²
+    assert blocked == ()
+    assert flown.relative_m is flown.points.agl_m
+
+
+def test_it_rises_over_a_wire_whose_towers_stand_far_away_as_high_as_that_hangs_there() -> None:
+    """From 100 m in the west to 40 m in the east it hangs at 70 m where the leg crosses; it stays so high until it is 25 m away."""
+    flown, _ = rising_over(route(60.0, 60.0), spans((200.0, -400.0, 100.0, 200.0, 400.0, 40.0)), None, RULES)
+    assert profile(flown) == [(0, 60.0), (175, 60.0), (175, 85.0), (225, 85.0), (225, 60.0), (400, 60.0)]
+
+
+def test_what_is_high_enough_or_far_enough_away_changes_nothing() -> None:
+    points = route(60.0, 100.0, 60.0)
+    for other in (tower(400.0, 10.0, 82.0), tower(100.0, 26.0, 80.0), tower(-26.0, 0.0, 80.0), (300.0, -90.0, 45.0, 300.0, 90.0, 45.0)):
+        assert rising_over(points, spans(other), None, RULES)[0] is points
+
+
+def test_it_rises_over_several_each_by_its_own_height() -> None:
+    flown, _ = rising_over(route(60.0, 60.0), spans(tower(300.0, 0.0, 65.0), tower(100.0, 0.0, 75.0), tower(130.0, 0.0, 85.0)), None, RULES)
+    rises = [(75, 90.0), (105, 90.0), (105, 100.0), (155, 100.0), (155, 60.0), (275, 60.0), (275, 80.0), (325, 80.0)]
+    assert profile(flown) == [(0, 60.0), (75, 60.0), *rises, (325, 60.0), (400, 60.0)]
+
+
+def test_along_its_own_line_nothing_is_put_in_as_each_tower_is_passed_high_enough() -> None:
+    points = route(60.0, 95.0, 75.0)
+    line = spans((0.0, 0.0, 45.0, 400.0, 0.0, 80.0), (400.0, 0.0, 80.0, 800.0, 0.0, 60.0))
+    assert rising_over(points, line, None, RULES)[0] is points
+
+
+def test_what_would_have_to_be_passed_above_the_limit_blocks_the_route() -> None:
+    assert rising_over(route(60.0, 60.0), spans(tower(100.0, 0.0, 106.0)), None, RULES)[1] == (0,)
+    assert rising_over(route(60.0, 60.0), spans(tower(100.0, 0.0, 105.0)), None, RULES)[1] == ()
+
+
+def test_over_a_valley_a_wire_hangs_higher_above_the_ground_than_at_its_towers() -> None:
+    """Towers of 20 m on ground at 130 m; the leg crosses half way between them, where the ground lies at 100 m: 50 m and 15 m more."""
+
+    def ground(position: np.ndarray) -> np.ndarray:
+        return 100.0 + 0.15 * np.abs(position[:, 0] - 10.0) / EAST_DEG
+
+    points = route(60.0, 60.0).points
+    crossed = spans((200.0, -200.0, 20.0, 200.0, 200.0, 20.0))
+    flown, blocked = rising_over(Waypoints(points, points.agl_m + 100.0, points.agl_m), crossed, ground, RULES)
+    assert [round(height_m, 6) for height_m in flown.points.agl_m.tolist()] == [60.0, 60.0, 65.0, 65.0, 60.0, 60.0]
+    assert flown.amsl_m is not None and flown.amsl_m[2] == pytest.approx(165.0)
+    assert flown.relative_m[2] == pytest.approx(65.0)
+    assert blocked == ()
+    deep = FlightRules(max_agl_m=64.0)
+    assert rising_over(Waypoints(points, points.agl_m + 100.0, points.agl_m), crossed, ground, deep)[1] == (0,)
+
+
+def test_what_stands_on_ground_that_is_not_known_is_cleared_at_no_height() -> None:
+    """One end of the wire stands in a gap of the terrain: the route is not to be flown, and does not rise for it either."""
+
+    def ground(position: np.ndarray) -> np.ndarray:
+        return np.where(position[:, 0] - 10.0 > 50.0 * EAST_DEG, np.nan, 100.0)
+
+    points = route(60.0, 60.0).points
+    over = Waypoints(points, points.agl_m + 100.0, points.agl_m)
+    crossed = spans((200.0, -200.0, 10.0, 200.0, 200.0, 10.0), tower(100.0, 0.0, 80.0), tower(300.0, 0.0, 10.0))
+    low = too_low(over, crossed, ground, RULES)
+    assert low is not None
+    assert dict(zip(low.span.tolist(), low.agl_m.tolist(), strict=True)) == {0: np.inf, 1: pytest.approx(95.0)}
+    flown, blocked = rising_over(over, crossed, ground, RULES)
+    assert blocked == (0,)
+    assert flown.points.agl_m.max() == pytest.approx(95.0)
+    assert spans_too_near(over, crossed, ground, RULES) == {0, 1}
+    assert spans_too_near(flown, crossed, ground, RULES) == {0}
+
+
+def inspected(agl_m: float) -> Waypoints:
+    """To a pole at 200 m north, down to its inspection and up again."""
+    task = Task(TaskKind.PHOTO, 5.0)
+    return over_flat_ground(
+        RoutePoint(at(0.0, 0.0), WaypointKind.START, 60.0),
+        RoutePoint(at(200.0, 0.0), WaypointKind.PASS, 60.0),
+        RoutePoint(at(200.0, 0.0), WaypointKind.TARGET, agl_m, 7, 0, task),
+        RoutePoint(at(200.0, 0.0), WaypointKind.END, agl_m),
+    )
+
+
+def test_what_is_inspected_is_come_down_to_but_not_under_the_wires_of_another_line() -> None:
+    own = (200.0, 0.0, 45.0, 200.0, 90.0, 45.0)
+    points = inspected(29.0)
+    assert rising_over(points, spans(own), None, RULES)[0] is points
+    flown, _ = rising_over(points, spans(own, (220.0, -90.0, 40.0, 220.0, 90.0, 40.0)), None, RULES)
+    assert flown.points.agl_m.tolist() == [60.0, 60.0, 55.0, 55.0]
+
+
+def test_a_pole_right_under_the_wires_of_another_line_is_inspected_from_above_these() -> None:
+    """They hang 0.5 m beside its middle: it is not they that are inspected."""
+    pole, across = (200.0, 0.0, 14.0, 200.0, 90.0, 14.0), (200.5, -90.0, 45.0, 200.5, 90.0, 45.0)
+    points = inspected(29.0)
+    flown, _ = rising_over(points, spans(pole, across, asset=5), None, RULES)
+    assert flown.points.agl_m.tolist() == [60.0, 60.0, 60.0, 60.0]
+    assert spans_too_near(points, spans(pole, across, asset=5), None, RULES) == {1}
+
+
+def test_a_point_on_a_line_is_come_down_to_between_the_towers_of_that_line() -> None:
+    """What hangs there is what is inspected, whatever its wires are taken to be as high as."""
+    own = spans((200.0, -90.0, 45.0, 200.0, 90.0, 45.0), asset=7)
+    points = inspected(29.0)
+    assert rising_over(points, own, None, RULES)[0] is points
+    assert spans_too_near(points, own, None, RULES) == set()
+
+
+LENGTHS = st.floats(-600.0, 1_400.0)
+HEIGHTS = st.floats(5.0, 105.0)
+SPANS = st.lists(st.tuples(LENGTHS, LENGTHS, HEIGHTS, LENGTHS, LENGTHS, HEIGHTS), min_size=1, max_size=6)
+PLACES = st.lists(st.tuples(LENGTHS, LENGTHS, st.floats(60.0, 120.0)), min_size=2, max_size=5)
+
+
+@settings(max_examples=150)
+@given(PLACES, SPANS)
+def test_no_leg_is_nearer_than_the_clearance_over_anything(places: list[tuple[float, float, float]], rows: list[tuple[float, ...]]) -> None:
+    """Looked at every 2 m, and by the last look; and a route that has risen need not rise again.
+
+    Gentle legs from or to the very place of a tower, over its top, are excused: the last look alone says how far.
+    """
+    ends = [(north, east) for row in rows for north, east in (row[:2], row[3:5])]
+    assume(all(math.hypot(place[0] - north, place[1] - east) > 2.0 * AT_M for place in places for north, east in ends))
+    drawn = over_flat_ground(*(RoutePoint(at(north, east), WaypointKind.PASS, agl_m) for north, east, agl_m in places))
+    standing = spans(*rows)
+    flown, blocked = rising_over(drawn, standing, None, RULES)
+    assert blocked == ()
+    assert shortest_over(flown, rows) >= RULES.clearance_m - 0.5
+    assert spans_too_near(flown, standing, None, RULES) == set()
+    again = too_low(flown, standing, None, RULES)
+    assert again is None or float((again.until - again.begin).max()) < 0.05
+
+
+def shortest_over(flown: Waypoints, rows: list[tuple[float, ...]]) -> float:
+    """The fewest metres over any wire less than 24 m beside."""
+    line = np.column_stack([(flown.points.position - (10.0, HERE)) / (EAST_DEG, METRE_DEG), flown.points.agl_m])
+    least_m = math.inf
+    for start, end in pairwise(line):
+        share = np.linspace(0.0, 1.0, max(int(np.hypot(*(end - start)[:2]) / 2.0), 1) + 1)
+        steps = start + share[:, None] * (end - start)
+        for row in rows:
+            wire, stop = np.array([row[1], row[0], row[2]]), np.array([row[4], row[3], row[5]])
+            along = (stop - wire)[:2]
+            where = np.clip((steps[:, :2] - wire[:2]) @ along / max(float(along @ along), 1e-9), 0.0, 1.0)
+            nearest = wire + where[:, None] * (stop - wire)
+            is_beside = np.hypot(*(steps - nearest)[:, :2].T) < 24.0
+            least_m = min(least_m, float((steps[:, 2] - nearest[:, 2])[is_beside].min(initial=math.inf)))
+    return least_m
+
+
+def test_the_last_look_sees_a_leg_through_wires() -> None:
+    assert spans_too_near(route(60.0, 60.0), spans((200.0, -300.0, 80.0, 200.0, 300.0, 80.0)), None, RULES) == {0}
+    assert spans_too_near(route(60.0, 60.0), spans((200.0, -300.0, 44.0, 200.0, 300.0, 44.0)), None, RULES) == set()
+    assert spans_too_near(inspected(29.0), spans((220.0, -90.0, 40.0, 220.0, 90.0, 40.0)), None, RULES) == {0}
+    assert spans_too_near(inspected(29.0), spans((200.0, 0.0, 45.0, 200.0, 90.0, 45.0)), None, RULES) == set()
+
+
+def test_the_last_look_tells_which_leg_is_too_near() -> None:
+    """There at 60 m, back 1 m short of the clearance: that is what rounding and slopes may leave."""
+    corners = [(0.0, 0.0, 60.0), (400.0, 0.0, 60.0), (400.0, 0.0, 94.0), (0.0, 0.0, 94.0)]
+    points = over_flat_ground(*(RoutePoint(at(north, east), WaypointKind.PASS, agl_m) for north, east, agl_m in corners))
+    crossed = spans((200.0, -200.0, 80.0, 200.0, 200.0, 80.0))
+    low = too_low(points, crossed, None, RULES)
+    assert low is not None
+    assert low.place.tolist() == [0, 2]
+    assert legs_too_near(points, crossed, None, RULES) == {(0, 0)}
