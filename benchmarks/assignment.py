@@ -15,13 +15,13 @@ from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-from planning.problem import End, Objective, Problem, Solution, UavStart, Visit
-from planning.solver.solver import solve
-from planning.solver.warm_up import rehearse
 
 from benchmarks.assignment_instances import WORKLOADS, instances, with_objective
 from benchmarks.assignment_rivals import KEPT, RIVALS, keep, kept
 from benchmarks.report import machine, table, write_section
+from planning.problem import End, Objective, Problem, Solution, UavStart, Visit
+from planning.solver.solver import solve
+from planning.solver.warm_up import rehearse
 
 TSPLIB = Path(__file__).resolve().parents[2] / "shared" / "data" / "tsplib"
 OPTIMAL_TOUR = {"eil51": 426, "berlin52": 7_542, "eil76": 538, "rat99": 1_211, "kroA100": 21_282}

@@ -3,12 +3,12 @@
 from pathlib import Path
 
 import numpy as np
-from planning.problem import Objective, Problem, UavStart, Visit
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial import cKDTree
 
 from benchmarks.make_graph import haversine, make, missions
+from planning.problem import Objective, Problem, UavStart, Visit
 
 KEPT = Path(__file__).resolve().parent.parent / "var" / "bench"
 WORKLOADS = {"w4": (10, 100), "w5": (20, 500)}

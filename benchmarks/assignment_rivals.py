@@ -13,12 +13,12 @@ from pathlib import Path
 from time import process_time
 
 import numpy as np
-from planning.problem import Objective, Problem, merit
-from planning.solver.reach import needed_range_m, reachable
 from pyvrp import Model
 
 from benchmarks.assignment_instances import WORKLOADS, instances, with_objective
 from benchmarks.ortools_plans import routes_by_ortools
+from planning.problem import Objective, Problem, merit
+from planning.solver.reach import needed_range_m, reachable
 
 KEPT = Path(__file__).resolve().parent / "assignment_rivals.json"
 UNITS_PER_M = 10  # rivals that count in whole numbers get decimetres

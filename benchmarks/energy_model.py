@@ -12,16 +12,16 @@ import argparse
 from dataclasses import dataclass
 
 import numpy as np
+
+from benchmarks.report import machine, table, write_section
+from inspection.geodesy import LonLat
+from inspection.geodesy.local_frame import LocalFrame
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import Performance
 from planning.energy.power import power_w
 from planning.rules import FlightRules
 from planning.trajectory.timing import Timing, timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-
-from benchmarks.report import machine, table, write_section
-from inspection.geodesy import LonLat
-from inspection.geodesy.local_frame import LocalFrame
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.weather import Weather
 from tests.simulation.planned_flights import climbs, compared, holds

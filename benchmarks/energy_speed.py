@@ -17,6 +17,16 @@ from time import perf_counter, thread_time
 from typing import Any
 
 import numpy as np
+
+from benchmarks.make_graph import make, missions
+from benchmarks.report import machine, table, write_section
+from inspection.geodesy import LonLat
+from inspection.graph.along_ways import steps_of_graph
+from inspection.graph.flyable import node_heights_m
+from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind
+from inspection.graph.legs import Attachments
+from inspection.graph.route_index import route_index
+from inspection.graph.ways import travel_of_legs
 from planning.connection_points import Ways
 from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
 from planning.energy.conditions import Conditions, WindLayer
@@ -32,16 +42,6 @@ from planning.trajectory.route_points import PassedNodes, TargetPoints, line_of,
 from planning.trajectory.timing import timing
 from planning.trajectory.warm_up import rehearse
 from planning.trajectory.waypoints import Waypoints
-
-from benchmarks.make_graph import make, missions
-from benchmarks.report import machine, table, write_section
-from inspection.geodesy import LonLat
-from inspection.graph.along_ways import steps_of_graph
-from inspection.graph.flyable import node_heights_m
-from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind
-from inspection.graph.legs import Attachments
-from inspection.graph.route_index import route_index
-from inspection.graph.ways import travel_of_legs
 
 UAVS, TARGETS = 2, 4
 NEAR_M = 30_000.0

@@ -29,10 +29,10 @@ django.setup()
 
 from django.contrib.gis.geos import Point  # noqa: E402
 from django.db import connection  # noqa: E402
-from mavlink.signing import FrameWriter  # noqa: E402
 from pymavlink.dialects.v20 import ardupilotmega as mavlink  # noqa: E402
 
 from benchmarks.report import machine, table, write_section  # noqa: E402
+from mavlink.signing import FrameWriter  # noqa: E402
 from missions.models import Uav  # noqa: E402
 from telemetry.models import TelemetryRecord  # noqa: E402
 

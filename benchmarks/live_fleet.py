@@ -11,10 +11,10 @@ from uuid import UUID
 import numpy as np
 from django.contrib.gis.geos import Point
 from django.db import connection
-from mavlink.approved_route import route_from_json
 
 from inspection.models import Asset
 from inspection.services import import_terrain
+from mavlink.approved_route import route_from_json
 from missions.models import EndAction, Mission, MissionState, Uav
 from missions.services import TargetRequest, create_mission, plan_mission
 from missions.services.approval import approve_mission

@@ -34,13 +34,13 @@ django.setup()
 from django.conf import settings  # noqa: E402
 from django.contrib.auth import BACKEND_SESSION_KEY, HASH_SESSION_KEY, SESSION_KEY  # noqa: E402
 from django.contrib.sessions.backends.db import SessionStore  # noqa: E402
-from mavlink.signing import FrameWriter  # noqa: E402
 from pymavlink.dialects.v20 import ardupilotmega as mavlink  # noqa: E402
 
 from benchmarks.gateway_rate import free_port, gateway  # noqa: E402
 from benchmarks.live_clients import PER_DEGREE  # noqa: E402
 from benchmarks.live_fleet import GROUND_M, SPEED_MPS, UAVS_A_MISSION, Line, make_site, own_database, put_under_way  # noqa: E402
 from benchmarks.report import machine, table, write_section  # noqa: E402
+from mavlink.signing import FrameWriter  # noqa: E402
 from scripts.places import Places  # noqa: E402
 from scripts.programs import web_programs  # noqa: E402
 from scripts.proxy import configuration  # noqa: E402

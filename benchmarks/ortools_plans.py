@@ -5,6 +5,7 @@ from time import process_time
 
 import numpy as np
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
+
 from planning.problem import BoolArray, FloatArray, Problem, Routes
 from planning.solver.cost_matrices import NO_WAY_M
 from planning.solver.problem_arrays import Arcs

@@ -20,14 +20,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
 django.setup()
 
-from planning.problem import Objective  # noqa: E402
-
 from benchmarks.article_method import ArticleMethod  # noqa: E402 (Django first)
 from inspection.geodesy import LonLat  # noqa: E402
 from inspection.graph.inspection_graph import InspectionGraph, NodeKind  # noqa: E402
 from inspection.selectors import current_graph  # noqa: E402
 from missions.models import EndAction  # noqa: E402
 from missions.services import PlanRequest, TargetRequest, UavRequest, make_plan  # noqa: E402
+from planning.problem import Objective  # noqa: E402
 
 
 def missions(graph: InspectionGraph, uavs: int, targets: int, count: int, seed: int) -> list[tuple[list[LonLat], list[int]]]:

@@ -25,13 +25,13 @@ os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
 django.setup()
 
 from django.db import connections  # noqa: E402 (Django first)
-from planning.problem import Objective  # noqa: E402
 
 from benchmarks.plan_latency import missions  # noqa: E402
 from benchmarks.report import machine  # noqa: E402
 from inspection.selectors import current_graph  # noqa: E402
 from missions.models import EndAction  # noqa: E402
 from missions.services import PlanRequest, TargetRequest, UavRequest, make_plan, planning  # noqa: E402
+from planning.problem import Objective  # noqa: E402
 
 
 def requests(uavs: int, targets: int, count: int, seed: int) -> list[PlanRequest]:

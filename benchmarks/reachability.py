@@ -18,15 +18,6 @@ from time import perf_counter
 import numpy as np
 import orjson
 import shapely
-from planning.connection_points import AccessRules
-from planning.energy.conditions import Conditions, WindLayer
-from planning.energy.path_cost import FlightClass
-from planning.energy.performance import Performance
-from planning.problem import End
-from planning.reachability.reachability import Flight, reach
-from planning.reachability.reachable_assets import Reach, Verdict
-from planning.rules import FlightRules
-from planning.solver.rules import RoutingRules
 
 from benchmarks.make_graph import make
 from benchmarks.report import machine, table, write_section
@@ -39,6 +30,15 @@ from inspection.graph.network import Network
 from inspection.graph.route_index import route_index
 from inspection.graph.rules import LinkingRules
 from inspection.graph.zone_index import ZoneIndex
+from planning.connection_points import AccessRules
+from planning.energy.conditions import Conditions, WindLayer
+from planning.energy.path_cost import FlightClass
+from planning.energy.performance import Performance
+from planning.problem import End
+from planning.reachability.reachability import Flight, reach
+from planning.reachability.reachable_assets import Reach, Verdict
+from planning.rules import FlightRules
+from planning.solver.rules import RoutingRules
 
 MOST_S = 1.0
 RANGE_M = 40_000.0

@@ -32,7 +32,6 @@ django.setup()
 from django.contrib.gis.geos import Point  # noqa: E402
 from django.db import connection, connections  # noqa: E402
 from django.utils import timezone  # noqa: E402
-from planning.energy.conditions import Conditions  # noqa: E402
 from pymavlink.dialects.v20 import ardupilotmega as mavlink  # noqa: E402
 
 from benchmarks.gateway_rate import OTHER_SENDER_S, cpu_s, free_port, gateway  # noqa: E402
@@ -41,6 +40,7 @@ from inspection.geodesy import LonLat  # noqa: E402
 from mavlink.mission_items import position_e7  # noqa: E402
 from mavlink.vehicle_plan import MissionItem, MissionType  # noqa: E402
 from missions.models import Uav  # noqa: E402
+from planning.energy.conditions import Conditions  # noqa: E402
 from simulation.flight.states import Mode  # noqa: E402
 from simulation.management.commands.run_simulator import SWITCH_S  # noqa: E402
 from simulation.models import SimulatedVehicle, Simulation, SimulationState  # noqa: E402

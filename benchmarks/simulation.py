@@ -15,11 +15,11 @@ from pathlib import Path
 from time import process_time
 
 import numpy as np
-from planning.energy.conditions import Conditions, WindLayer
 
 from benchmarks.report import machine, table, write_section
 from inspection.geodesy import LonLat, path_length_m
 from inspection.geodesy.local_frame import LocalFrame
+from planning.energy.conditions import Conditions, WindLayer
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.plant import PHYSICS_HZ
 from simulation.flight.route_file import RouteFile

@@ -26,9 +26,9 @@ from django.conf import settings  # noqa: E402 (Django first)
 from django.contrib.gis.geos import Point  # noqa: E402
 from django.db import connection, transaction  # noqa: E402
 from django.test import Client  # noqa: E402
-from mavlink.decoding.measurement import Measurement  # noqa: E402
 
 from benchmarks.report import machine, table, write_section  # noqa: E402
+from mavlink.decoding.measurement import Measurement  # noqa: E402
 from missions.models import CredentialKind, LinkKind, Uav  # noqa: E402
 from missions.services import make_credential  # noqa: E402
 from telemetry.services import NewRecord, store_records  # noqa: E402

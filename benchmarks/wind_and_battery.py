@@ -13,6 +13,7 @@ from dataclasses import replace
 from time import perf_counter
 
 import numpy as np
+
 from planning.problem import Amounts, End, FloatArray, Objective, Problem, UavStart, Visit
 from planning.solver import exact
 from planning.solver.problem_arrays import Arcs

@@ -7,8 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import dj_database_url
-from planning.rules import FlightRules, SeparationRules
-from planning.solver.rules import RoutingRules
 
 from config.log_settings import log_settings
 from config.mail import mail_settings
@@ -22,6 +20,8 @@ from mavlink.timeouts import CommandRules as VehicleCommandRules
 from mavlink.timeouts import TransferRules
 from missions.command_rules import CommandRules
 from operation.address_limits import operators_per_address, sockets_per_address, trusted_proxies
+from planning.rules import FlightRules, SeparationRules
+from planning.solver.rules import RoutingRules
 
 BASE_DIR = Path(__file__).resolve().parent.parent
 STATE_DIR = state_directory()

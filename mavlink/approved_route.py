@@ -4,10 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from inspection.geodesy import LonLat
 from planning.problem import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
-
-from inspection.geodesy import LonLat
 
 RETURN, LAND, HOVER, BASE = "return", "land", "hover", "base"
 END_ACTIONS = (RETURN, LAND, HOVER, BASE)

@@ -2,8 +2,9 @@
 
 from enum import StrEnum
 
-from mavlink.vehicle_class import ARDUPILOT_NAMES, VehicleClass
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mavlink.vehicle_class import ARDUPILOT_NAMES, VehicleClass
 
 
 class Flavour(StrEnum):

@@ -10,15 +10,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from mavlink.approved_route import FrozenRoute
-from mavlink.mission_items import RELATIVE, position_e7
-from mavlink.vehicle_plan import MissionItem
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from shapely import LineString, Point, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
+from mavlink.approved_route import FrozenRoute
+from mavlink.mission_items import RELATIVE, position_e7
+from mavlink.vehicle_plan import MissionItem
 
 SHARP = 2.0  # longest spike at a corner, in widths of what is added
 E7 = 1e7

@@ -5,10 +5,10 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from mavlink.vehicle_plan import FlightLoad, MissionItem
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat, path_length_m
+from mavlink.vehicle_plan import FlightLoad, MissionItem
 
 FLOWN = frozenset({mavlink.MAV_CMD_NAV_TAKEOFF, mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_CMD_NAV_LAND})
 SPHERE_M = 6_371_000.0  # the radius of the earth that PX4 measures on

@@ -9,12 +9,12 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from planning.problem import Task, TaskKind
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from mavlink.approved_route import HOVER, Flight, FrozenRoute, FrozenWaypoint
 from mavlink.vehicle_plan import FlightLoad, MissionItem
+from planning.problem import Task, TaskKind
 
 RELATIVE = mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT
 NO_PLACE = mavlink.MAV_FRAME_MISSION

@@ -3,11 +3,12 @@
 import math
 from collections.abc import Sequence
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.addressing import Ends, Message, Messages
 from mavlink.commands.command import CommandEnd, CommandOutcome
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 BY_NAME = -1  # in place of a parameter's number
 

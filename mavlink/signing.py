@@ -9,8 +9,9 @@ import hmac
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from mavlink.frames import Frame, Message
 from pymavlink.dialects.v20 import ardupilotmega as dialect
+
+from mavlink.frames import Frame, Message
 
 UNITS_PER_S = 100_000  # 10 us each
 EPOCH_UNIX_S = 1_420_070_400  # 2015-01-01

@@ -4,13 +4,13 @@ import math
 import struct
 from dataclasses import dataclass, field
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from inspection.geodesy import LonLat
 from mavlink.addressing import AUTOPILOT, Message
 from mavlink.autopilot_type import COMMANDED, COPTER_HOLDING, Flavour, Mode, flavour_of, is_in_mode, mode_name
 from mavlink.timeouts import CommandRules
 from mavlink.vehicle_class import VehicleClass, class_of
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from inspection.geodesy import LonLat
 
 TEXTS_KEPT = 10
 MOST_PARAMETERS = 4_000  # more than any autopilot has

@@ -4,12 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
-from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute
-from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
-
 from inspection.geodesy import LonLat
 from missions.models import InspectionTarget, Mission, Route, TargetState, Uav, Waypoint, WaypointKind
 from missions.zone_selectors import flown_route
+from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute
+from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
 
 HEARD_WITHIN_S = 30.0  # else nobody knows where it is
 OFF_ROUTE_M = 100.0

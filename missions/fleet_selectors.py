@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, TypedDict
 
 from django.db.models import Count, Prefetch, Q, QuerySet
+
+from missions.models import Base, Mission, Uav, UavCredential, UavState, UavType
 from planning.energy.performance import (
     OWN_PERFORMANCE_KEYS,
     PERFORMANCE_KEYS,
@@ -11,8 +13,6 @@ from planning.energy.performance import (
     performance_from_json,
     performance_to_json,
 )
-
-from missions.models import Base, Mission, Uav, UavCredential, UavState, UavType
 from workspace.models import AuditEntry, Organisation
 
 EVERY_STATE = "all"

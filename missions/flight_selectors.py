@@ -10,9 +10,9 @@ from uuid import UUID
 import numpy as np
 from django.conf import settings
 from django.db.models import DateTimeField, DurationField, ExpressionWrapper, F, Value
-from planning.separation.separation import TimedRoute
 
 from missions.models import EndAction, Mission, MissionState, Route, Waypoint, WaypointKind
+from planning.separation.separation import TimedRoute
 
 FLYING_STATES = (MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)
 STILL_FLOWN: dict[str, Any] = {"geometry__isnull": False, "continued_by": None}  # of routes; the rest of others is another mission's

@@ -7,13 +7,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from planning.clearance.zone_clearance import FlownRoute
-from planning.energy.conditions import Conditions
-from planning.energy.performance import Performance
-from planning.trajectory.heights import with_heights
-from planning.trajectory.leg_speeds import SpeedRange, speeds_out_of_range
-from planning.trajectory.obstacles import too_low
-from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import FloatArray
@@ -23,6 +16,13 @@ from inspection.selectors.planning import planning_read
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
 from missions.zone_selectors import zones_met
+from planning.clearance.zone_clearance import FlownRoute
+from planning.energy.conditions import Conditions
+from planning.energy.performance import Performance
+from planning.trajectory.heights import with_heights
+from planning.trajectory.leg_speeds import SpeedRange, speeds_out_of_range
+from planning.trajectory.obstacles import too_low
+from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from workspace.number_text import number_text
 
 NEAR_DEG = 0.002

@@ -9,7 +9,6 @@ import numpy as np
 from django.db.models import Exists, OuterRef
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from planning.clearance.zone_clearance import TAKE_OFF, FloatArray, FlownRoute
 
 from inspection.models import Asset
 from inspection.selectors import ground_heights_m, ground_revision
@@ -17,6 +16,7 @@ from missions.ahead_selectors import WayAhead, ways_ahead
 from missions.models import Base, Mission, MissionState, Route, WaypointKind
 from missions.uav_change_selectors import UavChange, uav_change_words
 from missions.zone_selectors import MetZone, departure_s, flown_route, zones_met
+from planning.clearance.zone_clearance import TAKE_OFF, FloatArray, FlownRoute
 
 TERRAIN_CHANGED_M = 1.0  # less is another sampling of the same ground
 MOST_CAUSES = 20

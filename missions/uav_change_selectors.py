@@ -7,10 +7,10 @@ from uuid import UUID
 
 from django.db.models import QuerySet
 from django.utils.translation import gettext as _
-from planning.energy.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json, performance_to_json
 
 from missions.fleet_selectors import FIGURES, figures_of
 from missions.models import InspectionTarget, Mission, MissionState, MissionUav, Uav, UavState
+from planning.energy.performance import PERFORMANCE_KEYS, InvalidPerformance, performance_from_json, performance_to_json
 from workspace.number_text import number_text
 
 TO_BE_FLOWN = (MissionState.PLANNED, MissionState.APPROVED, MissionState.DISPATCHED, MissionState.ACTIVE)

@@ -6,15 +6,15 @@ from itertools import pairwise
 
 import numpy as np
 from django.conf import settings
-from planning.clearance.nearby_zones import zones_near
-from planning.clearance.zone_clearance import TAKE_OFF, Breach, FlownRoute, Margins, breaches
-from planning.trajectory.departure_windows import blocked_departures, free_between
 
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.activity import Span, active_spans
 from inspection.zones.reach import ZoneTable
 from inspection.zones.schedule import Schedule
 from missions.models import EndAction, Mission, Route
+from planning.clearance.nearby_zones import zones_near
+from planning.clearance.zone_clearance import TAKE_OFF, Breach, FlownRoute, Margins, breaches
+from planning.trajectory.departure_windows import blocked_departures, free_between
 
 CLEARANCE_KEPT = 0.99  # routes keep their clearance; what they come short of it by is rounding
 

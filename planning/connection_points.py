@@ -9,7 +9,6 @@ import numpy as np
 import shapely
 from numba import njit
 from numpy.typing import NDArray
-from planning.problem import End
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
@@ -25,6 +24,7 @@ from inspection.graph.round_zones import Errand, ways_round
 from inspection.graph.route_index import asset_places, node_tree
 from inspection.graph.ways import Travel, travel_between_places
 from inspection.graph.zone_index import ZoneIndex
+from planning.problem import End
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -17,11 +17,6 @@ from typing import Any, BinaryIO
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from planning.problem import FloatArray, IntArray, Objective, Problem, Routes, UavStart, Visit
-from planning.solver.cost_matrices import NO_WAY_M
-from planning.solver.exact import MAX_TARGETS, best_routes
-from planning.solver.problem_arrays import Arcs, no_burden
-from planning.solver.solver import solve
 
 from inspection.graph.condensed import condense_columns
 from inspection.graph.hub_labels import label
@@ -29,6 +24,11 @@ from inspection.graph.nearness import EARTH_RADIUS_M
 from inspection.graph.node_tree import NodeTree, tree_of
 from inspection.graph.route_index import RouteIndex
 from inspection.graph.ways import travel_of_legs
+from planning.problem import FloatArray, IntArray, Objective, Problem, Routes, UavStart, Visit
+from planning.solver.cost_matrices import NO_WAY_M
+from planning.solver.exact import MAX_TARGETS, best_routes
+from planning.solver.problem_arrays import Arcs, no_burden
+from planning.solver.solver import solve
 
 PHASES = ("nearest", "matrix", "assign", "expand")
 

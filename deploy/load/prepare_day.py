@@ -31,7 +31,6 @@ django.setup()
 from django.contrib.auth.hashers import make_password  # noqa: E402 (Django first)
 from django.core.management import call_command  # noqa: E402
 from django.utils import timezone  # noqa: E402
-from planning.problem import Objective  # noqa: E402
 
 from deploy.load.day.in_air import put_in_air  # noqa: E402
 from deploy.load.day.site import Desk, InAir, Person, Site  # noqa: E402
@@ -44,6 +43,7 @@ from missions.services.credentials import make_credential  # noqa: E402
 from missions.services.fleet import create_uav_type  # noqa: E402
 from missions.services.refused import Refused  # noqa: E402
 from missions.services.uavs import create_uav  # noqa: E402
+from planning.problem import Objective  # noqa: E402
 from workspace.models import Organisation, Role, User  # noqa: E402
 from workspace.services import create_api_token  # noqa: E402
 

@@ -5,11 +5,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.autopilot_type import COMMANDED, COPTER_MODES, COPTER_NOT_ARMABLE, PX4_AUTO, PX4_SUB_MODES, Flavour, Mode
 from mavlink.commands.command import CommandStep, Effect, Seven
 from mavlink.vehicle_class import VehicleClass, refusal_words
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
 NAN = math.nan

@@ -4,10 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.addressing import Ends, Message, Messages
 from mavlink.timeouts import CommandRules
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 Effect = Callable[[VehicleState], bool | None]
 Seven = tuple[float, float, float, float, float, float, float]

@@ -1,9 +1,10 @@
 """Asking a vehicle where its home is now: it may have got another one since it told, by a boot, or where it was armed."""
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.addressing import Ends, Message, Messages
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 
 class HomeReading:

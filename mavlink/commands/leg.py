@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from mavlink.intermediate_waypoints import FLOWN, position_of
-from mavlink.vehicle_plan import FlightLoad, MissionItem
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
+from mavlink.intermediate_waypoints import FLOWN, position_of
+from mavlink.vehicle_plan import FlightLoad, MissionItem
 
 
 @dataclass(frozen=True)

@@ -4,10 +4,11 @@ What is known of it is old, so only a mode is asked for that is right in the air
 It never disarms, and never lands what was to return: whether a return was refused cannot be heard.
 """
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.addressing import Ends, Message
 from mavlink.autopilot_type import Flavour, Mode
 from mavlink.commands.actions import Order, mode_numbers
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 15.0  # at first often, for every second counts; then seldom: a pilot may have taken over
 MODES = {Order.HOLD: Mode.HOLD, Order.RETURN: Mode.RETURN, Order.ABORT: Mode.RETURN, Order.LAND: Mode.LAND}

@@ -5,9 +5,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.decoding.measurement import Measurement, believable
 from mavlink.frames import Message
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 KEPT_S = 10.0  # a value that was not told for so long is not known any more
 E7 = 1e7

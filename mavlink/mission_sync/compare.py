@@ -14,11 +14,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync.supported_items import as_old_roi
 from mavlink.mission_sync.wire import Held, HeldItem
 from mavlink.vehicle_plan import MissionItem
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 CENTIMETRE_M = 0.01
 YAW_DEG = 0.001  # by way of radians in 32 bits

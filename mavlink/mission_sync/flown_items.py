@@ -2,10 +2,11 @@
 
 from dataclasses import dataclass
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.autopilot_type import Flavour, Mode
 from mavlink.vehicle_plan import FlightLoad
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 RESET_S = 5.0  # within which a vehicle that has landed tells that it is disarmed, also when some of its messages are lost
 

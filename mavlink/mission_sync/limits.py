@@ -4,11 +4,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
+from inspection.geodesy import LonLat
 from mavlink.autopilot_type import Flavour
 from mavlink.intermediate_waypoints import FLOWN, length_on_sphere_m, position_of
 from mavlink.vehicle_plan import FlightLoad, MissionType
-
-from inspection.geodesy import LonLat
 
 # ArduPilot: 650 with home, seen on its simulator. PX4's dataman.h and navigation.h: what boards have is fixed when it is built, so that
 # the usual figures are only warned of; a vehicle that has less space says so at once, and keeps what it has.

@@ -7,9 +7,10 @@ ArduPilot takes DO_SET_ROI_LOCATION and DO_SET_ROI_NONE as mission items since 4
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.autopilot_type import Flavour
 from mavlink.vehicle_plan import MissionItem
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 Version = tuple[int, int, int]
 ROI_SINCE: Version = (4, 7, 0)

@@ -2,12 +2,13 @@
 
 from collections.abc import Sequence
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.addressing import Ends, Message, Messages
 from mavlink.mission_sync.transfer import UNCERTAIN, TransferOutcome, TransferState
 from mavlink.mission_sync.wire import ack_message, item_message, result_name
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionItem, MissionType
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 REQUESTS = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT"})
 

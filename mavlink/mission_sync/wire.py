@@ -6,11 +6,12 @@ import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.addressing import Ends, Message
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync.supported_items import Version, as_known
 from mavlink.vehicle_plan import MissionItem, MissionType
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 NOTHING = MissionItem(mavlink.MAV_CMD_NAV_WAYPOINT, mavlink.MAV_FRAME_GLOBAL_INT, (0.0, 0.0, 0.0, 0.0))
 

@@ -123,7 +123,7 @@ class Migration(migrations.Migration):
                 ("departs_at", models.DateTimeField(blank=True, help_text="planned take-off; empty = at any time", null=True)),
                 (
                     "conditions",
-                    models.JSONField(blank=True, default=dict, help_text="wind by height and temperature; see flight_plan/conditions.py"),
+                    models.JSONField(blank=True, default=dict, help_text="wind by height and temperature; see planning/energy/conditions.py"),
                 ),
                 ("charging_w", models.FloatField(blank=True, help_text="watts of charging at towers on the way; empty = none", null=True)),
                 (
@@ -812,7 +812,7 @@ class Migration(migrations.Migration):
                 ),
                 (
                     "performance",
-                    models.JSONField(blank=True, default=dict, help_text="battery, mass and airspeed; see flight_plan/performance.py"),
+                    models.JSONField(blank=True, default=dict, help_text="battery, mass and airspeed; see planning/energy/performance.py"),
                 ),
                 (
                     "own_figures",

@@ -49,7 +49,7 @@ class Mission(models.Model):
     objective = models.CharField(max_length=10, choices=Objective.choices, default=Objective.TOTAL)
     return_to_start = models.BooleanField(default=False)
     departs_at = models.DateTimeField(null=True, blank=True, help_text="planned take-off; empty = at any time")
-    conditions = models.JSONField(default=dict, blank=True, help_text="wind by height and temperature; see flight_plan/conditions.py")
+    conditions = models.JSONField(default=dict, blank=True, help_text="wind by height and temperature; see planning/energy/conditions.py")
     charging_w = models.FloatField(null=True, blank=True, help_text="watts of charging at towers on the way; empty = none")
     lost_link = models.JSONField(default=dict, blank=True, help_text="what UAVs do without a link; see services/requests.py")
     revision = models.PositiveIntegerField(default=1, help_text="counts the changes; the ETag")
@@ -138,7 +138,7 @@ class MissionUav(models.Model):
     most_targets = models.PositiveIntegerField(null=True, blank=True, help_text="that it does at most; empty = not limited")
     sorties = models.PositiveSmallIntegerField(default=1, db_default=1, help_text="flights that it makes at most, each on a full battery")
     sensors = ArrayField(models.CharField(max_length=LONGEST_SENSOR), default=list, blank=True)
-    performance = models.JSONField(default=dict, blank=True, help_text="battery, mass and airspeed; see flight_plan/performance.py")
+    performance = models.JSONField(default=dict, blank=True, help_text="battery, mass and airspeed; see planning/energy/performance.py")
     own_figures = ArrayField(
         models.CharField(max_length=20),
         default=list,

@@ -3,6 +3,13 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
+
+from missions.fields import AboveZeroField, BetweenField, PositionField
+from missions.models import Base, CredentialKind, UavCredential, UavType
+from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
+from missions.serializers.known_fields import KnownFieldsSerializer
+from missions.serializers.limits import LARGEST_POWER_W
+from missions.serializers.performance import fault_words
 from planning.energy.performance import (
     AIRSPEEDS_MPS,
     BATTERIES_WH,
@@ -13,13 +20,6 @@ from planning.energy.performance import (
     InvalidPerformance,
     performance_from_json,
 )
-
-from missions.fields import AboveZeroField, BetweenField, PositionField
-from missions.models import Base, CredentialKind, UavCredential, UavType
-from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
-from missions.serializers.known_fields import KnownFieldsSerializer
-from missions.serializers.limits import LARGEST_POWER_W
-from missions.serializers.performance import fault_words
 from workspace import strict_serializers as serializers
 
 MOST_SENSORS = 12

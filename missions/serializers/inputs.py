@@ -7,20 +7,6 @@ from typing import Any
 from django.conf import settings
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from planning.clearance.lost_link import LostLink
-from planning.energy.conditions import Conditions, InvalidConditions, conditions_from_json
-from planning.energy.performance import (
-    AIRSPEEDS_MPS,
-    BATTERIES_WH,
-    MASSES_KG,
-    PERFORMANCE_KEYS,
-    RESERVES_PERCENT,
-    ROTOR_DISKS_M2,
-    InvalidPerformance,
-    performance_from_json,
-)
-from planning.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
-from planning.problem import Objective as RoutingObjective
 
 from missions.fields import AboveZeroField, BetweenField, PositionField
 from missions.fleet_selectors import FIGURES, figures_of, uavs_of_organisation
@@ -56,6 +42,20 @@ from missions.services import (
     with_bases,
 )
 from missions.services.requests import GO_ON, LostLinkRequest, lost_link_from_json
+from planning.clearance.lost_link import LostLink
+from planning.energy.conditions import Conditions, InvalidConditions, conditions_from_json
+from planning.energy.performance import (
+    AIRSPEEDS_MPS,
+    BATTERIES_WH,
+    MASSES_KG,
+    PERFORMANCE_KEYS,
+    RESERVES_PERCENT,
+    ROTOR_DISKS_M2,
+    InvalidPerformance,
+    performance_from_json,
+)
+from planning.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Task, TaskKind
+from planning.problem import Objective as RoutingObjective
 from workspace import strict_serializers as serializers
 from workspace.external_data import AttributesField, ExternalIdField
 from workspace.fields import FiniteFloatField

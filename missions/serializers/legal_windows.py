@@ -7,7 +7,6 @@ import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema_field
-from planning.clearance.zone_clearance import FlownRoute
 
 from inspection.serializers.schedule_words import schedule_sentence
 from inspection.serializers.zones import ScheduleField
@@ -16,6 +15,7 @@ from missions.fields import PositionField
 from missions.models import EndAction
 from missions.serializers.known_fields import KnownFieldsSerializer
 from missions.zone_selectors import LegalWindows
+from planning.clearance.zone_clearance import FlownRoute
 from workspace import strict_serializers as serializers
 
 MOST_WAYPOINTS = 20_000

@@ -3,6 +3,7 @@
 import math
 
 from django.utils.translation import gettext as _
+
 from planning.energy.performance import InvalidPerformance
 
 

@@ -8,12 +8,12 @@ import math
 from typing import Any
 
 from django.conf import settings
-from planning.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Objective, Task, TaskKind
 
 from inspection.geodesy import LonLat
 from missions.models import EndAction
 from missions.serializers.limits import FARTHEST_RANGE_M, FASTEST_MPS, LARGEST_KEY, LONGEST_UAV_NAME
 from missions.services import PlanRequest, TargetRequest, UavRequest
+from planning.problem import DEFAULT_HOLD_S, MAX_HOLD_S, Objective, Task, TaskKind
 
 _OBJECTIVES = {objective.value: objective for objective in Objective if objective is not Objective.ENERGY}  # which needs batteries
 _END_ACTIONS = {action.value: action for action in EndAction if action is not EndAction.BASE}  # which needs the organisation's bases

@@ -3,6 +3,13 @@
 from typing import Any
 
 from django.utils.translation import gettext as _
+
+from missions.fields import AboveZeroField, BetweenField, PositionField
+from missions.fleet_selectors import UavWithUse, bases_of_organisation, performance_with, types_of_organisation
+from missions.models import CredentialKind, EndAction, LinkKind, Uav, UavState
+from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
+from missions.serializers.known_fields import KnownFieldsSerializer
+from missions.serializers.performance import fault_words
 from planning.energy.performance import (
     AIRSPEEDS_MPS,
     BATTERIES_WH,
@@ -11,13 +18,6 @@ from planning.energy.performance import (
     RESERVES_PERCENT,
     InvalidPerformance,
 )
-
-from missions.fields import AboveZeroField, BetweenField, PositionField
-from missions.fleet_selectors import UavWithUse, bases_of_organisation, performance_with, types_of_organisation
-from missions.models import CredentialKind, EndAction, LinkKind, Uav, UavState
-from missions.serializers.inputs import FARTHEST_RANGE_M, FASTEST_MPS
-from missions.serializers.known_fields import KnownFieldsSerializer
-from missions.serializers.performance import fault_words
 from workspace import strict_serializers as serializers
 from workspace.external_data import AttributesField, ExternalIdField
 from workspace.fields import FiniteFloatField

@@ -5,16 +5,16 @@ from dataclasses import replace
 from datetime import datetime
 
 from django.conf import settings
-from planning.energy.power import NoHeadway
-from planning.separation.separation import Separation, TimedRoute, keep_apart, raised_agl_m, timed_route
-from planning.trajectory.sorties import timing_of_route, wh_of_sorties
-from planning.trajectory.waypoints import RoutePoints, Waypoints
 
 from inspection.zones.reach import ZoneTable
 from missions.models import EndAction
 from missions.services.last_look import keys_of_zones_met
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import PlanRequest
+from planning.energy.power import NoHeadway
+from planning.separation.separation import Separation, TimedRoute, keep_apart, raised_agl_m, timed_route
+from planning.trajectory.sorties import timing_of_route, wh_of_sorties
+from planning.trajectory.waypoints import RoutePoints, Waypoints
 
 
 def routes_apart(

@@ -10,9 +10,6 @@ from typing import Any
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from planning.clearance.nearby_zones import zones_near
-from planning.energy.conditions import conditions_from_json, conditions_to_json
-from planning.trajectory.waypoints import WaypointKind
 
 from inspection.geodesy import LonLat
 from inspection.selectors import ground_revision, terrain_edition
@@ -29,6 +26,9 @@ from missions.services.approved_targets import approved_targets
 from missions.services.refused import Reason, Refused
 from missions.services.requests import lost_link_from_json, lost_link_to_json, moment_to_json, task_from_json
 from missions.zone_selectors import departure_s, zone_margins
+from planning.clearance.nearby_zones import zones_near
+from planning.energy.conditions import conditions_from_json, conditions_to_json
+from planning.trajectory.waypoints import WaypointKind
 
 VERSION = 1
 

@@ -3,8 +3,6 @@
 from dataclasses import replace
 
 from django.conf import settings
-from planning.clearance.lost_link import LostLink
-from planning.clearance.nearby_zones import zones_near
 
 from inspection.geodesy import LonLat
 from inspection.selectors.zone_table import zone_table
@@ -12,6 +10,8 @@ from mavlink.fence import FenceRules, FenceZone
 from missions.models import Mission, Route
 from missions.services.requests import lost_link_from_json
 from missions.zone_selectors import flown_route, zone_margins
+from planning.clearance.lost_link import LostLink
+from planning.clearance.nearby_zones import zones_near
 
 
 def zones_beside(route: Route, departs_s: float | None) -> list[FenceZone]:

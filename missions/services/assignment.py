@@ -5,6 +5,13 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+
+from missions.models import EndAction
+from missions.services.places import Place
+from missions.services.plan_json import ALL_PLANS, WITHOUT_TIMED_ZONES
+from missions.services.refusals import Grounding
+from missions.services.requests import LockRequest, PlanRequest, UavRequest
+from missions.services.wishes import may_do
 from planning.connection_points import Ways
 from planning.energy.assignment_costs import FlightCosts
 from planning.energy.duration import ready_s
@@ -14,13 +21,6 @@ from planning.solver.exact import MAX_TARGETS
 from planning.solver.progress import OnProgress, Progress
 from planning.solver.solver import PROVEN_GAP, Stop, solve
 from planning.solver.sorties import merit_of
-
-from missions.models import EndAction
-from missions.services.places import Place
-from missions.services.plan_json import ALL_PLANS, WITHOUT_TIMED_ZONES
-from missions.services.refusals import Grounding
-from missions.services.requests import LockRequest, PlanRequest, UavRequest
-from missions.services.wishes import may_do
 
 CHARGED_WH = 1e6
 COUNTED_CLOSE = 1e-4  # by less of the battery do what is counted and what is drawn differ over ground that is known

@@ -3,13 +3,6 @@
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
-from planning.connection_points import Terminal, ways_between
-from planning.energy.duration import target_s
-from planning.problem import Problem, Solution
-from planning.solver.progress import OnProgress, Progress
-from planning.solver.solver import Stop
-from planning.trajectory.heights import GroundHeights, inspection_agl_m
-
 from missions.models import EndAction
 from missions.services.assignment import LockCost, assignment, least_ready_s, solve_assignment
 from missions.services.best_so_far import OnPlanProgress, PlanProgress, Sketch
@@ -21,6 +14,12 @@ from missions.services.refusals import Grounding, LeftOut, Scene, asset_gone, gr
 from missions.services.requests import InvalidRequest, PlanRequest
 from missions.services.unreached import unreached_places
 from missions.services.visits import visits_of_places
+from planning.connection_points import Terminal, ways_between
+from planning.energy.duration import target_s
+from planning.problem import Problem, Solution
+from planning.solver.progress import OnProgress, Progress
+from planning.solver.solver import Stop
+from planning.trajectory.heights import GroundHeights, inspection_agl_m
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,14 +4,13 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
-from planning.trajectory.heights import GroundHeights
-from planning.trajectory.sorties import wh_of_sorties
-
 from missions.services.attempts import Attempt
 from missions.services.least_lacks import LeastLacks, lack_wh
 from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
+from planning.trajectory.heights import GroundHeights
+from planning.trajectory.sorties import wh_of_sorties
 
 JUST_BELOW = 1e-3
 LEFT = 0.999  # of a share: what is counted is rounded

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from planning.connection_points import Ways
-from planning.problem import End, Objective, Problem, Routes
-from planning.solver.progress import Progress
-from planning.trajectory.heights import FloatArray
 
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.passed import passed_on
+from planning.connection_points import Ways
+from planning.problem import End, Objective, Problem, Routes
+from planning.solver.progress import Progress
+from planning.trajectory.heights import FloatArray
 
 UNITS = {Objective.TOTAL: "m", Objective.MAKESPAN: "s", Objective.TIME: "s", Objective.ENERGY: "Wh"}
 MOST_POINTS = 6_000  # of all lines together: some 150 kB, once a second

@@ -7,7 +7,6 @@ from django.contrib.gis.geos import LineString, Point
 from django.db import transaction
 from django.db.models import Q
 from django.utils.translation import gettext as _
-from planning.trajectory.waypoints import RoutePoint, RoutePoints
 
 from missions.models import Mission, Route, Waypoint
 from missions.services.hand_checks import (
@@ -26,6 +25,7 @@ from missions.services.missions import check_lost_link, lock_mission, note, requ
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import InvalidRequest
 from missions.services.still_apart import separation_of_stored
+from planning.trajectory.waypoints import RoutePoint, RoutePoints
 from workspace.models import User
 
 SAME_SPEED_MPS = 0.005

@@ -3,9 +3,6 @@
 from collections.abc import Sequence
 
 import numpy as np
-from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
-from planning.energy.path_cost import FlightClass, NodeGround
-from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from inspection.selectors.node_ground import node_ground_m
@@ -15,6 +12,9 @@ from missions.services.assignment import route_end
 from missions.services.laid_out import LaidOut
 from missions.services.refusals import Scene
 from missions.services.requests import PlanRequest
+from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
+from planning.energy.path_cost import FlightClass, NodeGround
+from planning.problem import Objective
 
 _NEED_THEM = {Objective.TIME, Objective.ENERGY}
 

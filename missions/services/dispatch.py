@@ -8,10 +8,10 @@ from django.db import transaction
 from django.db.models import Q, QuerySet
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from mavlink.approved_route import FrozenRoute, TakeOff, route_from_json
-from mavlink.vehicle_plan import FlightLoad, load_from_json
 
 from inspection.geodesy import LonLat
+from mavlink.approved_route import FrozenRoute, TakeOff, route_from_json
+from mavlink.vehicle_plan import FlightLoad, load_from_json
 from missions.command_selectors import upload_of
 from missions.models import (
     OPEN_COMMANDS,

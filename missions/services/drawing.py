@@ -7,15 +7,6 @@ from itertools import accumulate, chain, pairwise
 
 import numpy as np
 from django.utils.translation import gettext as _
-from planning.energy.charging import CannotCharge, ChargingStop, charging_stops, places_over, with_stops
-from planning.energy.power import NoHeadway
-from planning.problem import Routes
-from planning.trajectory.heights import GroundHeights, pass_agl_m, with_heights
-from planning.trajectory.obstacles import rising_over
-from planning.trajectory.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs, without_idle_points
-from planning.trajectory.sorties import joined_sorties, timing_of_route
-from planning.trajectory.timing import Timing
-from planning.trajectory.waypoints import NONE, RoutePoints, Waypoints
 
 from inspection.geodesy import LonLat
 from inspection.graph.flyable import node_heights_m
@@ -28,6 +19,15 @@ from missions.services.laid_out import LaidOut
 from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import zone_at
 from missions.services.requests import BaseRequest, InvalidRequest
+from planning.energy.charging import CannotCharge, ChargingStop, charging_stops, places_over, with_stops
+from planning.energy.power import NoHeadway
+from planning.problem import Routes
+from planning.trajectory.heights import GroundHeights, pass_agl_m, with_heights
+from planning.trajectory.obstacles import rising_over
+from planning.trajectory.route_points import PassedNodes, TargetPoints, line_of, route_points, with_short_legs, without_idle_points
+from planning.trajectory.sorties import joined_sorties, timing_of_route
+from planning.trajectory.timing import Timing
+from planning.trajectory.waypoints import NONE, RoutePoints, Waypoints
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,8 +4,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from planning.trajectory.heights import GroundHeights
-
 from inspection.geodesy import LonLat
 from inspection.graph.zone_index import ZoneIndex
 from missions.services.attempts import Attempt
@@ -23,6 +21,7 @@ from missions.services.over_wires import (
 from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import Scene
 from missions.services.requests import PlanRequest
+from planning.trajectory.heights import GroundHeights
 
 MOST_TRIES = 6
 FIRM_FROM = MOST_TRIES - 2  # from this try on a battery counts as so much smaller, and nothing is kept from its UAV for it any more

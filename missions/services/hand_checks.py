@@ -6,17 +6,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
-from planning.clearance.zone_clearance import TAKE_OFF
-from planning.connection_points import tallest_support_m
-from planning.energy.power import NoHeadway
-from planning.trajectory.heights import GroundHeights, asset_height_m, with_heights
-from planning.trajectory.leg_speeds import ground_speeds, speeds_out_of_range
-from planning.trajectory.obstacles import too_low
-from planning.trajectory.route_points import line_of, with_short_legs
-from planning.trajectory.sorties import lengths_of_sorties, timing_of_route, wh_of_sorties
-from planning.trajectory.timing import Timing
-from planning.trajectory.waypoints import RoutePoints, WaypointKind, Waypoints
 
 from inspection.graph.network import Network
 from inspection.graph.spans import spans_of
@@ -30,6 +19,17 @@ from missions.services.last_look import flown_route
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import InvalidRequest, PlanRequest
 from missions.zone_selectors import MetZone, zones_met
+from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
+from planning.clearance.zone_clearance import TAKE_OFF
+from planning.connection_points import tallest_support_m
+from planning.energy.power import NoHeadway
+from planning.trajectory.heights import GroundHeights, asset_height_m, with_heights
+from planning.trajectory.leg_speeds import ground_speeds, speeds_out_of_range
+from planning.trajectory.obstacles import too_low
+from planning.trajectory.route_points import line_of, with_short_legs
+from planning.trajectory.sorties import lengths_of_sorties, timing_of_route, wh_of_sorties
+from planning.trajectory.timing import Timing
+from planning.trajectory.waypoints import RoutePoints, WaypointKind, Waypoints
 from workspace.number_text import number_text
 
 HIGHER_M = 0.05

@@ -6,12 +6,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
-from planning.trajectory.waypoints import RoutePoint, WaypointKind
-
 from inspection.geodesy import LonLat
 from inspection.models import Asset
 from missions.models import Mission, Route, Waypoint
 from missions.services.requests import task_from_json
+from planning.trajectory.waypoints import RoutePoint, WaypointKind
 
 SAME_PLACE_DIGITS = 7  # of a degree: a centimetre
 

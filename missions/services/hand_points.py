@@ -6,10 +6,10 @@ from itertools import pairwise
 
 import numpy as np
 from django.utils.translation import gettext as _
-from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
 from missions.services.kept_route import KeptWaypoint
+from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind
 from workspace.number_text import number_text
 
 MOVED_M = 0.1  # less is rounding

@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from planning.trajectory.waypoints import RoutePoints
-
 from missions.models import Mission, Route
 from missions.services.by_hand import checked_by_hand, place_of, settle_by_hand, store_by_hand
 from missions.services.hand_checks import HandGround, hand_ground
 from missions.services.hand_legs import HandLeg, Step, hand_legs_from_json, legs_between, step_points, step_row, target_keys
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import InvalidRequest
+from planning.trajectory.waypoints import RoutePoints
 
 NOT_KEPT = "by_hand_not_kept"
 

@@ -6,14 +6,13 @@ from functools import lru_cache
 from typing import NamedTuple
 from uuid import UUID
 
-from planning.problem import Task
-from planning.trajectory.waypoints import WaypointKind
-
 from inspection.geodesy import LonLat
 from inspection.selectors.planning import Edition
 from missions.models import Mission, Waypoint
 from missions.services.missions import request_of_mission
 from missions.services.requests import PlanRequest, task_from_json
+from planning.problem import Task
+from planning.trajectory.waypoints import WaypointKind
 
 MOST_KEPT = 32  # routes in a process
 

@@ -3,10 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from planning.problem import End, Reason
-from planning.solver.reach import NOT_ON_ONE_ROUTE, RANGE_ALONE
-from planning.trajectory.heights import GroundHeights
-
 from missions.services.assignment import route_end
 from missions.services.attempts import Attempt
 from missions.services.battery import KEPT_BACK
@@ -16,6 +12,9 @@ from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest, UavRequest
 from missions.services.shortfall import of_battery, with_minutes
 from missions.services.unreached import LOCKED
+from planning.problem import End, Reason
+from planning.solver.reach import NOT_ON_ONE_ROUTE, RANGE_ALONE
+from planning.trajectory.heights import GroundHeights
 
 OUT_OF_REACH = {Reason.BEYOND_RANGE.value, Reason.BEYOND_ENERGY.value}
 ALONE = "It is within what the battery may give alone, but not within what is left after the other targets."

@@ -3,13 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from planning.connection_points import Ways
-from planning.problem import Visit
-
 from inspection.geodesy import LonLat
 from missions.services.places import Place
 from missions.services.refusals import Scene
 from missions.services.requests import BaseRequest, PlanRequest
+from planning.connection_points import Ways
+from planning.problem import Visit
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from django.conf import settings
-from planning.clearance.zone_clearance import FlownRoute
 
 from inspection.zones.reach import ZoneTable
 from missions.models import EndAction
 from missions.services.plan_json import PlannedRoute
 from missions.zone_selectors import zones_met
+from planning.clearance.zone_clearance import FlownRoute
 
 
 def keys_of_zones_met(routes: Sequence[PlannedRoute], departs_at: datetime | None, table: ZoneTable) -> frozenset[int]:

@@ -7,7 +7,6 @@ from datetime import UTC, datetime
 from typing import Any
 
 from django.conf import settings
-from planning.problem import Objective, Priority
 
 from inspection.geodesy import LonLat
 from inspection.selectors.planning import planning_read
@@ -15,6 +14,7 @@ from missions.services.places import places_of
 from missions.services.planning import make_plan
 from missions.services.requests import PlanRequest, moment_to_json
 from missions.services.zone_choice import near_positions
+from planning.problem import Objective, Priority
 
 AHEAD_S = 48 * 3_600.0
 MOST_TRIES = 12

@@ -6,18 +6,17 @@ from dataclasses import replace
 from itertools import permutations, product
 from typing import NamedTuple
 
-from planning.problem import RANGE_RESERVE
-from planning.solver.cheapest_route import LeastRoutes
-from planning.solver.cost_matrices import NO_WAY_M, Kind
-from planning.trajectory.heights import GroundHeights
-from planning.trajectory.sorties import wh_of_sorties
-
 from missions.services.assignment import COUNTED_CLOSE
 from missions.services.attempts import Attempt
 from missions.services.over_wires import spans_in_the_way
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import PlanRequest
 from missions.services.wishes import may_do
+from planning.problem import RANGE_RESERVE
+from planning.solver.cheapest_route import LeastRoutes
+from planning.solver.cost_matrices import NO_WAY_M, Kind
+from planning.trajectory.heights import GroundHeights
+from planning.trajectory.sorties import wh_of_sorties
 
 IsClear = Callable[[PlannedRoute], bool]
 

@@ -5,9 +5,6 @@ from typing import Any
 
 import numpy as np
 from django.conf import settings
-from planning.clearance.lost_link import LostLink, LostLinkPlan, checked_returns
-from planning.clearance.nearby_zones import zones_near
-from planning.trajectory.heights import GroundHeights
 
 from inspection.graph.network import Network
 from inspection.graph.spans import spans_of
@@ -20,6 +17,9 @@ from missions.services.requests import PlanRequest, lost_link_to_json
 from missions.services.stored_routes import stored_routes
 from missions.services.zone_choice import zone_choice
 from missions.zone_selectors import zone_margins
+from planning.clearance.lost_link import LostLink, LostLinkPlan, checked_returns
+from planning.clearance.nearby_zones import zones_near
+from planning.trajectory.heights import GroundHeights
 
 
 def lost_link_check(

@@ -7,7 +7,6 @@ from typing import Any
 from django.contrib.gis.geos import LineString, Point
 from django.db import transaction
 from django.utils import timezone
-from planning.solver.solver import Stop
 
 from inspection.models import Asset
 from missions.models import Mission, MissionState, Route, Waypoint
@@ -18,6 +17,7 @@ from missions.services.plan_json import NO_SHORTFALL
 from missions.services.planning import make_plan
 from missions.services.requests import GO_ON, PlanRequest, request_from_json
 from missions.services.wishes import has_sensor, with_bases
+from planning.solver.solver import Stop
 from workspace.models import Job, User
 from workspace.services import JobCancelled, finish_job, record_change
 

@@ -10,9 +10,6 @@ from uuid import UUID
 from django.contrib.gis.geos import LineString, Point
 from django.db import transaction
 from django.utils import timezone
-from planning.energy.conditions import Conditions, conditions_from_json, conditions_to_json
-from planning.energy.performance import InvalidPerformance, Performance, performance_from_json, performance_to_json
-from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
@@ -38,6 +35,9 @@ from missions.services.requests import (
     task_to_json,
 )
 from missions.services.wishes import refuse_contradictions
+from planning.energy.conditions import Conditions, conditions_from_json, conditions_to_json
+from planning.energy.performance import InvalidPerformance, Performance, performance_from_json, performance_to_json
+from planning.problem import Objective
 from workspace.models import Organisation, User
 from workspace.services import record_change
 

@@ -5,9 +5,6 @@ from dataclasses import replace
 from enum import StrEnum
 
 import numpy as np
-from planning.problem import BoolArray, Reason
-from planning.solver.reach import NO_WAY, least_needs, needed_range_m
-from planning.trajectory.heights import GroundHeights
 
 from missions.services.assignment import allowed_visits
 from missions.services.attempts import Attempt
@@ -16,6 +13,9 @@ from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
 from missions.services.unreached import LOCKED, MOST_NAMED, WIND, in_calm
 from missions.services.wishes import has_sensor
+from planning.problem import BoolArray, Reason
+from planning.solver.reach import NO_WAY, least_needs, needed_range_m
+from planning.trajectory.heights import GroundHeights
 
 
 class Limit(StrEnum):

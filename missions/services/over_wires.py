@@ -6,10 +6,6 @@ from dataclasses import replace
 import numpy as np
 from django.conf import settings
 from numpy.typing import NDArray
-from planning.clearance.obstacle_clearance import spans_too_near
-from planning.problem import Reason
-from planning.trajectory.heights import GroundHeights
-from planning.trajectory.waypoints import FloatArray
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.graph.network import Network
@@ -20,6 +16,10 @@ from missions.services.attempts import Attempt
 from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import LeftOut
 from missions.services.requests import PlanRequest
+from planning.clearance.obstacle_clearance import spans_too_near
+from planning.problem import Reason
+from planning.trajectory.heights import GroundHeights
+from planning.trajectory.waypoints import FloatArray
 
 NO_PATH = Reason.NO_PATH.value
 FREE_AT_ENDS_M = 2.0 * BESIDE_M  # the towers at the ends of a wire that hangs too high between them can be flown to

@@ -11,9 +11,6 @@ from django.conf import settings
 from django.db.models.functions import Now
 from django.utils.translation import gettext as _
 from numpy.typing import NDArray
-from planning.clearance.nearby_zones import zones_near
-from planning.clearance.rtl_paths import Haven, InTheWay, Places, Trouble, WaysHome
-from planning.clearance.zone_clearance import ZoneFacts
 
 from inspection.geodesy import LonLat
 from inspection.graph.spans import spans_of
@@ -27,6 +24,9 @@ from missions.models import LinkKind, Mission, Route, Uav
 from missions.services.approval_document import frozen_route
 from missions.services.approved_fence import rally_points, zones_beside
 from missions.zone_selectors import departure_s, zone_margins
+from planning.clearance.nearby_zones import zones_near
+from planning.clearance.rtl_paths import Haven, InTheWay, Places, Trouble, WaysHome
+from planning.clearance.zone_clearance import ZoneFacts
 
 STEP_M = 5.0  # by which a height is looked for that is clear
 

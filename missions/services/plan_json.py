@@ -6,11 +6,6 @@ from itertools import repeat
 from typing import Any
 
 import numpy as np
-from planning.energy.charging import ChargingStop
-from planning.energy.conditions import conditions_to_json
-from planning.trajectory.heights import FloatArray
-from planning.trajectory.timing import Timing
-from planning.trajectory.waypoints import KINDS, NONE, IntArray, Waypoints
 
 from missions.models import EndAction
 from missions.services.refusals import LeftOut
@@ -18,6 +13,11 @@ from missions.services.requests import PlanRequest, lock_to_json, moment_to_json
 from missions.services.shortfall import Shortfall
 from missions.services.straight_line import straight_json
 from missions.services.waypoint_text import column_text, line_text, waypoints_text
+from planning.energy.charging import ChargingStop
+from planning.energy.conditions import conditions_to_json
+from planning.trajectory.heights import FloatArray
+from planning.trajectory.timing import Timing
+from planning.trajectory.waypoints import KINDS, NONE, IntArray, Waypoints
 
 ALL_PLANS, WITHOUT_TIMED_ZONES = "all_plans", "without_timed_zones"  # of which plans bound and gap speak
 FLAT_GROUND = "flat ground assumed"

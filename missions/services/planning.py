@@ -6,9 +6,6 @@ from typing import Any
 
 import numpy as np
 from django.conf import settings
-from planning.separation.report import separation_json
-from planning.separation.separation import Separation
-from planning.solver.solver import Stop, never
 
 from inspection.geodesy import LonLat
 from inspection.graph.walls import at_all_heights, with_walls
@@ -34,6 +31,9 @@ from missions.services.unreached import WIND
 from missions.services.warnings import warnings_of
 from missions.services.worth import Worth, value_of, worth_of
 from missions.services.zone_choice import BoolArray, ZoneChoice, zone_choice
+from planning.separation.report import separation_json
+from planning.separation.separation import Separation
+from planning.solver.solver import Stop, never
 from workspace.turns import end_turn, in_turn
 
 MOST_GROUNDS = 5  # that may follow one another while one plan is made

@@ -7,10 +7,6 @@ from typing import Any
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from planning.energy.path_cost import FlightClass
-from planning.problem import End, UavStart
-from planning.reachability.reachability import Flight, reach
-from planning.reachability.reachable_assets import Reach, Verdict
 
 from inspection.selectors.planning import planning_read
 from missions.models import EndAction
@@ -18,6 +14,10 @@ from missions.services.refusals import Scene, column_m, groundings, zone_at
 from missions.services.requests import BaseRequest, PlanRequest, UavRequest
 from missions.services.scenes import scene_on
 from missions.services.zone_choice import zone_choice
+from planning.energy.path_cost import FlightClass
+from planning.problem import End, UavStart
+from planning.reachability.reachability import Flight, reach
+from planning.reachability.reachable_assets import Reach, Verdict
 from workspace.number_text import number_text
 
 Box = tuple[float, float, float, float]

@@ -5,9 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from django.conf import settings
-from planning.connection_points import AccessRules, tallest_support_m
-from planning.rules import FlightRules
-from planning.trajectory.heights import inspection_agl_m, is_above_limit
 
 from inspection.geodesy import LonLat
 from inspection.graph.inspection_graph import InspectionGraph
@@ -20,6 +17,9 @@ from missions.models import UavState
 from missions.services.places import Place
 from missions.services.requests import UavRequest
 from missions.services.shortfall import Shortfall
+from planning.connection_points import AccessRules, tallest_support_m
+from planning.rules import FlightRules
+from planning.trajectory.heights import inspection_agl_m, is_above_limit
 
 
 @dataclass(frozen=True)

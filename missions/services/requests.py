@@ -5,13 +5,12 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
 
+from inspection.geodesy import LonLat
+from missions.models import EndAction
 from planning.clearance.lost_link import LostLink
 from planning.energy.conditions import Conditions, conditions_from_json, conditions_to_json
 from planning.energy.performance import Performance, performance_from_json, performance_to_json
 from planning.problem import Objective, Priority, Task, TaskKind
-
-from inspection.geodesy import LonLat
-from missions.models import EndAction
 
 NO_BATTERY = Performance()  # whose energy is not counted
 CALM = Conditions()

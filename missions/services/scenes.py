@@ -2,8 +2,6 @@
 
 import numpy as np
 from django.conf import settings
-from planning.clearance.flyable_graph import flyable_graph
-from planning.connection_points import AccessRules
 
 from inspection.graph.by_length import by_length
 from inspection.graph.walls import too_tall_walls, with_walls
@@ -13,6 +11,8 @@ from inspection.zones.reach import BoolArray
 from missions.services.refusals import Scene
 from missions.services.requests import PlanRequest
 from missions.services.zone_choice import zone_choice
+from planning.clearance.flyable_graph import flyable_graph
+from planning.connection_points import AccessRules
 
 
 def scene_on(ground: PlanningGround, chosen: BoolArray | None, more_walls: ZoneIndex | None = None, *, is_by_length: bool = False) -> Scene:

@@ -3,9 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from planning.energy.power import power_w
-
 from missions.services.requests import UavRequest
+from planning.energy.power import power_w
 
 
 @dataclass(frozen=True)

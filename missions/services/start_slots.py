@@ -10,8 +10,6 @@ from django.db import connection
 from django.db.models import Max, Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from planning.rules import SeparationRules
-from planning.separation.separation import TimedRoute, conflicts, keep_apart
 
 from inspection.geodesy import LonLat
 from inspection.graph.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
@@ -20,6 +18,8 @@ from missions.in_air_hooks import places_in_the_air
 from missions.models import CommandAxis, CommandKind, CommandState, Route, Uav, UavCommand, UavState
 from missions.services.flying import ON_ITS_WAY
 from missions.services.refused import Reason
+from planning.rules import SeparationRules
+from planning.separation.separation import TimedRoute, conflicts, keep_apart
 
 START_SLOT = "start-slot"  # what a command failed with
 OUT_OF_SLOT = "out_of_slot"  # a start's parameter: whoever gave it has answered that it is to take off all the same

@@ -7,8 +7,8 @@ from django.conf import settings
 from django.db import transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from mavlink.rtl import own_return
 
+from mavlink.rtl import own_return
 from missions.command_rules import ALONG_ROUTE, HEIGHT_M, SETS_IN_MOTION, THEN_RETURN, WAIT_S
 from missions.command_selectors import route_commands, upload_of
 from missions.fleet_selectors import performance_of

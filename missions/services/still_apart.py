@@ -3,11 +3,11 @@
 from typing import Any
 
 from django.conf import settings
-from planning.separation.report import separation_json
-from planning.separation.separation import Separation, closest_encounter, conflicts
 
 from missions.flight_selectors import OtherFlights, flights_at_the_same_time, routes_of_mission_in_time
 from missions.models import Mission
+from planning.separation.report import separation_json
+from planning.separation.separation import Separation, closest_encounter, conflicts
 
 
 def separation_of_stored(mission: Mission) -> dict[str, Any] | None:

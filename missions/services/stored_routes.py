@@ -1,13 +1,13 @@
 """The stored routes of a mission as the planner has them before they are stored."""
 
 import numpy as np
-from planning.trajectory.timing import Timing
-from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 
 from inspection.geodesy import LonLat
 from missions.models import Mission, Route, Waypoint
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import task_from_json
+from planning.trajectory.timing import Timing
+from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 
 
 def stored_routes(mission: Mission) -> list[PlannedRoute] | None:

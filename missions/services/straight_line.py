@@ -1,9 +1,9 @@
 """What a route costs against the straight line: the summary of its explanation that every plan carries."""
 
 import numpy as np
-from planning.trajectory.waypoints import NONE, PASS, FloatArray, IntArray
 
 from inspection.geodesy import path_length_m
+from planning.trajectory.waypoints import NONE, PASS, FloatArray, IntArray
 
 
 def straight_json(position: FloatArray, kind: IntArray, target: IntArray, length_m: float) -> dict[str, float]:

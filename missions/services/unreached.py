@@ -4,9 +4,6 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from planning.connection_points import Ways, is_near_network
-from planning.problem import End, Objective, Problem, Reason, Unassigned
-from planning.solver.reach import NEAREST, needed_range_m, reachable
 
 from missions.services.assignment import Assignment
 from missions.services.places import Place
@@ -14,6 +11,9 @@ from missions.services.refusals import Grounding, LeftOut, Scene
 from missions.services.requests import PlanRequest, TargetRequest, UavRequest
 from missions.services.shortfall import Shortfall, of_battery, of_range, with_minutes
 from missions.services.wishes import has_sensor, may_do
+from planning.connection_points import Ways, is_near_network
+from planning.problem import End, Objective, Problem, Reason, Unassigned
+from planning.solver.reach import NEAREST, needed_range_m, reachable
 
 LOCKED = " It is locked to others: the run is left out as a whole."
 WIND = "wind"

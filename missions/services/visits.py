@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from planning.problem import Visit
 
 from inspection.geodesy import LonLat, path_length_m
 from missions.services.places import Place
+from planning.problem import Visit
 
 
 def visits_of_places(places: Sequence[Place], takes_s: Sequence[float] | None = None) -> tuple[list[Visit], list[tuple[LonLat, ...]]]:

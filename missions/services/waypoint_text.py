@@ -2,9 +2,9 @@
 
 import numpy as np
 import orjson
-from planning.trajectory.waypoints import KINDS, NONE, PASS, FloatArray, IntArray, Waypoints
 
 from missions.services.requests import task_to_json
+from planning.trajectory.waypoints import KINDS, NONE, PASS, FloatArray, IntArray, Waypoints
 
 _OPENING, _NEXT, _CLOSING = b'[{"position":[', b'},{"position":[', b"}]"
 _KIND = [f'],"kind":"{kind.value}","asset":'.encode() for kind in KINDS]

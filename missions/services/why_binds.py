@@ -4,17 +4,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from planning.connection_points import Ways
-from planning.energy.assignment_costs import FlightCosts
-from planning.problem import Amounts, Objective
-from planning.trajectory.heights import inspection_agl_m
-
 from missions.services.counted import counted
 from missions.services.laid_out import LaidOut
 from missions.services.places import Place
 from missions.services.refusals import Scene, place_height_m, zone_at
 from missions.services.requests import CALM, PlanRequest
 from missions.services.visits import visits_of_places
+from planning.connection_points import Ways
+from planning.energy.assignment_costs import FlightCosts
+from planning.problem import Amounts, Objective
+from planning.trajectory.heights import inspection_agl_m
 
 NEARLY = 0.9  # of a limit: no other target fits
 NOTICEABLE = 1.05  # times as long as in calm air

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import shapely
 from django.utils.translation import gettext as _
-from planning.connection_points import Terminal, Ways, ways_between
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.graph.inspection_graph import InspectionGraph
@@ -20,6 +19,7 @@ from missions.services.requests import InvalidRequest, PlanRequest
 from missions.services.scenes import current_scene, scene_without_zones
 from missions.services.visits import visits_of_places
 from missions.services.why_binds import what_binds
+from planning.connection_points import Terminal, Ways, ways_between
 
 MOST_VISITS = 150  # beyond, only the route itself is looked at, not what others would fly instead
 BOX_MARGIN_DEG = 0.03  # about 3 km: the way that a zone bars is looked for so far around the route

@@ -5,10 +5,6 @@ from typing import Any
 
 import numpy as np
 import shapely
-from planning.connection_points import Terminal, Ways, ways_between
-from planning.problem import Objective, Problem, UavStart
-from planning.solver.reach import needed_range_m
-from planning.trajectory.heights import is_above_limit
 from shapely.geometry import LineString
 from shapely.ops import nearest_points
 
@@ -27,6 +23,10 @@ from missions.services.requests import PlanRequest, TargetRequest, UavRequest
 from missions.services.scenes import current_scene
 from missions.services.visits import visits_of_places
 from missions.services.wishes import may_do, stored_bases
+from planning.connection_points import Terminal, Ways, ways_between
+from planning.problem import Objective, Problem, UavStart
+from planning.solver.reach import needed_range_m
+from planning.trajectory.heights import is_above_limit
 from workspace.models import Organisation
 
 MOST_SPARE = 8  # UAVs of the fleet, the nearest first, of which it is worked out whether they could fly there

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 from django.utils.translation import gettext as _
 from django.utils.translation import ngettext
-from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from missions.fleet_selectors import bases_of_organisation
 from missions.models import EndAction
 from missions.services.requests import BaseRequest, InvalidRequest, LockRequest, PlanRequest, TargetRequest, UavRequest
+from planning.problem import Objective
 from workspace.models import Organisation
 
 

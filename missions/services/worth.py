@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from planning.problem import Objective, Priority
-
 from missions.services.attempts import Attempt
 from missions.services.plan_json import PlannedRoute
 from missions.services.requests import PlanRequest
+from planning.problem import Objective, Priority
 
 
 @dataclass(frozen=True, order=True)

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from datetime import datetime
 
 import numpy as np
-from planning.rules import FlightRules
 
 from inspection.geodesy import LonLat
 from inspection.zones.reach import BoolArray, ZoneTable
+from planning.rules import FlightRules
 
 NEAR_SHARE = 0.5  # of what a plan extends over, on each side; ways lead farther round only where nothing nearer is left
 NEAR_DEG = 0.15  # some 15 km

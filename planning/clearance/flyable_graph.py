@@ -1,9 +1,8 @@
 """The part of the inspection graph that a plan's height limit leaves."""
 
-from planning.rules import FlightRules
-
 from inspection.graph.flyable import flyable_part
 from inspection.graph.inspection_graph import InspectionGraph
+from planning.rules import FlightRules
 
 
 def flyable_graph(graph: InspectionGraph, rules: FlightRules) -> InspectionGraph:

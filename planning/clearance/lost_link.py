@@ -7,6 +7,10 @@ from enum import StrEnum
 
 import numpy as np
 from numpy.typing import NDArray
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy.local_frame import LocalFrame
+from inspection.graph.spans import Spans, spans_between
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute, Margins, ZoneFacts, breaches
 from planning.energy.conditions import Conditions, air_density
 from planning.energy.leg_cost import J_PER_WH, hold_taken, landing_taken, leg_taken, speeds, table_of
@@ -16,10 +20,6 @@ from planning.trajectory.heights import SAMPLE_SPACING_M, GroundHeights
 from planning.trajectory.spans_below import tops_below
 from planning.trajectory.timing import Timing
 from planning.trajectory.waypoints import BASE, Waypoints
-
-from inspection.geodesy import LonLat, distance_m
-from inspection.geodesy.local_frame import LocalFrame
-from inspection.graph.spans import Spans, spans_between
 
 FloatArray = NDArray[np.float64]
 

@@ -3,9 +3,9 @@
 import math
 
 import numpy as np
-from planning.clearance.zone_clearance import FloatArray, Margins, ZoneFacts
 
 from inspection.zones.reach import ZoneTable
+from planning.clearance.zone_clearance import FloatArray, Margins, ZoneFacts
 
 LEAST_DEGREE_M = 110_574.0  # metres in a degree of latitude, on the equator
 NEAREST_POLE_DEG = 89.0

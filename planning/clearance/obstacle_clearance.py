@@ -12,12 +12,12 @@ import numpy as np
 import shapely
 from numba import njit
 from numpy.typing import NDArray
-from planning.rules import FlightRules
-from planning.trajectory.heights import GroundHeights
-from planning.trajectory.waypoints import BASE, NONE, FloatArray, RoutePoints, Waypoints
 
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.graph.spans import Spans
+from planning.rules import FlightRules
+from planning.trajectory.heights import GroundHeights
+from planning.trajectory.waypoints import BASE, NONE, FloatArray, RoutePoints, Waypoints
 
 BESIDE_M = 24.0  # across the ground; drawing keeps a little more
 STEP_M = 4.0

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.graph.spans import Spans
 from planning.clearance.zone_clearance import TAKE_OFF, BoolArray, FlownRoute, Margins, ZoneFacts, breaches
 from planning.trajectory.heights import SAMPLE_SPACING_M, GroundHeights
 from planning.trajectory.spans_below import tops_below
 from planning.trajectory.waypoints import FloatArray, IntArray
-
-from inspection.geodesy import LonLat, distance_m
-from inspection.graph.spans import Spans
 
 LOOKED_AT_EVERY_M = 50.0  # along the flight
 ROUNDING_M = 0.5  # heights are stored in tenths, and kept in centimetres

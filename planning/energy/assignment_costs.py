@@ -11,18 +11,18 @@ from itertools import accumulate, chain
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from planning.connection_points import Ways
-from planning.energy.conditions import Conditions, air_density
-from planning.energy.leg_cost import J_PER_WH, Speeds, landing_taken, leg_taken, stay_taken, take_off_taken
-from planning.energy.path_cost import FlightClass, NodeGround, bends_of_ways, graph_taken, taken_on_ways
-from planning.problem import End
-from planning.rules import FlightRules
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.short_vector import short_vector_m
 from inspection.graph.along_ways import chain_arrays
 from inspection.graph.condensed import NumberArray
 from inspection.graph.inspection_graph import InspectionGraph
+from planning.connection_points import Ways
+from planning.energy.conditions import Conditions, air_density
+from planning.energy.leg_cost import J_PER_WH, Speeds, landing_taken, leg_taken, stay_taken, take_off_taken
+from planning.energy.path_cost import FlightClass, NodeGround, bends_of_ways, graph_taken, taken_on_ways
+from planning.problem import End
+from planning.rules import FlightRules
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+
 from planning.energy.conditions import Conditions
 from planning.energy.leg_cost import J_PER_WH, landing_taken, leg_taken, speeds, table_of, take_off_taken
 from planning.energy.performance import Performance

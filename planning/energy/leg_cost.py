@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+
 from planning.energy.conditions import wind_in_table
 from planning.energy.performance import Performance
 from planning.energy.power import CLIMBING, LEVEL, TOO_STRONG, ground_and_air_speed, power_table, watts

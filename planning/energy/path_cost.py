@@ -12,11 +12,6 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from planning.energy.conditions import Conditions, air_density, wind_in_table
-from planning.energy.leg_cost import J_PER_WH, Speeds, is_closed, leg_taken, speeds, table_of, taken_in_wind
-from planning.energy.performance import Performance
-from planning.rules import FlightRules
-from planning.trajectory.heights import pass_agl_m
 
 from inspection.geodesy.short_vector import short_vector_m
 from inspection.graph.along_ways import Sums, leg_of_way, quantities_of_pairs, steps_of_graph, sums_along
@@ -26,6 +21,11 @@ from inspection.graph.hub_labels import IntArray
 from inspection.graph.inspection_graph import InspectionGraph
 from inspection.graph.route_index import route_index
 from inspection.graph.ways import DIRECT, Travel
+from planning.energy.conditions import Conditions, air_density, wind_in_table
+from planning.energy.leg_cost import J_PER_WH, Speeds, is_closed, leg_taken, speeds, table_of, taken_in_wind
+from planning.energy.performance import Performance
+from planning.rules import FlightRules
+from planning.trajectory.heights import pass_agl_m
 
 FloatArray = NDArray[np.float64]
 

@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+
 from planning.energy.performance import STANDARD_DENSITY, Performance
 
 FloatArray = NDArray[np.float64]

@@ -11,14 +11,6 @@ import numpy as np
 import shapely
 from numba import njit
 from numpy.typing import NDArray
-from planning.connection_points import AccessRules, Terminal, access_legs, direct_legs
-from planning.energy.conditions import Conditions
-from planning.energy.leg_cost import J_PER_WH
-from planning.energy.node_cost import DONE, LANDING, LANDING_THERE, TAKE_OFF, UP, at_nodes, both_ways
-from planning.energy.path_cost import NO_HEADWAY, FlightClass, GraphTaken, graph_taken
-from planning.problem import DEFAULT_HOLD_S, End, TaskKind
-from planning.reachability.reachable_assets import NodeReach, Reach, Verdict, of_assets
-from planning.rules import FlightRules
 from scipy.spatial import cKDTree
 
 from inspection.geodesy import LonLat, distance_m
@@ -34,6 +26,14 @@ from inspection.graph.node_tree import points_on_sphere
 from inspection.graph.route_index import node_tree, route_index
 from inspection.graph.spread import Crossroads, crossroads, spread
 from inspection.graph.zone_index import ZoneIndex
+from planning.connection_points import AccessRules, Terminal, access_legs, direct_legs
+from planning.energy.conditions import Conditions
+from planning.energy.leg_cost import J_PER_WH
+from planning.energy.node_cost import DONE, LANDING, LANDING_THERE, TAKE_OFF, UP, at_nodes, both_ways
+from planning.energy.path_cost import NO_HEADWAY, FlightClass, GraphTaken, graph_taken
+from planning.problem import DEFAULT_HOLD_S, End, TaskKind
+from planning.reachability.reachable_assets import NodeReach, Reach, Verdict, of_assets
+from planning.rules import FlightRules
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -8,12 +8,12 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
+
+from inspection.geodesy import LonLat
 from planning.rules import FlightRules, SeparationRules
 from planning.separation.closest_approach import NOTHING, box_tree, nearest, shared_places
 from planning.separation.route_pieces import ARRIVAL, FOREVER_S, HEIGHT, HOLD, ON_GROUND, QUICKEST_S, route_pieces, runs_on
 from planning.trajectory.waypoints import BASE, END, NONE, TARGET, RoutePoints, Waypoints
-
-from inspection.geodesy import LonLat
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

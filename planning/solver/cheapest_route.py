@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
+
 from planning.problem import BoolArray, FloatArray, IntArray, Problem
 from planning.solver.cost_matrices import NO_WAY_M, Classes, Kind, Quantities, classes_of, quantities_of
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
+
 from planning.problem import BoolArray, FloatArray, IntArray
 from planning.solver.cost_matrices import NO_WAY_M
 from planning.solver.problem_arrays import Arcs

@@ -6,6 +6,7 @@ from enum import Enum, auto
 
 import numpy as np
 from numba import njit
+
 from planning.problem import Amounts, FloatArray, IntArray, InvalidProblem, Objective, Problem
 
 NO_WAY_M = 1e11  # a hundred million kilometres stand for no way: sums of them stay numbers, unlike those of infinities

@@ -2,6 +2,7 @@
 
 import numpy as np
 from numba import njit
+
 from planning.problem import BoolArray, FloatArray, IntArray, Problem, Routes
 from planning.solver.constrained_tours import Tours, limited_tours, settled_tours
 from planning.solver.plan_state import ABSENT

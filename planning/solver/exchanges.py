@@ -7,6 +7,7 @@ turned round together with the stretches in them. A move is measured first, and 
 from typing import NamedTuple
 
 from numba import njit
+
 from planning.problem import IntArray
 from planning.solver.cost_matrices import NO_WAY_M
 from planning.solver.plan_state import NO, YES, Ground, Plan, RandomState, draw, draw_below

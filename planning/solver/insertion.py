@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from numba import njit
+
 from planning.solver.objective import raised_to
 from planning.solver.plan_state import (
     ABSENT,

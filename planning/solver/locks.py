@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+
 from planning.problem import Amounts, FloatArray, InvalidProblem, Lock, Problem, Routes, Unassigned, Visit
 
 MOST_WAYS = 16  # through a locked run between the same two visits, of which none beats another

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 from numba import njit
+
 from planning.problem import BoolArray, FloatArray, IntArray, Objective, Problem, Routes
 from planning.solver import exact
 from planning.solver.cost_matrices import NO_WAY_M

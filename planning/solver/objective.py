@@ -3,6 +3,7 @@
 import math
 
 from numba import njit
+
 from planning.solver.exchanges import Measured, Move, added_m, measured
 from planning.solver.plan_state import Ground, Plan, RandomState, done_on_other_sorties, draw, duration_s, values
 

@@ -5,6 +5,7 @@ from typing import NamedTuple, cast
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+
 from planning.problem import BoolArray, FloatArray, IntArray, Problem, Routes
 from planning.solver.cost_matrices import NO_WAY_M
 from planning.solver.problem_arrays import Arcs

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
+
 from planning.problem import BoolArray, FloatArray, IntArray, InvalidProblem, Objective, Problem
 from planning.solver.cost_matrices import NO_LIMIT, NO_WAY_M, Kind, Quantities, classes_of, quantities_of
 

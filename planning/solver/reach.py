@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+
 from planning.problem import RANGE_RESERVE, BoolArray, End, FloatArray, IntArray, Problem, Reason, Routes, Unassigned
 from planning.solver.cheapest_route import LeastRoutes
 from planning.solver.cost_matrices import NO_WAY_M, Kind, classes_of, quantities_of

@@ -8,6 +8,7 @@ import math
 
 import numpy as np
 from numba import njit
+
 from planning.solver.exchanges import NONE, draw_move, make
 from planning.solver.insertion import recreate
 from planning.solver.objective import cost_of, cost_of_routes, is_better, is_wanted, longest_of

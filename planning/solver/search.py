@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from threading import Event, Timer
 
 import numpy as np
+
 from planning.problem import BoolArray, FloatArray, Problem, Routes, merit
 from planning.solver.lower_bounds import lower_bound
 from planning.solver.plan_state import Ground, Workspace, ground_of, routes_of, values, workspace

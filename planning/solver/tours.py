@@ -2,6 +2,7 @@
 
 import numpy as np
 from numba import njit
+
 from planning.problem import BoolArray, FloatArray, IntArray
 from planning.solver.cost_matrices import NO_WAY_M
 

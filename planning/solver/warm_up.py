@@ -3,6 +3,10 @@
 from dataclasses import fields
 
 import numpy as np
+
+from inspection.graph.network import Network
+from inspection.graph.rehearsal import BESIDE, graph_to_rehearse_on
+from inspection.graph.zone_index import ZoneIndex
 from planning.connection_points import AccessRules, Terminal, ways_between
 from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance
@@ -10,10 +14,6 @@ from planning.problem import Amounts, End, Objective, Problem, UavStart, Visit
 from planning.reachability.reachability import Flight, reach
 from planning.solver import exact
 from planning.solver.solver import solve
-
-from inspection.graph.network import Network
-from inspection.graph.rehearsal import BESIDE, graph_to_rehearse_on
-from inspection.graph.zone_index import ZoneIndex
 
 
 def rehearse() -> None:

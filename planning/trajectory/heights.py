@@ -6,13 +6,13 @@ from collections.abc import Callable
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from planning.rules import FlightRules
-from planning.trajectory.waypoints import RoutePoints, Waypoints
 
 from inspection.geodesy import distance_m
 from inspection.graph.flown_heights import HIGHEST_VOLTAGE_HEIGHT_M, HIGHEST_VOLTAGE_V, UNTAGGED_HEIGHT_M
 from inspection.graph.inspection_graph import NodeKind
 from inspection.terrain.heights import amsl_m, counted_from
+from planning.rules import FlightRules
+from planning.trajectory.waypoints import RoutePoints, Waypoints
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

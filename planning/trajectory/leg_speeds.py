@@ -3,12 +3,11 @@
 import math
 from typing import NamedTuple
 
+from inspection.geodesy.short_vector import short_vector_m
 from planning.energy.conditions import Conditions, wind_in_table
 from planning.energy.performance import Performance
 from planning.energy.power import LEAST_HEADWAY_MPS, TOO_STRONG, ground_and_air_speed
 from planning.trajectory.waypoints import Waypoints
-
-from inspection.geodesy.short_vector import short_vector_m
 
 ROUNDING_MPS = 1e-6
 

@@ -4,14 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from inspection.geodesy import distance_m
+from inspection.graph.spans import Spans
 from planning.rules import FlightRules
 from planning.trajectory.beside_spans import legs_beside, points_beside, stretches_too_low
 from planning.trajectory.heights import GroundHeights
 from planning.trajectory.sloped_rises import ProfilePoint, with_slopes
 from planning.trajectory.waypoints import END, NONE, PASS, FloatArray, IntArray, RoutePoints, Waypoints
-
-from inspection.geodesy import distance_m
-from inspection.graph.spans import Spans
 
 HAIR = 1e-9  # of a leg
 ABOVE_ALL_M = 1e5  # the top of what stands on ground that is not known

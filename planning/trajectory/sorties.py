@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+
+from inspection.geodesy import path_length_m
 from planning.energy.conditions import Conditions
 from planning.energy.performance import Performance
 from planning.problem import Task, TaskKind
 from planning.rules import FlightRules
 from planning.trajectory.timing import Timing, timing
 from planning.trajectory.waypoints import BASE, NONE, FloatArray, RoutePoints, Waypoints
-
-from inspection.geodesy import path_length_m
 
 
 def joined_sorties(sorties: Sequence[Waypoints], turnaround_s: float) -> Waypoints:

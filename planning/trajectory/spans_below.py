@@ -2,12 +2,12 @@
 
 import numpy as np
 import shapely
-from planning.clearance.obstacle_clearance import lines_between, spans_near
-from planning.trajectory.heights import GroundHeights
-from planning.trajectory.waypoints import FloatArray
 
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.graph.spans import Spans
+from planning.clearance.obstacle_clearance import lines_between, spans_near
+from planning.trajectory.heights import GroundHeights
+from planning.trajectory.waypoints import FloatArray
 
 BESIDE_M = 30.0  # across the ground: more than a route has, since nobody watches
 

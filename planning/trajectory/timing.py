@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
+
+from inspection.geodesy.short_vector import short_vector_m
 from planning.energy.conditions import Conditions, air_density, wind_in_table
 from planning.energy.leg_cost import (
     J_PER_WH,
@@ -23,8 +25,6 @@ from planning.energy.power import NoHeadway
 from planning.rules import FlightRules
 from planning.trajectory.turns import turning_s
 from planning.trajectory.waypoints import Waypoints
-
-from inspection.geodesy.short_vector import short_vector_m
 
 FloatArray = NDArray[np.float64]
 

@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from planning.problem import Task
 
 from inspection.geodesy import LonLat
+from planning.problem import Task
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

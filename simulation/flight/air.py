@@ -3,7 +3,6 @@
 import math
 
 from planning.energy.conditions import LAPSE_K_PER_M, SEA_LEVEL_K
-
 from simulation.flight.gusts import Gusts
 from simulation.flight.plant import GUIDANCE_STEP_S, Plant
 from simulation.flight.weather import Weather

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
-from mavlink.vehicle_plan import MissionItem
 from pymavlink.dialects.v20 import common as mavlink
 
 from inspection.geodesy import LonLat
+from mavlink.vehicle_plan import MissionItem
 
 E7 = 1e7
 MOST_ITEMS = 10_000

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from planning.trajectory.waypoints import WaypointKind
 
 from inspection.geodesy import LonLat, path_length_m
 from mavlink.approved_route import LAND, FrozenRoute, FrozenWaypoint, TakeOff
 from mavlink.mission_items import flight_loads
 from mavlink.vehicle_plan import MissionItem
+from planning.trajectory.waypoints import WaypointKind
 
 MOST_WAYPOINTS = 9_000
 HEIGHTS_M = (1.0, 5_000.0)

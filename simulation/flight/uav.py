@@ -3,9 +3,8 @@
 import math
 from collections.abc import Sequence
 
-from mavlink.vehicle_plan import MissionItem
-
 from inspection.geodesy import LonLat
+from mavlink.vehicle_plan import MissionItem
 from simulation.flight.airframe import Airframe
 from simulation.flight.autopilot import Autopilot
 from simulation.flight.body import Body

@@ -1,7 +1,6 @@
 """The airframes that can be flown, as they are compared with a type of UAV."""
 
 from planning.energy.performance import Performance
-
 from simulation.flight.airframe import AIRFRAMES, Airframe
 from simulation.rehearsing.airframe_choice import Candidate, endurance_min
 

@@ -7,7 +7,6 @@ from typing import Any
 
 from mavlink.approved_route import route_to_json
 from mavlink.vehicle_plan import FlightLoad, load_to_json
-
 from simulation.rehearsing.flying import RouteToFly
 
 

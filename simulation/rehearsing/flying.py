@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
-from mavlink.approved_route import HOVER, Flight, FrozenRoute
-from mavlink.vehicle_plan import MissionItem
 
 from inspection.geodesy import LonLat
+from mavlink.approved_route import HOVER, Flight, FrozenRoute
+from mavlink.vehicle_plan import MissionItem
 from simulation.verdict.flown import NO_WAYPOINT, Ending, FlownFlight, FlownRoute, FlownTrack
 
 TAKE_OFF, LAND_ITEM = 22, 21  # MAV_CMD_NAV_TAKEOFF, MAV_CMD_NAV_LAND

@@ -4,9 +4,9 @@ import hashlib
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from mavlink.approved_route import FrozenRoute
 
 from inspection.geodesy.local_frame import LocalFrame
+from mavlink.approved_route import FrozenRoute
 from simulation.verdict.flown import FloatArray
 from simulation.verdict.judging import Surroundings
 

@@ -6,7 +6,6 @@ from django.db import transaction
 from django.db.models import QuerySet
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from planning.energy.conditions import Conditions
 
 from missions.models import CommandKind, CommandState, Mission, MissionState, UavCommand
 from missions.selectors import mission_of_organisation
@@ -15,6 +14,7 @@ from missions.services.dispatch import dispatch_mission
 from missions.services.flying import ON_ITS_WAY
 from missions.services.refused import refuse
 from missions.services.steering import command_uav
+from planning.energy.conditions import Conditions
 from simulation.models import Simulation, SimulationState
 from simulation.rehearsing.sky import Named, named_sky
 from simulation.services.simulated_flights import start_simulated_flights

@@ -12,8 +12,6 @@ from django.db import transaction
 from django.db.models import Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from planning.energy.conditions import Conditions, WindLayer
-from planning.problem import Objective, Task, TaskKind
 
 from inspection.demo_region import BASES
 from inspection.geodesy import LonLat
@@ -24,6 +22,8 @@ from missions.services import PlanRequest, TargetRequest, UavRequest, create_mis
 from missions.services.demo_uavs import create_demo_uavs
 from missions.services.flying import ON_ITS_WAY
 from missions.services.refused import refuse
+from planning.energy.conditions import Conditions, WindLayer
+from planning.problem import Objective, Task, TaskKind
 from simulation.models import Simulation
 from simulation.services.demo_flights import fly_demo_mission
 from simulation.services.simulations import end_simulation

@@ -3,9 +3,8 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from planning.energy.performance import PERFORMANCE_KEYS, performance_from_json
-
 from missions.models import MissionUav, UavType
+from planning.energy.performance import PERFORMANCE_KEYS, performance_from_json
 from simulation.flight.airframe import AIRFRAMES
 from simulation.models import SimulatedAirframe
 from simulation.rehearsing.airframe_choice import nearest_airframe

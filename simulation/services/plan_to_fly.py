@@ -5,9 +5,6 @@ from typing import Any
 
 from django.conf import settings
 from django.utils.translation import gettext as _
-from planning.energy.conditions import Conditions, conditions_from_json
-from planning.energy.performance import performance_from_json
-from planning.trajectory.heights import asset_height_m
 
 from inspection.geodesy import LonLat
 from inspection.models import AssetKind
@@ -18,6 +15,9 @@ from missions.models import Approval, Mission, MissionUav
 from missions.services.approval_document import frozen_route
 from missions.services.refused import Reason, Refused, refuse
 from missions.zone_selectors import departure_s
+from planning.energy.conditions import Conditions, conditions_from_json
+from planning.energy.performance import performance_from_json
+from planning.trajectory.heights import asset_height_m
 from simulation.rehearsing.content import content_of
 from simulation.rehearsing.flying import RouteToFly
 from simulation.services.fleet import StandIn, stand_in_of

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from mavlink.vehicle_plan import MissionItem
-
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.events import Crashed, Said
 from simulation.flight.states import Mode, Outcome, Severity, UavState

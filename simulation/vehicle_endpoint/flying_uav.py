@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from mavlink.frames import message_of
-
 from simulation.flight.faults import Faults
 from simulation.flight.uav import SimulatedUav
 from simulation.flight.weather import Weather

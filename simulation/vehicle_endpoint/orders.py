@@ -6,7 +6,6 @@ from collections.abc import Callable
 from typing import Any
 
 from planning.energy.conditions import Conditions, InvalidConditions, WindLayer
-
 from simulation.flight.faults import Faults
 from simulation.flight.faults_told import WrongFaults, faults_told
 from simulation.flight.weather import ImpossibleWeather, Weather

@@ -7,11 +7,11 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.frames import Message
 from mavlink.mission_items import position_e7
 from mavlink.vehicle_plan import MissionItem, MissionType
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from simulation.flight import events
 from simulation.flight.settings import Settings
 from simulation.flight.states import Refused, Severity, UavState

@@ -4,10 +4,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mavlink.vehicle_plan import MissionItem
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
+from mavlink.vehicle_plan import MissionItem
 from simulation.vehicle_protocol.item_rules import CIRCLES, POLYGONS
 
 E7 = 1e7

@@ -2,9 +2,8 @@
 
 from collections.abc import Sequence
 
-from mavlink.vehicle_plan import MissionItem
-
 from inspection.geodesy import LonLat
+from mavlink.vehicle_plan import MissionItem
 from simulation.flight.states import Haven
 from simulation.vehicle_protocol.item_rules import ABOVE_SEA
 

@@ -1,8 +1,8 @@
 """What kind of vehicle it is: version and capabilities."""
 
-from mavlink.frames import Message
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.frames import Message
 from simulation.vehicle_protocol.flavour import Flavour
 
 CAPABILITIES = (

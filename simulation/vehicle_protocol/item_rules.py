@@ -3,9 +3,9 @@
 import math
 from collections.abc import Sequence
 
-from mavlink.vehicle_plan import MissionItem, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.flight.orders import HIGHEST_M, CannotFly, orders
 from simulation.vehicle_protocol.flavour import Flavour
 

@@ -4,10 +4,10 @@ import math
 import struct
 from typing import Any
 
-from mavlink.frames import Message
-from mavlink.vehicle_plan import MissionItem, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.frames import Message
+from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.stations import Station
 

@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from mavlink.frames import Message
-from mavlink.vehicle_plan import MissionItem, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.frames import Message
+from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.item_rules import MOST_ITEMS, refusal_of, refusal_of_list
 from simulation.vehicle_protocol.item_wire import as_kept, float_item_message, item_message, item_of

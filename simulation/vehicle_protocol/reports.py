@@ -4,9 +4,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mavlink.frames import Message
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.frames import Message
 from simulation.flight.states import Landed, MissionState, UavState
 from simulation.vehicle_protocol.flavour import Flavour
 

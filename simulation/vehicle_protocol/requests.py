@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mavlink.frames import Message
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.frames import Message
 from simulation.vehicle_protocol import identity
 from simulation.vehicle_protocol.command_door import Command
 from simulation.vehicle_protocol.flavour import Flavour

@@ -1,7 +1,8 @@
 """Words for the people at the stations."""
 
-from mavlink.frames import Message
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from mavlink.frames import Message
 
 PIECE = 50  # bytes of one STATUSTEXT
 MOST_PIECES = 5

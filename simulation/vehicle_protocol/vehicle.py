@@ -3,9 +3,8 @@
 from collections.abc import Iterable, Sequence
 from typing import Protocol
 
-from mavlink.vehicle_plan import MissionItem
-
 from inspection.geodesy import LonLat
+from mavlink.vehicle_plan import MissionItem
 from simulation.flight.events import Event
 from simulation.flight.settings import Settings
 from simulation.flight.states import Haven, Mode, Outcome, UavState

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from mavlink.approved_route import Flight, FrozenRoute, FrozenWaypoint
 from numpy.typing import NDArray
 
 from inspection.geodesy.local_frame import LocalFrame
+from mavlink.approved_route import Flight, FrozenRoute, FrozenWaypoint
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from mavlink.approved_route import FrozenWaypoint
 
 from inspection.geodesy.local_frame import LocalFrame
+from mavlink.approved_route import FrozenWaypoint
 from simulation.verdict.flown import FlownRoute, FlownTrack
 
 

@@ -2,9 +2,8 @@
 
 import math
 
-from planning.energy.conditions import Conditions
-
 from mavlink.approved_route import FrozenRoute
+from planning.energy.conditions import Conditions
 from simulation.verdict.finding import Finding, Level
 
 

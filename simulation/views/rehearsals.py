@@ -7,7 +7,6 @@ from django.db import transaction
 from django.http import Http404
 from django.urls import reverse
 from drf_spectacular.utils import OpenApiResponse, extend_schema
-from planning.energy.conditions import conditions_from_json
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
@@ -16,6 +15,7 @@ from missions.models import Mission
 from missions.services.refused import Refused
 from missions.views.missions import mission_or_404
 from missions.views.problems import refusals
+from planning.energy.conditions import conditions_from_json
 from simulation import selectors
 from simulation.models import Rehearsal
 from simulation.rehearsing.sky import Named

@@ -10,7 +10,6 @@ from django.shortcuts import get_object_or_404
 from django.urls import reverse
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
-from planning.energy.conditions import Conditions, conditions_from_json
 from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
@@ -19,6 +18,7 @@ from inspection.views.parameters import invalid
 from missions.models import Mission
 from missions.views.missions import mission_or_404
 from missions.views.problems import api_problems, refusals
+from planning.energy.conditions import Conditions, conditions_from_json
 from simulation.models import SimulatedVehicle, Simulation, VehicleFlavour
 from simulation.serializers import simulations as shapes
 from simulation.services.simulated_copies import fly_simulated_copy

@@ -3,9 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
-from planning.energy.conditions import Conditions, InvalidConditions
-
 from inspection.views.parameters import invalid
+from planning.energy.conditions import Conditions, InvalidConditions
 from simulation.rehearsing.sky import Named, Sky, named_sky, own_sky
 
 

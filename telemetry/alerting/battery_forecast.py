@@ -3,9 +3,8 @@
 import math
 from dataclasses import dataclass
 
-from mavlink.decoding.measurement import Measurement
-
 from inspection.geodesy import LonLat
+from mavlink.decoding.measurement import Measurement
 from telemetry.alerting.consumption import Consumption, DrainMemory, FlightKind, Wind, east_north_m, kind_of
 from telemetry.alerting.memory import position_of
 from telemetry.alerting.modes import ModeKind

@@ -5,10 +5,9 @@ from collections import deque
 from dataclasses import dataclass, field
 from enum import StrEnum
 
+from inspection.geodesy import LonLat
 from planning.energy.performance import Performance
 from planning.energy.power import ground_speed_mps, power_w
-
-from inspection.geodesy import LonLat
 
 USUAL_ENDURANCE_S = 1_200.0  # where nothing is known of the battery: small multicopters fly for 20 to 40 minutes
 J_PER_WH = 3_600.0

@@ -3,14 +3,14 @@
 from dataclasses import dataclass
 
 import numpy as np
+
+from mavlink.approved_route import HOVER, Flight
 from planning.energy.conditions import Conditions
 from planning.energy.performance import Performance
 from planning.energy.power import NoHeadway
 from planning.rules import FlightRules
 from planning.trajectory.timing import timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, Waypoints
-
-from mavlink.approved_route import HOVER, Flight
 from telemetry.alerting.route_line import NEAR_VERTEX_M, Place
 
 

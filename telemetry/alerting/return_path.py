@@ -8,15 +8,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.graph.spans import Spans
+from mavlink.approved_route import HOVER, Flight, FrozenWaypoint
 from planning.clearance.obstacle_clearance import legs_too_near
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute, Margins, ZoneFacts, breaches
 from planning.rules import FlightRules
 from planning.trajectory.heights import GroundHeights
 from planning.trajectory.waypoints import FloatArray, RoutePoint, RoutePoints, WaypointKind, Waypoints
-
-from inspection.geodesy import LonLat, distance_m
-from inspection.graph.spans import Spans
-from mavlink.approved_route import HOVER, Flight, FrozenWaypoint
 
 SAMPLED_EVERY_M = 10.0
 ROUNDING_M = 0.5  # heights are stored in tenths

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from planning.rules import SeparationRules
-from planning.separation.separation import TimedRoute, conflicts
 
 from inspection.geodesy import LonLat, distance_m
+from planning.rules import SeparationRules
+from planning.separation.separation import TimedRoute, conflicts
 
 CLIMB_MPS, DESCENT_MPS = 2.5, 1.0  # ArduCopter's WPNAV_SPEED_UP; between WPNAV_SPEED_DN and the slow end of a landing
 WAITS_S = (*(10.0 * step for step in range(12)), *(120.0 + 30.0 * step for step in range(27)))  # that are tried, to 15 minutes

@@ -8,10 +8,10 @@ from functools import cached_property
 from itertools import accumulate, pairwise
 
 import numpy as np
-from mavlink.approved_route import HOVER, Flight
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
+from mavlink.approved_route import HOVER, Flight
 
 NEAR_VERTEX_M = 15.0  # an autopilot takes a waypoint for reached before it is there, and climbs or sinks beside it
 LEGS_BACK, LEGS_ON = 2, 1  # of the leg to the waypoint that is told, which may be some seconds old

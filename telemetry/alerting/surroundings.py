@@ -4,10 +4,9 @@ from dataclasses import dataclass
 from typing import Any
 from uuid import UUID
 
-from planning.clearance.lost_link import LostLinkPlan
-
 from inspection.geodesy import LonLat
 from mavlink.rtl import OwnReturn
+from planning.clearance.lost_link import LostLinkPlan
 from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import EnergyPlan
 from telemetry.alerting.route_line import RouteLine

@@ -2,11 +2,10 @@
 
 from dataclasses import dataclass, field
 
-from planning.energy.conditions import Conditions
-from planning.rules import FlightRules
-
 from inspection.geodesy import LonLat
 from mavlink.approved_route import Flight
+from planning.energy.conditions import Conditions
+from planning.rules import FlightRules
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,11 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from planning.energy.power import TOO_STRONG, ground_and_air_speed
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import HOVER, Flight
+from planning.energy.power import TOO_STRONG, ground_and_air_speed
 from telemetry.estimation.knowledge import Knowledge
 
 FloatArray = NDArray[np.float64]

@@ -4,10 +4,10 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from mavlink.decoding.measurement import Measurement
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
+from mavlink.decoding.measurement import Measurement
 from telemetry.estimation.belief import Belief
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.motion import SHARED_HEIGHT_M, SHARED_M, State, Track, after

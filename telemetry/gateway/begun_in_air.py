@@ -1,6 +1,7 @@
 """With which item a UAV that is held in the air begins its route: it may be anywhere on the first part of the way."""
 
 from django.conf import settings
+
 from mavlink.commands.leg import BesideLeg, beside_leg, beside_place
 from mavlink.intermediate_waypoints import FLOWN
 from mavlink.vehicle_plan import FlightLoad

@@ -6,7 +6,6 @@ from typing import Any
 
 from mavlink.frames import Frame
 from mavlink.signing import Refusal, SignatureCheck, stream_of, timestamp_at, unix_s_of
-
 from telemetry.gateway.addresses import Addresses
 from telemetry.gateway.fleet import KnownUav
 from telemetry.gateway.peers import Peer

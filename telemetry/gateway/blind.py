@@ -7,7 +7,6 @@ from collections.abc import Awaitable, Callable
 from mavlink.addressing import Ends
 from mavlink.commands.actions import Order
 from mavlink.commands.unacknowledged import blind_message, pause_s
-
 from telemetry.gateway.session import Session
 
 LOOK_EVERY_S = 0.25

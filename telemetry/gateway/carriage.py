@@ -13,6 +13,7 @@ from typing import Any
 
 from django.conf import settings
 from django.utils import timezone
+
 from mavlink.addressing import Ends
 from mavlink.commands.actions import Order
 from mavlink.commands.command import CommandEnd, CommandOutcome
@@ -22,7 +23,6 @@ from mavlink.mission_sync.sync import MissionKeeper
 from mavlink.parameters import ParameterSetting
 from mavlink.rtl import return_height_parameter
 from mavlink.vehicle_plan import FlightLoad, MissionType
-
 from missions.models import CommandKind, UavCommand
 from missions.services.commands import (
     is_wanted,

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from mavlink.frames import Message
-
 from telemetry.gateway.session import Session
 from workspace.timed_waits import wait_for_event
 

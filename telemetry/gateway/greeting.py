@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.addressing import AUTOPILOT
 from mavlink.autopilot_type import Flavour
 from mavlink.frames import Message
 from mavlink.mission_sync.limits import PARAMETERS
 from mavlink.parameters import BY_NAME
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 INTERVALS_S = {
     mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT: 0.2,

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from mavlink.frames import Frame
-
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.leases import served_until_s
 from telemetry.gateway.options import Options

@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 
 from mavlink.frames import Message
 from mavlink.vehicle_state import VehicleState
-
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.services.loads import Doubt
 

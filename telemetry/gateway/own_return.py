@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.addressing import AUTOPILOT
 from mavlink.frames import Message
 from mavlink.parameters import BY_NAME
 from mavlink.rtl import NAMES, PARAMETERS
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 ASK_EVERY_S = 2.0
 MOST_QUESTIONS = 5  # a vehicle that has no such parameters says nothing

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from mavlink.frames import Damage, Frame, StreamParser, frames_of_datagram
-
 from telemetry.gateway.options import Address
 
 logger = logging.getLogger(__name__)

@@ -5,15 +5,15 @@ from dataclasses import dataclass, replace
 from datetime import datetime
 
 from django.conf import settings
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.wgs84 import WGS84
 from mavlink.approved_route import TakeOff
 from mavlink.autopilot_type import RESTARTS, Flavour, Mode
 from mavlink.commands.actions import ITEM, SPEED_MPS, Order
 from mavlink.commands.leg import beside_leg
 from mavlink.vehicle_plan import FlightLoad
 from mavlink.vehicle_state import VehicleState
-
-from inspection.geodesy import LonLat
-from inspection.geodesy.wgs84 import WGS84
 from missions.command_rules import ALONG_ROUTE
 from missions.models import CommandKind, MissionState, UavCommand
 from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load, load_of

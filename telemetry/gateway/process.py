@@ -14,9 +14,9 @@ from datetime import UTC, datetime
 from typing import Any
 
 from django.conf import settings
-from mavlink.frames import Frame, message_of
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.frames import Frame, message_of
 from operation import pulse
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.desk import Desk

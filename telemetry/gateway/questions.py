@@ -4,12 +4,12 @@ import math
 from dataclasses import dataclass, field
 
 from django.conf import settings
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.autopilot_type import Flavour
 from mavlink.frames import Message
 from mavlink.mission_sync.limits import PARAMETERS
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from telemetry.gateway import greeting
 from telemetry.gateway.own_return import OwnReturn
 

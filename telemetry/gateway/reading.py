@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import partial
 
 from django.conf import settings
+
 from mavlink.addressing import Ends
 from mavlink.autopilot_type import RESTARTS, Flavour
 from mavlink.commands.home_request import HomeReading
@@ -17,7 +18,6 @@ from mavlink.mission_sync.transfer import TransferState
 from mavlink.mission_sync.wire import held_list, held_sha256
 from mavlink.parameters import ParameterReading
 from mavlink.vehicle_plan import FlightLoad, MissionType
-
 from telemetry.gateway.conversation import Conversation, Keeper
 from telemetry.gateway.session import Session
 

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.addressing import AUTOPILOT
 from mavlink.autopilot_type import MISSION_MODES, Flavour
 from mavlink.decoding.boots import Stamp, VehicleTime
@@ -20,8 +22,6 @@ from mavlink.mission_sync.flown_items import Flown as FlownItem
 from mavlink.mission_sync.limits import PARAMETERS
 from mavlink.signing import FrameWriter, Refusal
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from missions.models import LinkKind
 from telemetry.gateway import greeting
 from telemetry.gateway.addresses import MAX_ADDRESSES

@@ -5,14 +5,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from inspection.geodesy import LonLat
 from mavlink.autopilot_type import COMMANDED, flavour_of
 from mavlink.decoding.report import E7, is_place, is_vehicle
 from mavlink.frames import Frame, Message, message_of
 from mavlink.signing import FrameWriter
 from mavlink.vehicle_class import type_name
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from inspection.geodesy import LonLat
 from telemetry.gateway.greeting import position_request
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer

@@ -4,13 +4,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from django.conf import settings
+
 from mavlink.addressing import Ends
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync.limits import FIRST_LEG, PARAMETERS, LimitWarning, count_warnings, leg_warnings
 from mavlink.parameters import ParameterReading
 from mavlink.rtl import fence_off_by
 from mavlink.vehicle_plan import FlightLoad
-
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.preparation import CannotCarry
 from telemetry.gateway.session import Session

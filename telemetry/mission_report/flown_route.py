@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from mavlink.approved_route import Flight, FrozenRoute
 
 from inspection.geodesy import LonLat, path_length_m
+from mavlink.approved_route import Flight, FrozenRoute
 from telemetry.alerting.route_line import Place, RouteLine
 from telemetry.mission_report.fix import Fix, airborne, own_span_s
 

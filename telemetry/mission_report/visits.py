@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from mavlink.approved_route import FrozenRoute, FrozenWaypoint
 
 from inspection.geodesy import distance_m
 from inspection.geodesy.local_frame import LocalFrame
+from mavlink.approved_route import FrozenRoute, FrozenWaypoint
 from telemetry.alerting.route_line import Place, RouteLine
 from telemetry.mission_report.fix import Fix, airborne, own_s
 

@@ -10,8 +10,8 @@ from uuid import UUID
 
 from django.db import connection
 from django.db.models import Exists, OuterRef
-from mavlink.rtl import OwnReturn, own_return
 
+from mavlink.rtl import OwnReturn, own_return
 from missions.command_rules import ALONG_ROUTE
 from missions.models import OPEN_COMMANDS, CommandAxis, CommandKind, CommandState, Mission, Uav, UavCommand
 from telemetry.alerting.modes import RETURN_ALONG

@@ -8,9 +8,9 @@ from typing import Any
 from uuid import UUID
 
 from django.db.models import Count, F
-from mavlink.approved_route import FrozenRoute, route_from_json
 
 from inspection.geodesy import LonLat
+from mavlink.approved_route import FrozenRoute, route_from_json
 from missions.models import ENDED_STATES, Approval, InspectionTarget, LinkKind, Mission, OfferState, TargetState, Uav
 from telemetry.mission_report.fix import Fix, airborne, in_order, own_after_s, own_span_s
 from telemetry.mission_report.flown_route import FlownRoute, flown_route

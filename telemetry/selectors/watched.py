@@ -7,9 +7,9 @@ from typing import Any
 from uuid import UUID
 
 from django.db import connection
-from mavlink.decoding.measurement import Measurement
 
 from inspection.geodesy import LonLat
+from mavlink.decoding.measurement import Measurement
 from missions.command_selectors import SENT_LAST
 from missions.models import ENDED_STATES, MissionState
 from telemetry.estimation.contact import PROMPT_S

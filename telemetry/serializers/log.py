@@ -1,8 +1,8 @@
 """Shapes of the log's answers, for the OpenAPI document."""
 
-from mavlink.decoding.companion_reports import INTEGERS, NUMBERS
 from rest_framework import serializers
 
+from mavlink.decoding.companion_reports import INTEGERS, NUMBERS
 from missions.serializers.uavs import PointSerializer
 from telemetry.exports.logged_record import FLAGS
 

@@ -3,9 +3,9 @@
 import json
 from typing import Any
 
-from mavlink.decoding.companion_reports import FLAGS, INTEGERS, LONGEST_MODE, NUMBERS, instant
 from rest_framework import serializers
 
+from mavlink.decoding.companion_reports import FLAGS, INTEGERS, LONGEST_MODE, NUMBERS, instant
 from missions.fields import PositionField
 from missions.models import CommandKind, TargetState
 from missions.serializers.known_fields import KnownFieldsSerializer

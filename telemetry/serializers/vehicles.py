@@ -4,7 +4,6 @@ from datetime import datetime
 from typing import Any
 
 from mavlink.vehicle_class import type_name
-
 from missions.fields import PositionField
 from missions.models import LinkKind, Uav
 from missions.serializers.known_fields import KnownFieldsSerializer

@@ -7,7 +7,6 @@ from datetime import datetime
 from typing import Any
 
 from mavlink.autopilot_type import Flavour
-
 from telemetry.alerting.book import Closed, Opened, changes
 from telemetry.alerting.detectors import down
 from telemetry.alerting.limits import Limits, sound_limits

@@ -5,13 +5,13 @@ from datetime import datetime, timedelta
 
 import numpy as np
 from django.conf import settings
-from mavlink.approved_route import Flight
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
 from inspection.graph.spans import spans_of
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import planning_read
+from mavlink.approved_route import Flight
 from missions.models import Approval, LinkKind, Uav
 from missions.selectors import approval_in_force
 from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load

@@ -6,14 +6,14 @@ from typing import Any
 from uuid import UUID
 
 from django.conf import settings
-from planning.clearance.lost_link import LostLinkPlan
-from planning.energy.conditions import conditions_from_json
-from planning.energy.performance import performance_from_json
 
 from inspection.geodesy import LonLat
 from missions.models import Approval
 from missions.services.dispatch import ApprovedLoad, DamagedApproval, approved_load
 from missions.services.requests import lost_link_from_json
+from planning.clearance.lost_link import LostLinkPlan
+from planning.energy.conditions import conditions_from_json
+from planning.energy.performance import performance_from_json
 from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import energy_plan
 from telemetry.alerting.route_line import RouteLine

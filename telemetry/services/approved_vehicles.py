@@ -4,13 +4,13 @@ from collections.abc import Iterator
 
 from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
+
 from mavlink.approved_route import NotARoute
 from mavlink.autopilot_type import COMMANDED, Flavour
 from mavlink.mission_items import CannotBeFlown, flight_loads
 from mavlink.mission_sync.supported_items import command_words, firmware_words, unknown_items, version_of
 from mavlink.rtl import fence_off_by
 from mavlink.vehicle_class import VehicleClass, class_of
-
 from missions.models import LinkKind, Mission, Route, Uav
 from missions.services.approval_document import frozen_route
 from missions.services.refused import Reason

@@ -8,7 +8,6 @@ from uuid import UUID
 
 from mavlink.decoding.companion_reports import FaultyReport, Report, read_report
 from mavlink.decoding.measurement import Measurement
-
 from missions.models import LinkKind, MissionUav
 from telemetry.models import TelemetryRecord
 from telemetry.services.heard import note_state_over_http

@@ -6,7 +6,6 @@ from typing import Protocol
 from uuid import UUID
 
 from mavlink.decoding.measurement import Measurement
-
 from telemetry.models import FlightEvent, FlightEventKind, TelemetryRecord, UavWatch
 
 

@@ -3,7 +3,6 @@
 from uuid import UUID
 
 from mavlink.mission_sync.flown_items import Flown
-
 from missions.models import Approval, LinkKind, Uav
 from missions.services.dispatch import DamagedApproval, approved_load
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_waypoint_reached

@@ -9,9 +9,9 @@ from uuid import UUID
 
 import numpy as np
 from django.db import connection, transaction
-from mavlink.decoding.measurement import Measurement, believable
 
 from inspection.selectors import ground_heights_m
+from mavlink.decoding.measurement import Measurement, believable
 from missions.command_selectors import SENT_LAST
 from missions.models import MissionState
 from missions.services.reports import ReportedPosition, note_reported_positions

@@ -2,13 +2,12 @@
 
 from uuid import UUID
 
-from planning.clearance.lost_link import LostLink
-from planning.energy.conditions import conditions_from_json
-from planning.energy.performance import performance_from_json
-
 from missions.models import Approval
 from missions.services.dispatch import DamagedApproval, approved_load
 from missions.services.requests import lost_link_from_json
+from planning.clearance.lost_link import LostLink
+from planning.energy.conditions import conditions_from_json
+from planning.energy.performance import performance_from_json
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.services.of_flight import OfFlight
 

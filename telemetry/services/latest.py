@@ -11,6 +11,7 @@ from datetime import UTC, datetime
 from typing import Any, Protocol
 
 from django.db import connection
+
 from mavlink.decoding.measurement import Measurement
 
 

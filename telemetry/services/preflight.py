@@ -14,10 +14,10 @@ from django.utils import timezone
 from django.utils.dateparse import parse_datetime
 from django.utils.translation import get_language
 from django.utils.translation import gettext as _
-from mavlink.rtl import ARDUPILOT, PX4, fence_off_by, fence_on_by
 
 from inspection.geodesy import distance_m
 from inspection.selectors import ground_revision
+from mavlink.rtl import ARDUPILOT, PX4, fence_off_by, fence_on_by
 from missions.command_selectors import upload_of
 from missions.fleet_selectors import performance_of
 from missions.models import OPEN_COMMANDS, Approval, CommandState, LinkKind, Mission, Route, Uav

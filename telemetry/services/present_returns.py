@@ -9,9 +9,6 @@ from uuid import UUID
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from planning.clearance.rtl_paths import Places
-from planning.rules import SeparationRules
-from planning.separation.separation import TimedRoute, conflicts
 
 from inspection.geodesy import LonLat
 from inspection.selectors import ground_heights_m
@@ -21,6 +18,9 @@ from missions.services.own_return import ReturnCheck, ReturnState, reported_retu
 from missions.services.staggered_returns import stuck_returns
 from missions.services.start_slots import KEPT_SHARE
 from missions.services.steering import mission_in_hand
+from planning.clearance.rtl_paths import Places
+from planning.rules import SeparationRules
+from planning.separation.separation import TimedRoute, conflicts
 from telemetry.alerting.modes import ModeKind, mode_kind
 from telemetry.alerting.returns_in_time import StraightReturn, flying_on, staying
 from telemetry.selectors.in_the_air import reported_in_the_air

@@ -11,8 +11,8 @@ from functools import lru_cache
 from uuid import UUID
 
 from django.db import connection
-from mavlink.autopilot_type import Flavour
 
+from mavlink.autopilot_type import Flavour
 from missions.models import Approval
 from missions.services.dispatch import DamagedApproval, approved_load
 

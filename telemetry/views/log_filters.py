@@ -10,10 +10,10 @@ from uuid import UUID
 from django.db.models import QuerySet
 from django.utils import timezone
 from drf_spectacular.utils import OpenApiParameter
-from mavlink.decoding.companion_reports import instant
 from rest_framework.request import Request
 
 from inspection.views.parameters import BOX, box_of, invalid
+from mavlink.decoding.companion_reports import instant
 from telemetry.selectors.log import LogFilter
 from telemetry.selectors.thinning import LONGEST_S, SHORTEST_S, one_each, spacing_for
 from workspace.schema import TIME

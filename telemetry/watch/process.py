@@ -11,8 +11,8 @@ from uuid import UUID
 
 import numpy as np
 from django.db import close_old_connections, connection, transaction
-from mavlink.decoding.measurement import Measurement
 
+from mavlink.decoding.measurement import Measurement
 from operation import pulse
 from operation.metrics import ESTIMATOR_ROUND_SECONDS
 from telemetry.alerting.watched import WatchedUav

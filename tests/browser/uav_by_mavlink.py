@@ -4,9 +4,9 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
-from mavlink.vehicle_plan import MissionItem, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.vehicle_plan import MissionItem, MissionType
 from tests.telemetry.gateway.flyer import Flyer
 from tests.telemetry.vehicles.px4 import LAND, MISSION, RETURN, Px4
 

@@ -2,11 +2,10 @@
 
 from collections.abc import Sequence
 
-from planning.problem import Task
-from planning.trajectory.waypoints import WaypointKind
-
 from inspection.geodesy import LonLat
 from mavlink.approved_route import RETURN, FrozenRoute, FrozenWaypoint, TakeOff
+from planning.problem import Task
+from planning.trajectory.waypoints import WaypointKind
 
 START = LonLat(9.8, 55.4)
 GROUND_AMSL_M = 20.0

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from planning.trajectory.waypoints import WaypointKind
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from shapely import LineString, Point, Polygon
 
@@ -16,6 +15,7 @@ from mavlink.approved_route import FrozenRoute
 from mavlink.fence import Fence, FenceRules, FenceZone, fence_of, rally_items
 from mavlink.mission_items import CannotBeFlown, flight_loads
 from mavlink.vehicle_plan import MissionItem
+from planning.trajectory.waypoints import WaypointKind
 from tests.mavlink.routes import START, route, start_and_end, waypoint
 
 FRAME = LocalFrame.around(*START)

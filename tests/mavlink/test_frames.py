@@ -6,9 +6,10 @@ from collections import Counter
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
 from mavlink.frames import LONGEST_FRAME, MOST_FAULTS, Damage, StreamParser, frames_of_datagram, message_of
 from mavlink.signing import FrameWriter
-from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 NOW_S = 1_800_000_000.0
 

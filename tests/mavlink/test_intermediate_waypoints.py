@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.intermediate_waypoints import FLOWN, leg_length_m, with_points_between
 from mavlink.vehicle_plan import FlightLoad, MissionItem
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 E7_M = 111_320.0 / 1e7
 ROUNDING_M = 0.012  # half of 1e-7 degrees in both directions and half a centimetre in height

@@ -4,11 +4,11 @@ import struct
 from typing import Any
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.commands.command import CommandEnd
 from mavlink.parameters import ParameterReading, ParameterSetting
 from mavlink.timeouts import TransferRules
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ENDS, known
 from tests.telemetry.vehicles.px4 import Px4

@@ -1,6 +1,7 @@
 """How high an autopilot flies home, by the parameters that it was read with."""
 
 import pytest
+
 from mavlink.rtl import own_return
 
 FENCE = {"FENCE_ENABLE": 1.0, "FENCE_TYPE": 7.0, "FENCE_ALT_MAX": 25.0, "FENCE_MARGIN": 2.0}

@@ -3,9 +3,10 @@
 from collections import Counter
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as dialect
+
 from mavlink.frames import Frame, frames_of_datagram
 from mavlink.signing import MOST_STREAMS, FrameWriter, Refusal, SignatureCheck, timestamp_at
-from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 KEY, OTHER_KEY = b"k" * 32, b"o" * 32
 NOW_S = 1_800_000_000.0

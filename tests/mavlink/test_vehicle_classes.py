@@ -1,6 +1,8 @@
 """Planes, VTOLs and rovers are shown by their own modes, and take no mission; only what is known of their modes is asked of them."""
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.autopilot_type import Mode
 from mavlink.commands.actions import STOPS, Order
 from mavlink.commands.command import CommandEnd
@@ -8,9 +10,7 @@ from mavlink.mission_sync.outcome import KeeperState
 from mavlink.mission_sync.sync import MissionKeeper
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_class import VehicleClass, class_of
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from tests.mavlink.commands.orders_given import told
-
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.channel import Channel
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load

@@ -9,10 +9,10 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from planning.energy.performance import Performance
 from scipy.optimize import brentq
 
 from missions.services import PlanRequest
+from planning.energy.performance import Performance
 
 CLIMB_MPS = 2.5
 # Until it climbs; to a stand or from it, beside flying at its speed; until it stands; the last metres of a landing.

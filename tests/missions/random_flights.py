@@ -8,10 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from planning.clearance.lost_link import LostLink
-from planning.energy.conditions import Conditions, WindLayer
-from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
-from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
@@ -20,6 +16,10 @@ from inspection.services import build_graph, import_osm, mark_ground_changed
 from missions.models import EndAction, Mission, MissionState
 from missions.services import PlanRequest, UavRequest, create_mission, make_plan, store_plan
 from missions.services.requests import LostLinkRequest
+from planning.clearance.lost_link import LostLink
+from planning.energy.conditions import Conditions, WindLayer
+from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
+from planning.problem import Objective
 from tests.missions.ground_judge import Hills
 from tests.missions.random_missions import Region, put_random_zones
 from workspace.models import User

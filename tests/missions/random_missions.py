@@ -5,8 +5,6 @@ import random
 import numpy as np
 import shapely
 from django.contrib.gis.geos import GEOSGeometry, MultiPolygon
-from planning.energy.performance import Performance
-from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind, NoFlyZone
@@ -15,6 +13,8 @@ from inspection.services import build_graph, mark_ground_changed
 from missions.models import EndAction
 from missions.services import BaseRequest, PlanRequest, TargetRequest, UavRequest
 from missions.services.requests import NO_BATTERY
+from planning.energy.performance import Performance
+from planning.problem import Objective
 
 ZONES = 40
 AMPLE = Performance(battery_wh=50_000.0)  # where the least energy is wished for, every UAV has a battery; this one binds nobody

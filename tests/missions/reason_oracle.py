@@ -6,9 +6,8 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise, permutations, product
 from typing import Any
 
-from planning.problem import End
-
 from missions.services import LockRequest, PlanRequest
+from planning.problem import End
 from tests.missions.test_random_missions import MissionModel
 
 METRES_OFF = 3.0  # what is kept in reserve of a range, and rounding

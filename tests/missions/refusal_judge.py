@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import shapely
 from django.contrib.gis.geos import GEOSGeometry, Polygon
-from planning.problem import Priority
 
 from inspection.models import Asset
 from missions.services import PlanRequest
+from planning.problem import Priority
 from tests.missions.air import CLIMB_MPS, density, limit_mps, speeds_mps, watts, wind_mps
 from tests.missions.ground_judge import TALLEST_M, TallThings
 from tests.missions.plane import apart_m

@@ -8,7 +8,6 @@ import pytest
 from django.utils import timezone
 from hypothesis import given
 from hypothesis import strategies as st
-from planning.clearance.lost_link import LostLink
 
 from inspection.geodesy import LonLat
 from inspection.models import NoFlyZone
@@ -34,6 +33,7 @@ from missions.services.approval_document import approval_document, content_sha25
 from missions.services.commands import note_applied, note_failed
 from missions.services.refused import Refused
 from missions.services.requests import LostLinkRequest
+from planning.clearance.lost_link import LostLink
 from tests.missions import worlds
 from tests.missions.flights import an_operator, approved, carry, dispatched, fleet, ground, planned
 from tests.missions.outbox import claim, fence, now

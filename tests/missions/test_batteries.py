@@ -6,9 +6,6 @@ from typing import Any
 import numpy as np
 import pytest
 from django.contrib.gis.gdal import GDALRaster
-from planning.energy.conditions import Conditions, WindLayer
-from planning.energy.performance import Performance
-from planning.problem import Objective, Priority
 
 from inspection.geodesy import LonLat
 from inspection.services import import_terrain
@@ -17,6 +14,9 @@ from missions.services import TargetRequest, make_plan
 from missions.services.lacks import least_missing
 from missions.services.refusals import LeftOut
 from missions.services.requests import UavRequest
+from planning.energy.conditions import Conditions, WindLayer
+from planning.energy.performance import Performance
+from planning.problem import Objective, Priority
 from tests.inspection import ground
 from tests.missions.worlds import island, power_line, rebuild, request, uav, world
 

@@ -7,12 +7,12 @@ import pytest
 from django.contrib.gis.geos import MultiPolygon, Polygon
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from planning.problem import Objective
 
 from inspection.models import Asset, NoFlyZone
 from missions.models import EndAction
 from missions.services import TargetRequest, make_plan
 from missions.services.requests import NO_BATTERY
+from planning.problem import Objective
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.random_missions import AMPLE
 from tests.missions.worlds import rebuild, request, uav, world

@@ -4,8 +4,8 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 from django.utils import timezone
-from mavlink.vehicle_plan import load_to_json
 
+from mavlink.vehicle_plan import load_to_json
 from missions.models import Approval, CommandKind, CommandState, LinkKind, Mission, MissionState, TargetState, Uav, UavState
 from missions.services import change_mission, plan_mission
 from missions.services.approval import approve_mission, revoke_approval

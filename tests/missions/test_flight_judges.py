@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from planning.clearance.lost_link import LostLink
-from planning.energy.conditions import Conditions, WindLayer
-from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
-from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from inspection.models import NoFlyZone
 from missions.models import EndAction, Mission, MissionState
 from missions.services import PlanRequest, TargetRequest, make_plan
 from missions.services.requests import LostLinkRequest
+from planning.clearance.lost_link import LostLink
+from planning.energy.conditions import Conditions, WindLayer
+from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
+from planning.problem import Objective
 from tests.inspection import ground
 from tests.missions.flight_judge import Judge
 from tests.missions.ground_judge import Hills

@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 from django.test import Client
-from planning.problem import Objective
 
 from inspection.models import NoFlyZone
 from inspection.services import mark_ground_changed
 from missions.services.later_departure import better_departure
+from planning.problem import Objective
 from tests.missions.api import plan_body, post
 from tests.missions.test_timed_zones import MONDAY_NOON, timed_zone
 from tests.missions.worlds import request, world, zone_around

@@ -21,10 +21,10 @@ from celery import current_app
 from django.conf import settings
 from django.db import connection
 from django.utils import timezone
-from planning.problem import Objective
 
 from missions.models import EndAction, Mission
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission
+from planning.problem import Objective
 from tests.missions.worlds import UAV_AT, World, world
 from tests.workspace.people import somebody
 from workspace import tasks

@@ -9,13 +9,13 @@ from uuid import uuid4
 import pytest
 from django.db import connections
 from django.test import Client
-from planning.energy.performance import Performance, performance_to_json
 
 from inspection.services import mark_ground_changed
 from inspection.services.supports import number_supports
 from missions import tasks
 from missions.models import Mission, MissionState, Route, Waypoint
 from missions.services import MissionChanged, make_plan, plan_mission, request_of_mission, store_plan
+from planning.energy.performance import Performance, performance_to_json
 from tests.missions.api import TERN, mission_body, patch, plan_body, post
 from tests.missions.worlds import UAV_AT, World, rebuild, world, zone_around
 from tests.workspace.people import client_of, somebody

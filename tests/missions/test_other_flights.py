@@ -4,12 +4,12 @@ from datetime import UTC, datetime, timedelta
 
 import numpy as np
 import pytest
-from planning.rules import SeparationRules
-from planning.separation.separation import conflicts
 
 from missions.flight_selectors import flights_at_the_same_time
 from missions.models import EndAction, Mission, MissionState, Waypoint
 from missions.services import create_mission, duplicate_mission, plan_mission
+from planning.rules import SeparationRules
+from planning.separation.separation import conflicts
 from tests.missions import worlds
 from tests.workspace.people import somebody
 from workspace.models import Organisation, Role

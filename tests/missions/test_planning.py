@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from django.contrib.gis.gdal import GDALRaster
 from django.contrib.gis.geos import LineString, MultiPolygon, Point, Polygon
-from planning.problem import Objective, Task, TaskKind
 
 from inspection.geodesy import LonLat, path_length_m
 from inspection.models import NoFlyZone
@@ -18,6 +17,7 @@ from inspection.services import import_terrain
 from missions.models import EndAction, Uav
 from missions.services import NO_SHORTFALL, BaseRequest, InvalidRequest, TargetRequest, make_plan
 from missions.services.best_so_far import PlanProgress
+from planning.problem import Objective, Task, TaskKind
 from tests.exact_geometry import segment_meets_polygon
 from tests.inspection import ground
 from tests.missions.worlds import LINE_LAT, TOWER_LONS, UAV_AT, island, power_line, rebuild, request, uav, world, zone_around

@@ -7,12 +7,12 @@ from unittest import mock
 import pytest
 from django.db import OperationalError
 from django.test import Client
-from planning.solver import solver
-from planning.solver.progress import Progress
 
 from missions import tasks
 from missions.models import Mission
 from missions.services import NO_SHORTFALL
+from planning.solver import solver
+from planning.solver.progress import Progress
 from tests.missions.api import TERN, plan_body, post
 from tests.missions.worlds import UAV_AT, World, world
 from tests.workspace.counters import forget_counts

@@ -11,8 +11,6 @@ import networkx as nx
 import numpy as np
 import pytest
 import shapely
-from planning.connection_points import Terminal, Ways, access_legs, attachments, direct_legs, ways_between
-from planning.problem import Objective, Problem, UavStart, Visit
 
 from inspection.geodesy import distance_m, path_length_m
 from inspection.graph.inspection_graph import InspectionGraph
@@ -24,6 +22,8 @@ from missions.services.assignment import route_end
 from missions.services.places import Place, places_of
 from missions.services.refusals import Scene
 from missions.services.scenes import current_scene, scene_on
+from planning.connection_points import Terminal, Ways, access_legs, attachments, direct_legs, ways_between
+from planning.problem import Objective, Problem, UavStart, Visit
 from tests.cases import long
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.random_missions import Region, put_random_zones

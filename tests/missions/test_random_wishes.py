@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from planning.connection_points import Terminal, ways_between
-from planning.problem import End, Objective, Priority, Problem, Routes, UavStart, Visit
 
 from inspection.geodesy import LonLat, path_length_m
 from inspection.selectors import zones_in_force
@@ -19,6 +17,8 @@ from missions.services import BaseRequest, LockRequest, PlanRequest, TargetReque
 from missions.services.places import places_of
 from missions.services.requests import NO_BATTERY
 from missions.services.scenes import current_scene, scene_on
+from planning.connection_points import Terminal, ways_between
+from planning.problem import End, Objective, Priority, Problem, Routes, UavStart, Visit
 from tests.exact_geometry import segment_meets_polygon
 from tests.missions.random_missions import AMPLE
 from tests.missions.test_random_missions import is_on_shortest_ways

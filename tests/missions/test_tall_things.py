@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from planning.energy.performance import Performance
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.models import Asset, NoFlyZone
@@ -17,6 +16,7 @@ from inspection.selectors import ground_heights_m
 from inspection.services import build_graph, import_osm, import_terrain, mark_ground_changed
 from missions.models import EndAction
 from missions.services import TargetRequest, make_plan
+from planning.energy.performance import Performance
 from tests.cases import long
 from tests.inspection import ground
 from tests.inspection.terrain.tiffs import write_geotiff

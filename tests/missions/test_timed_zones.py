@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 from django.contrib.gis.geos import LineString
-from planning.problem import Objective
 
 from inspection.models import NoFlyZone
 from missions.models import EndAction
 from missions.services import make_plan
+from planning.problem import Objective
 from tests.missions.worlds import request, uav, world, zone_around
 
 pytestmark = pytest.mark.django_db

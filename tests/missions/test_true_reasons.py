@@ -6,14 +6,14 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from planning.energy.performance import Performance
-from planning.problem import Objective
 
 from inspection.selectors.planning import planning_read
 from inspection.services import import_osm
 from missions.models import EndAction
 from missions.services import LockRequest, PlanRequest, TargetRequest, make_plan
 from missions.services.scenes import current_scene, scene_on
+from planning.energy.performance import Performance
+from planning.problem import Objective
 from tests.cases import long
 from tests.missions.random_missions import Region, put_random_zones
 from tests.missions.reason_oracle import ReasonOracle

@@ -4,12 +4,12 @@ import numpy as np
 import orjson
 from hypothesis import given
 from hypothesis import strategies as st
-from planning.problem import Task, TaskKind
-from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 
 from inspection.geodesy import LonLat
 from missions.services.plan_json import waypoints_to_json
 from missions.services.waypoint_text import line_text, waypoints_text
+from planning.problem import Task, TaskKind
+from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 
 HEIGHTS = (st.floats(-500, 9_000) | st.sampled_from([60.0, 2.675, 1e-7, 119.995])).map(lambda height_m: height_m + 0.0)  # no -0.0
 POINTS = st.builds(

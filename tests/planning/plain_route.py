@@ -2,10 +2,9 @@
 
 from collections.abc import Sequence
 
+from inspection.geodesy import LonLat
 from planning.trajectory.route_points import SAME_PLACE_DEG, TargetPoints
 from planning.trajectory.waypoints import RoutePoint, WaypointKind
-
-from inspection.geodesy import LonLat
 
 
 def plain_route(

@@ -7,6 +7,7 @@ from itertools import chain, count, pairwise, permutations, product
 import networkx as nx
 import numpy as np
 import pytest
+
 from planning.file_plans import EARTH_RADIUS_M, InvalidFile, plan_json, read_graph
 from planning.problem import Objective
 

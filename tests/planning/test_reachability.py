@@ -7,15 +7,6 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from planning.connection_points import AccessRules, Terminal, ways_between
-from planning.energy.assignment_costs import Finish, flight_costs
-from planning.energy.conditions import Conditions, WindLayer
-from planning.energy.path_cost import FlightClass
-from planning.energy.performance import Performance
-from planning.problem import End
-from planning.reachability.reachability import Flight, reach
-from planning.reachability.reachable_assets import Verdict
-from planning.rules import FlightRules
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.graph.clearing import cleared
@@ -25,6 +16,15 @@ from inspection.graph.inspection_graph import EdgeKind, NodeKind
 from inspection.graph.network import Network
 from inspection.graph.rules import LinkingRules
 from inspection.graph.zone_index import ZoneIndex
+from planning.connection_points import AccessRules, Terminal, ways_between
+from planning.energy.assignment_costs import Finish, flight_costs
+from planning.energy.conditions import Conditions, WindLayer
+from planning.energy.path_cost import FlightClass
+from planning.energy.performance import Performance
+from planning.problem import End
+from planning.reachability.reachability import Flight, reach
+from planning.reachability.reachable_assets import Verdict
+from planning.rules import FlightRules
 
 RULES = AccessRules(access_leg_m=10_000.0, direct_leg_m=5_000.0, on_asset_m=250.0, off_network_factor=2.0, zone_clearance_m=5.0)
 LINKING = LinkingRules()

@@ -9,8 +9,6 @@ from typing import Any
 
 import numpy as np
 import shapely
-from planning.problem import Task, TaskKind
-from planning.trajectory.waypoints import WaypointKind
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
@@ -19,6 +17,8 @@ from inspection.zones.reach import ZoneTable, agl_band
 from inspection.zones.rules import ZoneRules
 from inspection.zones.schedule import Schedule
 from mavlink.approved_route import LAND, FrozenRoute, FrozenWaypoint, TakeOff
+from planning.problem import Task, TaskKind
+from planning.trajectory.waypoints import WaypointKind
 from simulation.verdict.flown import Ending, FlownFlight, FlownRoute, FlownTrack
 from simulation.verdict.judging import Surroundings
 from simulation.verdict.limits import Limits

@@ -4,10 +4,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from mavlink.vehicle_plan import MissionItem
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
+from mavlink.vehicle_plan import MissionItem
 from simulation.flight.events import Armed, Disarmed, Event, ItemReached, LandedAt, MissionEnded, ModeChanged, TookOff
 from simulation.flight.settings import Settings
 from simulation.flight.states import DONE, Gps, Haven, Landed, MissionState, Mode, Outcome, Refused, UavState

@@ -5,17 +5,17 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.local_frame import LocalFrame
+from mavlink.approved_route import HOVER, LAND, FrozenRoute, FrozenWaypoint, TakeOff
+from mavlink.mission_items import flight_loads
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import IRIS_BATTERY_WH, IRIS_MAX_AIRSPEED_MPS, Performance
 from planning.problem import Task, TaskKind
 from planning.rules import FlightRules
 from planning.trajectory.timing import Timing, timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-
-from inspection.geodesy import LonLat
-from inspection.geodesy.local_frame import LocalFrame
-from mavlink.approved_route import HOVER, LAND, FrozenRoute, FrozenWaypoint, TakeOff
-from mavlink.mission_items import flight_loads
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.flown import Ending, fly_mission
 from simulation.flight.states import Mode

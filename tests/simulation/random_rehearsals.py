@@ -7,8 +7,6 @@ from pathlib import Path
 
 from django.contrib.gis.measure import D
 from django.core.management import call_command
-from planning.energy.performance import Performance
-from planning.problem import Objective, Task, TaskKind
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, AssetKind
@@ -16,6 +14,8 @@ from inspection.selectors.planning import heights_at, planning_read
 from missions.models import EndAction, Mission
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
 from missions.services.refused import Refused
+from planning.energy.performance import Performance
+from planning.problem import Objective, Task, TaskKind
 from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import limits_of_settings

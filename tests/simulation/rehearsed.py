@@ -2,10 +2,9 @@
 
 from typing import Any
 
-from planning.energy.conditions import conditions_from_json
-
 from missions.models import Mission
 from missions.selectors import mission_of_organisation
+from planning.energy.conditions import conditions_from_json
 from simulation.models import Rehearsal
 from simulation.rehearsing.sky import Named, Sky, named_sky
 from simulation.services.rehearsals import start_rehearsal

@@ -4,11 +4,11 @@ from datetime import timedelta
 from typing import Any
 
 from django.utils import timezone
-from planning.energy.conditions import Conditions
 
 from inspection.geodesy import LonLat
 from missions.models import Mission
 from missions.selectors import mission_of_organisation
+from planning.energy.conditions import Conditions
 from simulation.models import Simulation
 from simulation.rehearsing.sky import Named, Sky, named_sky
 from simulation.services.simulated_flights import start_simulated_flights

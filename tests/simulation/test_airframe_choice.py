@@ -1,8 +1,8 @@
 """Which airframe flies for a UAV."""
 
 import pytest
-from planning.energy.performance import Performance
 
+from planning.energy.performance import Performance
 from simulation.rehearsing.airframe_choice import nearest_airframe
 from simulation.rehearsing.candidates import CANDIDATES
 

@@ -10,8 +10,8 @@ from django.db import connection
 from django.test import Client
 from django.test.utils import CaptureQueriesContext
 from django.utils import timezone
-from mavlink.decoding.measurement import Measurement
 
+from mavlink.decoding.measurement import Measurement
 from missions.models import CommandKind, LinkKind, Mission, MissionState, TargetState, Uav
 from missions.services.flying import FlightEnd, mark_flight_ended, mark_started, mark_target
 from missions.services.replanning import decline_offer, suggest

@@ -12,11 +12,11 @@ from pathlib import Path
 
 import pytest
 from django.core.management import CommandError, call_command
-from mavlink.frames import frames_of_datagram, message_of
-from mavlink.signing import FrameWriter, SignatureCheck
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
+from mavlink.frames import frames_of_datagram, message_of
+from mavlink.signing import FrameWriter, SignatureCheck
 from simulation.flight.faults import Faults
 from simulation.vehicle_endpoint.fleet import Change, WrongPace
 from simulation.vehicle_endpoint.launch import Launch, fleet_of, in_a_row

@@ -10,8 +10,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pytest
-from mavlink.vehicle_plan import MissionType
 
+from mavlink.vehicle_plan import MissionType
 from simulation.flight.ground import FlatGround
 from simulation.flight.states import Mode
 from simulation.vehicle_endpoint.launch import Launch

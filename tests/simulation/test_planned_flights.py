@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from mavlink.approved_route import FrozenRoute
 
+from mavlink.approved_route import FrozenRoute
 from tests.simulation.planned_flights import CALM, ROUGH, WINDY, air_of, climbs, compared, holds, mission, square, zigzag
 from tests.telemetry.estimation.routes import lines_of
 

@@ -6,8 +6,6 @@ from typing import Any
 import numpy as np
 import pytest
 from django.contrib.gis.geos import Point
-from planning.energy.performance import Performance
-from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
@@ -15,6 +13,8 @@ from inspection.selectors.planning import heights_at, planning_read
 from inspection.services import build_graph, import_osm, mark_ground_changed
 from missions.models import EndAction
 from missions.services import PlanRequest, TargetRequest, UavRequest, create_mission, plan_mission
+from planning.energy.performance import Performance
+from planning.problem import Objective
 from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly
 from simulation.services.rehearsals import limits_of_settings

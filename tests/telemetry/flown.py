@@ -6,11 +6,11 @@ from datetime import datetime, timedelta
 from typing import Any
 
 from django.test import Client
-from mavlink.approved_route import FrozenRoute, FrozenWaypoint, route_from_json
-from mavlink.decoding.measurement import Measurement
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
+from mavlink.approved_route import FrozenRoute, FrozenWaypoint, route_from_json
+from mavlink.decoding.measurement import Measurement
 from missions.models import Approval, LinkKind, Mission, Uav
 from telemetry.services import NewRecord, store_records
 

@@ -4,8 +4,8 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from django.utils import timezone
-from mavlink.decoding.measurement import Measurement
 
+from mavlink.decoding.measurement import Measurement
 from missions.models import LinkKind, Uav
 from telemetry.models import UavLink
 from telemetry.services import NewRecord

@@ -6,8 +6,8 @@ from datetime import timedelta
 import pytest
 from django.utils import timezone
 from django.utils.translation import override
-from mavlink.decoding.measurement import Measurement
 
+from mavlink.decoding.measurement import Measurement
 from missions.models import Approval, CommandKind, Mission, Uav, UavCommand, UavType
 from missions.services.outbox import queue_command
 from telemetry.alerting.watched import WatchedUav

@@ -7,9 +7,9 @@ import pytest
 from django.contrib.gis.geos import Point
 from django.db.models import F
 from django.utils import timezone
-from mavlink.decoding.measurement import Measurement, believable
 
 from inspection.services import import_terrain
+from mavlink.decoding.measurement import Measurement, believable
 from missions.models import Approval, CommandKind, LinkKind, Mission, MissionState, MissionUav, Uav
 from missions.services.commands import queue_command
 from telemetry.models import TelemetryRecord, TelemetryStream

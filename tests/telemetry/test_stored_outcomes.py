@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 from django.utils.translation import override
-from mavlink.commands.actions import Order
 
+from mavlink.commands.actions import Order
 from missions.stored_outcomes import PARTS, SENTENCES, is_foreseen, outcome_in_words
 
 ROOT = Path(__file__).resolve().parents[2] / "telemetry"

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from mavlink.frames import HEADER_V1, HEADER_V2, IS_SIGNED, MARKER_V2, SIGNATURE, frames_of_datagram, message_of
-from mavlink.mission_items import flight_loads
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.frames import HEADER_V1, HEADER_V2, IS_SIGNED, MARKER_V2, SIGNATURE, frames_of_datagram, message_of
+from mavlink.mission_items import flight_loads
 from simulation.flight.states import Mode
 from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_protocol.endpoint import Endpoint

@@ -7,8 +7,8 @@ from urllib.parse import urlencode
 import pytest
 from django.conf import settings
 from django.test import Client
-from planning.energy.performance import BATTERIES_WH, MASSES_KG, ROTOR_DISKS_M2
 
+from planning.energy.performance import BATTERIES_WH, MASSES_KG, ROTOR_DISKS_M2
 from tests.workspace.described_answers import openapi_document
 from tests.workspace.people import client_of, somebody
 from workspace.models import Role

@@ -17,12 +17,12 @@ from bisect import bisect_right
 from itertools import accumulate, pairwise
 from pathlib import Path
 
-from mavlink.signing import FrameWriter
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from deploy.load.day import book as kinds
 from deploy.load.day.book import Book
 from deploy.load.day.site import InAir, Site
+from mavlink.signing import FrameWriter
 
 IN_MISSION, BY_HAND = 4 << 16 | 4 << 24, 3 << 16  # PX4's custom modes: automatic, mission; position
 BY_HAND_EVERY_S, BY_HAND_FOR_S = 900, 12

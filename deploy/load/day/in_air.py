@@ -2,9 +2,8 @@
 
 from uuid import UUID
 
-from mavlink.approved_route import FrozenRoute, route_from_json
-
 from deploy.load.day.site import InAir
+from mavlink.approved_route import FrozenRoute, route_from_json
 from missions.models import CommandKind, Mission, Uav, UavCommand
 from missions.selectors import approval_in_force
 from missions.services.commands import claim_commands, note_applied, note_sent

@@ -8,6 +8,7 @@ from time import perf_counter
 from typing import Any
 
 from django.core.management import BaseCommand, CommandError, CommandParser
+
 from planning.file_plans import PHASES, FileGraph, InvalidFile, plan_json, read_graph
 from planning.problem import Objective
 

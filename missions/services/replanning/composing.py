@@ -7,18 +7,18 @@ from typing import Any
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from planning.energy.conditions import Conditions
-from planning.energy.power import NoHeadway
-from planning.trajectory.route_points import line_of
-from planning.trajectory.sorties import timing_of_route
-from planning.trajectory.timing import Timing
-from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 
 from inspection.geodesy import LonLat, path_length_m
 from missions.models import EndAction
 from missions.services.plan_json import PlannedRoute
 from missions.services.replanning.leaving import CannotLeave, Leaving
 from missions.services.requests import task_from_json
+from planning.energy.conditions import Conditions
+from planning.energy.power import NoHeadway
+from planning.trajectory.route_points import line_of
+from planning.trajectory.sorties import timing_of_route
+from planning.trajectory.timing import Timing
+from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,16 +6,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from planning.energy.conditions import Conditions, air_density
-from planning.energy.leg_cost import J_PER_WH, hold_taken, speeds, table_of
-from planning.energy.performance import InvalidPerformance, Performance, performance_from_json
-from planning.trajectory.remaining_route import HEIGHT_ROUNDING_M, where_to_leave
-from planning.trajectory.waypoints import RoutePoint, WaypointKind
 
 from inspection.geodesy import path_length_m
 from missions.models import EndAction
 from missions.services.replanning.rest import Rest
 from missions.services.requests import UavRequest, task_from_json
+from planning.energy.conditions import Conditions, air_density
+from planning.energy.leg_cost import J_PER_WH, hold_taken, speeds, table_of
+from planning.energy.performance import InvalidPerformance, Performance, performance_from_json
+from planning.trajectory.remaining_route import HEIGHT_ROUNDING_M, where_to_leave
+from planning.trajectory.waypoints import RoutePoint, WaypointKind
 
 LEAD_S = 60.0  # from working out to flying: a person decides, the UAV is held, and is given its route
 WAIT_S = 90.0  # for which it hovers meanwhile at most, by the reckoning with its battery

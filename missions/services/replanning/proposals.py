@@ -7,9 +7,6 @@ from datetime import datetime, timedelta
 from typing import Any
 
 from django.utils.translation import gettext as _
-from planning.energy.conditions import conditions_from_json
-from planning.problem import Objective, Priority
-from planning.solver.solver import Stop, never
 
 from missions.models import Mission
 from missions.services.missions import request_of_mission
@@ -20,6 +17,9 @@ from missions.services.replanning.rest import Cause, Rest
 from missions.services.replanning.zones_ahead import zone_ahead
 from missions.services.requests import LockRequest, PlanRequest, TargetRequest, lost_link_from_json
 from missions.services.wishes import with_bases
+from planning.energy.conditions import conditions_from_json
+from planning.problem import Objective, Priority
+from planning.solver.solver import Stop, never
 
 MOST_ALONE = 4  # UAVs of which it is tried that one of them takes all
 

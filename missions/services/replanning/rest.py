@@ -7,7 +7,6 @@ from itertools import pairwise
 from typing import Any
 
 from django.utils.translation import gettext as _
-from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
@@ -28,6 +27,7 @@ from missions.models import (
 )
 from missions.selectors import approval_in_force
 from missions.services.flying import FLIGHT_FAILED
+from planning.trajectory.remaining_route import PassedPoint, PlaceOnRoute, place_on_route
 
 AT_TARGET_M = 15.0  # of a target that is in progress: it is still being done
 LEFT = (TargetState.PENDING, TargetState.IN_PROGRESS)

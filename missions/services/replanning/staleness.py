@@ -6,12 +6,12 @@ from typing import Any
 
 from django.utils.dateparse import parse_datetime
 from django.utils.translation import gettext as _
-from planning.trajectory.remaining_route import NEAR_M, PassedPoint, place_on_route
 
 from inspection.geodesy import LonLat
 from missions.ahead_selectors import HEARD_WITHIN_S
 from missions.models import CommandAxis, CommandState, Mission, MissionState, ReplanOffer, Route, TargetState, UavCommand, Waypoint
 from missions.services.replanning.rest import HOLDING, LEFT, distance_apart_m
+from planning.trajectory.remaining_route import NEAR_M, PassedPoint, place_on_route
 
 VALID_FOR = timedelta(seconds=120)
 MIN_LEFT_S = 15.0  # until a UAV is where it is to leave its route: it has to be held before

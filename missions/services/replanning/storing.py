@@ -5,8 +5,6 @@ from datetime import datetime
 from typing import Any
 
 from django.db import transaction
-from planning.energy.conditions import conditions_from_json
-from planning.problem import Objective
 
 from missions.models import Mission, MissionUav, Route
 from missions.models.missions import LONGEST_NAME
@@ -20,6 +18,8 @@ from missions.services.replanning.composing import Continued
 from missions.services.replanning.proposals import Proposal
 from missions.services.requests import PlanRequest, lost_link_from_json
 from missions.services.still_apart import separation_of_stored
+from planning.energy.conditions import conditions_from_json
+from planning.problem import Objective
 
 
 def stored(proposal: Proposal, *, now: datetime) -> tuple[Mission | None, list[Reason]]:

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 from django.core.management import BaseCommand, CommandError, CommandParser
-from planning.energy.conditions import Conditions, InvalidConditions, WindLayer
 
+from planning.energy.conditions import Conditions, InvalidConditions, WindLayer
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.route_file import InvalidRoute, read_route
 from simulation.flight.route_flight import fly_route

@@ -3,7 +3,6 @@
 from typing import Any
 
 from planning.clearance.lost_link import LostLink
-
 from telemetry.alerting.advice import (
     FAILSAFE_UNKNOWN,
     FAILSAFES,

@@ -3,7 +3,6 @@
 import math
 
 from mavlink.decoding.measurement import Measurement
-
 from telemetry.alerting.detector import Detector
 from telemetry.alerting.finding import CRITICAL, WARNING, Finding
 from telemetry.alerting.situation import Situation

@@ -3,13 +3,13 @@
 from collections.abc import Mapping
 from typing import Any
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.commands.actions import Order
 from mavlink.commands.command import CommandEnd, CommandOutcome
 from mavlink.commands.driver import CommandKeeper
 from mavlink.timeouts import CommandRules
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from tests.telemetry.vehicles import px4
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, mission

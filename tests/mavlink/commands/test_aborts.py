@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.commands.actions import Order
 from mavlink.commands.command import CommandEnd
 from mavlink.commands.driver import CommandKeeper
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from tests.mavlink.commands.orders_given import (
     APPLIED,
     ARM,
@@ -21,7 +22,6 @@ from tests.mavlink.commands.orders_given import (
     vehicle_of,
 )
 from tests.mavlink.mission_sync.test_upload import heard
-
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS
 from tests.telemetry.vehicles.vehicle import GROUND, Vehicle
 

@@ -3,12 +3,13 @@
 import math
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.autopilot_type import Flavour
 from mavlink.commands.actions import Order
 from mavlink.commands.command import CommandEnd
 from mavlink.commands.driver import CommandKeeper
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from tests.mavlink.commands.orders_given import (
     APPLIED,
     ARM,
@@ -28,7 +29,6 @@ from tests.mavlink.commands.orders_given import (
 )
 from tests.mavlink.mission_sync.test_upload import heard
 from tests.mavlink.test_vehicle_state import heartbeat
-
 from tests.telemetry.vehicles import ardupilot, px4
 from tests.telemetry.vehicles.channel import Link
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS

@@ -1,11 +1,12 @@
 """A vehicle is asked where its home is now: what it told before does not count."""
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.addressing import Ends
 from mavlink.commands.home_request import HomeReading
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 NEWER, OLDER = mavlink.MAV_CMD_REQUEST_MESSAGE, mavlink.MAV_CMD_GET_HOME_POSITION
 

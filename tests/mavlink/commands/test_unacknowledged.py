@@ -1,11 +1,12 @@
 """What is said to a vehicle that is not heard: a mode that is safe in the air and does nothing on the ground."""
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.addressing import Ends
 from mavlink.autopilot_type import Flavour
 from mavlink.commands.actions import Order
 from mavlink.commands.unacknowledged import blind_message, pause_s
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 PX4_MODES = {Order.HOLD: 3, Order.RETURN: 5, Order.ABORT: 5, Order.LAND: 6}
 COPTER_MODES = {Order.HOLD: 17, Order.RETURN: 6, Order.ABORT: 6, Order.LAND: 9}

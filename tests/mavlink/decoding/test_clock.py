@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from itertools import accumulate
 
 import pytest
+
 from mavlink.decoding.boots import VehicleTime
 
 START_S = 1_800_000_000.0

@@ -3,11 +3,12 @@
 from math import nan, pi
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.decoding.link_quality import LinkQuality
 from mavlink.decoding.measurement import Measurement
 from mavlink.decoding.report import Flown, Reporter, is_vehicle
 from mavlink.decoding.status_texts import StatusText, TextCollector
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 NOT_TOLD = Flown()
 

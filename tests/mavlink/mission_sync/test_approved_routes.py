@@ -1,8 +1,6 @@
 """From an approved route to a vehicle that holds it: every kind of item is taken, and kept, by both flavours."""
 
 import pytest
-from planning.problem import Task, TaskKind
-from planning.trajectory.waypoints import WaypointKind
 
 from inspection.geodesy import LonLat
 from mavlink.approved_route import END_ACTIONS
@@ -12,6 +10,8 @@ from mavlink.mission_items import flight_loads
 from mavlink.mission_sync.outcome import KeeperState
 from mavlink.mission_sync.sync import MissionKeeper
 from mavlink.timeouts import TransferRules
+from planning.problem import Task, TaskKind
+from planning.trajectory.waypoints import WaypointKind
 from tests.mavlink.routes import start_and_end, waypoint
 from tests.mavlink.test_fence import square
 from tests.telemetry.vehicles.channel import Channel

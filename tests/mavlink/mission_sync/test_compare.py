@@ -6,13 +6,13 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync.compare import are_identical, differences
 from mavlink.mission_sync.onboard_list import Found, found, mix_in_words
 from mavlink.mission_sync.wire import Held, HeldItem, held_item
 from mavlink.vehicle_plan import MissionItem, MissionType
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.loads import FLAVOURS, load, mission, polygon, rally, waypoint
 from tests.telemetry.vehicles.vehicle import item_of

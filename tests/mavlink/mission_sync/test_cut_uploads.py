@@ -1,6 +1,7 @@
 """Uploads that are cut at each message, by the death of either end."""
 
 import pytest
+
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.onboard_list import Found
@@ -10,7 +11,6 @@ from mavlink.mission_sync.wire import held_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionType
 from tests.mavlink.mission_sync.test_lossy_upload import said_what_is_there
-
 from tests.telemetry.vehicles.channel import Channel
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon
 from tests.telemetry.vehicles.vehicle import Vehicle

@@ -1,6 +1,8 @@
 """Reading back what a vehicle holds."""
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync.clear import Clear
 from mavlink.mission_sync.compare import differences
@@ -9,9 +11,7 @@ from mavlink.mission_sync.transfer import TransferState
 from mavlink.mission_sync.wire import held_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionType
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from tests.mavlink.mission_sync.test_upload import ack
-
 from tests.telemetry.vehicles.ardupilot import AUTO, ArduPilot
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, mission, polygon

@@ -3,11 +3,11 @@
 from itertools import permutations
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.mission_sync.flown_items import FlightWatch, Flown
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from tests.telemetry.vehicles.loads import FLAVOURS, mission
 
 MODES = {"px4": (4 << 16 | 4 << 24, 4 << 16 | 3 << 24), "ardupilot": (3, 17)}  # the mission's, and another

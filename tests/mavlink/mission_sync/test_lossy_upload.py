@@ -4,13 +4,13 @@ import struct
 from dataclasses import dataclass
 
 import pytest
+
 from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.outcome import KeeperOutcome, KeeperState
 from mavlink.mission_sync.sync import MissionKeeper
 from mavlink.mission_sync.wire import held_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
-
 from tests.cases import long
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon, rally

@@ -6,15 +6,15 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.commands.actions import Order
 from mavlink.commands.driver import CommandKeeper
 from mavlink.mission_sync.outcome import KeeperState
 from mavlink.mission_sync.sync import MissionKeeper
 from mavlink.timeouts import CommandRules, TransferRules
 from mavlink.vehicle_plan import MissionType
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from tests.mavlink.mission_sync.test_lossy_upload import said_what_is_there
-
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, polygon
 from tests.telemetry.vehicles.vehicle import GROUND, Vehicle

@@ -4,13 +4,13 @@ import math
 from dataclasses import replace
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.mission_sync.outcome import KeeperOutcome, KeeperState
 from mavlink.mission_sync.supported_items import version_of
 from mavlink.mission_sync.sync import MissionKeeper
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.channel import Channel
 from tests.telemetry.vehicles.loads import ENDS, PLACELESS, RELATIVE, known, load, polygon, waypoint

@@ -3,6 +3,8 @@
 from typing import Any
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.autopilot_type import PX4_AUTO, Flavour
 from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.onboard_list import Found
@@ -12,8 +14,6 @@ from mavlink.mission_sync.wire import held_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem, MissionType
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from tests.telemetry.vehicles.ardupilot import AUTO, BRAKE, ArduPilot
 from tests.telemetry.vehicles.channel import Channel, Link
 from tests.telemetry.vehicles.loads import ENDS, FLAVOURS, known, load, mission, polygon, rally

@@ -5,9 +5,6 @@ from typing import Any
 
 from django.contrib.gis.geos import Point
 from django.utils import timezone
-from planning.energy.performance import Performance
-from planning.problem import Objective
-from planning.solver.solver import never
 
 from missions.models import CommandKind, EndAction, Mission, ReplanOffer, Route, Uav
 from missions.selectors import mission_of_organisation
@@ -17,6 +14,9 @@ from missions.services.dispatch import dispatch_mission
 from missions.services.flying import mark_waypoint_reached
 from missions.services.replanning import ask_for_offer, work_out_for_job
 from missions.services.steering import command_uav
+from planning.energy.performance import Performance
+from planning.problem import Objective
+from planning.solver.solver import never
 from tests.inspection import ground
 from tests.missions import worlds
 from tests.missions.flights import carry, fleet

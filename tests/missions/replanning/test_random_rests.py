@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from planning.problem import Objective
 
 from inspection.geodesy import LonLat
 from inspection.models import Asset, NoFlyZone
@@ -17,6 +16,7 @@ from missions.services import PlanRequest, TargetRequest, UavRequest, create_mis
 from missions.services.flying import FlightEnd, mark_flight_ended
 from missions.services.refused import Refused
 from missions.services.replanning import accept_offer
+from planning.problem import Objective
 from tests.cases import long
 from tests.inspection import ground as ground_rows
 from tests.missions.flights import fleet

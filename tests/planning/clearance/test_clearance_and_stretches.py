@@ -7,10 +7,10 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from planning.clearance.zone_clearance import RouteMeetsZone, legs_that_meet, refuse_legs_in_zones
-from planning.trajectory.stretches import nearest_on_line, stretch_between
 
 from inspection.geodesy import LonLat, distance_m
+from planning.clearance.zone_clearance import RouteMeetsZone, legs_that_meet, refuse_legs_in_zones
+from planning.trajectory.stretches import nearest_on_line, stretch_between
 from tests.exact_geometry import segment_meets_polygon
 
 SQUARE = shapely.box(1.0, 1.0, 2.0, 2.0)

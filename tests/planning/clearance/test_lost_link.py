@@ -5,6 +5,9 @@ import math
 import numpy as np
 import pytest
 import shapely
+
+from inspection.geodesy import LonLat
+from inspection.graph.spans import spans_between
 from planning.clearance.lost_link import (
     FailedReturn,
     LostLink,
@@ -22,9 +25,6 @@ from planning.rules import AT_ONCE, FlightRules
 from planning.trajectory.sorties import joined_sorties, timing_of_route
 from planning.trajectory.timing import timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-
-from inspection.geodesy import LonLat
-from inspection.graph.spans import spans_between
 
 RULES = FlightRules(manoeuvres=AT_ONCE)
 CALM = Conditions()

@@ -4,11 +4,11 @@ import math
 
 import numpy as np
 import shapely
-from planning.clearance.nearby_zones import zones_near
-from planning.clearance.zone_clearance import FlownRoute, Margins, breaches
 
 from inspection.zones.reach import Limits, ZoneTable
 from inspection.zones.rules import ZoneRules
+from planning.clearance.nearby_zones import zones_near
+from planning.clearance.zone_clearance import FlownRoute, Margins, breaches
 
 DAILY = [
     {

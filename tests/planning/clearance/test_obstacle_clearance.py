@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
+
 from planning.clearance.obstacle_clearance import BESIDE_M, _pairs, lines_between
 
 METRES = st.integers(-200, 200).map(float)

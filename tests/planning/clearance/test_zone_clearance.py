@@ -9,9 +9,9 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from planning.clearance.zone_clearance import TAKE_OFF, Breach, FlownRoute, Limits, Margins, ZoneFacts, breaches
 
 from inspection.geodesy import distance_m
+from planning.clearance.zone_clearance import TAKE_OFF, Breach, FlownRoute, Limits, Margins, ZoneFacts, breaches
 
 EVERYWHERE: Limits = (None, "", None, "")
 BOX = shapely.box(10.010, 56.000, 10.012, 56.001)  # the second leg of EAST goes through it

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from planning.energy.charging import CannotCharge, ChargerTooWeak, ChargingStop, charging_stops, places_over, with_stops
 from planning.energy.conditions import Conditions
 from planning.energy.performance import Performance

@@ -6,6 +6,7 @@ import math
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from planning.energy.conditions import (
     Conditions,
     InvalidConditions,

@@ -5,6 +5,7 @@ import weakref
 
 import numpy as np
 import pytest
+
 from planning.energy import path_cost
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import NodeGround, graph_taken

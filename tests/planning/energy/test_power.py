@@ -6,10 +6,10 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from planning.energy.performance import Performance
-from planning.energy.power import AIRSPEED_STEP_MPS, CLIMBING, LEVEL, ground_speed_mps, power_table, power_w, watts
 
 from benchmarks.energy_model import FLIGHTS, MOST_CALM, POWERS_W, Flight, modelled
+from planning.energy.performance import Performance
+from planning.energy.power import AIRSPEED_STEP_MPS, CLIMBING, LEVEL, ground_speed_mps, power_table, power_w, watts
 
 IRIS = Performance()
 speeds = st.floats(0, 30)

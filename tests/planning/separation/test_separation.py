@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from inspection.geodesy import LonLat
 from planning.problem import Task, TaskKind
 from planning.rules import FlightRules, SeparationRules
 from planning.separation.report import separation_json
@@ -21,8 +23,6 @@ from planning.separation.separation import (
 )
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 from tests.planning.separation.dense_separation import least_seconds_apart, moments_of
-
-from inspection.geodesy import LonLat
 
 RULES = SeparationRules()
 DEGREE_M = 111_319.49  # of longitude on the equator, and near enough of latitude for whole numbers of metres

@@ -1,6 +1,7 @@
 """What the tests of the solvers share."""
 
 import pytest
+
 from planning.solver import search
 
 

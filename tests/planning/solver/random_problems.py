@@ -5,6 +5,7 @@ from dataclasses import replace
 from itertools import permutations, product
 
 import numpy as np
+
 from planning.problem import Amounts, End, Lock, Objective, Priority, Problem, Routes, UavStart, Visit, merit
 
 BY_WAYS = (Objective.TOTAL, Objective.MAKESPAN, Objective.TIME)  # what can be asked for without knowing anything of energy

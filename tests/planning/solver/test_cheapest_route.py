@@ -4,6 +4,7 @@ from itertools import permutations
 
 import numpy as np
 import pytest
+
 from planning.problem import End, Objective, Problem, UavStart, Visit
 from planning.solver import cheapest_route
 from planning.solver.cheapest_route import LeastRoutes

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from planning.problem import Amounts, End, InvalidProblem, Lock, Objective, Problem, Reason, Routes, UavStart, Visit, merit
 from planning.solver.constrained_tours import limited_tours
 from planning.solver.exact import best_plan, proven_routes
@@ -15,9 +16,8 @@ from planning.solver.problem_arrays import Arcs
 from planning.solver.reach import needed_range_m, reachable
 from planning.solver.search import best_found
 from planning.solver.solver import never, solve
-from tests.planning.solver.random_problems import best_merit, honours, windy_problem
-
 from tests.cases import long
+from tests.planning.solver.random_problems import best_merit, honours, windy_problem
 
 seeds = st.integers(0, 1_000_000)
 objectives = st.sampled_from(list(Objective))

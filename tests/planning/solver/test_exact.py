@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+
 from planning.problem import End, InvalidProblem, Objective, Priority, Problem, UavStart, Visit, merit
 from planning.solver import exact
 from planning.solver.problem_arrays import Arcs

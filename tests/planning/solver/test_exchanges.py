@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from planning.problem import Objective, Problem
 from planning.solver.cost_matrices import NO_WAY_M
 from planning.solver.exchanges import NONE, added_m, draw_move, make, measured

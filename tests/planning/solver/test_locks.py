@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
+
 from planning.problem import InvalidProblem, Lock, Objective, Priority, Problem, Routes, UavStart, Visit, merit
 from planning.solver.locks import reduced
 from planning.solver.solver import solve

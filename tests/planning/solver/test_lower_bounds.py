@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+
 from planning.problem import Objective, Problem, Routes, merit
 from planning.solver.exact import best_plan
 from planning.solver.lower_bounds import lower_bound

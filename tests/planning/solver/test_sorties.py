@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from planning.problem import End, InvalidProblem, Lock, Objective, Problem, Reason, Solution, UavStart, Visit, merit
 from planning.solver.exact import best_plan
 from planning.solver.reach import needed_range_m, reachable
 from planning.solver.search import best_found
 from planning.solver.solver import never, solve
 from planning.solver.sorties import by_uav, merit_of, unfolded
-from tests.planning.solver.random_problems import best_merit, windy_problem
-
 from tests.cases import long
+from tests.planning.solver.random_problems import best_merit, windy_problem
 
 seeds = st.integers(0, 1_000_000)
 

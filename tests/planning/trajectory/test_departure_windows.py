@@ -2,9 +2,9 @@
 
 from hypothesis import given
 from hypothesis import strategies as st
-from planning.trajectory.departure_windows import blocked_departures, free_between
 
 from inspection.zones.activity import Span
+from planning.trajectory.departure_windows import blocked_departures, free_between
 
 A_DAY = (0.0, 86_400.0)
 

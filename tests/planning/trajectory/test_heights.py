@@ -4,11 +4,11 @@ import itertools
 
 import numpy as np
 import pytest
+
+from inspection.geodesy import LonLat, distance_m
 from planning.rules import FlightRules
 from planning.trajectory.heights import FloatArray, asset_height_m, inspection_agl_m, is_above_limit, pass_agl_m, with_heights
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-
-from inspection.geodesy import LonLat, distance_m
 
 RULES = FlightRules()
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import Performance
 from planning.energy.power import power_w

@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+
+from inspection.geodesy import LonLat
+from inspection.graph.spans import Spans, spans_between
 from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
 from planning.problem import Task, TaskKind
 from planning.rules import FlightRules
 from planning.trajectory.beside_spans import AT_M
 from planning.trajectory.obstacles import rising_over, too_low
 from planning.trajectory.waypoints import NONE, RoutePoint, RoutePoints, WaypointKind, Waypoints
-
-from inspection.geodesy import LonLat
-from inspection.graph.spans import Spans, spans_between
 
 HERE = 56.0
 METRE_DEG = 1.0 / 111_320.0  # of latitude, about

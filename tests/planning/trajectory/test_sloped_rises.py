@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from planning.trajectory.sloped_rises import MAX_RISE_M, MIN_RUN_M, SLOPE, ProfilePoint, with_slopes
 
 LEG_M = 400.0

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 import shapely
-from planning.trajectory.spans_below import BESIDE_M, tops_below
 
 from inspection.graph.spans import spans_between
+from planning.trajectory.spans_below import BESIDE_M, tops_below
 
 DEG_M = 111_319.49  # on the equator
 SAMPLES = 1_000

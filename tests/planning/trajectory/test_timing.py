@@ -8,6 +8,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
+from inspection.geodesy import LonLat, path_length_m
+from inspection.geodesy.local_frame import LocalFrame
+from inspection.geodesy.short_vector import short_vector_m
+from inspection.geodesy.wgs84 import WGS84
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import Performance
 from planning.energy.power import NoHeadway, power_w
@@ -15,11 +20,6 @@ from planning.problem import Task, TaskKind
 from planning.rules import AT_ONCE, FlightRules
 from planning.trajectory.timing import Timing, timing
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
-
-from inspection.geodesy import LonLat, path_length_m
-from inspection.geodesy.local_frame import LocalFrame
-from inspection.geodesy.short_vector import short_vector_m
-from inspection.geodesy.wgs84 import WGS84
 
 RULES = FlightRules(climb_speed_mps=2.5, manoeuvres=AT_ONCE)  # of what can be worked out by hand
 CALM = Conditions()

@@ -2,12 +2,12 @@
 
 import math
 
-from planning.energy.conditions import Conditions, WindLayer
 from pymavlink.dialects.v20 import common as mavlink
 from pyproj import Geod
 
 from inspection.geodesy import LonLat
 from mavlink.vehicle_plan import MissionItem
+from planning.energy.conditions import Conditions, WindLayer
 from simulation.flight.events import Event, ItemReached
 from simulation.flight.states import Mode
 from simulation.flight.uav import SimulatedUav

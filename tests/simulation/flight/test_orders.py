@@ -3,9 +3,9 @@
 import math
 
 import pytest
-from mavlink.vehicle_plan import MissionItem
 from pymavlink.dialects.v20 import common as mavlink
 
+from mavlink.vehicle_plan import MissionItem
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.events import Armed, Disarmed
 from simulation.flight.settings import Settings

@@ -5,10 +5,10 @@ from dataclasses import fields
 from random import Random
 
 import pytest
-from mavlink.vehicle_plan import MissionItem
 from pymavlink.dialects.v20 import common as mavlink
 
 from inspection.geodesy import LonLat
+from mavlink.vehicle_plan import MissionItem
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.faults import Faults
 from simulation.flight.states import Gps, Mode, UavState

@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from planning.energy.conditions import Conditions, WindLayer
 
+from planning.energy.conditions import Conditions, WindLayer
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.gusts import VERTICAL_SHARE, Gusts
 from simulation.flight.uav import SimulatedUav

@@ -3,12 +3,12 @@
 from typing import Any
 
 import pytest
+
 from mavlink.mission_sync.outcome import KeeperState
 from mavlink.mission_sync.sync import MissionKeeper
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionItem, MissionType
 from mavlink.vehicle_state import VehicleState
-
 from simulation.vehicle_protocol.endpoint import Endpoint
 from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.item_wire import as_kept

@@ -3,11 +3,11 @@
 import random
 
 import pytest
-from mavlink.vehicle_plan import MissionItem
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from shapely import Point, Polygon
 
 from inspection.geodesy import LonLat
+from mavlink.vehicle_plan import MissionItem
 from simulation.vehicle_protocol.fence import fence_of
 
 INSIDE, OUTSIDE = mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION, mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION

@@ -6,10 +6,10 @@ from collections import Counter
 from typing import Any
 
 import pytest
-from mavlink.frames import frames_of_datagram, message_of
-from mavlink.signing import FrameWriter
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.frames import frames_of_datagram, message_of
+from mavlink.signing import FrameWriter
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.uav import SimulatedUav
 from simulation.vehicle_protocol.endpoint import Endpoint

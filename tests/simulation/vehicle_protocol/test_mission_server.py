@@ -3,9 +3,9 @@
 import math
 
 import pytest
-from mavlink.vehicle_plan import MissionItem, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.mission_server import MOST_REQUESTS, REQUEST_EVERY_S
 from simulation.vehicle_protocol.stations import Station

@@ -3,10 +3,10 @@
 import math
 
 import pytest
-from mavlink.vehicle_plan import MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
+from mavlink.vehicle_plan import MissionType
 from simulation.flight.airframe import AIRFRAMES
 from simulation.flight.ground import FlatGround
 from simulation.flight.states import Mode

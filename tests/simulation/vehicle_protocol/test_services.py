@@ -4,11 +4,11 @@ import math
 import struct
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.decoding.status_texts import TextCollector
 from mavlink.mission_sync.limits import PARAMETERS as LEG_LIMITS
 from mavlink.rtl import own_return
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.streams import INTERVALS_S, Streams
 from simulation.vehicle_protocol.texts import text_messages

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from mavlink.decoding.measurement import Measurement
 
+from mavlink.decoding.measurement import Measurement
 from telemetry.alerting.detectors import battery
 from telemetry.alerting.finding import CRITICAL
 from telemetry.alerting.watched import WatchedUav

@@ -4,10 +4,10 @@ import math
 from datetime import UTC, datetime
 
 import pytest
-from mavlink.decoding.measurement import Measurement
-from mavlink.rtl import own_return
 
 from inspection.geodesy import LonLat
+from mavlink.decoding.measurement import Measurement
+from mavlink.rtl import own_return
 from telemetry.alerting.acts import acts_of
 from telemetry.alerting.advice import ADVICE, OWN_ACT
 from telemetry.alerting.detectors import battery

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from mavlink.decoding.measurement import Measurement
 
+from mavlink.decoding.measurement import Measurement
 from telemetry.alerting.detector import LOOK_EVERY_S
 from telemetry.alerting.detectors.link import lost_after_s
 from telemetry.alerting.finding import CRITICAL

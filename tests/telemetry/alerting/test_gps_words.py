@@ -1,8 +1,8 @@
 """What is said of a UAV that has lost its GPS, and what is proposed."""
 
 import pytest
-from mavlink.decoding.measurement import Measurement
 
+from mavlink.decoding.measurement import Measurement
 from telemetry.alerting.acts import acts_of
 from telemetry.alerting.detectors import gps
 from telemetry.alerting.finding import CRITICAL, WARNING

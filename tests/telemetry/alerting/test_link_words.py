@@ -3,9 +3,9 @@
 from dataclasses import replace
 
 import pytest
-from planning.clearance.lost_link import LostLink, LostLinkPlan
 from telemetry.decoding.measurement import Measurement
 
+from planning.clearance.lost_link import LostLink, LostLinkPlan
 from telemetry.alerting.advice import ADVICE
 from telemetry.alerting.detectors import link
 from telemetry.alerting.surroundings import FlightModel, LinkFacts

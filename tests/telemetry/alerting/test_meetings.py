@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from planning.trajectory.waypoints import WaypointKind
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import LAND, Flight, FrozenWaypoint, TakeOff
 from mavlink.decoding.measurement import Measurement
+from planning.trajectory.waypoints import WaypointKind
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
 from telemetry.alerting.finding import CRITICAL, WARNING
 from telemetry.alerting.meetings import MOST_MET, NEAR_M, STEP_S, Moving, meetings, ways_of

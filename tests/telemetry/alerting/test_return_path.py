@@ -8,14 +8,14 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from planning.clearance.zone_clearance import Margins, ZoneFacts
-from planning.rules import FlightRules
-from planning.trajectory.waypoints import WaypointKind
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.graph.spans import Spans, spans_between
 from mavlink.approved_route import HOVER, RETURN, Flight, FrozenWaypoint, TakeOff
+from planning.clearance.zone_clearance import Margins, ZoneFacts
+from planning.rules import FlightRules
+from planning.trajectory.waypoints import WaypointKind
 from telemetry.alerting.return_path import Here, ReturnPath, return_path, return_path_points
 
 RULES, MARGINS = FlightRules(), Margins(lateral_m=12.0, height_m=10.0, terrain_tolerance_m=10.0)

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from planning.rules import SeparationRules
-from planning.separation.separation import TimedRoute, conflicts
 
 from inspection.geodesy import LonLat
+from planning.rules import SeparationRules
+from planning.separation.separation import TimedRoute, conflicts
 from telemetry.alerting.returns_in_time import WAITS_S, StraightReturn, chosen_apart, flying_on, staying
 
 RULES = SeparationRules(lateral_m=30.0, vertical_m=15.0, time_s=30.0)

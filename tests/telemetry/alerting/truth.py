@@ -6,15 +6,15 @@ from dataclasses import dataclass, field, replace
 from uuid import UUID
 
 import numpy as np
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.local_frame import LocalFrame
+from mavlink.approved_route import LAND, Flight, FrozenWaypoint, TakeOff
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.performance import Performance
 from planning.problem import Task, TaskKind
 from planning.rules import FlightRules, Manoeuvres
 from planning.trajectory.waypoints import WaypointKind
-
-from inspection.geodesy import LonLat
-from inspection.geodesy.local_frame import LocalFrame
-from mavlink.approved_route import LAND, Flight, FrozenWaypoint, TakeOff
 from telemetry.alerting.consumption import Consumption
 from telemetry.alerting.energy import energy_plan
 from telemetry.alerting.route_line import RouteLine

@@ -4,8 +4,8 @@ import math
 import random
 
 import numpy as np
-from mavlink.decoding.measurement import Measurement
 
+from mavlink.decoding.measurement import Measurement
 from telemetry.estimation.report import Report
 from tests.telemetry.estimation.truth import STEP_S, Truth
 

@@ -10,7 +10,6 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from planning.energy.conditions import Conditions, WindLayer
 from pymavlink.dialects.v20 import common as mavlink
 
 from inspection.geodesy import LonLat
@@ -20,6 +19,7 @@ from mavlink.autopilot_type import Flavour as HeardFlavour
 from mavlink.autopilot_type import mode_name
 from mavlink.mission_items import flight_loads
 from mavlink.vehicle_plan import MissionItem
+from planning.energy.conditions import Conditions, WindLayer
 from simulation.flight.airframe import AIRFRAMES, Airframe
 from simulation.flight.events import ItemReached
 from simulation.flight.states import MissionState, Mode

@@ -14,13 +14,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from planning.problem import Task, TaskKind
-from planning.trajectory.waypoints import WaypointKind
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import RETURN, FrozenRoute, FrozenWaypoint, TakeOff
 from mavlink.decoding.measurement import Measurement
+from planning.problem import Task, TaskKind
+from planning.trajectory.waypoints import WaypointKind
 from telemetry.estimation.as_json import estimate_to_json
 from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.knowledge import Knowledge

@@ -10,10 +10,10 @@ import random
 from dataclasses import dataclass, field
 
 import numpy as np
-from mavlink.approved_route import HOVER, Flight
 from numpy.typing import NDArray
 
 from inspection.geodesy.local_frame import LocalFrame
+from mavlink.approved_route import HOVER, Flight
 from telemetry.estimation.knowledge import Knowledge
 
 STEP_S = 0.1

@@ -3,14 +3,14 @@
 import time
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from inspection.geodesy import LonLat
 from mavlink.approved_route import TakeOff
 from mavlink.autopilot_type import RESTARTS, Flavour
 from mavlink.commands.actions import ITEM, Order, plan_of
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from inspection.geodesy import LonLat
 from telemetry.gateway.preparation import CannotCarry, Task, as_begun, reason_not_to
 
 HOME = LonLat(10.0, 56.0)

@@ -10,6 +10,9 @@ from uuid import uuid4
 import pytest
 from django.db.models import F
 from django.db.models.functions import Now
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from inspection.geodesy import LonLat
 from mavlink.approved_route import TakeOff
 from mavlink.autopilot_type import Flavour
 from mavlink.commands.actions import Order
@@ -19,9 +22,6 @@ from mavlink.signing import FrameWriter
 from mavlink.timeouts import CommandRules
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 from mavlink.vehicle_state import MOST_PARAMETERS, VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from inspection.geodesy import LonLat
 from missions.models import CommandAxis, CommandKind
 from missions.services.commands import claim_commands, queue_command, renew_claims
 from telemetry.gateway.carriage import Carriage

@@ -11,9 +11,9 @@ from typing import Any
 
 import pytest
 from django.db.models import QuerySet
+
 from mavlink.frames import frames_of_datagram, message_of
 from mavlink.signing import FrameWriter
-
 from missions.models import OPEN_COMMANDS, CommandKind, CommandPriority, CommandState, Uav, UavCommand
 from missions.services.commands import queue_command
 from tests.telemetry.gateway.program import free_port, gateway_program

@@ -1,13 +1,13 @@
 """Commands of the outbox reach vehicles through the gateway, and their rows tell what became of them."""
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from inspection.geodesy import LonLat
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.wire import held_list
 from mavlink.vehicle_plan import FlightLoad, MissionType
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
-from inspection.geodesy import LonLat
 from missions.models import Approval, CommandKind, CommandState, Mission, MissionState, TargetState, Uav, UavCommand
 from missions.services.commands import queue_command
 from missions.services.dispatch import dispatch_mission, load_of

@@ -5,9 +5,9 @@ import socket
 import time
 
 import pytest
+
 from mavlink.frames import Frame
 from mavlink.signing import FrameWriter
-
 from telemetry.gateway import peers
 from telemetry.gateway.options import Address
 from telemetry.gateway.peers import Listeners

@@ -5,9 +5,9 @@ from contextlib import ExitStack
 from dataclasses import dataclass, field
 
 import pytest
+
 from mavlink.autopilot_type import PX4_AUTO
 from mavlink.signing import FrameWriter
-
 from missions.models import CommandKind, CommandState
 from missions.services.commands import queue_command
 from telemetry.gateway import addresses, belief

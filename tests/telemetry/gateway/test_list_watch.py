@@ -1,9 +1,9 @@
 """What a vehicle's messages tell of somebody else who changes its lists."""
 
 import pytest
-from mavlink.vehicle_state import VehicleState
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.vehicle_state import VehicleState
 from telemetry.gateway.list_watch import QUIET_S, ListWatch
 from telemetry.services.loads import Doubt
 

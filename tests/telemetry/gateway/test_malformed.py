@@ -6,10 +6,10 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from mavlink.frames import frames_of_datagram
-from mavlink.signing import FrameWriter
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.frames import frames_of_datagram
+from mavlink.signing import FrameWriter
 from telemetry.models import TelemetryRecord
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, unsigned_uav, wait_for
 

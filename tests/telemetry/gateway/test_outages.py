@@ -11,8 +11,8 @@ from itertools import pairwise
 import psycopg
 import pytest
 from django.db import connection
-from mavlink.signing import FrameWriter
 
+from mavlink.signing import FrameWriter
 from telemetry.models import Alert, TelemetryRecord, TelemetryStream, UavLink
 from telemetry.selectors.alert_words import alert_words
 from tests.telemetry.gateway.program import free_port, gateway_program

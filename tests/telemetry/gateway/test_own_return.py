@@ -1,8 +1,8 @@
 """The parameters of a vehicle's own return are read when it is heard, and once more before its mission is sent."""
 
 import pytest
-from mavlink.autopilot_type import Flavour
 
+from mavlink.autopilot_type import Flavour
 from missions.models import CommandKind, CommandState, Mission, Uav
 from missions.services.own_return import return_checks
 from missions.services.steering import command_uav

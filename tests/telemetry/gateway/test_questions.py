@@ -1,9 +1,9 @@
 """Which messages a vehicle is asked for: by intervals, by streams only where intervals bring nothing, and within a budget."""
 
-from mavlink.autopilot_type import Flavour
-from mavlink.vehicle_state import VehicleState
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.autopilot_type import Flavour
+from mavlink.vehicle_state import VehicleState
 from telemetry.gateway.greeting import FRAME_BYTES, INTERVALS_S, LONGEST_STRETCH, intervals_s
 from telemetry.gateway.questions import ASK_AGAIN_S, LISTENS_S, STATION_GONE_S, Questions
 

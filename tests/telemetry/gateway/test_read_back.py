@@ -4,10 +4,10 @@ import time
 from typing import Any
 
 import pytest
-from mavlink.timeouts import TransferRules
-from mavlink.vehicle_plan import MissionItem, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.timeouts import TransferRules
+from mavlink.vehicle_plan import MissionItem, MissionType
 from missions.command_rules import CommandRules
 from missions.models import CommandState, Mission, Uav
 from missions.serializers.commands import command_json

@@ -2,12 +2,12 @@
 
 import pytest
 from django.utils import timezone
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.wire import held_list
 from mavlink.vehicle_plan import MissionType
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from missions.models import CommandKind, CommandState, Mission, MissionState, OfferState, TargetState, Uav, UavCommand
 from missions.selectors import mission_of_organisation
 from missions.services.approval import approve_mission

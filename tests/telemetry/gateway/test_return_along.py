@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from mavlink.autopilot_type import Flavour
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
+from mavlink.autopilot_type import Flavour
 from missions.models import CommandKind, CommandState, Mission, MissionState, Uav
 from missions.services.dispatch import load_of
 from missions.services.staggered_returns import stuck_returns

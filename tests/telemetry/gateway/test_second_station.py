@@ -3,9 +3,9 @@
 import time
 
 import pytest
-from mavlink.signing import FrameWriter
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.signing import FrameWriter
 from telemetry.gateway import questions
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, unsigned_uav
 

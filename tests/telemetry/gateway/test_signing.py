@@ -5,8 +5,8 @@ import time
 
 import pytest
 from django.contrib.gis.geos import Point
-from mavlink.signing import FrameWriter
 
+from mavlink.signing import FrameWriter
 from missions.models import CredentialKind, Uav, UavCredential
 from missions.services.credentials import make_credential
 from telemetry.gateway import belief

@@ -3,9 +3,9 @@
 import socket
 
 import pytest
-from mavlink.signing import FrameWriter
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.signing import FrameWriter
 from telemetry.models import TelemetryRecord, UavLink, UnknownVehicle, VehicleText
 from telemetry.services.unknown_vehicles import NewUav, adopt_vehicle
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, unsigned_uav, wait_for

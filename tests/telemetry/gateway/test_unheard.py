@@ -5,11 +5,11 @@ from collections import Counter, deque
 from dataclasses import dataclass, replace
 
 import pytest
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.autopilot_type import Flavour
 from mavlink.frames import frames_of_datagram
 from mavlink.signing import FrameWriter
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from missions.command_rules import HAND_OVER
 from missions.models import CommandKind, CommandState, UavCommand
 from missions.services.commands import queue_command

@@ -1,11 +1,11 @@
 """What a vehicle would not fly by its own parameters is told before anything is sent to it."""
 
 import pytest
+
+from inspection.geodesy import LonLat
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync import limits
 from mavlink.vehicle_plan import MissionType
-
-from inspection.geodesy import LonLat
 from missions.models import CommandState, Mission
 from missions.serializers.commands import command_json
 from missions.services.approval import approve_mission

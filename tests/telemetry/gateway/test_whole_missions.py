@@ -3,13 +3,13 @@
 import time
 
 import pytest
-from planning.problem import Task, TaskKind
 
 from mavlink.autopilot_type import Flavour
 from missions.models import CommandKind, CommandState, Mission, MissionState
 from missions.services import TargetRequest
 from missions.services.commands import queue_command
 from missions.services.dispatch import load_of
+from planning.problem import Task, TaskKind
 from telemetry.models import TelemetryRecord, UavLink
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around

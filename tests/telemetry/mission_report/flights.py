@@ -4,12 +4,11 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from planning.problem import Task, TaskKind
-from planning.trajectory.waypoints import WaypointKind
-
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from mavlink.approved_route import FrozenRoute, FrozenWaypoint, TakeOff
+from planning.problem import Task, TaskKind
+from planning.trajectory.waypoints import WaypointKind
 from telemetry.mission_report.fix import Fix
 
 FRAME = LocalFrame.around(9.5, 47.1)

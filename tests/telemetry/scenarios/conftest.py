@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from planning.clearance.lost_link import LostLink
-from planning.problem import Task, TaskKind
 
 from missions.models import Mission, Uav
 from missions.services import TargetRequest
 from missions.services.requests import LostLinkRequest
+from planning.clearance.lost_link import LostLink
+from planning.problem import Task, TaskKind
 from tests.missions.flights import approved, ground
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.gateway.station import unsigned_uav

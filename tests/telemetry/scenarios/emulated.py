@@ -11,7 +11,6 @@ from mavlink.frames import StreamParser, message_of
 from mavlink.mission_sync.wire import HeldItem
 from mavlink.signing import FrameWriter
 from mavlink.vehicle_plan import MissionType
-
 from tests.missions.worlds import UAV_AT
 from tests.telemetry.scenarios.vehicle import HOME_AMSL_M
 from tests.telemetry.vehicles.copter import FlyingCopter

@@ -13,12 +13,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.frames import frames_of_datagram, message_of
 from mavlink.mission_sync.wire import HeldItem, held_item
 from mavlink.signing import FrameWriter
 from mavlink.vehicle_plan import MissionItem, MissionType
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from tests.missions.worlds import UAV_AT
 from tests.telemetry.gateway.station import wait_for
 from tests.telemetry.scenarios.vehicle import HOME_AMSL_M

@@ -1,11 +1,10 @@
 """A flight of a scenario: brought, started, and in the air."""
 
+from inspection.geodesy.wgs84 import short_distance_m
 from mavlink.autopilot_type import Flavour
 from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.wire import held_list
 from mavlink.vehicle_plan import FlightLoad, MissionType
-
-from inspection.geodesy.wgs84 import short_distance_m
 from missions.models import CommandKind, CommandState, Mission, Uav, UavCommand
 from missions.services.commands import queue_command
 from missions.services.dispatch import load_of

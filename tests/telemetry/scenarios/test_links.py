@@ -3,12 +3,12 @@
 import signal
 
 import pytest
-from planning.clearance.lost_link import LostLink
 
 from missions.models import CommandKind, CommandState, MissionState
 from missions.services.approval import approve_mission
 from missions.services.dispatch import load_of
 from missions.services.requests import LostLinkRequest
+from planning.clearance.lost_link import LostLink
 from telemetry.models import TelemetryRecord, TelemetryStream
 from tests.missions.flights import planned
 from tests.telemetry.gateway.program import free_port, gateway_program

@@ -1,8 +1,8 @@
 """What a UAV in flight is told is done by an ArduCopter: hold, go on, return, land, abort; and what it will not do is told in its words."""
 
 import pytest
-from mavlink.autopilot_type import COPTER_MODES, Mode
 
+from mavlink.autopilot_type import COPTER_MODES, Mode
 from missions.models import CommandKind, CommandState
 from telemetry.models import Alert
 from tests.telemetry.gateway.station import gateway_at_work, port_of, wait_for

@@ -2,10 +2,9 @@
 
 from typing import Protocol
 
+from inspection.geodesy import LonLat
 from mavlink.mission_sync.wire import HeldItem
 from mavlink.vehicle_plan import MissionType
-
-from inspection.geodesy import LonLat
 from tests.missions.worlds import UAV_AT
 
 HOME_AMSL_M = 100.0

@@ -9,9 +9,9 @@ import struct
 from dataclasses import dataclass, field
 from typing import Any
 
-from mavlink.vehicle_plan import MissionItem, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.vehicle_plan import MissionItem, MissionType
 from tests.telemetry.vehicles.vehicle import GROUND, Vehicle, item_int, item_of
 
 REQUEST_S, GIVE_UP_S = 1.0, 8.0

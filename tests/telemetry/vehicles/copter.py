@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from mavlink.vehicle_plan import MissionItem, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy.wgs84 import short_distance_m
+from mavlink.vehicle_plan import MissionItem, MissionType
 from tests.telemetry.vehicles.ardupilot import AUTO, GUIDED, LAND, RTL, ArduPilot
 
 STEP_S = 0.05  # of its flight

@@ -3,11 +3,11 @@
 import math
 from collections.abc import Sequence
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.addressing import Ends
 from mavlink.vehicle_plan import FlightLoad, MissionItem
 from mavlink.vehicle_state import VehicleState
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
-
 from tests.telemetry.vehicles.ardupilot import ArduPilot
 from tests.telemetry.vehicles.px4 import Px4
 from tests.telemetry.vehicles.vehicle import Vehicle

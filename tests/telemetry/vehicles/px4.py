@@ -4,10 +4,10 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
-from mavlink.autopilot_type import PX4_AUTO
-from mavlink.vehicle_plan import MissionItem, MissionType
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.autopilot_type import PX4_AUTO
+from mavlink.vehicle_plan import MissionItem, MissionType
 from tests.telemetry.vehicles.vehicle import GROUND, Vehicle, item_int, item_of
 
 RETRY_S, GIVE_UP_S = 0.25, 5.0

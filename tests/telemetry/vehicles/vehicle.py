@@ -4,9 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
 from mavlink.mission_sync.wire import HeldItem, held_item
 from mavlink.vehicle_plan import MissionItem, MissionType
-from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 GROUND = (255, mavlink.MAV_COMP_ID_MISSIONPLANNER)
 

@@ -3,9 +3,9 @@
 from datetime import UTC, datetime, timedelta
 
 import pytest
+
 from mavlink.decoding.boots import VehicleTime
 from mavlink.decoding.measurement import Measurement
-
 from missions.models import Mission, MissionState, Uav
 from telemetry.models import Alert, UavLink
 from telemetry.selectors.alert_facts import links_of

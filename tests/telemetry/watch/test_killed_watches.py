@@ -6,8 +6,8 @@ from itertools import pairwise
 
 import pytest
 from django.utils import timezone
-from mavlink.decoding.measurement import Measurement
 
+from mavlink.decoding.measurement import Measurement
 from missions.models import Mission, MissionState, Uav
 from telemetry.models import PositionEstimate, UavWatch
 from telemetry.services import NewRecord, store_records

@@ -5,8 +5,8 @@ from unittest.mock import MagicMock
 
 import pytest
 from django.db import OperationalError
-from mavlink.decoding.measurement import Measurement
 
+from mavlink.decoding.measurement import Measurement
 from missions.models import Mission, MissionState, Uav
 from telemetry.estimation.tracker import Tracker
 from telemetry.models import PositionEstimate, UavLink, UavWatch

@@ -1,0 +1,1 @@
+"""From targets, UAVs and map data to checked routes with heights, times and energy. Pure: no Django, no clock, no settings."""

@@ -1,0 +1,1 @@
+"""Time, power and battery of flights, along legs, paths and whole routes."""

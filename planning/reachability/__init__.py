@@ -1,0 +1,1 @@
+"""Which assets can be inspected from where UAVs stand."""
