@@ -1,1 +1,1 @@
-"""MAVLink without a vehicle: frames in and out, and missions as items. Pure."""
+"""MAVLink without sockets, database and clock: frames, missions as items, mission sync, commands and decoding. Pure."""

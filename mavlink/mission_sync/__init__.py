@@ -1,1 +1,1 @@
-"""The ground side of MAVLink's services, as state machines that know no socket, no database and no clock. Pure."""
+"""Lists of mission items, fences and rally points brought onto a vehicle and read back, as state machines."""

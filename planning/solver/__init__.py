@@ -1,1 +1,1 @@
-"""Which UAV inspects which target in which order."""
+"""Assignment and order: which UAV inspects which target in which order."""

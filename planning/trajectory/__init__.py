@@ -1,1 +1,1 @@
-"""From a route to waypoints with heights, checked leg by leg."""
+"""From routes to waypoints with heights, speeds and times."""
