@@ -150,6 +150,17 @@ export function coordinateText([longitude, latitude]) {
   return [latitude, longitude].map((degrees) => degrees.toFixed(4).replace("-", "−")).join(", ");
 }
 
+/**
+ * "56.12345° N, 10.12345° E", to 1 m: to be read over a radio and pasted into a map program. Alerts say it alike
+ * (telemetry/alerting/detectors/down.py).
+ *
+ * @param {readonly number[]} position longitude, latitude
+ */
+export function positionText([longitude, latitude]) {
+  const [north, east] = [latitude < 0 ? "S" : "N", longitude < 0 ? "W" : "E"];
+  return `${Math.abs(latitude).toFixed(5)}° ${north}, ${Math.abs(longitude).toFixed(5)}° ${east}`;
+}
+
 /** countText(3, "target") → "3 targets". The catalogue holds the noun as [one, other]. @param {number} count @param {string} singular @param {string} [plural] */
 export function countText(count, singular, plural = `${singular}s`) {
   return tn(count, `{count} ${singular}`, `{count} ${plural}`);

@@ -198,7 +198,7 @@ def returning_and_abort_reach_one_mission(page: Page, south: Flown, north: Flown
     before = {name: commands_of(page, uav) for name, uav in south.uavs.items()}
     crashed = page.locator("#alert-list .alert").filter(has_text="crashed")
     crashed.get_by_role("button", name="Copy position").click()
-    expect(page.locator("#toasts")).to_contain_text(re.compile(r"-?\d+\.\d{6}, -?\d+\.\d{6}"))
+    expect(page.locator("#toasts")).to_contain_text(re.compile(r"\d+\.\d{5}° [NS], \d+\.\d{5}° [EW]"))
     page.get_by_role("button", name="Return all").click()
     question = page.get_by_role("dialog", name=re.compile(r"^Return all \d UAVs\?$"))
     for name in south.uavs:

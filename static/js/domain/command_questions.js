@@ -54,6 +54,7 @@ import {
  * @property {{ name: string, words: string }[]} [checks] what is done with it unless it is unticked
  * @property {Safer | null} [safer]
  * @property {Promise<Pick<Question, "lines" | "act" | "safer">>} [later] what is asked once more is known; until then it is asked as it is
+ * @property {Promise<string>} [overtaken] why there is nothing more to ask, once that is so: the question then says it and can only be closed
  * @property {boolean} [isDanger]
  * @property {boolean} [isBack] whether the act can be taken back: then it has the focus, else the way out
  * @property {string | null} [image] name of an icon

@@ -9,10 +9,12 @@ import { tellUav } from "../page/tell_uav.js";
 import { say, toast } from "../page/toast.js";
 import { t, tn } from "../text.js";
 import { clockText, lengthText, percentText } from "../units.js";
+import { overtakenWords } from "./alert_words.js";
 import { createBatch } from "./batch_commanding.js";
 import { dropSent, markSending } from "./sending.js";
 import { unheardLines } from "./unheard.js";
 
+/** @import { AskedKind } from "../domain/command_questions.js" */
 /** @import { CommandKind, LiveMission, LiveUav, Mission } from "../api_types.d.ts" */
 /** @import { Commanding, MonitorPage, MonitorStore, UnsentCommand } from "./types.d.ts" */
 
@@ -58,6 +60,27 @@ function dropArrived(store) {
       if (commands.some((one) => one.uav.id === id && one.kind === kind && Date.parse(one.created_at) >= at_ms))
         keptUnsent(store, id, null);
   });
+}
+
+/**
+ * While a question stands: `overtaken` resolves once the UAV does by itself, or as somebody else commanded, what is asked.
+ *
+ * @param {MonitorStore} store
+ * @param {LiveUav} asked as it was when the question was asked
+ * @param {AskedKind} kind
+ */
+export function watchOvertaken(store, asked, kind) {
+  let stop = () => {};
+  /** @type {Promise<string>} */
+  const overtaken = new Promise((resolve) => {
+    if (overtakenWords(kind, asked)) return; // it was so before, and the question says it
+    stop = store.listen(["uavs"], ({ uavs }) => {
+      const uav = uavs.find(({ id }) => id === asked.id);
+      const words = uav && overtakenWords(kind, uav);
+      if (words) resolve(`${words} ${t("This command was not sent.")}`);
+    });
+  });
+  return { overtaken, stop: () => stop() };
 }
 
 /** @param {MonitorStore} store @param {MonitorPage} page @returns {Commanding} */
@@ -115,13 +138,17 @@ export function createCommanding(store, page) {
       route: store.state.details.get(uav.mission ?? "")?.plan?.routes[uav.place ?? -1],
     };
     const late = certainty(uav) === MEASURED ? null : unheardLines([uav], kind, store.state.now_ms)[0];
+    const already = overtakenWords(kind, uav);
     const question = presentQuestion(isStop ? null : uav.id, kind, flyer, ([first, ...rest]) => [
+      already,
       first,
       figuresLine(uav, mission),
       late,
       ...rest,
     ]);
-    const asked = await confirmAct({ ...question, opener });
+    const watch = watchOvertaken(store, uav, kind);
+    const asked = await confirmAct({ ...question, opener, overtaken: watch.overtaken });
+    watch.stop();
     if (asked?.safer) await told(uav, asked.safer.kind, asked.safer.parameters);
     else if (asked) await told(uav, kind, asked);
   }

@@ -159,3 +159,12 @@ export function whyNotDecided(offer, { now_ms, silent_ms }) {
     return t("Expired {time}.", { time: clockText(valid_until) });
   return silent_ms >= BLIND_MS ? t("No data on this device: it may have expired.") : "";
 }
+
+/**
+ * The offer whose routes are on the map: only while it can be decided, as long as its card counts down.
+ *
+ * @param {LiveOffer[]} offers
+ * @param {{ now_ms: number, silent_ms: number }} times
+ */
+export const drawnOffer = (offers, times) =>
+  offers.find((offer) => offer.state === "open" && whyNotDecided(offer, times) === "");

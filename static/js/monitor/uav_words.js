@@ -36,22 +36,26 @@ export function stateOf({ measured, link }) {
 
 /** @param {Pick<LiveUav, "measured" | "link">} uav */
 export const isHeld = (uav) => stateOf(uav).words === t("Holding");
+/** @param {Pick<LiveUav, "measured" | "link">} uav */
+export const isReturning = (uav) => stateOf(uav).words === t("Returning");
+/** @param {Pick<LiveUav, "measured" | "link">} uav */
+export const isLanding = (uav) => stateOf(uav).words === t("Landing");
 
 /** { figure, isLate }: how old its newest report is, "0.7 s"; null where there is none. @param {LiveUav} uav @param {number} now_ms */
 export function ageWords(uav, now_ms) {
   const age_s = reportAge_s(uav, now_ms);
   if (age_s === null) return { figure: null, isLate: false };
-  return { figure: agoText(age_s), isLate: isLate(uav, now_ms) };
+  return { figure: durationWords(age_s), isLate: isLate(uav, now_ms) };
 }
 
 /** "0.7 s", "42 s", "14 h 18 min" @param {number} age_s */
-function agoText(age_s) {
+export function durationWords(age_s) {
   const short = age_s < 10 ? numberText(age_s, 1) : `${Math.floor(age_s)}`;
   return age_s < 100 ? `${short}\u00a0s` : durationText(age_s);
 }
 
 /** When it is expected to be heard again: a time that has passed is overdue. @param {string} at @param {number} now_ms */
-const contactWords = (at, now_ms) =>
+export const contactWords = (at, now_ms) =>
   Date.parse(at) > now_ms
     ? t("Next contact expected {time}.", { time: exactClockText(at) })
     : t("Contact overdue since {time}.", { time: exactClockText(at) });
@@ -90,8 +94,8 @@ export function windWords({ measured, link }, now_ms) {
   const age_s = Math.max(0, (now_ms - Date.parse(measured.measured_at_of.wind ?? measured.measured_at)) / 1000);
   const by =
     link?.kind === "http"
-      ? t("reported by its companion computer {age} ago", { age: agoText(age_s) })
-      : t("reported by its autopilot {age} ago", { age: agoText(age_s) });
+      ? t("reported by its companion computer {age} ago", { age: durationWords(age_s) })
+      : t("reported by its autopilot {age} ago", { age: durationWords(age_s) });
   return `${t("Wind {speed}", { speed: speedText(speed_mps) })}${from}, ${by}`;
 }
 

@@ -15,7 +15,7 @@ const EDGE_PX = 12;
  * @returns {Promise<Record<string, any> | null>}
  */
 export function confirmAct(question) {
-  const { title, field = null, choices = null, checks = [], isBack, image, opener, later } = question;
+  const { title, field = null, choices = null, checks = [], isBack, image, opener, later, overtaken } = question;
   return new Promise((resolve) => {
     const input = field && fieldInput(field);
     const group = choices && choiceGroup(choices);
@@ -62,7 +62,15 @@ export function confirmAct(question) {
       group?.addEventListener("change", () => acts.block(""));
     }
     (first ?? (input && field.isNeeded ? input : isBack ? acts.first() : acts.out)).focus();
-    later?.then((found) => dialog.open && show(found));
+    let isOver = false;
+    later?.then((found) => dialog.open && !isOver && show(found));
+    overtaken?.then((why) => {
+      if (!dialog.open) return;
+      isOver = true;
+      lines.replaceChildren(h("p", {}, why));
+      for (const part of form.querySelectorAll("fieldset, .field, .confirm-check")) part.remove();
+      acts.end();
+    });
   });
 }
 
@@ -94,6 +102,12 @@ function createActs({ keep = t("Cancel"), hint = "", isDanger }, close) {
     out,
     first: () => (safer ? better : go),
     safer: () => safer,
+    /** Nothing is left to be done. */
+    end() {
+      for (const button of [go, better]) button.remove();
+      out.textContent = t("Close");
+      out.focus();
+    },
     /** @param {string} reason "" where they can be pressed */
     block(reason) {
       why = reason;

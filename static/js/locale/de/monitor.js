@@ -172,8 +172,26 @@ export default {
   "Plan a follow-up": "Folgemission planen",
   "Copy position": "Position kopieren",
   "Navigate": "Navigieren",
-  "Position copied (latitude, longitude): {position}": "Position kopiert (Breite, Länge): {position}",
-  "Latitude, longitude: {position}": "Breite, Länge: {position}",
+  "Position copied: {position}": "Position kopiert: {position}",
+  "Link to {uav} lost: no telemetry for {age} (last message {time}).":
+    "Verbindung zu {uav} verloren: seit {age} keine Telemetrie (letzte Nachricht {time}).",
+  "{uav}: no telemetry for {age} (last message {time}).":
+    "{uav}: seit {age} keine Telemetrie (letzte Nachricht {time}).",
+  "Landing, as commanded.": "Landet wie befohlen.",
+  "Returning, as commanded.": "Kehrt wie befohlen zurück.",
+  "Landing by itself: failsafe or pilot.": "Landet von selbst: Failsafe oder Pilot.",
+  "Returning by itself: failsafe or pilot.": "Kehrt von selbst zurück: Failsafe oder Pilot.",
+  "Landing since {time}, as commanded.": "Landet seit {time} wie befohlen.",
+  "Returning since {time}, as commanded.": "Kehrt seit {time} wie befohlen zurück.",
+  "Landing by itself since {time}: failsafe or pilot.": "Landet von selbst seit {time}: Failsafe oder Pilot.",
+  "Returning by itself since {time}: failsafe or pilot.": "Kehrt von selbst zurück seit {time}: Failsafe oder Pilot.",
+  "Calculated from the route and from where UAVs were heard on earlier flights.":
+    "Berechnet aus der Route und daraus, wo UAVs auf früheren Flügen zu hören waren.",
+  "{name} is already returning.": "{name} kehrt bereits zurück.",
+  "{name} is already landing.": "{name} landet bereits.",
+  "This command was not sent.": "Dieser Befehl wurde nicht gesendet.",
+  "Acknowledge all ended ({count})": "Alle beendeten bestätigen ({count})",
+  "{count} ended alert acknowledged.": ["{count} beendeter Alarm bestätigt.", "{count} beendete Alarme bestätigt."],
   "The mission then stays open: close it once all UAVs are down.":
     "Die Mission bleibt dann offen: Schließen Sie sie ab, sobald alle UAVs am Boden sind.",
   "Accept": "Annehmen",

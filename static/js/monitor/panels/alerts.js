@@ -9,12 +9,13 @@ import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
-import { exactClockText, exactText } from "../../units.js";
+import { exactClockText, exactText, positionText } from "../../units.js";
 import { mountAlarm } from "../alarm.js";
+import { actsNow, besideWords, createSeenLevels, isMoving, messageWords } from "../alert_words.js";
 import { isNone } from "../arrival.js";
 
 /** @import { Answer } from "../../api.js" */
-/** @import { AlertLevel, AlertPage } from "../../api_types.d.ts" */
+/** @import { AlertLevel, AlertPage, EndedAlerts } from "../../api_types.d.ts" */
 /** @import { Binding } from "../../page/keyboard.js" */
 /** @import { Alert, Commanding, LiveUav, MonitorPage, MonitorState, MonitorStore } from "../types.d.ts" */
 
@@ -39,6 +40,7 @@ const ACT_WORDS = {
   "take-over": () => t("Pilot takes over"),
 };
 const HISTORY_AT_ONCE = 50;
+const MAX_ACKNOWLEDGED = 500; // in one request, as the API takes them
 
 /** @param {() => Promise<void>} act @param {string} words once it is done */
 async function tried(act, words) {
@@ -51,12 +53,41 @@ async function tried(act, words) {
   }
 }
 
-/** @param {Alert} alert */
-const acknowledge = (alert) =>
-  tried(async () => void (await post(`/alerts/${alert.id}/acknowledge`, {})), t("Acknowledged."));
+/**
+ * At the level that was seen: the server refuses where it has risen since.
+ *
+ * @param {Alert} alert
+ * @param {AlertLevel | undefined} seen_level
+ * @param {string} [note]
+ */
+const acknowledge = (alert, seen_level, note = "") =>
+  tried(
+    async () => void (await post(`/alerts/${alert.id}/acknowledge`, { note, ...(seen_level && { seen_level }) })),
+    t("Acknowledged."),
+  );
 
-/** A pilot on site flies it from now on: said to all by a note. @param {Alert} alert @param {string} name @param {HTMLElement} opener */
-async function takeOver(alert, name, opener) {
+/** One request for alerts that have ended, answered alert by alert. @param {Alert[]} ended */
+async function acknowledgeEnded(ended) {
+  try {
+    const answer = await post("/alerts/acknowledge-ended", { alerts: ended.map(({ id }) => id) });
+    const { results } = /** @type {Answer<EndedAlerts>} */ (answer).data;
+    const count = results.filter(({ outcome }) => outcome === "acknowledged").length;
+    toast(tn(count, "{count} ended alert acknowledged.", "{count} ended alerts acknowledged."));
+  } catch (error) {
+    if (!(error instanceof ApiError)) throw error;
+    toast(error.message);
+  }
+}
+
+/**
+ * A pilot on site flies it from now on: said to all by a note.
+ *
+ * @param {Alert} alert
+ * @param {string} name
+ * @param {AlertLevel | undefined} seen_level
+ * @param {HTMLElement} opener
+ */
+async function takeOver(alert, name, seen_level, opener) {
   const asked = await confirmAct({
     title: t("Does a pilot on site fly {name} by hand?", { name }),
     lines: [
@@ -67,9 +98,7 @@ async function takeOver(alert, name, opener) {
     keep: t("Cancel"),
     opener,
   });
-  if (!asked) return;
-  const said = { note: t("A pilot on site takes over {name}.", { name }) };
-  await tried(async () => void (await post(`/alerts/${alert.id}/acknowledge`, said)), t("Acknowledged."));
+  if (asked) await acknowledge(alert, seen_level, t("A pilot on site takes over {name}.", { name }));
 }
 
 /** @param {Alert} alert */
@@ -109,12 +138,9 @@ const closeButton = (alert) =>
     t("Close"),
   );
 
-/** @param {string} position latitude first, as map programs take it */
+/** @param {string} position */
 async function copyPosition(position) {
-  const said = (await copyText(position))
-    ? t("Position copied (latitude, longitude): {position}", { position })
-    : t("Latitude, longitude: {position}", { position });
-  toast(said);
+  toast((await copyText(position)) ? t("Position copied: {position}", { position }) : position);
 }
 
 /** For the crew that recovers the UAV: its position to copy, and a link to a phone's navigation or to a map. @param {Alert} alert */
@@ -128,7 +154,7 @@ function positionActs(alert) {
   return [
     h(
       "button",
-      { type: "button", class: "button small quiet", onclick: () => void copyPosition(`${latitude}, ${longitude}`) },
+      { type: "button", class: "button small quiet", onclick: () => void copyPosition(positionText(position)) },
       t("Copy position"),
     ),
     h("a", { class: "button small quiet", href: address, target: "_blank", rel: "noreferrer" }, t("Navigate")),
@@ -156,11 +182,19 @@ const worstWords = ({ worst, message }) =>
   worst.message !== message &&
   t("Worst, {time}: {message}", { time: exactClockText(worst.at), message: worst.message });
 
-/** @param {Alert} alert @param {LiveUav | undefined} uav */
-const rowKey = (alert, uav) =>
+/**
+ * What a row is made anew for: words that move with the time are written into it. A button that is made anew loses its press.
+ *
+ * @param {Alert} alert
+ * @param {LiveUav | undefined} uav
+ * @param {LiveUav[]} uavs
+ */
+const rowKey = (alert, uav, uavs) =>
   JSON.stringify([
-    alert.revision,
-    alert.message,
+    alert.level,
+    isMoving(alert) || alert.message,
+    actsNow(alert, uavs).map((act) => [act.kind, act.uav.id]),
+    downAt(alert),
     alert.worst?.message,
     alert.notes,
     alert.acknowledged_at,
@@ -184,15 +218,15 @@ const noteButton = (alert) =>
     icon("message-square", "small"),
   );
 
-/** @param {Alert} alert @param {boolean} isQuiet there is another act beside it */
-const acknowledgeButton = (alert, isQuiet) =>
+/** @param {boolean} isQuiet there is another act beside it @param {() => void} onclick */
+const acknowledgeButton = (isQuiet, onclick) =>
   h(
     "button",
     {
       type: "button",
       class: `button small ${isQuiet ? "quiet" : ""}`,
       "data-act": "acknowledge",
-      onclick: () => void acknowledge(alert),
+      onclick,
     },
     t("Acknowledge"),
   );
@@ -212,6 +246,17 @@ class AlertPanel {
   #page;
   #acts;
   #list = byId("alert-list");
+  #seen = createSeenLevels();
+  /** @type {Map<number, (now_ms: number) => void>} */
+  #moving = new Map(); // by alert: writes what moves with the time
+  /** @type {Alert[]} */
+  #ended = []; // shown, and not acknowledged
+  #acknowledgeEnded = h("button", {
+    type: "button",
+    class: "text-button ended-alerts",
+    hidden: true,
+    onclick: () => void acknowledgeEnded(this.#ended),
+  });
   /** @type {Alert[]} */
   #past = []; // read from the history
   #levels = h(
@@ -238,6 +283,7 @@ class AlertPanel {
     this.#store = store;
     this.#page = page;
     this.#acts = acts;
+    this.#list.before(this.#acknowledgeEnded);
     const filters = byId("alert-filters");
     filters.append(this.#levels, this.#uavs, this.#history);
     for (const select of [this.#levels, this.#uavs]) select.addEventListener("change", () => this.#draw(store.state));
@@ -247,6 +293,9 @@ class AlertPanel {
       opener.setAttribute("aria-expanded", `${!filters.hidden}`);
     });
     store.listen(["alerts", "uavs", "isWhole"], (state) => this.#draw(state));
+    store.listen(["now_ms"], ({ now_ms }) => {
+      for (const write of this.#moving.values()) write(now_ms);
+    });
   }
 
   /** Of the alert that has focus, or the first. */
@@ -270,7 +319,7 @@ class AlertPanel {
   /** @param {HTMLElement} row @param {Alert} alert */
   #refresh(row, alert) {
     const uav = this.#store.state.uavs.find(({ id }) => id === alert.uav);
-    const key = rowKey(alert, uav);
+    const key = rowKey(alert, uav, this.#store.state.uavs);
     if (row.dataset.key === key) return;
     row.dataset.key = key;
     const isKnown = !isUnanswered(alert);
@@ -294,11 +343,17 @@ class AlertPanel {
   /** @param {Alert} alert @param {LiveUav | undefined} uav */
   #said(alert, uav) {
     const answers = this.#actButtons(alert);
-    const known = this.#page.canFly && isUnanswered(alert) && acknowledgeButton(alert, answers.length > 0);
+    const seenLevel = () => this.#seen.of(alert.id, performance.now());
+    const known =
+      this.#page.canFly &&
+      isUnanswered(alert) &&
+      acknowledgeButton(answers.length > 0, () => void acknowledge(alert, seenLevel()));
     const closing = this.#page.canFly && alert.code === "down-off-plan" && isOpenAlert(alert) && closeButton(alert);
     const recovery = positionActs(alert);
     const past = historyWords(alert);
     const pick = () => uav && this.#acts.pick(uav.id);
+    const [message, beside] = [h("span", {}), h("p", { class: "caption" })];
+    this.#write(alert, message, beside);
     return h(
       "div",
       { class: "alert-said" },
@@ -307,27 +362,41 @@ class AlertPanel {
         { class: "alert-title" },
         h("span", { class: "unseen" }, `${LEVELS[alert.level].words}: `),
         uav && h("button", { type: "button", class: "alert-uav", onclick: pick }, uav.name),
-        h("span", {}, alert.message),
+        message,
         alert.is_simulated && [" ", simulatedMark()],
       ),
+      beside,
       past && h("p", { class: "caption" }, past),
       (answers.length > 0 || known || closing || recovery.length > 0) &&
         h("div", { class: "alert-acts" }, answers, known, closing, recovery),
     );
   }
 
+  /** Now, and as time goes on where that changes what is said. @param {Alert} alert @param {HTMLElement} message @param {HTMLElement} beside */
+  #write(alert, message, beside) {
+    /** @param {number} now_ms */
+    const write = (now_ms) => {
+      const uav = this.#store.state.uavs.find(({ id }) => id === alert.uav);
+      const more = besideWords(alert, uav, now_ms);
+      message.textContent = messageWords(alert, uav, now_ms);
+      beside.textContent = more;
+      beside.hidden = more === "";
+    };
+    write(this.#store.state.now_ms);
+    if (isMoving(alert)) this.#moving.set(alert.id, write);
+    else this.#moving.delete(alert.id);
+  }
+
   /** What the operator would answer this cause with. @param {Alert} alert */
   #actButtons(alert) {
     if (!this.#page.canFly || !isUnanswered(alert) || !isOpenAlert(alert)) return [];
-    return alert.acts.flatMap(({ kind, uav: id }) => {
-      const uav = this.#store.state.uavs.find((entry) => entry.id === id);
-      if (!uav) return [];
+    return actsNow(alert, this.#store.state.uavs).map(({ kind, uav }) => {
       /** @param {Event} event */
       const ask = ({ currentTarget }) => {
         const opener = /** @type {HTMLElement} */ (currentTarget);
-        this.#acts.pick(id);
-        if (kind === "take-over") void takeOver(alert, uav.name, opener);
-        else void this.#acts.commanding?.ask(id, kind, opener);
+        this.#acts.pick(uav.id);
+        if (kind === "take-over") void takeOver(alert, uav.name, this.#seen.of(alert.id, performance.now()), opener);
+        else void this.#acts.commanding?.ask(uav.id, kind, opener);
       };
       return h("button", { type: "button", class: "button small", onclick: ask }, ACT_WORDS[kind](uav.name));
     });
@@ -366,6 +435,13 @@ class AlertPanel {
     return (!wantedLevel || level === wantedLevel) && (!wantedUav || `${uav}` === wantedUav);
   }
 
+  /** @param {Alert[]} ended shown ones that nobody has acknowledged */
+  #drawAcknowledgeEnded(ended) {
+    this.#ended = ended.slice(0, MAX_ACKNOWLEDGED);
+    this.#acknowledgeEnded.hidden = !this.#page.canFly || ended.length < 2;
+    this.#acknowledgeEnded.textContent = t("Acknowledge all ended ({count})", { count: this.#ended.length });
+  }
+
   /** @param {Readonly<MonitorState>} state */
   #draw(state) {
     this.#drawUavChoice(state.uavs);
@@ -374,6 +450,10 @@ class AlertPanel {
     const past = this.#past.filter(({ id }) => !ids.has(id));
     const shown = alertsInOrder([...live, ...past].filter((alert) => this.#isShown(alert)));
     const unanswered = pinnedAlerts(state.alerts).filter(isUnanswered);
+    this.#drawAcknowledgeEnded(shown.filter(isEndedUnseen));
+    this.#seen.show(shown, performance.now());
+    const ids_shown = new Set(shown.map(({ id }) => id));
+    for (const id of this.#moving.keys()) if (!ids_shown.has(id)) this.#moving.delete(id);
     const open = unanswered.length;
     byId("alert-count").textContent = open ? t("{count} open", { count: open }) : "";
     showAlertCount({ all: open, critical: unanswered.filter(({ level }) => level === "critical").length });

@@ -9,6 +9,7 @@ import { profileOf } from "../../domain/route_profile.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, lengthText, numberText } from "../../units.js";
+import { messageWords } from "../alert_words.js";
 import { isNone } from "../arrival.js";
 import { numbersOf, pillOf } from "../board.js";
 import { letterOf, prefixOf } from "../call_signs.js";
@@ -226,7 +227,8 @@ class Card {
     this.#drawWind(uav, now_ms);
     this.#drawStrip(uav, known, Math.round(this.#strip.clientWidth || width_px));
     this.#drawCommand(commandOf(uav, commands, now_ms), state.sending.get(uav.id) ?? null);
-    this.#drawAlerts(alerts.filter((alert) => alert.uav === uav.id && isOpenAlert(alert)));
+    const open = alerts.filter((alert) => alert.uav === uav.id && isOpenAlert(alert));
+    this.#drawAlerts(open.map((alert) => ({ ...alert, message: messageWords(alert, uav, now_ms) })));
     const isFollowed = state.isFollowing && isChosen;
     this.#buttons.hidden = !isChosen;
     this.#follow.setAttribute("aria-pressed", `${isFollowed}`);

@@ -10,6 +10,7 @@ import { t } from "../../text.js";
 import {
   causeWords,
   differenceOf,
+  drawnOffer,
   isUndecided,
   overWords,
   sentenceOf,
@@ -231,7 +232,7 @@ export function mountOffers(store, page) {
       last ? over(last, open) : undecided.map((offer) => card(store, offer, page.canFly, whyNot.get(offer.id) ?? "")),
     );
     count(state.now_ms);
-    void drawRoutes(undecided.find(({ state }) => state === "open"));
+    void drawRoutes(drawnOffer(offers, state));
   }
 
   store.listen(["offers", "missions", "now_ms", "silent_ms"], draw);

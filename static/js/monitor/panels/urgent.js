@@ -4,6 +4,7 @@ import { byId, h, icon } from "../../dom.js";
 import { alertsInOrder, isOpenAlert, isUnanswered, pinnedAlerts } from "../../domain/order.js";
 import { t } from "../../text.js";
 import { exactClockText } from "../../units.js";
+import { messageWords } from "../alert_words.js";
 import { causeWords, isUndecided } from "../offer_words.js";
 
 /** @import { MonitorStore } from "../types.d.ts" */
@@ -18,7 +19,7 @@ export function mountUrgent(store, { open }) {
     h("button", { type: "button", class: "text-button", onclick: open }, t("Open|verb")),
   );
   byId("map").parentElement?.append(box);
-  store.listen(["alerts", "offers"], ({ alerts, offers }) => {
+  store.listen(["alerts", "offers", "uavs", "now_ms"], ({ alerts, offers, uavs, now_ms }) => {
     const unanswered = pinnedAlerts(alerts).filter((alert) => isUnanswered(alert) && alert.level !== "advisory");
     const [worst] = alertsInOrder(unanswered);
     const offer = offers.find((one) => isUndecided(one) && one.state !== "computing");
@@ -27,7 +28,15 @@ export function mountUrgent(store, { open }) {
       box.className = `urgent float ${isOpenAlert(worst) ? worst.level : "known"}`;
       words.replaceChildren(
         icon(worst.level === "critical" ? "octagon-alert" : "triangle-alert"),
-        h("strong", {}, worst.message),
+        h(
+          "strong",
+          {},
+          messageWords(
+            worst,
+            uavs.find(({ id }) => id === worst.uav),
+            now_ms,
+          ),
+        ),
         worst.closed_at ? h("span", {}, t("Ended {time}.", { time: exactClockText(worst.closed_at) })) : "",
       );
     } else if (offer) {
