@@ -21,12 +21,13 @@ KEY = "large"
 
 def planner(folder: Path) -> None:
     """What a web worker does, in this process: map the stored graph and its index, and plan; prints the most memory it had."""
+    from inspection.network.paths.access import clear_legs  # noqa: PLC0415
+    from inspection.network.paths.paths import travel_between  # noqa: PLC0415
+    from inspection.network.snapshot_file import read_cleared  # noqa: PLC0415
+    from inspection.network.zones.zone_index import ZoneIndex  # noqa: PLC0415
+
     import config.wsgi  # noqa: F401, PLC0415 (all that a web worker has loaded)
     from inspection.geodesy import LonLat  # noqa: PLC0415
-    from inspection.graph.access import clear_legs  # noqa: PLC0415
-    from inspection.graph.snapshot_file import read_cleared  # noqa: PLC0415
-    from inspection.graph.ways import travel_between  # noqa: PLC0415
-    from inspection.graph.zone_index import ZoneIndex  # noqa: PLC0415
 
     zones = ZoneIndex([], [], [])
     graph = read_cleared(folder / "graphs", key=KEY, zones=zones, version=1, ground_revision=1, tallest_m=math.inf)
@@ -48,8 +49,8 @@ def store(folder: Path) -> None:
     import django  # noqa: PLC0415
 
     django.setup()
-    from inspection.graph.inspection_graph import EdgeKind, InspectionGraph, NodeKind  # noqa: PLC0415
-    from inspection.graph.snapshot_file import write_cleared  # noqa: PLC0415
+    from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind  # noqa: PLC0415
+    from inspection.network.snapshot_file import write_cleared  # noqa: PLC0415
 
     stored = np.load(folder / "large.npz")
     nodes, edges = len(stored["lat"]), len(stored["u"])

@@ -7,23 +7,23 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
+from inspection.network.build.network import Network
+from inspection.network.flown_heights import FlownHeights
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.legs import NO_LEGS, Attachments, DirectLeg, joined
+from inspection.network.nearness import chord
+from inspection.network.paths.access import MOST_ROUND, band_of_legs, clear_legs
+from inspection.network.paths.node_tree import points_on_sphere
+from inspection.network.paths.paths import Travel, travel_between_places
+from inspection.network.route_index import asset_places, node_tree
+from inspection.network.zones.zone_detours import Errand, ways_round
+from inspection.network.zones.zone_index import ZoneIndex
 from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.geodesy.wgs84 import short_distance_m
-from inspection.graph.access import MOST_ROUND, band_of_legs, clear_legs
-from inspection.graph.flown_heights import FlownHeights
-from inspection.graph.inspection_graph import InspectionGraph
-from inspection.graph.legs import NO_LEGS, Attachments, DirectLeg, joined
-from inspection.graph.nearness import chord
-from inspection.graph.network import Network
-from inspection.graph.node_tree import points_on_sphere
-from inspection.graph.round_zones import Errand, ways_round
-from inspection.graph.route_index import asset_places, node_tree
-from inspection.graph.ways import Travel, travel_between_places
-from inspection.graph.zone_index import ZoneIndex
 from planning.problem import End
 
 FloatArray = NDArray[np.float64]

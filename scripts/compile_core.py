@@ -36,7 +36,7 @@ class Part:
 # Those that take longest come first.
 PARTS = (
     Part("search", ("planning.solver.warm_up:rehearse_search",)),
-    Part("graph", ("inspection.graph.rehearsal:rehearse",)),
+    Part("graph", ("inspection.network.warm_up:rehearse",)),
     Part("ways and energy", ("planning.solver.warm_up:rehearse_ways", "planning.trajectory.warm_up:rehearse"), after=("graph",)),
     Part("proofs", ("planning.solver.warm_up:rehearse_proof", "planning.file_plans:rehearse"), after=("search",)),
 )

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from inspection.graph.ground_data import Places, Ways
+from inspection.network.infrastructure import Places, Ways
 
 NO_OSM_ID = -1
 

@@ -6,7 +6,7 @@ from shapely import LineString, Point
 from inspection.data_gaps.gap import Gap
 from inspection.data_gaps.ground import asset_key, place_key
 from inspection.data_gaps.network import BoolArray, FloatArray, IntArray, NearLegs, Network
-from inspection.graph.nearness import nearest_within
+from inspection.network.nearness import nearest_within
 
 JOIN_M = 6.0  # "a few metres": a mapper's slip; gantries of a substation stand 10 m and more apart
 TERMINAL_M = 150.0  # a substation's reach, as in the graph's rule for crossings

@@ -9,8 +9,8 @@ from inspection.data_gaps.gap import Gap
 from inspection.data_gaps.ground import asset_key
 from inspection.data_gaps.network import BoolArray, FloatArray, IntArray, Network, metres_by
 from inspection.geodesy import distance_m
-from inspection.graph.edges import component_labels
-from inspection.graph.nearness import nearest_within, pairs_within
+from inspection.network.build.edges import component_labels
+from inspection.network.nearness import nearest_within, pairs_within
 
 ROW_M = 550.0  # the widest usual span: towers nearer than that may stand in one row
 LINE_REACH_M = 500.0  # how far the nearest line is looked for

@@ -12,9 +12,9 @@ from shapely import STRtree
 
 from inspection.data_gaps.ground import GapGround
 from inspection.geodesy import distance_m
-from inspection.graph.edges import component_labels
-from inspection.graph.joining import JoinedVertices, join_vertices
-from inspection.graph.nearness import EARTH_RADIUS_M
+from inspection.network.build.edges import component_labels
+from inspection.network.build.joining import JoinedVertices, join_vertices
+from inspection.network.nearness import EARTH_RADIUS_M
 
 IntArray = NDArray[np.int64]
 FloatArray = NDArray[np.float64]

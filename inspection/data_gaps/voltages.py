@@ -7,7 +7,7 @@ from shapely import Point
 
 from inspection.data_gaps.gap import Gap
 from inspection.data_gaps.ground import GapGround, WayFacts, asset_key
-from inspection.graph.ground_data import Ways
+from inspection.network.infrastructure import Ways
 
 HIGHEST_V = 1_200_000  # the highest that was ever in service: 1,150 kV Ekibastuz to Kokshetau, 1,200 kV as tested at Bina
 MOST_VALUES = 6

@@ -33,7 +33,7 @@ class GraphSnapshot(models.Model):
     components = models.PositiveIntegerField()
     excluded_nodes = models.PositiveIntegerField()
     excluded_edges = models.PositiveIntegerField()
-    arrays = models.BinaryField(help_text="npz, see inspection/graph/snapshot_file.py")
+    arrays = models.BinaryField(help_text="npz, see inspection/network/snapshot_file.py")
     arrays_sha256 = models.CharField(max_length=64)
     build_s = models.FloatField()
     built_at = models.DateTimeField(db_default=Now(), editable=False)

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from inspection.geodesy import distance_m
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.graph.flown_heights import asset_heights_m
-from inspection.graph.ground_data import Places, Ways
-from inspection.graph.inspection_graph import NodeKind
-from inspection.graph.joining import join_vertices
-from inspection.graph.network import support_heights_m
+from inspection.network.build.joining import join_vertices
+from inspection.network.build.network import support_heights_m
+from inspection.network.flown_heights import asset_heights_m
+from inspection.network.infrastructure import Places, Ways
+from inspection.network.inspection_graph import NodeKind
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

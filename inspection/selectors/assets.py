@@ -14,8 +14,8 @@ from django.utils.translation import gettext as _
 from django.utils.translation import gettext_noop
 
 from inspection.geodesy import LonLat
-from inspection.graph.zone_index import METRES_PER_DEGREE_LON
 from inspection.models import Asset, AssetKind, AssetReference, NoFlyZone
+from inspection.network.zones.zone_index import METRES_PER_DEGREE_LON
 from inspection.selectors.made_names import made_name, word_of
 
 COORDINATE_DIGITS = 7  # about a centimetre

@@ -7,8 +7,8 @@ from django.db import connection
 from numpy.typing import NDArray
 
 from inspection.data_gaps.ground import NO_OSM_ID, GapGround, PlainBridge, SupportFacts, WayFacts, asset_key
-from inspection.graph.ground_data import Places, Ways
 from inspection.models import AssetKind
+from inspection.network.infrastructure import Places, Ways
 from inspection.selectors.ground_data import ground_data
 
 _WAYS = """

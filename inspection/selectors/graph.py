@@ -13,10 +13,11 @@ from typing import Any, Generic, TypeVar
 from django.conf import settings
 from django.db.models import QuerySet
 
-from inspection.graph.clearing import cleared
-from inspection.graph.inspection_graph import InspectionGraph
-from inspection.graph.network import Network
-from inspection.graph.snapshot_file import (
+from inspection.models import GraphSnapshot
+from inspection.network.build.network import Network
+from inspection.network.build.zone_masking import cleared
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.snapshot_file import (
     LAYOUT,
     from_bytes,
     key_of_cleared,
@@ -25,8 +26,7 @@ from inspection.graph.snapshot_file import (
     write_cleared,
     write_network,
 )
-from inspection.graph.zone_index import ZoneIndex
-from inspection.models import GraphSnapshot
+from inspection.network.zones.zone_index import ZoneIndex
 from inspection.selectors.ground import ground_edition
 from inspection.selectors.zone_table import zone_table_of_edition
 from inspection.zones.reach import BoolArray, ZoneTable

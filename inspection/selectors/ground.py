@@ -7,8 +7,8 @@ from django.contrib.gis.db.models import Extent
 from django.db import connection
 from django.db.models import Count, Exists, OuterRef, Q
 
-from inspection.graph.snapshot_file import LAYOUT
 from inspection.models import Asset, AssetKind, DataImport, GraphSnapshot, Ground, NoFlyZone, TerrainTile, ZoneSet
+from inspection.network.snapshot_file import LAYOUT
 
 Extent_deg = tuple[float, float, float, float]  # west, south, east, north
 Edition = tuple[int, datetime | None]  # of the ground: its revision, and when that came about

@@ -4,7 +4,7 @@ from threading import Lock
 from weakref import WeakKeyDictionary
 
 from inspection.geodesy.wgs84 import FloatArray
-from inspection.graph.inspection_graph import InspectionGraph
+from inspection.network.inspection_graph import InspectionGraph
 from inspection.selectors.terrain import ground_heights_m
 
 Terrain = tuple[int | None, int]

@@ -14,8 +14,8 @@ from django.db import connection
 from django.db.models import F, Func, Q, QuerySet, TextField, Value
 from django.db.models.functions import Lower
 
-from inspection.graph.stretch import Stretch, StretchPart, stretch_between, supports_in_order
 from inspection.models import Asset, AssetKind
+from inspection.network.stretch import Stretch, StretchPart, stretch_between, supports_in_order
 from inspection.selectors.ground_data import supports_and_lines
 from inspection.selectors.made_names import assets_with_made_names, made_name
 

@@ -9,11 +9,11 @@ from typing import NamedTuple
 from django.db import DEFAULT_DB_ALIAS
 
 from inspection.geodesy import LonLat
-from inspection.graph.inspection_graph import InspectionGraph
-from inspection.graph.network import Network
-from inspection.graph.snapshot_file import LAYOUT
-from inspection.graph.zone_index import ZoneIndex
 from inspection.models import Asset, AssetKind
+from inspection.network.build.network import Network
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.snapshot_file import LAYOUT
+from inspection.network.zones.zone_index import ZoneIndex
 from inspection.selectors.graph import SnapshotRow, graph_for, network_for, zones_of_table
 from inspection.selectors.ground import Edition
 from inspection.selectors.terrain import FloatArray, ground_heights_m, has_terrain, terrain_edition

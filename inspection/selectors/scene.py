@@ -13,10 +13,10 @@ from django.utils.translation import gettext_noop
 
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.geodesy.wgs84 import FloatArray
-from inspection.graph.flown_heights import UNTAGGED_HEIGHT_M
-from inspection.graph.ground_data import Ways
-from inspection.graph.inspection_graph import NodeKind
 from inspection.models import Asset, AssetKind, NoFlyZone
+from inspection.network.flown_heights import UNTAGGED_HEIGHT_M
+from inspection.network.infrastructure import Ways
+from inspection.network.inspection_graph import NodeKind
 from inspection.scene.decks import deck_amsl_m, layer_of
 from inspection.scene.overhead import Overhead, overhead
 from inspection.scene.supports import DrawnSpan, DrawnSupport, LineFacts, SupportFacts, drawn

@@ -7,8 +7,8 @@ import shapely
 from django.contrib.gis.geos import LineString, Polygon
 
 from inspection.geodesy.wgs84 import FloatArray
-from inspection.graph.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON, NEAREST_POLE_DEG, widen
 from inspection.models import NoFlyZone
+from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON, NEAREST_POLE_DEG, widen
 from inspection.terrain.profile import stretches_inside
 
 MOST_ZONES = 200

@@ -7,9 +7,9 @@ import shapely
 from rest_framework import serializers
 
 from inspection.geodesy.wgs84 import FloatArray
-from inspection.graph.flown_heights import UNTAGGED_HEIGHT_M
-from inspection.graph.inspection_graph import NodeKind
 from inspection.models import Asset
+from inspection.network.flown_heights import UNTAGGED_HEIGHT_M
+from inspection.network.inspection_graph import NodeKind
 from inspection.scene.sag import CATENARY_M, EARTH_SHARE, MOST_OF_HEIGHT
 from inspection.scene.supports import DrawnSpan, DrawnSupport
 from inspection.selectors import asset_label

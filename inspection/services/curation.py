@@ -12,8 +12,8 @@ from django.db import transaction
 from django.utils import timezone
 
 from inspection.geodesy.wgs84 import path_length_m
-from inspection.graph.ground_data import NO_OSM_NODE
 from inspection.models import Asset, AssetKind, NoFlyZone
+from inspection.network.infrastructure import NO_OSM_NODE
 from inspection.services.facts import asset_facts, says_the_same, take_asset_facts, zone_facts
 from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.services.supports import number_supports

@@ -8,10 +8,10 @@ from time import perf_counter
 from django.conf import settings
 from django.db import connection, transaction
 
-from inspection.graph.clearing import cleared
-from inspection.graph.network import network
-from inspection.graph.snapshot_file import to_bytes
 from inspection.models import GraphSnapshot
+from inspection.network.build.network import network
+from inspection.network.build.zone_masking import cleared
+from inspection.network.snapshot_file import to_bytes
 from inspection.selectors.graph import NoGraph, current_graph, prepare_graph, rules_of_snapshots, zones_in_force
 from inspection.selectors.ground import ground_revision
 from inspection.selectors.ground_data import ground_data, has_flyable_assets

@@ -24,8 +24,8 @@ from inspection.data_gaps.mending import (
 )
 from inspection.data_gaps.voltages import HIGHEST_V, MOST_VALUES
 from inspection.geodesy.wgs84 import FloatArray
-from inspection.graph.ground_data import NO_OSM_NODE
 from inspection.models import Asset, AssetKind, DataGap, OsmType
+from inspection.network.infrastructure import NO_OSM_NODE
 from inspection.services.curation import PLACED
 
 MOST_TOWERS = 500  # along one span

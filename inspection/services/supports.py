@@ -2,8 +2,8 @@
 
 from django.db import connection
 
-from inspection.graph.ground_data import NO_OSM_NODE
-from inspection.graph.joining import TOUCH_M
+from inspection.network.build.joining import TOUCH_M
+from inspection.network.infrastructure import NO_OSM_NODE
 
 REACH_DEG = 1e-4  # more than TOUCH_M is anywhere between the polar circles
 

@@ -1,7 +1,8 @@
 """The part of the inspection graph that a plan's height limit leaves."""
 
-from inspection.graph.flyable import flyable_part
-from inspection.graph.inspection_graph import InspectionGraph
+from inspection.network.build.flyable import flyable_part
+from inspection.network.inspection_graph import InspectionGraph
+
 from planning.rules import FlightRules
 
 

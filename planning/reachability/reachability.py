@@ -9,23 +9,23 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from inspection.network.build.network import Network
+from inspection.network.flown_heights import asset_heights_m
+from inspection.network.inspection_graph import InspectionGraph, NodeKind
+from inspection.network.legs import Attachments, joined
+from inspection.network.nearness import chord
+from inspection.network.paths.access import band_of_legs
+from inspection.network.paths.contracted_graph import CORE
+from inspection.network.paths.node_tree import points_on_sphere
+from inspection.network.paths.one_to_all import Crossroads, crossroads, spread
+from inspection.network.route_index import node_tree, route_index
+from inspection.network.zones.zone_index import ZoneIndex
 from numba import njit
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.graph.access import band_of_legs
-from inspection.graph.condensed import CORE
-from inspection.graph.flown_heights import asset_heights_m
-from inspection.graph.inspection_graph import InspectionGraph, NodeKind
-from inspection.graph.legs import Attachments, joined
-from inspection.graph.nearness import chord
-from inspection.graph.network import Network
-from inspection.graph.node_tree import points_on_sphere
-from inspection.graph.route_index import node_tree, route_index
-from inspection.graph.spread import Crossroads, crossroads, spread
-from inspection.graph.zone_index import ZoneIndex
 from planning.connection_points import AccessRules, Terminal, access_legs, direct_legs
 from planning.energy.conditions import Conditions
 from planning.energy.leg_cost import J_PER_WH

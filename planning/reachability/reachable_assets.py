@@ -4,10 +4,9 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
+from inspection.network.build.network import Network
+from inspection.network.inspection_graph import InspectionGraph, NodeKind
 from numpy.typing import NDArray
-
-from inspection.graph.inspection_graph import InspectionGraph, NodeKind
-from inspection.graph.network import Network
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -15,23 +15,23 @@ from django.contrib.gis.geos import LineString, MultiPolygon, Point, Polygon
 from django.core.management import CommandError, call_command
 from django.db import connection, connections
 from django.utils import timezone
+from inspection.network.build.flyable import flyable_part
+from inspection.network.inspection_graph import InspectionGraph, NodeKind
+from inspection.network.legs import Attachment
+from inspection.network.paths.paths import travel_between
+from inspection.network.route_index import route_index
+from inspection.network.rules import LinkingRules
+from inspection.network.snapshot_file import CLEARED, NETWORKS
+from inspection.network.zones.zone_index import ZoneIndex
 
 from inspection import selectors, services, tasks
 from inspection.geodesy import LonLat
-from inspection.graph.flyable import flyable_part
-from inspection.graph.inspection_graph import InspectionGraph, NodeKind
-from inspection.graph.legs import Attachment
-from inspection.graph.route_index import route_index
-from inspection.graph.rules import LinkingRules
-from inspection.graph.snapshot_file import CLEARED, NETWORKS
-from inspection.graph.ways import travel_between
-from inspection.graph.zone_index import ZoneIndex
 from inspection.models import Asset, AssetKind, GraphSnapshot, NoFlyZone
 from inspection.selectors import graph as graph_selectors
 from inspection.selectors.graph import KEPT, _Kept, graph_for
 from inspection.selectors.planning import planning_read
 from inspection.services.graph import BUILD_LOCK, KEPT_SNAPSHOTS
-from tests.inspection.graph.drawn_graphs import drawn_graph
+from tests.inspection.network.drawn_graphs import drawn_graph
 
 GRAPH, OTHER = drawn_graph([], []), drawn_graph([], [])
 

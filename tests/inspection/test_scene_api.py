@@ -10,11 +10,11 @@ import shapely
 from django.contrib.gis.geos import GEOSGeometry
 from django.core.management import call_command
 from django.test import Client
+from inspection.network.build.network import network
+from inspection.network.inspection_graph import EdgeKind
+from inspection.network.rules import LinkingRules
+from inspection.network.spans import hung_between
 
-from inspection.graph.inspection_graph import EdgeKind
-from inspection.graph.network import network
-from inspection.graph.rules import LinkingRules
-from inspection.graph.spans import hung_between
 from inspection.models import Asset, NoFlyZone
 from inspection.scene.sag import CATENARY_M
 from inspection.selectors import scene as selector

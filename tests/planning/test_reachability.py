@@ -7,15 +7,15 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from inspection.network.build.flyable import flyable_part
+from inspection.network.build.network import Network
+from inspection.network.build.zone_masking import cleared
+from inspection.network.flown_heights import FlownHeights
+from inspection.network.inspection_graph import EdgeKind, NodeKind
+from inspection.network.rules import LinkingRules
+from inspection.network.zones.zone_index import ZoneIndex
 
 from inspection.geodesy import LonLat, distance_m
-from inspection.graph.clearing import cleared
-from inspection.graph.flown_heights import FlownHeights
-from inspection.graph.flyable import flyable_part
-from inspection.graph.inspection_graph import EdgeKind, NodeKind
-from inspection.graph.network import Network
-from inspection.graph.rules import LinkingRules
-from inspection.graph.zone_index import ZoneIndex
 from planning.connection_points import AccessRules, Terminal, ways_between
 from planning.energy.assignment_costs import Finish, flight_costs
 from planning.energy.conditions import Conditions, WindLayer

@@ -16,10 +16,10 @@ PROJECT_DIR = Path(__file__).resolve().parent.parent.parent
 
 
 def add(folder: Path, function: str, index: str, **data: str) -> None:
-    (folder / "inspection.graph").mkdir(parents=True, exist_ok=True)
-    (folder / "inspection.graph" / f"{function}.nbi").write_text(index)
+    (folder / "inspection.network").mkdir(parents=True, exist_ok=True)
+    (folder / "inspection.network" / f"{function}.nbi").write_text(index)
     for number, code in data.items():
-        (folder / "inspection.graph" / f"{function}.{number.strip('_')}.nbc").write_text(code)
+        (folder / "inspection.network" / f"{function}.{number.strip('_')}.nbc").write_text(code)
 
 
 def files(folder: Path) -> dict[str, str]:
@@ -54,7 +54,7 @@ def test_what_another_part_has_added_since_is_kept(tmp_path):
     before = index_files(part)
     add(whole, "ways._path-1.py311", "int64, int32", _1="code for int64", _2="code for int32")
     take_over(part, before, whole)
-    assert (whole / "inspection.graph" / "ways._path-1.py311.nbi").read_text() == "int64, int32"
+    assert (whole / "inspection.network" / "ways._path-1.py311.nbi").read_text() == "int64, int32"
 
 
 def test_a_part_that_fails_fails_the_whole_and_leaves_no_process(tmp_path, monkeypatch):

@@ -18,8 +18,8 @@ def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture
 def compiled(tmp_path: Path) -> Path:
     folder = tmp_path / "compiled"
-    (folder / "inspection.graph").mkdir(parents=True)
-    (folder / "inspection.graph" / "ways.nbi").write_text("compiled")
+    (folder / "inspection.network").mkdir(parents=True)
+    (folder / "inspection.network" / "ways.nbi").write_text("compiled")
     return folder
 
 
@@ -29,10 +29,10 @@ def test_an_entry_is_copied_in_place_of_the_target(cache, compiled, tmp_path):
     target.mkdir(parents=True)
     (target / "half").touch()
     assert user_cache.fetch("compiled", "0123", target)
-    assert [path.name for path in target.rglob("*")] == ["inspection.graph", "ways.nbi"]
+    assert [path.name for path in target.rglob("*")] == ["inspection.network", "ways.nbi"]
     assert [path.name for path in target.parent.iterdir()] == ["compiled"]
-    (target / "inspection.graph" / "ways.nbi").write_text("changed here")
-    assert (cache / "compiled" / "0123" / "inspection.graph" / "ways.nbi").read_text() == "compiled"
+    (target / "inspection.network" / "ways.nbi").write_text("changed here")
+    assert (cache / "compiled" / "0123" / "inspection.network" / "ways.nbi").read_text() == "compiled"
 
 
 def test_the_folder_is_closed_to_other_users(cache):
@@ -71,7 +71,7 @@ def test_without_a_place_nothing_is_shared_and_nothing_fails(tmp_path, compiled,
 
 def test_an_entry_that_is_not_there_leaves_the_target(cache, compiled):
     assert not user_cache.fetch("compiled", "0123", compiled)
-    assert (compiled / "inspection.graph").exists()
+    assert (compiled / "inspection.network").exists()
 
 
 def test_the_least_used_entries_beyond_the_number_are_removed(cache, compiled):

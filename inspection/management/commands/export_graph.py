@@ -10,9 +10,9 @@ import networkx as nx
 from django.core.management.base import BaseCommand, CommandError, CommandParser
 
 from inspection import selectors
-from inspection.graph.export import geojson_features, to_networkx
-from inspection.graph.inspection_graph import InspectionGraph
-from inspection.graph.snapshot_file import to_bytes
+from inspection.network.export import geojson_features, to_networkx
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.snapshot_file import to_bytes
 
 
 class Command(BaseCommand):

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
+from inspection.network.infrastructure import NO_OSM_NODE, Places, Ways
 
 from inspection.data_gaps.ground import NO_OSM_ID, GapGround, PlainBridge, SupportFacts, WayFacts
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.graph.ground_data import NO_OSM_NODE, Places, Ways
 
 FRAME = LocalFrame.around(10.0, 56.0)
 Metres = tuple[float, float]

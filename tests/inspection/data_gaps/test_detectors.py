@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from inspection.network.build.edges import component_labels
 
 from inspection.data_gaps.gap import Gap
 from inspection.data_gaps.ground import GapGround
 from inspection.data_gaps.lone_towers import course_of_row
 from inspection.data_gaps.network import Network
 from inspection.data_gaps.search import search
-from inspection.graph.edges import component_labels
 from inspection.serializers.gap_words import sentence, title
 from tests.inspection.data_gaps.drawn import at, ground, row
 

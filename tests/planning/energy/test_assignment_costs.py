@@ -9,14 +9,14 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from inspection.network.build.flyable import node_heights_m
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.paths.passed import BEND, passed_on
+from inspection.network.paths.paths import DIRECT
+from inspection.network.zones.zone_index import ZoneIndex
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
-from inspection.graph.flyable import node_heights_m
-from inspection.graph.inspection_graph import InspectionGraph
-from inspection.graph.passed import BEND, passed_on
-from inspection.graph.ways import DIRECT
-from inspection.graph.zone_index import ZoneIndex
 from planning.connection_points import AccessRules, Terminal, Ways, ways_between
 from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
 from planning.energy.conditions import Conditions, WindLayer
@@ -29,7 +29,7 @@ from planning.trajectory.heights import pass_agl_m
 from planning.trajectory.route_points import PassedNodes, TargetPoints, route_points, with_short_legs
 from planning.trajectory.timing import Timing, timing
 from planning.trajectory.waypoints import Waypoints
-from tests.inspection.graph.drawn_graphs import drawn_graph
+from tests.inspection.network.drawn_graphs import drawn_graph
 
 RULES = FlightRules()
 AT_ONCE_ROUND_CORNERS = FlightRules(manoeuvres=Manoeuvres(corner_mps2=math.inf))

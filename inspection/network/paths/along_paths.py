@@ -1,0 +1,236 @@
+"""What is summed up along ways of the graph, where the two directions of an edge differ: seconds in wind, energy, climbs.
+
+The ways are those of `ways.py`, which are least in cost. What a way of them takes is a difference of sums along chains and a sum kept
+with each hub label, so that no way is walked. Each quantity of each direction is made once for all edges, by who knows what it is.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.paths.contracted_graph import FloatArray, NumberArray
+from inspection.network.paths.hub_labels import IntArray
+from inspection.network.paths.paths import ALONG_CHAIN, DIRECT, NO_WAY, Travel
+from inspection.network.route_index import OncePerGraph, RouteIndex, route_index
+from numba import njit
+
+from inspection.geodesy.short_vector import short_vector_m
+
+
+@dataclass(frozen=True, eq=False)
+class Steps:
+    """Each place of a chain and the step to it from the place before; the first place of a chain has none. p places, e label entries.
+
+    length_m     float64 (p,)  metres of the step
+    east, north  float64 (p,)  its direction, of length 1; 0 where there is no step
+    next_entry   int64 (e,)    where the way of a label entry goes on after its first chain; -1 at the hub
+    turn         int64 (e,)    the entries in an order in which each comes after the one that it goes on with
+    """
+
+    length_m: FloatArray
+    east: FloatArray
+    north: FloatArray
+    next_entry: IntArray
+    turn: IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class Sums:
+    """q quantities along chains and along label entries.
+
+    place  float64 (p, 2, q)  from the chain's first place to this one, and from this one back to it
+    label  float64 (e, 2, q)  from the core's node to the hub, and from the hub to the node
+    """
+
+    place: FloatArray
+    label: FloatArray
+
+    @property
+    def nbytes(self) -> int:
+        return self.place.nbytes + self.label.nbytes
+
+
+def _steps(graph: InspectionGraph) -> Steps:
+    index = route_index(graph)
+    condensed, labels = index.condensed, index.labels
+    next_entry, turn = _entries_in_turn(
+        condensed.chain_tail, condensed.chain_head, labels.label_first, labels.label_hub, labels.label_chain
+    )
+    length_m, east, north = _directions(condensed.chain_first, condensed.place_node, condensed.place_m, graph.position)
+    return Steps(length_m, east, north, next_entry, turn)
+
+
+steps_of_graph = OncePerGraph(_steps)
+
+
+def sums_along(graph: InspectionGraph, taken: FloatArray) -> Sums:
+    """taken (p, 2, q): what the step to each place of a chain takes, and the step back; 0 at a chain's first place. Summed in place."""
+    condensed, labels = route_index(graph).condensed, route_index(graph).labels
+    steps = steps_of_graph(graph)
+    label = _sums(taken, condensed.chain_first, condensed.chain_tail, labels.label_first, labels.label_chain, steps.next_entry, steps.turn)
+    return Sums(taken, label)
+
+
+def quantities_of_ways(travel: Travel, sums: Sums, out: FloatArray, back: FloatArray, direct: FloatArray) -> FloatArray:
+    """What the way of each source and sink takes, (q, s, t); inf where there is no way.
+
+    out (legs, q) and back (legs, q): the legs of Travel.leg_node flown to the node and from it; only those need be right that ways
+    take (see `ends_of_ways`). direct (s, t, q): straight from source to sink, where the way is direct.
+    """
+    return quantities_of_pairs(
+        travel.way, travel.leg_node, travel.entry_leg, travel.entry_label, out, back, direct, sums.place, sums.label,
+        *chain_arrays(travel.index),
+    )  # fmt: skip
+
+
+@njit(cache=True, nogil=True)
+def leg_of_way(end: int, entry_leg: NumberArray) -> int:
+    """The leg by which a way leaves its source or comes to its sink, from what Travel.way holds of it; -1 for none."""
+    if end <= ALONG_CHAIN:
+        return (ALONG_CHAIN - end) // 2
+    return entry_leg[end] // 2 if end >= 0 else -1
+
+
+def chain_arrays(index: RouteIndex) -> tuple[NumberArray, NumberArray, NumberArray]:
+    """In the order in which the compiled sums take them."""
+    condensed = index.condensed
+    return condensed.node_chain, condensed.node_place, condensed.chain_first
+
+
+@njit(cache=True, nogil=True)
+def _directions(
+    chain_first: NumberArray, place_node: NumberArray, place_m: FloatArray, position: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    places = len(place_node)
+    length_m, east, north = np.zeros(places), np.zeros(places), np.zeros(places)
+    for chain in range(len(chain_first) - 1):
+        for place in range(chain_first[chain] + 1, chain_first[chain + 1]):
+            before, node = place_node[place - 1], place_node[place]
+            east_m, north_m = short_vector_m(position[before, 0], position[before, 1], position[node, 0], position[node, 1])
+            straight_m = np.hypot(east_m, north_m)
+            length_m[place] = place_m[place] - place_m[place - 1]
+            if straight_m > 0.0:
+                east[place], north[place] = east_m / straight_m, north_m / straight_m
+    return length_m, east, north
+
+
+@njit(cache=True, nogil=True)
+def _entries_in_turn(
+    chain_tail: NumberArray, chain_head: NumberArray, label_first: IntArray, label_hub: NumberArray, label_chain: NumberArray
+) -> tuple[IntArray, IntArray]:
+    entries = len(label_hub)
+    next_entry = np.full(entries, -1, dtype=np.int64)
+    for core in range(len(label_first) - 1):
+        for entry in range(label_first[core], label_first[core + 1]):
+            chain = label_chain[entry]
+            if chain < 0:
+                continue
+            other = chain_head[chain] if chain_tail[chain] == core else chain_tail[chain]
+            low, high = label_first[other], label_first[other + 1]
+            while low < high:
+                middle = (low + high) // 2
+                if label_hub[middle] < label_hub[entry]:
+                    low = middle + 1
+                else:
+                    high = middle
+            next_entry[entry] = low
+    turn = np.empty(entries, dtype=np.int64)
+    is_placed = np.zeros(entries, dtype=np.bool_)
+    waiting = np.empty(max(len(label_first), 1), dtype=np.int64)  # a way passes no node twice
+    placed = 0
+    for entry in range(entries):
+        count, at = 0, entry
+        while at >= 0 and not is_placed[at]:
+            waiting[count] = at
+            count += 1
+            at = next_entry[at]
+        for number in range(count - 1, -1, -1):
+            turn[placed] = waiting[number]
+            is_placed[waiting[number]] = True
+            placed += 1
+    return next_entry, turn
+
+
+@njit(cache=True, nogil=True)
+def _sums(
+    taken: FloatArray,
+    chain_first: NumberArray,
+    chain_tail: NumberArray,
+    label_first: IntArray,
+    label_chain: NumberArray,
+    next_entry: IntArray,
+    turn: IntArray,
+) -> FloatArray:
+    quantities = taken.shape[2]
+    for chain in range(len(chain_first) - 1):
+        for place in range(chain_first[chain] + 1, chain_first[chain + 1]):
+            for way in range(2):
+                for quantity in range(quantities):
+                    taken[place, way, quantity] += taken[place - 1, way, quantity]
+    core_of = np.empty(len(label_chain), dtype=np.int32)
+    for core in range(len(label_first) - 1):
+        core_of[label_first[core] : label_first[core + 1]] = core
+    label = np.zeros((len(label_chain), 2, quantities))
+    for entry in turn:
+        chain = label_chain[entry]
+        if chain < 0:
+            continue
+        last, onward = chain_first[chain + 1] - 1, next_entry[entry]
+        forward = 0 if chain_tail[chain] == core_of[entry] else 1
+        for quantity in range(quantities):
+            label[entry, 0, quantity] = taken[last, forward, quantity] + label[onward, 0, quantity]
+            label[entry, 1, quantity] = taken[last, 1 - forward, quantity] + label[onward, 1, quantity]
+    return label
+
+
+@njit(cache=True, nogil=True)
+def quantities_of_pairs(
+    way: NumberArray,
+    leg_node: NumberArray,
+    entry_leg: NumberArray,
+    entry_label: IntArray,
+    out: FloatArray,
+    back: FloatArray,
+    direct: FloatArray,
+    place_sum: FloatArray,
+    label_sum: FloatArray,
+    node_chain: NumberArray,
+    node_place: NumberArray,
+    chain_first: NumberArray,
+) -> FloatArray:
+    """As quantities_of_ways, for compiled code."""
+    sources, sinks = way.shape[0], way.shape[1]
+    quantities = place_sum.shape[2]
+    taken = np.full((quantities, sources, sinks), np.inf)
+    for source in range(sources):
+        for sink in range(sinks):
+            start, end = way[source, sink, 0], way[source, sink, 1]
+            if start == NO_WAY:
+                continue
+            if start == DIRECT:
+                for quantity in range(quantities):
+                    taken[quantity, source, sink] = direct[source, sink, quantity]
+                continue
+            left, right = leg_of_way(start, entry_leg), leg_of_way(end, entry_leg)
+            here, there = node_place[leg_node[left]], node_place[leg_node[right]]
+            if start <= ALONG_CHAIN:
+                direction = 0 if there >= here else 1
+                for quantity in range(quantities):
+                    along = abs(place_sum[there, direction, quantity] - place_sum[here, direction, quantity])
+                    taken[quantity, source, sink] = out[left, quantity] + along + back[right, quantity]
+                continue
+            for quantity in range(quantities):
+                total = out[left, quantity] + back[right, quantity]
+                total += label_sum[entry_label[start], 0, quantity] + label_sum[entry_label[end], 1, quantity]
+                chain = node_chain[leg_node[left]]
+                if chain >= 0 and entry_leg[start] % 2 == 0:
+                    total += place_sum[here, 1, quantity]
+                elif chain >= 0:
+                    total += place_sum[chain_first[chain + 1] - 1, 0, quantity] - place_sum[here, 0, quantity]
+                chain = node_chain[leg_node[right]]
+                if chain >= 0 and entry_leg[end] % 2 == 0:
+                    total += place_sum[there, 0, quantity]
+                elif chain >= 0:
+                    total += place_sum[chain_first[chain + 1] - 1, 1, quantity] - place_sum[there, 1, quantity]
+                taken[quantity, source, sink] = total
+    return taken

@@ -1,0 +1,99 @@
+"""What planners ask of a graph, made once: the condensed graph, its hub labels, its nodes by place, and where its assets are."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from threading import RLock
+from typing import Any, Generic, TypeVar
+from weakref import WeakKeyDictionary
+
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.paths.asset_places import build_asset_places
+from inspection.network.paths.contracted_graph import CondensedGraph, NumberArray, condense
+from inspection.network.paths.hub_labels import HubLabels, label
+from inspection.network.paths.node_tree import build_node_tree
+
+
+@dataclass(frozen=True, eq=False)
+class RouteIndex:
+    """Read-only arrays that threads and, memory-mapped, processes share."""
+
+    condensed: CondensedGraph
+    labels: HubLabels
+
+    @cached_property
+    def component_count(self) -> int:
+        return int(self.labels.component.max(initial=-1)) + 1
+
+    @cached_property
+    def component_arrays(self) -> tuple[NumberArray, NumberArray, NumberArray, NumberArray]:
+        """In the order in which compiled code takes them to look up the components of nodes."""
+        return self.condensed.node_chain, self.condensed.node_place, self.condensed.chain_tail, self.labels.component
+
+    @cached_property
+    def query_arrays(self) -> tuple[Any, ...]:
+        """In the order in which the compiled query takes them."""
+        condensed, labels = self.condensed, self.labels
+        return (
+            condensed.node_chain,
+            condensed.node_place,
+            condensed.chain_first,
+            condensed.chain_tail,
+            condensed.chain_head,
+            condensed.place_cost,
+            condensed.place_m,
+            labels.label_first,
+            labels.label_hub,
+            labels.label_cost,
+            labels.label_m,
+        )
+
+    @cached_property
+    def path_arrays(self) -> tuple[Any, ...]:
+        """In the order in which the compiled expansion takes them."""
+        condensed, labels = self.condensed, self.labels
+        return (
+            condensed.node_chain,
+            condensed.node_place,
+            condensed.chain_first,
+            condensed.chain_tail,
+            condensed.chain_head,
+            condensed.place_node,
+            labels.label_first,
+            labels.label_hub,
+            labels.label_chain,
+        )
+
+
+Part = TypeVar("Part")
+
+
+def build_route_index(graph: InspectionGraph) -> RouteIndex:
+    condensed = condense(graph.node_count, graph.edge, graph.cost, graph.length_m)
+    return RouteIndex(condensed, label(condensed))
+
+
+class OncePerGraph(Generic[Part]):
+    """A part of a graph's index: the one that it was stored with, or one made now."""
+
+    def __init__(self, make: Callable[[InspectionGraph], Part]) -> None:
+        self._make = make
+        self._made: WeakKeyDictionary[InspectionGraph, Part] = WeakKeyDictionary()
+        self._one_thread = RLock()
+
+    def __call__(self, graph: InspectionGraph) -> Part:
+        part = self._made.get(graph)
+        if part is None:
+            with self._one_thread:
+                part = self._made.get(graph)
+                if part is None:
+                    part = self._made[graph] = self._make(graph)
+        return part
+
+    def remember(self, graph: InspectionGraph, part: Part) -> None:
+        self._made[graph] = part
+
+
+route_index = OncePerGraph(build_route_index)
+node_tree = OncePerGraph(lambda graph: build_node_tree(graph.position))
+asset_places = OncePerGraph(build_asset_places)

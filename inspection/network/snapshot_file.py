@@ -1,0 +1,145 @@
+"""A network as bytes (npz) for the database; networks and cleared graphs with their index as memory-mapped files for planners."""
+
+import io
+import json
+import shutil
+from dataclasses import asdict, fields, replace
+from hashlib import sha256
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+from inspection.network.array_folder import Arrays, read_folder, write_folder
+from inspection.network.build.flyable import flyable_part, remember_flyable_part
+from inspection.network.build.network import Network
+from inspection.network.flown_heights import FlownHeights
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.paths.asset_places import AssetPlaces
+from inspection.network.paths.contracted_graph import CondensedGraph
+from inspection.network.paths.hub_labels import HubLabels
+from inspection.network.paths.node_tree import NodeTree
+from inspection.network.route_index import RouteIndex, asset_places, node_tree, route_index
+from inspection.network.rules import LinkingRules
+from inspection.network.zones.zone_index import ZoneIndex
+
+LAYOUT = 4  # of the stored arrays and of the files; what has another layout is made anew
+FLYABLE = "flyable."  # begins the names of the flyable part's files, where it is not the whole graph
+NETWORKS, CLEARED = "networks", "cleared"
+KEPT_NETWORKS, KEPT_CLEARED = 3, 8
+NETWORK_FIELDS = [field.name for field in fields(Network)]  # which are also an inspection graph's
+
+Part = TypeVar("Part", CondensedGraph, HubLabels, NodeTree, AssetPlaces)
+
+
+class CorruptSnapshot(Exception):
+    """The bytes are not those that were stored."""
+
+
+def to_bytes(graph: Network | InspectionGraph) -> bytes:
+    """The arrays as a compressed npz, with its zones for a cleared graph; the same arrays always give the same bytes."""
+    arrays = _arrays(graph)
+    if isinstance(graph, InspectionGraph):
+        arrays |= {
+            "zone_id": graph.zone_id,
+            "zone_wkb": np.frombuffer(b"".join(graph.zone_wkb), dtype=np.uint8),
+            "zone_wkb_end": np.cumsum([len(wkb) for wkb in graph.zone_wkb], dtype=np.int64),
+            "zone_name": np.frombuffer(json.dumps(graph.zone_name).encode(), dtype=np.uint8),
+        }
+    stream = io.BytesIO()
+    np.savez_compressed(stream, allow_pickle=False, **arrays)
+    return stream.getvalue()
+
+
+def from_bytes(content: bytes, *, content_sha256: str) -> Network:
+    """The network from its npz. Raises CorruptSnapshot when the content is not what its hash says."""
+    if sha256(content).hexdigest() != content_sha256:
+        raise CorruptSnapshot(content_sha256)
+    with np.load(io.BytesIO(content), allow_pickle=False) as stored:
+        return Network(**{name: stored[name] for name in NETWORK_FIELDS})
+
+
+def write_network(folder: Path, network: Network, *, content_sha256: str) -> None:
+    """The network beside others, of which few are kept; files of earlier layouts go."""
+    write_folder(folder / NETWORKS, content_sha256, _arrays(network), _about(content_sha256), kept=KEPT_NETWORKS)
+    for path in folder.iterdir():
+        if path.name.isdigit() or path.name.startswith(".draft-"):
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def read_network(folder: Path, *, content_sha256: str) -> Network | None:
+    """The network, memory-mapped and read-only; None when the files are missing, broken or of another layout."""
+    arrays = read_folder(folder / NETWORKS / content_sha256, _about(content_sha256))
+    return None if arrays is None else Network(**{name: arrays[name] for name in NETWORK_FIELDS})
+
+
+def key_of_cleared(content_sha256: str, zones: ZoneIndex, rules: LinkingRules, heights: FlownHeights, tallest_m: float) -> str:
+    """What tells the files of cleared graphs apart: the network, where the zones are, and every figure that the clearing reads."""
+    figures = json.dumps([LAYOUT, content_sha256, zones.digest, asdict(rules), asdict(heights), tallest_m], sort_keys=True)
+    return sha256(figures.encode()).hexdigest()
+
+
+def write_cleared(folder: Path, graph: InspectionGraph, *, key: str, tallest_m: float) -> None:
+    """A cleared graph without its zones, with the part that can be flown over where nothing is taller, and the index of that."""
+    arrays = _arrays(graph)
+    flyable = flyable_part(graph, tallest_m)
+    arrays |= _index_arrays(flyable)
+    if flyable is not graph:
+        arrays |= {FLYABLE + name: array for name, array in _arrays(flyable).items()}
+        arrays |= _arrays_of("places", asset_places(graph))
+    write_folder(folder / CLEARED, key, arrays, _about(key), kept=KEPT_CLEARED)
+
+
+def read_cleared(
+    folder: Path, *, key: str, zones: ZoneIndex, version: int, ground_revision: int, tallest_m: float
+) -> InspectionGraph | None:
+    """The graph with its index, all memory-mapped and read-only; None when the files are missing, broken or of another layout."""
+    arrays = read_folder(folder / CLEARED / key, _about(key))
+    if arrays is None:
+        return None
+    graph = flyable = InspectionGraph(
+        version=version,
+        ground_revision=ground_revision,
+        zone_wkb=zones.wkb,
+        zone_id=zones.ids,
+        zone_name=zones.names,
+        **{name: arrays[name] for name in NETWORK_FIELDS},
+    )
+    if any(name.startswith(FLYABLE) for name in arrays):
+        own: Arrays = {name: arrays[FLYABLE + name] for name in NETWORK_FIELDS}
+        flyable = replace(graph, **own)
+        asset_places.remember(graph, _part(AssetPlaces, arrays, "places"))
+    _remember_index(flyable, arrays)
+    remember_flyable_part(graph, tallest_m, flyable)
+    return graph
+
+
+def _about(key: str) -> dict[str, object]:
+    return {"layout": LAYOUT, "key": key}
+
+
+def _index_arrays(graph: InspectionGraph) -> Arrays:
+    index = route_index(graph)
+    return (
+        _arrays_of("condensed", index.condensed)
+        | _arrays_of("labels", index.labels)
+        | _arrays_of("tree", node_tree(graph))
+        | _arrays_of("flyable_places", asset_places(graph))
+    )
+
+
+def _remember_index(graph: InspectionGraph, arrays: Arrays) -> None:
+    route_index.remember(graph, RouteIndex(_part(CondensedGraph, arrays, "condensed"), _part(HubLabels, arrays, "labels")))
+    node_tree.remember(graph, _part(NodeTree, arrays, "tree"))
+    asset_places.remember(graph, _part(AssetPlaces, arrays, "flyable_places"))
+
+
+def _arrays_of(name: str, part: CondensedGraph | HubLabels | NodeTree | AssetPlaces) -> Arrays:
+    return {f"{name}.{field.name}": getattr(part, field.name) for field in fields(part)}
+
+
+def _part(kind: type[Part], arrays: Arrays, name: str) -> Part:
+    return kind(**{field.name: arrays[f"{name}.{field.name}"] for field in fields(kind)})
+
+
+def _arrays(graph: Network | InspectionGraph) -> Arrays:
+    return {name: getattr(graph, name) for name in NETWORK_FIELDS}

@@ -1,0 +1,54 @@
+"""What cannot be flown over, joined with zones: made once for the two, and no longer kept than they are."""
+
+import gc
+from weakref import ref
+
+import numpy as np
+import pytest
+from inspection.network.build.obstacles import WALL, index_of_walls, with_walls
+from inspection.network.zones.zone_index import ZoneIndex
+from shapely import box
+
+
+def zone(west: float, name: str) -> ZoneIndex:
+    return ZoneIndex([box(west, 50.0, west + 0.01, 50.01)], [7], [name], floor_agl_m=[30.0], ceiling_agl_m=[60.0])
+
+
+def walls(west: float) -> ZoneIndex:
+    return index_of_walls(np.array([box(west, 50.0, west + 0.001, 50.001)], dtype=object))
+
+
+def no_walls() -> ZoneIndex:
+    return index_of_walls(np.zeros(0, dtype=object))
+
+
+def test_both_are_in_it_zones_first_with_their_heights() -> None:
+    both = with_walls(zone(3.0, "Airport"), walls(4.0))
+    assert both.names == ("Airport", WALL)
+    assert both.ids.tolist() == [7, -1]
+    assert [shape.bounds[0] for shape in both.polygons] == [3.0, 4.0]
+    assert both.floor_agl_m[0] == 30.0
+    assert both.ceiling_agl_m[0] == 60.0
+
+
+def test_it_is_made_once_for_the_two() -> None:
+    zones, others, tall = zone(3.0, "Airport"), zone(3.0, "Airport"), walls(4.0)
+    assert with_walls(zones, tall) is with_walls(zones, tall)
+    assert with_walls(others, tall) is not with_walls(zones, tall)
+    assert with_walls(zones, walls(4.0)) is not with_walls(zones, tall)
+
+
+def test_without_walls_it_is_the_zones() -> None:
+    zones = zone(3.0, "Airport")
+    assert with_walls(zones, no_walls()) is zones
+
+
+@pytest.mark.parametrize("gone", ["zones", "walls"])
+@pytest.mark.parametrize("is_tall", [True, False])
+def test_zones_that_went_are_not_kept(gone: str, *, is_tall: bool) -> None:
+    """Each change of the zones makes another set, and each is as large as all zones are."""
+    pair = {"zones": zone(3.0, "Airport"), "walls": walls(4.0) if is_tall else no_walls()}
+    kept = [ref(pair[gone]), *([ref(with_walls(**pair))] if is_tall else [])]
+    del pair[gone]
+    gc.collect()
+    assert [one() for one in kept] == [None] * len(kept)
