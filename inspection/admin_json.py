@@ -7,7 +7,7 @@ from django.conf import settings
 from django.core.exceptions import ValidationError
 from django.forms.fields import InvalidJSONInput
 
-from inspection.zones.strict_json import JsonFault, can_be_stored, parse_strict_json
+from inspection.importers.strict_json import JsonFault, can_be_stored, parse_strict_json
 
 
 class StrictJSONField(forms.JSONField):

@@ -10,9 +10,9 @@ from django.contrib.gis.geos import GEOSGeometry
 from django.core.exceptions import ValidationError
 from django.forms.widgets import Script
 
+from inspection.geodesy.geometry_validator import GeometryFault, checked_geometry
+from inspection.importers.strict_json import JsonFault, parse_strict_json
 from inspection.services.facts import coordinates_of
-from inspection.zones.geometry_gate import GeometryFault, checked_geometry
-from inspection.zones.strict_json import JsonFault, parse_strict_json
 
 WGS84_SRID = 4326
 AREA_TYPES = {"POLYGON", "MULTIPOLYGON"}

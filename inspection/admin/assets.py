@@ -15,8 +15,8 @@ from inspection import services
 from inspection.admin.curated import CuratedAdmin, CuratedForm, expected_revision
 from inspection.admin_json import JSONObjectField, StrictJSONField
 from inspection.admin_map import GeoJSONField
+from inspection.importers.osm.tags import MAX_HEIGHT_M
 from inspection.models import Asset, AssetKind, Bridge, DataImport, ImportKind, PowerLine, PowerTower, Railway
-from inspection.osm.tags import MAX_HEIGHT_M
 from inspection.selectors import asset_label
 from inspection.services.curation import many_edits
 from workspace.signed_in import user_of

@@ -12,9 +12,9 @@ from inspection import services
 from inspection.admin.curated import CommonGroundAdmin, CuratedAdmin, CuratedForm, expected_revision
 from inspection.admin_json import StrictJSONField
 from inspection.admin_map import GeoJSONField
+from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.models import NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services.subscriptions import change_subscription
-from inspection.zones.geometry_gate import GeometryFault
 from inspection.zones.schedule import checked_schedule
 from workspace.signed_in import user_of
 

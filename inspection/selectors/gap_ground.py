@@ -6,9 +6,9 @@ import numpy as np
 from django.db import connection
 from numpy.typing import NDArray
 
-from inspection.data_gaps.ground import NO_OSM_ID, GapGround, PlainBridge, SupportFacts, WayFacts, asset_key
 from inspection.models import AssetKind
 from inspection.network.infrastructure import Places, Ways
+from inspection.quality.infrastructure import NO_OSM_ID, GapGround, PlainBridge, SupportFacts, WayFacts, asset_key
 from inspection.selectors.ground_data import ground_data
 
 _WAYS = """

@@ -4,9 +4,9 @@ from typing import Any
 
 from django.utils.translation import gettext as _
 
+from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.models import AssetKind, HeightReference
 from inspection.services.geometry_input import asset_shape, bridge_stored, stored, zone_shape
-from inspection.zones.geometry_gate import GeometryFault
 from inspection.zones.schedule import checked_schedule
 from workspace import strict_serializers as serializers
 from workspace.errors import ApiProblem

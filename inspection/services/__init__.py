@@ -1,6 +1,8 @@
 """Writes of the ground: what the other apps, commands and tasks call."""
 
-from inspection.asset_files.rows import AssetFileError
+from inspection.importers.rows import AssetFileError
+from inspection.importers.terrain.errors import TerrainFileError
+from inspection.importers.zones.zone_file import ZoneFileError
 from inspection.services.asset_import import UnfinishedMapping, import_assets
 from inspection.services.curation import StaleRevision, WrongGeometry, delete_asset, delete_zone, geometry_fault, save_asset, save_zone
 from inspection.services.gaps import find_gaps
@@ -9,8 +11,6 @@ from inspection.services.ground import mark_ground_changed
 from inspection.services.osm_import import import_osm
 from inspection.services.terrain_import import import_terrain
 from inspection.services.zone_import import import_zones
-from inspection.terrain.errors import TerrainFileError
-from inspection.zones.zone_file import ZoneFileError
 
 __all__ = [
     "AssetFileError",

@@ -13,9 +13,10 @@ from django.contrib.gis.geos import GEOSGeometry
 from django.db import connection, transaction
 from django.db.backends.utils import CursorWrapper
 
-from inspection.asset_files.asset_file import AssetFile, Row, RowFaults, opened_asset_file
-from inspection.asset_files.mapping import AssetRecord, Mapping, Tally, checked_mapping, records_of
-from inspection.asset_files.rows import AssetFileError
+from inspection.geodesy.geometry_validator import GeometryFault
+from inspection.importers.assets.asset_file import AssetFile, Row, RowFaults, opened_asset_file
+from inspection.importers.assets.mapping import AssetRecord, Mapping, Tally, checked_mapping, records_of
+from inspection.importers.rows import AssetFileError
 from inspection.models import ROW_ACTIONS, Asset, AssetSet, ChangeAction, DataImport, ImportKind
 from inspection.services.facts import asset_facts, says_the_same
 from inspection.services.ground import hold_ground, mark_ground_changed
@@ -23,7 +24,6 @@ from inspection.services.imported_ids import count_of_ids, give_ids
 from inspection.services.osm_import import SYNTHETIC_ATTRIBUTION
 from inspection.services.proposals.reading import Progress, Provenance
 from inspection.services.supports import number_supports
-from inspection.zones.geometry_gate import GeometryFault
 from workspace.models import DEFAULT_ORGANISATION_ID, AuditEntry, User
 
 EXPLANATIONS = ("kind", "columns", "units", "geometry")  # what somebody says of the columns

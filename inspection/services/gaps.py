@@ -9,9 +9,9 @@ from django.contrib.gis.geos import GEOSGeometry, Point
 from django.db import connection, transaction
 from django.utils import timezone
 
-from inspection.data_gaps.gap import Gap
-from inspection.data_gaps.search import RECIPE, search
 from inspection.models import Asset, DataGap, GapSearch, GapState
+from inspection.quality.issue import Gap
+from inspection.quality.search import RECIPE, search
 from inspection.selectors.gap_ground import gap_ground
 from inspection.selectors.ground import ground_edition
 from workspace.models import User

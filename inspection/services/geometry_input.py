@@ -7,10 +7,10 @@ import shapely
 from django.contrib.gis.geos import GEOSGeometry
 from shapely.geometry.base import BaseGeometry
 
+from inspection.geodesy.geometry_validator import GeometryFault, checked_area, checked_geometry, checked_position
 from inspection.geodesy.wgs84 import WGS84, path_length_m
+from inspection.importers.zones.circles import checked_radius_m, enclosing_polygon
 from inspection.models import AssetKind
-from inspection.zones.circles import checked_radius_m, enclosing_polygon
-from inspection.zones.geometry_gate import GeometryFault, checked_area, checked_geometry, checked_position
 
 SHAPES = {
     AssetKind.TOWER: ("Point",), AssetKind.LINE: ("LineString",), AssetKind.RAILWAY: ("LineString",), AssetKind.BRIDGE: ("MultiPolygon",),

@@ -6,8 +6,8 @@ one that has vanished, but from no other. An empty cell leaves the id that an as
 
 from django.db import connection
 
-from inspection.asset_files.rows import AssetFileError
-from inspection.zones.geometry_gate import GeometryFault
+from inspection.geodesy.geometry_validator import GeometryFault
+from inspection.importers.rows import AssetFileError
 
 MAX_REPORTED = 50
 _OF_THE_SET = "a.asset_set_id = %(asset_set)s AND a.kind = s.kind AND a.source_key = s.source_key"

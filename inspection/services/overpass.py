@@ -10,9 +10,9 @@ from django.conf import settings
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from inspection.importers.osm.overpass import QUERY_TIMEOUT_S, WrongArea, checked_box, complaint, question
+from inspection.importers.osm.records import Extent
 from inspection.models import ImportKind, Upload
-from inspection.osm.overpass import QUERY_TIMEOUT_S, WrongArea, checked_box, complaint, question
-from inspection.osm.records import Extent
 from inspection.services.proposals.reading import Fault, FileRefused, Progress
 from inspection.services.uploads import private_folder, store_upload
 from workspace.models import User

@@ -10,8 +10,11 @@ from django.contrib.gis.geos import LineString, MultiPoint, Point, Polygon
 from django.db.models import QuerySet
 from django.utils.translation import gettext as _
 
-from inspection.data_gaps.lone_towers import course_of_row
-from inspection.data_gaps.mending import (
+from inspection.geodesy.wgs84 import FloatArray
+from inspection.models import Asset, AssetKind, DataGap, OsmType
+from inspection.network.infrastructure import NO_OSM_NODE
+from inspection.quality.lone_towers import course_of_row
+from inspection.quality.repair import (
     NoSuchVertex,
     end_moved_to,
     evenly_between,
@@ -22,10 +25,7 @@ from inspection.data_gaps.mending import (
     vertex_at,
     with_vertices,
 )
-from inspection.data_gaps.voltages import HIGHEST_V, MOST_VALUES
-from inspection.geodesy.wgs84 import FloatArray
-from inspection.models import Asset, AssetKind, DataGap, OsmType
-from inspection.network.infrastructure import NO_OSM_NODE
+from inspection.quality.voltages import HIGHEST_V, MOST_VALUES
 from inspection.services.curation import PLACED
 
 MOST_TOWERS = 500  # along one span

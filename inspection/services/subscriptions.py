@@ -11,6 +11,7 @@ from django.db import IntegrityError, transaction
 from django.utils import timezone
 from django.utils.translation import gettext as _
 
+from inspection.importers.zones.zone_file import MAX_FILE_BYTES, ZoneFileError
 from inspection.models import ImportKind, ImportProposal, ProposalOrigin, ProposalState, ZoneSet, ZoneSubscription
 from inspection.selectors.zone_sets import FETCH_TASK, open_fetch_of
 from inspection.services.proposals.pipeline import LostJob, WrongState, discard_proposal, start_proposal
@@ -18,7 +19,6 @@ from inspection.services.proposals.reading import Progress
 from inspection.services.uploads import plain_name, store_upload, upload_folder
 from inspection.services.zone_import import read_zone_file, stated_validity
 from inspection.services.zone_sets import difference_of
-from inspection.zones.zone_file import MAX_FILE_BYTES, ZoneFileError
 from workspace.models import DEFAULT_ORGANISATION_ID, Job, Organisation, User
 from workspace.outgoing import Fetched, OutgoingError, OutgoingFailed, fetch
 from workspace.services import create_job, fail_job, finish_job, record_change

@@ -8,15 +8,15 @@ from typing import Any
 from django.contrib.gis.geos import Polygon
 from django.db import transaction
 
+from inspection.importers.terrain.errors import TerrainFileError
+from inspection.importers.terrain.raster import blocks_of
+from inspection.importers.terrain.survey import Survey
+from inspection.importers.terrain.terrain_file import TerrainFile, datum_of, opened_terrain
 from inspection.models import DataImport, ImportKind, TerrainTile
 from inspection.services.ground import hold_ground, mark_ground_changed
 from inspection.services.osm_import import SYNTHETIC_ATTRIBUTION
 from inspection.services.proposals.reading import Provenance
-from inspection.terrain.errors import TerrainFileError
 from inspection.terrain.height_grid import HeightGrid, packed
-from inspection.terrain.raster import blocks_of
-from inspection.terrain.survey import Survey
-from inspection.terrain.terrain_file import TerrainFile, datum_of, opened_terrain
 from workspace.models import User
 from workspace.services import record_change
 

@@ -10,11 +10,11 @@ import shapely
 from django.db import connection, transaction
 from django.db.models import Max
 
+from inspection.importers.zones.records import HeightBand, UnreadRecord, ZoneRecord
+from inspection.importers.zones.texts import MAX_IDENTIFIER
 from inspection.models import DataImport, NoFlyZone, ZoneSet, ZoneSetVersion, ZoneSubscription
 from inspection.services.facts import zone_facts
 from inspection.services.ground import hold_ground, mark_ground_changed
-from inspection.zones.records import HeightBand, UnreadRecord, ZoneRecord
-from inspection.zones.texts import MAX_IDENTIFIER
 from workspace.models import DEFAULT_ORGANISATION_ID, AuditEntry, User
 from workspace.services import record_change
 

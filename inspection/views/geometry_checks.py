@@ -9,10 +9,10 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
+from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.models import AssetKind
 from inspection.serializers.edits import GeometryCheckSerializer, GeometryVerdictSerializer
 from inspection.services.geometry_input import area_m2, asset_shape, length_m, zone_shape
-from inspection.zones.geometry_gate import GeometryFault
 from workspace.permissions import CURATORS
 
 

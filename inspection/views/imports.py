@@ -14,8 +14,8 @@ from rest_framework.request import Request
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
+from inspection.importers.osm.overpass import WrongArea
 from inspection.models import ChangeAction, ImportKind, ImportProposal, ProposalOrigin, ProposalState, Upload
-from inspection.osm.overpass import WrongArea
 from inspection.selectors.imports import NEWEST_FIRST, changes_of_proposal, proposal_of_id, proposals, upload_of_id
 from inspection.serializers.imports import (
     ChangeCollectionSerializer,

@@ -10,7 +10,7 @@ import re
 from datetime import UTC, datetime
 from typing import Any
 
-from inspection.zones.geometry_gate import GeometryFault
+from inspection.geodesy.geometry_validator import GeometryFault
 
 DAYS = ("MON", "TUE", "WED", "THU", "FRI", "SAT", "SUN")
 EVENTS = ("BMCT", "SR", "SS", "EECT")  # morning civil twilight, sunrise, sunset, end of evening civil twilight

@@ -236,8 +236,8 @@ SECURITY = (
             Tests(
                 "zip and PBF bombs, slips, links, many entries, deep and large JSON, NaN, files cut and flipped anywhere",
                 "refused, memory and disk bounded, nothing left",
-                ("tests/inspection/asset_files/test_hostile_files.py", "tests/inspection/osm/test_hostile_files.py",
-                 "tests/inspection/test_uploads_api.py", "tests/inspection/zones/test_geometry_gate.py"),
+                ("tests/inspection/importers/assets/test_hostile_files.py", "tests/inspection/importers/osm/test_hostile_files.py",
+                 "tests/inspection/test_uploads_api.py", "tests/inspection/geodesy/test_geometry_validator.py"),
                 "{passed} of {all} tests",
             ),
         ),

@@ -10,7 +10,7 @@ OWN_ZONE_FILES = Path(__file__).with_name("zones") / "files"
 
 @pytest.fixture(scope="session")
 def zone_file(shared_data: Callable[[str], Path]) -> Callable[[str], Path]:
-    """Return the path of a zone file by its name: one of tests/inspection/zones/files, or a real one as in `shared_data`."""
+    """Return the path of a zone file by its name: one of tests/inspection/importers/zones/files, or a real one as in `shared_data`."""
 
     def path_of(name: str) -> Path:
         own = OWN_ZONE_FILES / name

@@ -14,7 +14,7 @@ from inspection.selectors import current_graph, ground_revision
 from inspection.services import AssetFileError, UnfinishedMapping, build_graph, delete_asset, import_assets, save_asset
 from inspection.services.uploads import store_upload
 from inspection.tasks import apply_proposal, read_proposal
-from tests.inspection.asset_files.made_files import geojson, line, point
+from tests.inspection.importers.assets.made_files import geojson, line, point
 from tests.workspace.people import client_of, somebody
 from workspace.models import AuditEntry, Role, User
 

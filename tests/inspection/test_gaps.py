@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from django.contrib.gis.geos import LineString, Point
 from django.db import connection
+from inspection.quality.network import Network
+from inspection.quality.search import search
 
-from inspection.data_gaps.network import Network
-from inspection.data_gaps.search import search
 from inspection.models import Asset, DataGap, GapSearch, GapState
 from inspection.selectors.gap_ground import gap_ground
 from inspection.services import find_gaps, import_osm

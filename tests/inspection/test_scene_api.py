@@ -10,19 +10,19 @@ import shapely
 from django.contrib.gis.geos import GEOSGeometry
 from django.core.management import call_command
 from django.test import Client
+
+from inspection.models import Asset, NoFlyZone
 from inspection.network.build.network import network
 from inspection.network.inspection_graph import EdgeKind
 from inspection.network.rules import LinkingRules
 from inspection.network.spans import hung_between
-
-from inspection.models import Asset, NoFlyZone
 from inspection.scene.sag import CATENARY_M
 from inspection.selectors import scene as selector
 from inspection.selectors.ground_data import ground_data
 from inspection.selectors.terrain import ground_heights_m
 from inspection.services import import_osm, import_terrain, import_zones, mark_ground_changed
 from tests.inspection import ground
-from tests.inspection.terrain.tiffs import write_geotiff
+from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.workspace.people import client_of, somebody
 from workspace.models import Role
 

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from django.core.management import call_command
 from django.core.management.base import CommandError
+from inspection.importers.terrain.geotiff import GeoTiff
 
 from inspection.models import DataImport, TerrainTile
 from inspection.selectors import ground_heights_m, has_terrain
 from inspection.selectors.terrain import ground_truth
 from inspection.services import TerrainFileError, import_terrain
-from inspection.terrain.geotiff import GeoTiff
-from tests.inspection.terrain.tiffs import write_geotiff, write_hgt
+from tests.inspection.importers.terrain.tiffs import write_geotiff, write_hgt
 
 pytestmark = pytest.mark.django_db
 STEP = 0.001

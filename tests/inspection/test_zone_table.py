@@ -12,7 +12,7 @@ from inspection.selectors.terrain import ground_heights_m
 from inspection.selectors.zone_table import ground_range_m, zone_table
 from inspection.services import import_terrain, mark_ground_changed
 from tests.inspection import ground
-from tests.inspection.terrain.tiffs import write_geotiff
+from tests.inspection.importers.terrain.tiffs import write_geotiff
 
 pytestmark = pytest.mark.django_db
 

@@ -13,7 +13,7 @@ from missions.services import PlanRequest, UavRequest, create_mission, plan_miss
 from missions.services.approval import approve_mission
 from missions.services.commands import note_applied, note_sent
 from missions.services.dispatch import dispatch_mission
-from tests.inspection.terrain.tiffs import write_geotiff
+from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions import worlds
 from tests.missions.outbox import a_uav, claim, fence
 from tests.workspace.people import somebody

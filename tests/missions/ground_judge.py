@@ -11,7 +11,7 @@ from scipy.interpolate import RegularGridInterpolator
 
 from inspection.models import Asset
 from inspection.services import import_terrain
-from tests.inspection.terrain.tiffs import write_geotiff
+from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.plane import EARTH_M, apart_m
 
 CLEARANCE_M = 15.0

@@ -19,7 +19,7 @@ from missions.services import TargetRequest, make_plan
 from planning.energy.performance import Performance
 from tests.cases import long
 from tests.inspection import ground
-from tests.inspection.terrain.tiffs import write_geotiff
+from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.ground_judge import Hills
 from tests.missions.random_flights import ASSETS, HILLY, cut_out
 from tests.missions.random_missions import Region, put_random_zones

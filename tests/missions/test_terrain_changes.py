@@ -15,7 +15,7 @@ from inspection.selectors.planning import Edition
 from inspection.services import import_terrain
 from inspection.services.terrain_import import remove_terrain
 from missions.services import make_plan, planning
-from tests.inspection.terrain.tiffs import write_geotiff
+from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.api import mission_body, post
 from tests.missions.test_planning import request
 from tests.missions.worlds import World, world

@@ -15,7 +15,7 @@ from missions.services.commands import queue_command
 from telemetry.models import TelemetryRecord, TelemetryStream
 from telemetry.selectors.watched import watched_flights
 from telemetry.services import StoredCount, store_records
-from tests.inspection.terrain.tiffs import write_geotiff
+from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.telemetry.flown_missions import flies_route
 from tests.telemetry.records import START, at, record
 

@@ -7,7 +7,7 @@ import pytest
 
 from inspection.services import import_terrain
 from missions.models import Uav
-from tests.inspection.terrain.tiffs import write_geotiff
+from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions.flights import an_operator, fleet, ground
 from tests.missions.worlds import world, zone_around
 from tests.telemetry.test_present_returns import EAST, HOME, estimated, flies

@@ -46,7 +46,7 @@ def test_what_nobody_has_foreseen_stays_as_it_was_written() -> None:
         "missions/services/planning.py",
         "missions/services/assignment.py",
         "planning/solver/solver.py",
-        "inspection/osm/reader.py",
+        "inspection/importers/osm/reader.py",
         "inspection/services/osm_import.py",
     ],
 )

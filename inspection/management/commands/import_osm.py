@@ -5,9 +5,9 @@ from typing import Any
 
 from django.core.management.base import CommandError
 
+from inspection.importers.osm.file_validator import OsmFileError
 from inspection.management.import_command import ImportCommand, Progress
 from inspection.models import DataImport, ImportKind
-from inspection.osm.file_gate import OsmFileError
 from inspection.services import import_osm
 
 

@@ -7,11 +7,11 @@ from typing import Any
 
 from django.db import transaction
 
-from inspection.asset_files.asset_file import AssetFile
-from inspection.asset_files.mapping import Tally
-from inspection.asset_files.rows import AssetFileError
-from inspection.asset_files.suggestion import suggested_mapping
-from inspection.asset_files.survey import Survey, survey_of
+from inspection.importers.assets.asset_file import AssetFile
+from inspection.importers.assets.mapping import Tally
+from inspection.importers.assets.suggestion import suggested_mapping
+from inspection.importers.assets.survey import Survey, survey_of
+from inspection.importers.rows import AssetFileError
 from inspection.models import ROW_ACTIONS, Asset, AssetSet, DataImport
 from inspection.services.asset_import import (
     EXPLANATIONS,

@@ -7,6 +7,8 @@ from typing import Any
 
 from django.contrib.gis.geos import GEOSGeometry, Polygon
 
+from inspection.importers.zones.records import UnreadRecord, ZoneRecord
+from inspection.importers.zones.zone_file import ZoneFileError
 from inspection.models import ChangeAction, DataImport, ImportKind, NoFlyZone, ZoneSet, ZoneSetVersion
 from inspection.services.facts import differing, zone_facts
 from inspection.services.proposals.reading import Change, Fault, FileRefused, Progress, Provenance, Reading
@@ -20,8 +22,6 @@ from inspection.services.zone_import import (
     zone_counts,
 )
 from inspection.services.zone_sets import ZoneDifference, difference_of, record_facts, records_of_version
-from inspection.zones.records import UnreadRecord, ZoneRecord
-from inspection.zones.zone_file import ZoneFileError
 from workspace.models import User
 
 MIN_DEG = 0.0005

@@ -3,9 +3,9 @@
 from typing import Any
 
 import pytest
+from inspection.geodesy.geometry_validator import GeometryFault
 
 from inspection.serializers.schedule_words import schedule_sentence
-from inspection.zones.geometry_gate import GeometryFault
 from inspection.zones.schedule import checked_schedule
 
 

@@ -1,0 +1,109 @@
+"""Bridges: ways that lie on one bridge area are one bridge, and a way without an area gets a polygon from its width."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from inspection.importers.osm.records import AssetRecord
+from inspection.importers.osm.tags import bridge_width_m, height_m
+from shapely import LineString, MultiPolygon, Point, Polygon, STRtree
+from shapely.geometry.base import BaseGeometry
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.local_frame import LocalFrame
+from inspection.geodesy.wgs84 import FloatArray
+
+LYING_ON_SHARE = 0.5  # a way lies on an area if at least half of its length does
+AREA_TOLERANCE_M = 1.0  # edges of areas are drawn along the way's own nodes now and then
+
+
+@dataclass(frozen=True)
+class BridgeWay:
+    """A way tagged as bridge, with the positions of its nodes, shape (n, 2), lon lat."""
+
+    osm_id: int
+    tags: Mapping[str, str]
+    points: FloatArray
+    node_osm_ids: tuple[int, ...]
+    length_m: float
+
+
+@dataclass(frozen=True)
+class BridgeArea:
+    """A man_made=bridge area: a closed way or a multipolygon relation."""
+
+    osm_type: str
+    osm_id: int
+    tags: Mapping[str, str]
+    polygon: Polygon | MultiPolygon
+
+
+def bridges_of(ways: Sequence[BridgeWay], areas: Sequence[BridgeArea]) -> list[AssetRecord]:
+    """One record per bridge: every area with the ways on it, and every way that is on no area."""
+    owner = _area_of_each_way(ways, areas)
+    parts: dict[int, list[BridgeWay]] = {index: [] for index in range(len(areas))}
+    lone: list[BridgeWay] = []
+    for way, area in zip(ways, owner, strict=True):
+        if area is None:
+            lone.append(way)
+        elif (areas[area].osm_type, areas[area].osm_id) != ("w", way.osm_id):
+            parts[area].append(way)
+    return [_bridge_of_area(area, parts[index]) for index, area in enumerate(areas)] + [_bridge_of_way(way) for way in lone]
+
+
+def _area_of_each_way(ways: Sequence[BridgeWay], areas: Sequence[BridgeArea]) -> list[int | None]:
+    """For each way the index of the area that carries it, or None; of several areas the one that carries most."""
+    own = {area.osm_id: index for index, area in enumerate(areas) if area.osm_type == "w"}
+    if not areas:
+        return [None] * len(ways)
+    tree = STRtree([area.polygon for area in areas])
+    return [own[way.osm_id] if way.osm_id in own else _area_under(way, areas, tree) for way in ways]
+
+
+def _area_under(way: BridgeWay, areas: Sequence[BridgeArea], tree: STRtree) -> int | None:
+    near = sorted(int(index) for index in tree.query(LineString(way.points)))
+    if not near:
+        return None
+    frame = LocalFrame.around(*way.points[0])
+    line = LineString(frame.to_metres(way.points))
+    polygons = [shapely.transform(areas[index].polygon, frame.to_metres).buffer(AREA_TOLERANCE_M) for index in near]
+    if line.intersection(shapely.union_all(polygons)).length < LYING_ON_SHARE * line.length:
+        return None
+    return near[int(np.argmax([line.intersection(polygon).length for polygon in polygons]))]
+
+
+def _bridge_of_area(area: BridgeArea, ways: Sequence[BridgeWay]) -> AssetRecord:
+    ordered = sorted(ways, key=lambda way: way.osm_id)
+    return AssetRecord(
+        kind="bridge", subtype="area", osm_type=area.osm_type, osm_id=area.osm_id, geometry=area.polygon,
+        centre=inner_point(area.polygon), tags=dict(area.tags), height_m=height_m(area.tags),
+        parts=tuple({"osm_id": way.osm_id, "tags": dict(way.tags)} for way in ordered),
+    )  # fmt: skip
+
+
+def _bridge_of_way(way: BridgeWay) -> AssetRecord:
+    """A closed way tagged area=yes is its own outline; any other is widened to both sides, flat at its ends."""
+    frame = LocalFrame.around(*way.points[0])
+    metres = frame.to_metres(way.points)
+    polygon: BaseGeometry = Polygon()
+    if way.tags.get("area") == "yes" and len(metres) > 3 and np.array_equal(metres[0], metres[-1]):
+        polygon = Polygon(metres)
+    if polygon.is_empty or not polygon.is_valid:
+        polygon = LineString(metres).buffer(bridge_width_m(way.tags) / 2, cap_style="flat", join_style="mitre", mitre_limit=2.0)
+        centre = LineString(metres).interpolate(0.5, normalized=True)
+        middle = LonLat(*map(float, frame.to_degrees(np.array([[centre.x, centre.y]]))[0]))
+    else:
+        middle = inner_point(shapely.transform(polygon, frame.to_degrees))
+    return AssetRecord(
+        kind="bridge", subtype="way", osm_type="w", osm_id=way.osm_id, geometry=shapely.transform(polygon, frame.to_degrees), centre=middle,
+        tags=dict(way.tags), height_m=height_m(way.tags), length_m=way.length_m, node_osm_ids=way.node_osm_ids,
+    )  # fmt: skip
+
+
+def inner_point(polygon: BaseGeometry) -> LonLat:
+    """The centroid, or where that lies outside a point that does not."""
+    point: Point = polygon.centroid
+    if not polygon.covers(point):
+        point = polygon.representative_point()
+    return LonLat(point.x, point.y)

@@ -1,0 +1,146 @@
+"""Opens a terrain file: a GeoTIFF, an HGT file, or a zip of several of them, which is one model."""
+
+import gzip
+import tempfile
+import zlib
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field
+from pathlib import Path, PurePosixPath
+from typing import IO
+
+from inspection.importers.archive import Archive, opened_archive
+from inspection.importers.rows import AssetFileError
+from inspection.importers.terrain import hgt
+from inspection.importers.terrain.errors import TerrainFileError
+from inspection.importers.terrain.geotiff import GeoTiff
+from inspection.importers.terrain.hgt import HgtRaster
+from inspection.importers.terrain.raster import Raster
+from inspection.importers.terrain.resampling import DEGREE_M, placed
+from inspection.importers.terrain.tiff_directory import TIFF_STARTS
+from inspection.importers.terrain.vertical_datum import datum_named
+
+MOST_MEMBERS = 100
+MOST_UNPACKED_BYTES = 512 * 1024 * 1024
+DEFLATE_LIMIT = 1_032  # an HGT file of open sea packs as well as that; what counts is how much comes out
+MOST_TIFF_RATIO, FREE_TIFF_BYTES = 100, 16 * 1024 * 1024
+NEEDS_DATUM = "The file does not say from where its heights count. Say it: EGM96, EGM2008, or the name of another vertical datum."
+_ZIP_START, _GZIP_START = b"PK", b"\x1f\x8b"
+_TIFF_ENDINGS, _HGT_ENDING, _TABLES = (".tif", ".tiff"), ".hgt", (".txt", ".xml", ".prj", ".tfw", ".md", ".html", ".pdf", ".png", ".jpg")
+_CHUNK = 1024 * 1024
+
+
+@dataclass
+class TerrainFile:
+    """rasters are read while the file is open. vertical_datum: as the file states it or its format has it; None where neither does."""
+
+    file_format: str
+    rasters: list[Raster] = field(default_factory=list)
+    vertical_datum: str | None = None
+    reference_systems: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def resolution_m(self) -> float:
+        """Between posts from north to south, of the finest raster."""
+        return min(raster.step_lat_deg for raster in self.rasters) * DEGREE_M
+
+
+@contextmanager
+def opened_terrain(path: Path) -> Iterator[TerrainFile]:
+    """Raises TerrainFileError for what is none, here or while it is read."""
+    with ExitStack() as stack:
+        file = stack.enter_context(path.open("rb"))
+        start = file.read(4)
+        try:
+            if start.startswith(_ZIP_START):
+                yield _several(stack, path)
+            elif start.startswith(_GZIP_START) and path.name.lower().endswith(".hgt.gz"):
+                yield _one(stack.enter_context(_gunzipped(path)), path.name)
+            else:
+                yield _one(file, path.name)
+        except AssetFileError as error:
+            raise TerrainFileError(str(error)) from error
+
+
+def datum_of(file: TerrainFile, said: str) -> str:
+    """The vertical datum of the heights: as the file states it, else as somebody says. Raises TerrainFileError."""
+    named = datum_named(said) if said.strip() else ""
+    if file.vertical_datum is not None:
+        return file.vertical_datum
+    if not named:
+        raise TerrainFileError(NEEDS_DATUM)
+    return named
+
+
+def _one(file: IO[bytes], name: str) -> TerrainFile:
+    file.seek(0)
+    start = file.read(4)
+    if start in TIFF_STARTS:
+        tiff = GeoTiff(file)
+        raster, notes = placed(tiff)
+        return TerrainFile("GeoTIFF", [raster], tiff.vertical_datum, [tiff.system.name], notes)
+    if name.lower().removesuffix(".gz").endswith(_HGT_ENDING):
+        return TerrainFile("HGT", [HgtRaster(file, name)], hgt.VERTICAL_DATUM, ["WGS 84"])
+    raise TerrainFileError("This is neither a GeoTIFF nor an HGT file, zipped or not.")
+
+
+def _several(stack: ExitStack, path: Path) -> TerrainFile:
+    archive = stack.enter_context(opened_archive(path, most_ratio=DEFLATE_LIMIT))
+    names = _members(archive)
+    whole = TerrainFile("zip")
+    stated: dict[str | None, str] = {}
+    for name in names:
+        file = stack.enter_context(archive.unpacked(name))
+        try:
+            part = _one(file, PurePosixPath(name.replace("\\", "/")).name)
+        except TerrainFileError as error:
+            raise TerrainFileError(f"{name}: {error}") from error
+        stated.setdefault(part.vertical_datum, name)
+        whole.rasters += part.rasters
+        whole.reference_systems += [system for system in part.reference_systems if system not in whole.reference_systems]
+        whole.notes += [note for note in part.notes if note not in whole.notes]
+        whole.file_format = part.file_format
+    if len(stated) > 1:
+        words = ", ".join(f"{name}: {datum or 'not stated'}" for datum, name in stated.items())
+        raise TerrainFileError(f"The files of the zip count their heights from different places ({words}). Send them one by one.")
+    whole.vertical_datum = next(iter(stated))
+    return whole
+
+
+def _members(archive: Archive) -> list[str]:
+    names = [name for name in archive.names if name.lower().endswith((*_TIFF_ENDINGS, _HGT_ENDING)) and not name.startswith("__MACOSX/")]
+    strange = [
+        name for name in archive.names if name not in names and not name.lower().endswith(_TABLES) and not name.startswith("__MACOSX/")
+    ]
+    if not names:
+        found = f", but {strange[0][:60]}" if strange else ""
+        raise TerrainFileError(f"There is no GeoTIFF or HGT file in the zip{found}.")
+    if len(names) > MOST_MEMBERS:
+        raise TerrainFileError(f"The zip has {len(names)} terrain files; at most {MOST_MEMBERS} are taken at once.")
+    if sum(map(archive.size_of, names)) > MOST_UNPACKED_BYTES:
+        raise TerrainFileError(f"The zip unpacks to more than {MOST_UNPACKED_BYTES // 2**20} MiB. Send its files in several.")
+    tiff_bytes = sum(archive.size_of(name) for name in names if not name.lower().endswith(_HGT_ENDING))
+    if tiff_bytes > max(FREE_TIFF_BYTES, MOST_TIFF_RATIO * archive.packed_bytes):
+        raise TerrainFileError(f"The zip unpacks to more than {MOST_TIFF_RATIO} times its size; refused as a decompression bomb.")
+    for name in names:
+        if name.lower().endswith(_HGT_ENDING) and archive.size_of(name) not in hgt.SIZES:
+            raise TerrainFileError(f"{name[:100]} has not 1201 or 3601 posts a side.")
+    return sorted(names)
+
+
+@contextmanager
+def _gunzipped(path: Path) -> Iterator[IO[bytes]]:
+    """A .hgt.gz as a file without a name; never more than the largest HGT file has."""
+    left = max(hgt.SIZES)
+    with tempfile.TemporaryFile() as target:
+        try:
+            with gzip.open(path) as packed:
+                while chunk := packed.read(min(_CHUNK, left + 1)):
+                    left -= len(chunk)
+                    if left < 0:
+                        raise TerrainFileError("The file unpacks to more than 3601 posts a side.")
+                    target.write(chunk)
+        except (gzip.BadGzipFile, zlib.error, EOFError) as error:
+            raise TerrainFileError("The file cannot be unpacked: it is damaged or cut off.") from error
+        yield target

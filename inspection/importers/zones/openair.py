@@ -1,0 +1,262 @@
+"""Zones from OpenAir, the text format of gliding: a record of lines for each airspace, each line with a two-letter command.
+
+Distances are nautical miles, heights feet or flight levels unless they say otherwise, directions clockwise unless V D=- says otherwise.
+A record that only sets pen and brush for its class draws nothing and is counted, not stored.
+Source: OpenAir user airspace format, as XCSoar and SeeYou read it.
+"""
+
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from inspection.geodesy.geometry_validator import (
+    MAX_POLYGON_VERTICES,
+    MAX_POLYGONS,
+    GeometryFault,
+    TooMuch,
+    VertexBudget,
+    polygons_of_rings,
+)
+from inspection.importers.faults import FaultList
+from inspection.importers.zones.arcs import arc, arc_between, circle_ring
+from inspection.importers.zones.loops import area_of_all_loops
+from inspection.importers.zones.openair_values import has_sixty, height_of, length_m_of, number_of, position_of
+from inspection.importers.zones.records import HeightBand, UnreadRecord, ZoneRecord
+from inspection.importers.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
+from shapely import MultiPolygon
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.wgs84 import FloatArray
+
+CLASSES = {
+    "R": "Restricted", "Q": "Danger", "P": "Prohibited", "A": "Class A", "B": "Class B", "C": "Class C", "D": "Class D", "E": "Class E",
+    "F": "Class F", "G": "Class G", "CTR": "Control zone", "GP": "Gliders prohibited", "GS": "Glider sector", "W": "Wave window",
+    "RMZ": "Radio mandatory zone", "TMZ": "Transponder mandatory zone", "UNC": "Unclassified", "UNCLASSIFIED": "Unclassified",
+}  # fmt: skip
+MAX_LINE_CHARACTERS = 2_000
+MOST_LISTED = 20  # in a note
+HALF_ROUND_DEG = 180.0
+_LOOKS = re.compile(rb"^\s*AC\s+\S", re.MULTILINE)
+_COMMENT = re.compile(r"(^|\s)\*.*$")
+_PEN = {"SP", "SB", "AT", "TO", "TC", "CO"}
+_FACTS = {"AY": "type", "AF": "frequency", "AG": "station", "AX": "transponder", "AA": "activation", "AI": "identifier"}
+
+
+def looks_like_openair(data: bytes) -> bool:
+    return _LOOKS.search(data[:1_000_000]) is not None
+
+
+@dataclass
+class _Record:
+    """One airspace as it is being read."""
+
+    line: int
+    airspace_class: str
+    name: str = ""
+    lower: str = ""
+    upper: str = ""
+    facts: dict[str, Any] = field(default_factory=dict)
+    points: list[tuple[float, float]] = field(default_factory=list)
+    circle: dict[str, Any] | None = None
+    ring: FloatArray | None = None
+    centre: LonLat | None = None
+    is_clockwise: bool = True
+    has_only_a_pen: bool = True
+
+
+def zones_of_openair(text: str, faults: FaultList, unread: list[UnreadRecord]) -> tuple[list[ZoneRecord], list[str]]:
+    """The zones, and what people should know of how the file was read; records with a fault are added to unread."""
+    reader = _Reader(faults)
+    for number, line in enumerate(text.splitlines(), start=1):
+        with faults.gathering():
+            reader.take(number, line)
+    with faults.gathering():
+        reader.finish()
+    notes = [f"{reader.pens} records only set pen and brush; they draw nothing."] if reader.pens else []
+    if names := reader.crossing_names:
+        notes.append(f"The border crosses itself, so all that any of its loops encloses counts: {', '.join(names[:MOST_LISTED])}.")
+    if carried := reader.carried_over:
+        more = f" and {len(carried) - MOST_LISTED} more" if len(carried) > MOST_LISTED else ""
+        notes.append(f"Minutes or seconds of 60 were read as the next degree or minute: {', '.join(carried[:MOST_LISTED])}{more}.")
+    unread += reader.unread
+    return reader.zones, notes
+
+
+class _Reader:
+    def __init__(self, faults: FaultList) -> None:
+        self.faults = faults
+        self.zones: list[ZoneRecord] = []
+        self.pens = 0
+        self.crossing_names: list[str] = []
+        self.record: _Record | None = None
+        self.carried_over: list[str] = []
+        self.unread: list[UnreadRecord] = []
+        self.fault: GeometryFault | None = None  # of the record: what follows from it is not told again
+        self.budget = VertexBudget()
+        self.commands: dict[str, Callable[[_Record, str, str], None]] = {
+            "AN": self._name, "AL": self._lower, "AH": self._upper, "V": self._variable, "DP": self._point, "DA": self._arc,
+            "DB": self._arc_between, "DC": self._circle,
+        }  # fmt: skip
+
+    def take(self, number: int, line: str) -> None:
+        if len(line) > MAX_LINE_CHARACTERS:
+            raise TooMuch(f"line {number}", f"the line has {len(line)} characters; at most {MAX_LINE_CHARACTERS} are read")
+        words = _COMMENT.sub("", line).strip()
+        if not words:
+            return
+        command, _, rest = words.partition(" ")
+        command, rest = command.upper(), rest.strip()
+        place = f"line {number}"
+        if command == "AC":
+            with self.faults.gathering():
+                self.finish()
+            if len(self.zones) + self.pens >= MAX_POLYGONS:
+                raise TooMuch(place, f"there are more than {MAX_POLYGONS} records")
+            self.record = _Record(number, checked_text(rest, place, 40).upper())
+            self.fault = None
+            return
+        if self.record is None:
+            raise GeometryFault(place, f"{command[:10]!r} stands before the first AC, the start of a record")
+        try:
+            self._do(self.record, command, rest, place)
+        except GeometryFault as fault:
+            if self.fault is None:
+                self.fault = fault
+                raise
+
+    def _do(self, record: _Record, command: str, rest: str, place: str) -> None:
+        if command in _PEN:
+            return
+        record.has_only_a_pen = False
+        if command in _FACTS:
+            record.facts[_FACTS[command]] = checked_text(rest, place, 255)
+        elif command in self.commands:
+            self.commands[command](record, rest, place)
+        else:
+            raise GeometryFault(place, f"the command {command[:10]!r} is not known")
+        if len(record.points) > MAX_POLYGON_VERTICES:
+            record.points.clear()  # nothing more is kept of it
+            raise TooMuch(place, f"the airspace has more than {MAX_POLYGON_VERTICES} vertices")
+
+    def finish(self) -> None:
+        """The record is read to its end."""
+        record, self.record = self.record, None
+        if record is None:
+            return
+        if self.fault is not None:
+            self.unread.append(_unread(record, self.fault))
+        elif record.has_only_a_pen:
+            self.pens += 1
+        else:
+            try:
+                self.zones.append(self._zone(record))
+            except GeometryFault as fault:
+                self.unread.append(_unread(record, fault))
+                raise
+
+    def _zone(self, record: _Record) -> ZoneRecord:
+        place = f"line {record.line}"
+        name = record.name or f"{record.airspace_class} without a name"
+        lower, upper = height_of(record.lower, place), height_of(record.upper, place)
+        if lower[0] is not None and upper[0] is not None and lower[1] == upper[1] and upper[0] < lower[0]:
+            raise GeometryFault(place, f"the upper limit {record.upper} of {name!r} lies below the lower limit {record.lower}")
+        stated = {"lower": record.lower, "upper": record.upper}
+        return ZoneRecord(
+            identifier=str(record.facts.get("identifier") or name)[:MAX_IDENTIFIER], layer=0, name=name, geometry=self._area(record, place),
+            band=HeightBand(lower[0], lower[1], upper[0], upper[1], {key: text for key, text in stated.items() if text}),
+            restriction=CLASSES.get(record.airspace_class, record.airspace_class), reason=str(record.facts.get("type", "")),
+            circle=record.circle, properties={"class": record.airspace_class, **record.facts},
+        )  # fmt: skip
+
+    def _area(self, record: _Record, place: str) -> MultiPolygon:
+        if record.ring is not None:
+            ring = record.ring
+        elif len(record.points) >= 3:
+            points = record.points if record.points[0] == record.points[-1] else [*record.points, record.points[0]]
+            ring = np.array([point for index, point in enumerate(points) if index == 0 or point != points[index - 1]])
+        else:
+            raise GeometryFault(place, f"the airspace {record.name!r} has no area: neither a circle nor three points")
+        if len(ring) < 4:
+            raise GeometryFault(place, f"the airspace {record.name!r} has no area: its points are the same")
+        self.budget.take(len(ring), place)
+        try:
+            return MultiPolygon(polygons_of_rings([ring], f"{place}, {record.name!r}"))
+        except GeometryFault:
+            mended = area_of_all_loops(ring) if np.abs(np.diff(ring[:, 0])).max() < 180.0 else None
+            if mended is None:
+                raise
+        self.crossing_names.append(record.name)
+        return MultiPolygon(mended)
+
+    def _name(self, record: _Record, rest: str, place: str) -> None:
+        record.name = checked_text(rest, place, MAX_NAME)
+
+    def _lower(self, record: _Record, rest: str, place: str) -> None:
+        height_of(rest, place)
+        record.lower = rest
+
+    def _upper(self, record: _Record, rest: str, place: str) -> None:
+        height_of(rest, place)
+        record.upper = rest
+
+    def _variable(self, record: _Record, rest: str, place: str) -> None:
+        variable, _, value = (part.strip() for part in rest.partition("="))
+        if variable.upper() == "X":
+            record.centre = self._position(value, place)
+        elif variable.upper() == "D" and value in {"+", "-"}:
+            record.is_clockwise = value == "+"
+        elif variable.upper() not in {"Z", "W", "T"}:  # zoom, width and label: how it is drawn
+            raise GeometryFault(place, f"the variable {rest[:20]!r} is not known")
+
+    def _position(self, text: str, place: str) -> LonLat:
+        position = position_of(text, place)
+        if self.fault is None and has_sixty(text) and place not in self.carried_over[-1:]:
+            self.carried_over.append(place)
+        return position
+
+    def _point(self, record: _Record, rest: str, place: str) -> None:
+        position = self._position(rest, place)
+        record.points.append((position.lon, position.lat))
+
+    def _circle(self, record: _Record, rest: str, place: str) -> None:
+        if record.points or record.ring is not None:
+            raise GeometryFault(place, "a circle cannot be joined with points or another circle")
+        radius_m = length_m_of(rest, place)
+        centre = self._centre(record, place)
+        record.ring = circle_ring(centre, radius_m, place)
+        record.circle = {"centre": list(centre), "radius_m": radius_m}
+
+    def _arc(self, record: _Record, rest: str, place: str) -> None:
+        parts = rest.split(",")
+        if len(parts) != 3:
+            raise GeometryFault(place, "DA has a radius and two directions")
+        radius_m = length_m_of(parts[0], place)
+        start_deg, end_deg = number_of(parts[1], place), number_of(parts[2], place)
+        self._add(record, arc(self._centre(record, place), radius_m, start_deg, end_deg, record.is_clockwise, place))
+
+    def _arc_between(self, record: _Record, rest: str, place: str) -> None:
+        parts = rest.split(",")
+        if len(parts) != 2:
+            raise GeometryFault(place, "DB has two positions with a comma between")
+        start, end = self._position(parts[0], place), self._position(parts[1], place)
+        self._add(record, arc_between(self._centre(record, place), start, end, record.is_clockwise, place))
+
+    def _add(self, record: _Record, path: FloatArray) -> None:
+        record.points += [(lon, lat) for lon, lat in path.tolist()]
+
+    def _centre(self, record: _Record, place: str) -> LonLat:
+        if record.centre is None:
+            raise GeometryFault(place, "there is no centre: V X= is missing before this")
+        return record.centre
+
+
+def _unread(record: _Record, fault: GeometryFault) -> UnreadRecord:
+    points = np.array(record.points, dtype=np.float64) if record.ring is None else record.ring
+    bbox = None
+    if len(points) and np.ptp(points[:, 0]) <= HALF_ROUND_DEG:  # not over the antimeridian
+        (west, south), (east, north) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
+        bbox = (west, south, east, north)
+    name = record.name or f"{record.airspace_class} without a name"
+    return UnreadRecord(fault, name, str(record.facts.get("identifier") or record.name)[:MAX_IDENTIFIER], bbox)

@@ -1,0 +1,156 @@
+"""A zone file as a whole: which format it is, its zones, or all that is wrong with it."""
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from inspection.geodesy.geometry_validator import GeometryFault, TooMuch
+from inspection.importers.faults import MAX_FAULTS, FaultList, TooManyFaults
+from inspection.importers.strict_json import JsonFault, can_be_stored, parse_strict_json
+from inspection.importers.zones.ed269 import is_ed269, zones_of_ed269
+from inspection.importers.zones.ed318 import is_ed318, stated_validity, text_of, zones_of_ed318
+from inspection.importers.zones.geojson import zones_of_geojson
+from inspection.importers.zones.openair import looks_like_openair, zones_of_openair
+from inspection.importers.zones.records import UnreadRecord, ZoneRecord
+from inspection.importers.zones.texts import MAX_NAME
+from inspection.importers.zones.unreadable import unread_of_document
+
+MAX_FILE_BYTES = 32 * 1024 * 1024
+_GEOJSON = {"FeatureCollection", "Feature", "Polygon", "MultiPolygon", "Point", "GeometryCollection"}
+
+
+class ZoneFileError(ValueError):
+    """The file is refused as a whole, for these faults."""
+
+    def __init__(self, faults: list[GeometryFault]) -> None:
+        super().__init__("; ".join(str(fault) for fault in faults))
+        self.faults = faults
+
+
+@dataclass(frozen=True)
+class ZoneFile:
+    source_format: str
+    zone_count: int  # of the file; one zone may have several layers
+    zones: list[ZoneRecord]
+    provider: str = ""
+    valid_from: str | None = None  # as stated, RFC 3339, UTC
+    valid_until: str | None = None
+    notes: tuple[str, ...] = ()  # what people should know of how it was read
+    unread: tuple[UnreadRecord, ...] = ()
+
+
+@dataclass
+class _Read:
+    source_format: str
+    records: list[ZoneRecord]
+    provider: str = ""
+    validity: tuple[str | None, str | None] = (None, None)
+    notes: list[str] = field(default_factory=list)
+    unread: list[UnreadRecord] = field(default_factory=list)
+
+
+def read_zones(data: bytes, *, leave_out_faulty: bool = False) -> ZoneFile:
+    """All the zones of an ED-269, ED-318, GeoJSON or OpenAir text, or ZoneFileError: none of a file that has a fault.
+
+    With leave_out_faulty the records that have one are listed instead, if every fault is one record's; what is too large, or no file of
+    these kinds, is refused all the same.
+    """
+    found = FaultList()
+    try:
+        read = _read_openair(data, found) if looks_like_openair(data) and data.lstrip()[:1] not in {b"{", b"["} else _read_json(data, found)
+    except JsonFault as fault:
+        raise ZoneFileError([GeometryFault("", str(fault))]) from fault
+    except TooManyFaults as many:
+        raise ZoneFileError(found.faults) from many
+    except GeometryFault as fault:
+        found.faults.append(fault)
+        raise ZoneFileError(found.faults) from fault
+    records = _storable(read, found)
+    if found.faults and not (leave_out_faulty and _are_all_of_records(found.faults, read.unread)):
+        raise ZoneFileError(found.faults[:MAX_FAULTS])
+    if not records:
+        raise ZoneFileError([GeometryFault("", "the file has no zones")])
+    return ZoneFile(
+        read.source_format,
+        sum(record.layer == 0 for record in records),
+        _numbered(records),
+        read.provider,
+        *read.validity,
+        tuple(read.notes),
+        tuple(read.unread),
+    )
+
+
+def _storable(read: _Read, found: FaultList) -> list[ZoneRecord]:
+    """The records that the database can hold; the others are unread, too."""
+    kept = []
+    for record in read.records:
+        fault = _unstorable(record)
+        if fault is None:
+            kept.append(record)
+        else:
+            found.faults.append(fault)
+            west, south, east, north = record.geometry.bounds
+            read.unread.append(UnreadRecord(fault, record.name, record.identifier, (west, south, east, north)))
+    return kept
+
+
+def _are_all_of_records(faults: Sequence[GeometryFault], unread: Sequence[UnreadRecord]) -> bool:
+    of_records = {id(record.fault) for record in unread}
+    return len(faults) < MAX_FAULTS and all(id(fault) in of_records and not isinstance(fault, TooMuch) for fault in faults)
+
+
+def _read_openair(data: bytes, faults: FaultList) -> _Read:
+    if len(data) > MAX_FILE_BYTES:
+        raise GeometryFault("", f"the file is larger than {MAX_FILE_BYTES // 2**20} MiB")
+    notes = []
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        text = data.decode("cp1252", errors="replace")
+        notes.append("The text is not UTF-8 and was read as Windows-1252.")
+    unread: list[UnreadRecord] = []
+    zones, more = zones_of_openair(text, faults, unread)
+    return _Read("OpenAir", zones, notes=notes + more, unread=unread)
+
+
+def _read_json(data: bytes, faults: FaultList) -> _Read:
+    document = parse_strict_json(data, max_bytes=MAX_FILE_BYTES)
+    read = _read_document(document, faults)
+    read.unread = unread_of_document(document, faults.faults)
+    return read
+
+
+def _read_document(document: Any, faults: FaultList) -> _Read:
+    if is_ed318(document):
+        validity = stated_validity(document, faults)
+        metadata = document.get("metadata")
+        provider = ""
+        with faults.gathering():
+            provider = text_of(metadata.get("provider"), "metadata.provider", MAX_NAME) if isinstance(metadata, dict) else ""
+        notes: list[str] = []
+        return _Read("ED-318", zones_of_ed318(document, faults, notes), provider, validity, notes)
+    if is_ed269(document):
+        return _Read("ED-269", zones_of_ed269(document, faults))
+    if isinstance(document, dict) and isinstance(document.get("type"), str) and document["type"] in _GEOJSON:
+        notes = []
+        return _Read("GeoJSON", zones_of_geojson(document, faults, notes), notes=notes)
+    raise GeometryFault("", "this is neither GeoJSON nor an ED-269, ED-318 or OpenAir file")
+
+
+def _unstorable(record: ZoneRecord) -> GeometryFault | None:
+    """What JSON can write and the database cannot hold."""
+    if not can_be_stored([record.properties, record.schedule, record.band.as_stated]):
+        return GeometryFault(f"zone {record.identifier}", "its texts have characters that are none")
+    return None
+
+
+def _numbered(records: list[ZoneRecord]) -> list[ZoneRecord]:
+    """Layers counted on where a file uses an identifier for several zones, as national files do."""
+    seen: Counter[str] = Counter()
+    numbered = []
+    for record in records:
+        numbered.append(replace(record, layer=seen[record.identifier]))
+        seen[record.identifier] += 1
+    return numbered
