@@ -1,4 +1,4 @@
-"""Fields of the planning API: positions and numbers above 0."""
+"""Fields of the planning API: positions, numbers above 0, colours of UAVs."""
 
 from typing import Any
 
@@ -59,3 +59,14 @@ class AboveZeroField(FiniteFloatField):
         if value <= 0:
             self.fail("above_zero")
         return value
+
+
+class ColoursField(serializers.ListField):
+    """Colours of a mission's UAVs on pages of what flies."""
+
+    def __init__(self) -> None:
+        super().__init__(
+            child=serializers.IntegerField(min_value=1, max_value=8),
+            help_text="by the UAV's place, the ninth as the first: numbers of the eight colours that pages draw UAVs with; two UAVs that"
+            " live pages show have the same one only where there are more than eight; empty: never sent to UAVs, and by their places",
+        )

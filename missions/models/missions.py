@@ -81,6 +81,13 @@ class Mission(models.Model):
     call_number = models.PositiveSmallIntegerField(
         null=True, blank=True, help_text="before the letters of its UAVs while several missions fly: 2 of 2B; empty: never sent to UAVs"
     )
+    colours = ArrayField(
+        models.PositiveSmallIntegerField(),
+        default=list,
+        db_default=[],
+        blank=True,
+        help_text="numbers of the colours of its UAVs by their places; empty: never sent to UAVs, those of the places",
+    )
     started_at = models.DateTimeField(null=True, blank=True, help_text="when its first UAV began to fly")
     ended_at = models.DateTimeField(null=True, blank=True, help_text="when it was completed, aborted, or had failed")
     continues = models.ForeignKey(
@@ -125,7 +132,7 @@ class Mission(models.Model):
 
 
 class MissionUav(models.Model):
-    """A UAV's place in a mission; `sequence` gives its letter and colour, `start` where it takes off."""
+    """A UAV's place in a mission; `sequence` gives its letter, `start` where it takes off."""
 
     mission = models.ForeignKey(Mission, on_delete=models.CASCADE, related_name="mission_uavs")
     uav = models.ForeignKey(Uav, on_delete=models.PROTECT, null=True, blank=True, related_name="mission_uavs")

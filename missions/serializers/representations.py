@@ -4,9 +4,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from planning.energy.conditions import conditions_from_json, conditions_to_json
-from planning.energy.performance import performance_from_json, performance_to_json
-from planning.trajectory.waypoints import KINDS, NONE
 
 from inspection.selectors import asset_detail, asset_label
 from missions.list_selectors import ListedMission, sketch
@@ -19,6 +16,9 @@ from missions.services.requests import lost_link_from_json, lost_link_to_json
 from missions.services.straight_line import straight_json
 from missions.stale_selectors import cause_json, has_lost_base, is_stale, stale_causes, stale_reason
 from missions.uav_change_selectors import uav_change_json, uav_changes
+from planning.energy.conditions import conditions_from_json, conditions_to_json
+from planning.energy.performance import performance_from_json, performance_to_json
+from planning.trajectory.waypoints import KINDS, NONE
 
 
 def mission_json(mission: Mission) -> dict[str, Any]:
@@ -50,6 +50,7 @@ def mission_json(mission: Mission) -> dict[str, Any]:
         "uav_changes": [uav_change_json(change) for change in changes],
         "flat_ground_assumed": mission.flat_ground_assumed,
         "locks": mission.locks,
+        "colours": mission.colours,
         "uavs": [_uav(row) for row in mission.mission_uavs.all()],
         "targets": [_target(row) for row in mission.targets.all()],
         "plan": _plan(mission),

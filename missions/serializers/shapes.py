@@ -1,14 +1,14 @@
 """What goes out: plans and missions."""
 
-from planning.clearance.lost_link import LostLink, Trouble
-from planning.problem import TaskKind
 from rest_framework import serializers
 
-from missions.fields import PositionField
+from missions.fields import ColoursField, PositionField
 from missions.fleet_selectors import FIGURES
 from missions.models import EndAction, MissionState, Objective, TargetPriority, TargetState, WaypointKind
 from missions.serializers.changes import StaleCauseSerializer, UavChangeSerializer
 from missions.serializers.commands import MissionApprovalSerializer
+from planning.clearance.lost_link import LostLink, Trouble
+from planning.problem import TaskKind
 from workspace.external_data import AttributesField
 from workspace.serializers import Declared
 
@@ -368,6 +368,7 @@ class MissionSerializer(serializers.Serializer):
     uav_changes = UavChangeSerializer(many=True, help_text="of a draft, too")
     flat_ground_assumed = serializers.BooleanField(allow_null=True)
     locks = PlanLockSerializer(many=True)
+    colours = ColoursField()
     uavs = MissionUavSerializer(many=True)
     targets = MissionTargetSerializer(many=True)
     plan = PlanSerializer(allow_null=True)

@@ -5,11 +5,10 @@ without it: until then the approval is in force, so that no UAV flies what nobod
 """
 
 from functools import partial
-from itertools import count
 from typing import Any
 from uuid import UUID
 
-from django.db import connection, transaction
+from django.db import transaction
 from django.db.models import Exists, OuterRef, Q, QuerySet
 from django.db.models.functions import Now
 from django.utils import timezone
@@ -18,7 +17,6 @@ from django.utils.translation import gettext as _
 from inspection.selectors.ground import held_ground_revision
 from missions.approval_hooks import further_reasons
 from missions.command_rules import SETS_IN_MOTION
-from missions.event_selectors import SHOWN_AFTER_END
 from missions.models import (
     ENDED_STATES,
     OPEN_COMMANDS,
@@ -34,13 +32,12 @@ from missions.models import (
 from missions.selectors import approval_in_force, mission_of_organisation
 from missions.services.approval_checks import reasons_against
 from missions.services.approval_document import approval_document, content_sha256
+from missions.services.call_signs import give_call_sign
 from missions.services.missions import MissionChanged, note
 from missions.services.outbox import end_commands, queue_command
 from missions.services.refused import refuse, refuse_for
 from workspace.live import publish_live
 from workspace.models import User
-
-CALL_NUMBERS_LOCK = 0x05A7_0032  # advisory lock, with the organisation
 
 REVOKED = "revoked"
 
@@ -164,18 +161,8 @@ def change_state(held: Mission, state: MissionState, actor: User | None, action:
         held.ended_at = timezone.now()
         held.targets.filter(state=TargetState.IN_PROGRESS).update(state=TargetState.PENDING, state_at=Now())  # nothing is after the end
     if state == MissionState.DISPATCHED and held.state != MissionState.DISPATCHED:
-        held.call_number = _free_call_number(held)
+        give_call_sign(held)
     held.state, held.revision = state, held.revision + 1
-    held.save(update_fields=["state", "revision", "ground_revision", "call_number", "started_at", "ended_at", "updated_at"])
+    held.save(update_fields=["state", "revision", "ground_revision", "call_number", "colours", "started_at", "ended_at", "updated_at"])
     transaction.on_commit(partial(publish_live, held.organisation_id))
     note(held, actor, action, before=before, after={"state": str(state), "revision": held.revision, **facts})
-
-
-def _free_call_number(mission: Mission) -> int:
-    """The smallest that no other mission has which live pages of the organisation show; one mission at a time takes one."""
-    with connection.cursor() as cursor:
-        cursor.execute("SELECT pg_advisory_xact_lock(%s, %s)", [CALL_NUMBERS_LOCK, mission.organisation_id])
-    shown = Q(state__in=[MissionState.DISPATCHED, MissionState.ACTIVE]) | Q(ended_at__gt=timezone.now() - SHOWN_AFTER_END)
-    others = Mission.objects.filter(shown, organisation=mission.organisation_id).exclude(pk=mission.pk)
-    taken = set(others.values_list("call_number", flat=True))
-    return next(number for number in count(1) if number not in taken)

@@ -2513,6 +2513,8 @@ export interface components {
             name: string;
             /** @description before the letters of its UAVs on pages of several missions: 2 of 2B; missions on their way have different ones */
             call_number: number | null;
+            /** @description by the UAV's place, the ninth as the first: numbers of the eight colours that pages draw UAVs with; two UAVs that live pages show have the same one only where there are more than eight; empty: never sent to UAVs, and by their places */
+            colours: number[];
             state: components["schemas"]["MissionState"];
             revision: number;
             /** Format: date-time */
@@ -2570,6 +2572,8 @@ export interface components {
             mission: string | null;
             /** @description in that mission; it gives its letter */
             place: number | null;
+            /** @description its number in that mission, 1 to 8, as `colours` of the mission have it */
+            colour: number | null;
             link: components["schemas"]["LiveLink"];
             measured: components["schemas"]["Measured"] | null;
             /** @description where it is by now, and how sure that is; null: it flies no mission */
@@ -2835,6 +2839,8 @@ export interface components {
             uav_changes: components["schemas"]["UavChange"][];
             flat_ground_assumed: boolean | null;
             locks: components["schemas"]["PlanLock"][];
+            /** @description by the UAV's place, the ninth as the first: numbers of the eight colours that pages draw UAVs with; two UAVs that live pages show have the same one only where there are more than eight; empty: never sent to UAVs, and by their places */
+            colours: number[];
             uavs: components["schemas"]["MissionUav"][];
             targets: components["schemas"]["MissionTarget"][];
             plan: components["schemas"]["Plan"] | null;
@@ -4511,6 +4517,8 @@ export interface components {
             attributes: {
                 [key: string]: string | number | boolean;
             };
+            /** @description by the UAV's place, the ninth as the first: numbers of the eight colours that pages draw UAVs with; two UAVs that live pages show have the same one only where there are more than eight; empty: never sent to UAVs, and by their places */
+            colours: number[];
             state: components["schemas"]["MissionState"];
             /** Format: date-time */
             departs_at: string | null;

@@ -33,6 +33,7 @@ def _mission_json(mission: Mission, uavs: list[dict[str, Any]], targets: list[In
         "id": mission.pk,
         "name": mission.name,
         "call_number": mission.call_number,
+        "colours": mission.colours,
         "state": mission.state,
         "revision": mission.revision,
         "departs_at": mission.departs_at,

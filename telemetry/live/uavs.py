@@ -7,6 +7,7 @@ from django.db.models import Case, F, IntegerField, OuterRef, Subquery, Value, W
 
 from missions.command_selectors import route_commands
 from missions.models import LinkKind, MissionState, MissionUav, Uav
+from missions.services.call_signs import colour_of
 from telemetry.alerting.detectors.link import late_after_s
 from telemetry.alerting.limits import sound_limits
 from telemetry.estimation.contact import SILENT_INTERVALS, SILENT_S
@@ -52,8 +53,8 @@ def rhythm_of(interval_s: float, stated: Sequence[Mapping[str, float]]) -> dict[
     return {"interval_s": round(interval_s, 1), "late_after_s": round(late_s, 1), "silent_after_s": round(silent_s, 1)}
 
 
-def _flown(uav_ids: list[int]) -> dict[int, tuple[str, int, Mapping[str, float]]]:
-    """The mission that each flies, as selectors/live.py has it, its place in it, and the limits of alerts that the mission states."""
+def _flown(uav_ids: list[int]) -> dict[int, tuple[str, int, int, Mapping[str, float]]]:
+    """The mission that each flies, as selectors/live.py has it, its place and colour there, and the limits of alerts that it states."""
     rows = MissionUav.objects.filter(uav__in=uav_ids, mission__state__in=FLYING, mission__deleted_at=None, route__geometry__isnull=False)
     sent = Subquery(route_commands(OuterRef("uav")).values("mission")[:1])
     first = Case(
@@ -64,13 +65,13 @@ def _flown(uav_ids: list[int]) -> dict[int, tuple[str, int, Mapping[str, float]]
         output_field=IntegerField(),
     )
     newest = rows.alias(sent=sent).order_by("uav", first, F("mission__updated_at").desc()).distinct("uav")
-    found = newest.values_list("uav", "mission", "sequence", "mission__alert_limits")
-    return {uav: (str(mission), place, limits or {}) for uav, mission, place, limits in found}
+    found = newest.values_list("uav", "mission", "sequence", "mission__colours", "mission__alert_limits")
+    return {uav: (str(mission), place, colour_of(place, colours), limits or {}) for uav, mission, place, colours, limits in found}
 
 
-def _uav_json(uav: Uav, flown: tuple[str, int, Mapping[str, float]] | None) -> dict[str, Any]:
+def _uav_json(uav: Uav, flown: tuple[str, int, int, Mapping[str, float]] | None) -> dict[str, Any]:
     watch = getattr(uav, "watch", None)
-    mission, place, limits = flown or (None, None, {})
+    mission, place, colour, limits = flown or (None, None, None, {})
     of_type = uav.uav_type.alert_limits if uav.uav_type is not None else {}
     interval_s = ((watch.estimated or {}).get("report_interval_s") if watch else None) or INTERVALS_S[LinkKind(uav.link)]
     return {
@@ -78,6 +79,7 @@ def _uav_json(uav: Uav, flown: tuple[str, int, Mapping[str, float]] | None) -> d
         "name": uav.name,
         "mission": mission,
         "place": place,
+        "colour": colour,
         "link": _link_json(uav.link, getattr(uav, "connection", None) or UavLink()),
         "measured": measured_json(watch.measured) if watch else None,
         "estimated": watch.estimated if watch else None,

@@ -152,6 +152,7 @@ def mission_record(mission: Mission) -> dict[str, Any]:
             "name": mission.name,
             "external_id": mission.external_id,
             "attributes": mission.attributes,
+            "colours": mission.colours,
             "state": mission.state,
             "departs_at": mission.departs_at,
             "started_at": mission.started_at,

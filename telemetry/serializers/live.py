@@ -3,7 +3,7 @@
 from drf_spectacular.utils import extend_schema_field
 from rest_framework import serializers
 
-from missions.fields import PositionField
+from missions.fields import ColoursField, PositionField
 from missions.models import LinkKind, MissionState, OfferState, TargetState
 from missions.serializers.commands import CommandSerializer
 from telemetry.serializers.alerts import AlertSerializer
@@ -151,6 +151,7 @@ class LiveUavSerializer(serializers.Serializer):
     name = serializers.CharField()
     mission = serializers.UUIDField(allow_null=True, help_text="that it flies, or has been sent")
     place = serializers.IntegerField(allow_null=True, help_text="in that mission; it gives its letter")
+    colour = serializers.IntegerField(allow_null=True, help_text="its number in that mission, 1 to 8, as `colours` of the mission have it")
     link = LiveLinkSerializer()
     measured = MeasuredSerializer(allow_null=True)
     estimated = EstimateField(allow_null=True, help_text="where it is by now, and how sure that is; null: it flies no mission")
@@ -185,6 +186,7 @@ class LiveMissionSerializer(serializers.Serializer):
         allow_null=True,
         help_text="before the letters of its UAVs on pages of several missions: 2 of 2B; missions on their way have different ones",
     )
+    colours = ColoursField()
     state = serializers.ChoiceField(choices=MissionState.choices)
     revision = serializers.IntegerField()
     departs_at = serializers.DateTimeField(allow_null=True)

@@ -2,6 +2,7 @@
 
 from rest_framework import serializers
 
+from missions.fields import ColoursField
 from missions.models import MissionState, TargetState, WaypointKind
 from telemetry.mission_report.outcomes import IncidentKind, Result
 from workspace.external_data import AttributesField
@@ -21,6 +22,7 @@ class RecordMissionSerializer(serializers.Serializer):
     name = serializers.CharField()
     external_id = serializers.CharField(help_text="another system's id; may be empty")
     attributes = AttributesField(required=True, help_text="of other systems")
+    colours = ColoursField()
     state = serializers.ChoiceField(choices=MissionState.choices)
     departs_at = serializers.DateTimeField(allow_null=True)
     started_at = serializers.DateTimeField(allow_null=True, help_text="when its first UAV began to fly")

@@ -4,6 +4,7 @@ import { certaintyOf, ESTIMATED, LOST, MEASURED, standsAt } from "../../static/j
 import { distance_m } from "../../static/js/domain/geodesy.js";
 import { flyingUavs, inAir } from "../../static/js/domain/in_air.js";
 import { alertsInOrder, inOrder, newAlerts } from "../../static/js/domain/order.js";
+import { colourClass, routeNumber } from "../../static/js/domain/palette.js";
 import { boardRows } from "../../static/js/monitor/board.js";
 import { progressOf } from "../../static/js/monitor/live_strip.js";
 import { ellipseRing, metresPerPixel } from "../../static/js/monitor/map/ellipse.js";
@@ -328,4 +329,16 @@ test("an offer that has expired cannot be decided, nor one on a device that has 
   assert.match(whyNotDecided(offer, { now_ms: NOW_MS + 30_000, silent_ms: 0 }), /^Expired/);
   assert.match(whyNotDecided(offer, { now_ms: NOW_MS, silent_ms: 6_000 }), /^No data on this device/);
   assert.match(whyNotDecided(offer, { now_ms: NOW_MS, silent_ms: 31_000 }), /^Expired/);
+});
+
+test("a UAV has the colour that the service gives it in its mission, also on the board and once it is over", () => {
+  assert.deepEqual([routeNumber(0), routeNumber(9)], [1, 2]);
+  const colours = [4, 5, 3, 1, 2, 6, 7, 8];
+  assert.deepEqual([routeNumber(0, colours), routeNumber(9, colours)], [4, 5]);
+  assert.deepEqual([colourClass(4), colourClass(null)], ["route-4", ""]);
+  const over = { ...uav(), mission: null, place: null, colour: null };
+  const last = { id: "m", ended_at: ago(60), uavs: [{ place: 1, uav: 1, name: "Kite" }], colours };
+  assert.equal(placed([over], [last])[0].colour, 5);
+  const target = { place: 0, label: "T", state: "pending", state_at: null, state_reason: "", uav: 1 };
+  assert.equal(boardRows([{ ...last, targets: [target] }], [], new Map())[0].colour, 5);
 });

@@ -29,10 +29,19 @@ const NAMES = {
 
 /** @typedef {{ [Name in keyof typeof NAMES]: string } & { routes: string[], fonts: string[], isDark: boolean }} Palette */
 
-/** Place in the row of route colours, 1 to 8; a ninth UAV starts again. @param {number} sequence */
-export function routeNumber(sequence) {
-  return (sequence % ROUTE_COUNT) + 1;
+/**
+ * Place in the row of route colours, 1 to 8; a ninth UAV starts again.
+ *
+ * @param {number} sequence place of the UAV in its mission
+ * @param {readonly number[]} [colours] those of the mission, as the service gives them once it is sent to UAVs
+ */
+export function routeNumber(sequence, colours = []) {
+  const place = sequence % ROUTE_COUNT;
+  return colours[place] ?? place + 1;
 }
+
+/** Class of an element that is drawn in a UAV's colour; none for a UAV of no mission. @param {number | null} colour number of it */
+export const colourClass = (colour) => (colour === null ? "" : `route-${colour}`);
 
 /** @param {number} sequence */
 export function routeLetter(sequence) {

@@ -1,7 +1,7 @@
 /** The board: every target of the missions on the page with its state and time. Values in, values out. */
 
 import { inAir } from "../domain/in_air.js";
-import { routeLetter } from "../domain/palette.js";
+import { routeLetter, routeNumber } from "../domain/palette.js";
 import { t } from "../text.js";
 import { prefixOf } from "./call_signs.js";
 import { isHeld } from "./uav_words.js";
@@ -17,7 +17,7 @@ import { isHeld } from "./uav_words.js";
  * @property {string} key
  * @property {string} mission
  * @property {number} place in the mission's list
- * @property {number | null} uav place of the UAV that flies to it
+ * @property {number | null} colour of the UAV that flies to it
  * @property {string} pill
  * @property {string} label
  * @property {BoardState} state
@@ -76,7 +76,7 @@ export const pillOf = (target, numbers, prefix = "") =>
   target.uav === null ? `${target.place + 1}` : `${prefix}${routeLetter(target.uav)}${numbers.get(target.place) ?? ""}`;
 
 /**
- * Rows: [{ key, mission, place, uav, pill, label, state, at, isExpected, reason }], what goes on first, what is done last.
+ * Rows: [{ key, mission, place, colour, pill, label, state, at, isExpected, reason }], what goes on first, what is done last.
  *
  * @param {LiveMission[]} missions
  * @param {LiveUav[]} uavs
@@ -132,7 +132,7 @@ function rowOf(mission, target, numbers, uav, prefix) {
     key: `${mission.id} ${target.place}`,
     mission: mission.id,
     place: target.place,
-    uav: target.uav,
+    colour: target.uav === null ? null : routeNumber(target.uav, mission.colours),
     pill: pillOf(target, numbers, prefix),
     label: target.label,
     state,

@@ -8,13 +8,14 @@ import { fencesOf, rallyPointsOf, readBriefing } from "../offline/briefing.js";
 /** @import { MonitorStore } from "./types.d.ts" */
 
 /** As the feed tells of a mission, without what only the feed knows. @param {Mission} mission @returns {LiveMission} */
-export function missionOfCopy({ id, name, state, revision, departs_at, uavs, targets, plan }) {
+export function missionOfCopy({ id, name, state, revision, departs_at, colours, uavs, targets, plan }) {
   const routes = plan?.routes ?? [];
   const placed = new Map(routes.flatMap((route, place) => route.targets.map((target) => [target, place])));
   return {
     id,
     name,
     call_number: null,
+    colours,
     state,
     revision,
     departs_at,

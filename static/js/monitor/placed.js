@@ -1,15 +1,17 @@
 /** UAVs whose mission is over keep the letter and colour that they had in it, as long as they fly no other. Values in, values out. */
 
+import { routeNumber } from "../domain/palette.js";
+
 /** @import { LiveMission, LiveUav } from "../api_types.d.ts" */
 
 /** @param {Pick<LiveMission, "ended_at">} mission */
 const endedAt_ms = ({ ended_at }) => (ended_at ? Date.parse(ended_at) : Infinity);
 
 /**
- * missions: those on the page, with their UAVs: [{ id, ended_at, uavs: [{ place, uav }] }].
+ * missions: those on the page, with their UAVs: [{ id, ended_at, uavs: [{ place, uav }], colours }].
  *
  * @param {LiveUav[]} uavs
- * @param {Pick<LiveMission, "id" | "ended_at" | "uavs">[]} missions those on the page, with their UAVs
+ * @param {Pick<LiveMission, "id" | "ended_at" | "uavs" | "colours">[]} missions those on the page, with their UAVs
  * @returns {LiveUav[]}
  */
 export function placed(uavs, missions) {
@@ -18,7 +20,9 @@ export function placed(uavs, missions) {
     if (uav.mission !== null) return uav;
     const last = newest.find((mission) => mission.uavs.some((entry) => entry.uav === uav.id));
     const entry = last?.uavs.find((one) => one.uav === uav.id);
-    return last && entry ? { ...uav, mission: last.id, place: entry.place } : uav;
+    if (!last || !entry) return uav;
+    const { place } = entry;
+    return { ...uav, mission: last.id, place, colour: routeNumber(place, last.colours) };
   });
 }
 

@@ -51,9 +51,9 @@ export interface SendingCommand {
   at_ms: number;
 }
 
-/** A route of another plan that is offered, by the UAV's place in the mission that flies now. */
+/** A route of another plan that is offered, in the colour of the UAV in the mission that flies now. */
 export interface OfferedRoute {
-  place: number;
+  colour: number;
   geometry: Geometry;
 }
 
@@ -160,6 +160,7 @@ export interface MarkedUav {
   name: string;
   letter: string;
   place: number | null;
+  colour: number | null;
   position: number[];
   heading_deg: number | null;
   certainty: Certainty;
@@ -174,7 +175,6 @@ export interface MarkedUav {
 export interface DrawnUav extends Omit<MarkedUav, "id" | "isMarked"> {
   id: number;
   isSimulated: boolean;
-  routeClass: string;
   bound: Bound | null;
   last: number[] | null;
   words: string;
@@ -182,13 +182,14 @@ export interface DrawnUav extends Omit<MarkedUav, "id" | "isMarked"> {
 
 /** A line flown, in parts. */
 export interface FlownLine {
-  place: number | null;
+  colour: number | null;
   parts: number[][][];
 }
 
 export interface PlannedLine {
   sequence: number;
   geometry: Geometry | null;
+  colour: number;
 }
 
 /** What the operator tells UAVs from the live page. */

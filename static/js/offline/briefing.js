@@ -60,7 +60,7 @@ function section(title, rows, none = "") {
 }
 
 /** @param {Mission} mission @param {(position: number[]) => void} show brings a place into view */
-function uavRows({ uavs, plan }, show) {
+function uavRows({ uavs, plan, colours }, show) {
   return uavs.map(({ name, position }, place) => {
     const route = plan?.routes[place];
     const targets = route?.targets.length ?? 0;
@@ -69,7 +69,7 @@ function uavRows({ uavs, plan }, show) {
       : [];
     return h(
       "div",
-      { class: `briefing-uav route-${routeNumber(place)}` },
+      { class: `briefing-uav route-${routeNumber(place, colours)}` },
       h("span", { class: "letter" }, routeLetter(place)),
       h("span", {}, h("strong", {}, name), h("small", {}, facts.join(" · "))),
       placeButton(t("Start and landing"), position, show),

@@ -1,14 +1,17 @@
 /** Names of targets as the other stages have them: the UAV's letter and the place on its route. */
 
-import { routeLetter } from "../domain/palette.js";
+import { routeLetter, routeNumber } from "../domain/palette.js";
 
 /** @import { RecordRoute, WaypointKind } from "../api_types.d.ts" */
 
-/** @typedef {{ label: string, place: number, number: number, position: number[] }} TargetLabel place: of its UAV */
+/** @typedef {{ label: string, place: number, colour: number, number: number, position: number[] }} TargetLabel place and colour: of its UAV */
 /** @typedef {Map<number, TargetLabel>} Labels by target */
 
-/** @param {readonly { place: number, waypoints: readonly { target: number | null, position: number[] }[] }[]} routes */
-export function labelsOf(routes) {
+/**
+ * @param {readonly { place: number, waypoints: readonly { target: number | null, position: number[] }[] }[]} routes
+ * @param {readonly number[]} [colours] of the mission
+ */
+export function labelsOf(routes, colours) {
   /** @type {Labels} */
   const labels = new Map();
   for (const { place, waypoints } of routes) {
@@ -16,7 +19,13 @@ export function labelsOf(routes) {
     for (const { target, position } of waypoints) {
       if (target === null || labels.has(target)) continue;
       number += 1;
-      labels.set(target, { label: `${routeLetter(place)}${number}`, place, number, position });
+      labels.set(target, {
+        label: `${routeLetter(place)}${number}`,
+        place,
+        colour: routeNumber(place, colours),
+        number,
+        position,
+      });
     }
   }
   return labels;

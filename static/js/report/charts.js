@@ -1,13 +1,13 @@
 /** One value of all UAVs over the time of a replay: what was flown, what was planned, and a dot at the cursor. */
 
 import { svg } from "../dom.js";
-import { routeNumber } from "../domain/palette.js";
+import { colourClass } from "../domain/palette.js";
 import { rulesOf } from "../record/timeline.js";
 
 /** @import { TimedValue } from "../record/track.js" */
 
 /** @typedef {(value: number) => number} ToPixels */
-/** @typedef {{ place: number, lines: readonly [TimedValue, ...TimedValue[]][], planned: TimedValue[] }} Series of one UAV */
+/** @typedef {{ place: number, colour: number, lines: readonly [TimedValue, ...TimedValue[]][], planned: TimedValue[] }} Series of one UAV */
 
 const TOP_PX = 6;
 const BOTTOM_PX = 3;
@@ -37,9 +37,9 @@ export function drawChart({ series, x, width_px, height_px, unit, highest = null
   const y = (value) => TOP_PX + ((top - value) / (top - bottom)) * (height_px - TOP_PX - BOTTOM_PX);
   const rules = rulesOf(top / unit).map((rule) => rule * unit);
   const dots = new Map(
-    series.map(({ place }) => [
+    series.map(({ place, colour }) => [
       place,
-      svg("circle", { class: `replay-dot route-${routeNumber(place)}`, r: 3.5, visibility: "hidden" }),
+      svg("circle", { class: `replay-dot ${colourClass(colour)}`, r: 3.5, visibility: "hidden" }),
     ]),
   );
   const element = svg(
@@ -58,10 +58,10 @@ export function drawChart({ series, x, width_px, height_px, unit, highest = null
         planned.length > 1 &&
         svg("polyline", { class: "replay-planned", "data-place": place, points: points(planned, x, y) }),
     ),
-    series.map(({ place, lines }) =>
+    series.map(({ place, colour, lines }) =>
       svg(
         "g",
-        { class: `replay-flown route-${routeNumber(place)}`, "data-place": place },
+        { class: `replay-flown ${colourClass(colour)}`, "data-place": place },
         lines.map((line) => svg("polyline", { points: points(line.length > 1 ? line : [line[0], line[0]], x, y) })),
       ),
     ),

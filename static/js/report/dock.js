@@ -1,7 +1,7 @@
 /** The dock: strips and charts on one time axis, one cursor through all of them, figures at the cursor beside them. */
 
 import { byId, h, svg } from "../dom.js";
-import { routeLetter, routeNumber } from "../domain/palette.js";
+import { colourClass, routeLetter } from "../domain/palette.js";
 import { hasLanded, plannedHeights, scaleOf, ticksOf } from "../record/timeline.js";
 import { ESTIMATED, flownLinesOf, MEASURED, momentOf, SILENT } from "../record/track.js";
 import { t } from "../text.js";
@@ -74,9 +74,9 @@ const CHARTS = [
   },
 ];
 
-/** @param {number} place @param {string} [size] */
-const letter = (place, size = "") =>
-  h("span", { class: `letter route-${routeNumber(place)} ${size}` }, routeLetter(place));
+/** @param {Pick<ReplayRoute, "place" | "colour">} route @param {string} [size] */
+const letter = ({ place, colour }, size = "") =>
+  h("span", { class: `letter ${colourClass(colour)} ${size}` }, routeLetter(place));
 /** @param {number} ms */
 const waitText = (ms) =>
   ms < SHORT_S * 1_000 ? t("{count} s", { count: Math.round(ms / 1_000) }) : durationText(ms / 1_000);
@@ -121,7 +121,7 @@ function stripRow(route, { x, width_px }, onChoose) {
   const name = h(
     "button",
     { type: "button", class: "replay-name", "aria-pressed": "false", onclick: () => onChoose(route.place) },
-    letter(route.place),
+    letter(route),
     h("strong", {}, route.name),
   );
   return {
@@ -136,6 +136,7 @@ function stripRow(route, { x, width_px }, onChoose) {
 function chartRow(chart, { routes, span }, { x, width_px }) {
   const series = routes.map((route) => ({
     place: route.place,
+    colour: route.colour,
     lines: flownLinesOf(route.track, chart.name),
     planned: chart.hasPlan ? plannedHeights(route).filter(({ at_ms }) => at_ms <= span.to_ms) : [],
   }));
@@ -236,9 +237,9 @@ export function createDock({ onChoose }) {
       const values = readingsOf(chart, moments);
       drawing.point(values);
       readings.replaceChildren(
-        ...read.flatMap(({ place }) => {
-          const value = values.get(place)?.value;
-          return value === undefined ? [] : [h("span", {}, letter(place, "small"), chart.text(value))];
+        ...read.flatMap((route) => {
+          const value = values.get(route.place)?.value;
+          return value === undefined ? [] : [h("span", {}, letter(route, "small"), chart.text(value))];
         }),
       );
     }

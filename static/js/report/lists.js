@@ -25,8 +25,9 @@ const LEVELS = {
 const ENDS = { start: t("take-off"), end: t("end"), base: t("base") };
 /** @param {number} sequence */
 const pointName = (sequence) => t("point {number}", { number: sequence });
-/** @param {number} place */
-const letter = (place) => h("span", { class: `letter route-${routeNumber(place)}` }, routeLetter(place));
+/** @param {number} place @param {readonly number[]} colours of the mission */
+const letter = (place, colours) =>
+  h("span", { class: `letter route-${routeNumber(place, colours)}` }, routeLetter(place));
 
 /**
  * By target, the legs to each unfolded at will.
@@ -44,7 +45,7 @@ export function drawLegs(record, labels, onLook) {
     h(
       "div",
       {},
-      routes.map((route) => legTable(route, labels, onLook)),
+      routes.map((route) => legTable(route, labels, record.mission.colours, onLook)),
     ),
   );
 }
@@ -90,8 +91,8 @@ function legRow(leg, name, look, leave, { button, words = "", isWithin = false }
   );
 }
 
-/** @param {RecordRoute} route @param {Labels} labels @param {OnLook} onLook */
-function legTable(route, labels, onLook) {
+/** @param {RecordRoute} route @param {Labels} labels @param {readonly number[]} colours of the mission @param {OnLook} onLook */
+function legTable(route, labels, colours, onLook) {
   const heads = [t("Leg"), t("Length"), t("Off route"), t("Height error")];
   const several = route.stages.some(({ flight }) => flight > 1);
   /** @param {FlownLeg | FlownStage} leg @param {Parameters<typeof legRow>[4]} how */
@@ -138,7 +139,7 @@ function legTable(route, labels, onLook) {
       "summary",
       {},
       icon("chevron-down", "small"),
-      letter(route.place),
+      letter(route.place, colours),
       h("strong", {}, route.name),
       route.is_simulated && simulatedMark(),
       h("span", { class: "count" }, route.stages.length),

@@ -2,6 +2,7 @@
 
 import { signInAddress } from "../api.js";
 import { byId, h, icon } from "../dom.js";
+import { routeNumber } from "../domain/palette.js";
 import { readPage, startChrome } from "../page/chrome.js";
 import { labelsOf } from "../record/labels.js";
 import { loadMission } from "../record/load.js";
@@ -109,6 +110,7 @@ function replayRoutes({ record, records, estimates, alerts }) {
   const [measured, estimated] = [tracksOf(records.features), estimatesOf(estimates.features)];
   return record.routes.map((route) => ({
     ...route,
+    colour: routeNumber(route.place, record.mission.colours),
     isOver: isOver(record),
     track: trackOf(measured.get(route.uav ?? NaN) ?? [], estimated.get(route.uav ?? NaN) ?? [], silence_ms),
     targets: record.targets
@@ -125,7 +127,7 @@ function replayRoutes({ record, records, estimates, alerts }) {
 function take(answer) {
   loaded = answer;
   const { record } = answer;
-  labels = labelsOf(record.routes);
+  labels = labelsOf(record.routes, record.mission.colours);
   routes = replayRoutes(answer);
   events = eventsOf({ routes, targets: record.targets, alerts: answer.alerts, isOver: isOver(record) });
   drawHead(record, showTarget);

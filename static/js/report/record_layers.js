@@ -1,6 +1,5 @@
 /** What was flown over what was planned: measured solid, estimated dotted, and the leg that is looked at under both. */
 
-import { routeNumber } from "../domain/palette.js";
 import { setPaint, sourceOf } from "../map/look/style.js";
 
 /** @import { ExpressionSpecification, LineLayerSpecification } from "/static/lib/maplibre-gl/maplibre-gl.mjs" */
@@ -16,10 +15,10 @@ const BEFORE = "line-labels";
 const NOTHING = { type: "FeatureCollection", features: [] };
 const THIN_PX = 1.6;
 
-/** @param {number[][]} coordinates @param {number} place @returns {Feature} */
-const feature = (coordinates, place) => ({
+/** @param {number[][]} coordinates @param {Partial<Pick<ReplayRoute, "place" | "colour">>} [of] whose they are @returns {Feature} */
+const feature = (coordinates, { place, colour } = {}) => ({
   type: "Feature",
-  properties: { route: routeNumber(place) },
+  properties: { place, route: colour },
   geometry: { type: "LineString", coordinates },
 });
 /** @param {Feature[]} features @returns {FeatureCollection} */
@@ -91,26 +90,24 @@ export function recolour(map, palette) {
 
 /** @param {readonly (Sample | Estimate)[]} run */
 const positionsOf = (run) => run.flatMap(({ position }) => (position ? [position] : []));
-/** @param {readonly (readonly (Sample | Estimate)[])[]} runs @param {number} place */
-const linesOf = (runs, place) =>
+/** @param {readonly (readonly (Sample | Estimate)[])[]} runs @param {Pick<ReplayRoute, "place" | "colour">} route */
+const linesOf = (runs, route) =>
   runs
     .map(positionsOf)
     .filter((line) => line.length > 1)
-    .map((line) => feature(line, place));
+    .map((line) => feature(line, route));
 
-/** @param {MapLibreMap} map @param {readonly Pick<ReplayRoute, "place" | "track">[]} routes */
+/** @param {MapLibreMap} map @param {readonly Pick<ReplayRoute, "place" | "colour" | "track">[]} routes */
 export function showTracks(map, routes) {
-  sourceOf(map, "record-flown")?.setData(
-    collection(routes.flatMap(({ place, track }) => linesOf(track.measured, place))),
-  );
+  sourceOf(map, "record-flown")?.setData(collection(routes.flatMap((route) => linesOf(route.track.measured, route))));
   sourceOf(map, "record-estimated")?.setData(
-    collection(routes.flatMap(({ place, track }) => linesOf(track.estimated, place))),
+    collection(routes.flatMap((route) => linesOf(route.track.estimated, route))),
   );
 }
 
 /** @param {MapLibreMap} map @param {number[][] | null} positions of a leg */
 export function lightLeg(map, positions) {
-  sourceOf(map, "record-leg")?.setData(positions ? collection([feature(positions, 0)]) : NOTHING);
+  sourceOf(map, "record-leg")?.setData(positions ? collection([feature(positions)]) : NOTHING);
 }
 
 /**
@@ -122,6 +119,6 @@ export function lightLeg(map, positions) {
  */
 export function lookAt(map, place, rest) {
   /** @type {number | ExpressionSpecification} */
-  const opacity = place === null ? 1 : ["case", ["==", ["get", "route"], routeNumber(place)], 1, rest];
+  const opacity = place === null ? 1 : ["case", ["==", ["get", "place"], place], 1, rest];
   for (const id of ["record-flown", "record-estimated"]) map.setPaintProperty(id, "line-opacity", opacity);
 }

@@ -42,12 +42,12 @@ const idOf = ({ uav, place }) => uav ?? `place ${place}`;
 /**
  * A UAV as it is drawn at a moment; null where nothing is known of it.
  *
- * @param {Pick<ReplayRoute, "uav" | "place" | "name" | "track">} route
+ * @param {Pick<ReplayRoute, "uav" | "place" | "colour" | "name" | "track">} route
  * @param {number} at_ms
  * @param {number | null} looked place of the UAV that is looked at
  * @returns {MarkedUav | null}
  */
-export function markerOf({ uav, place, name, track }, at_ms, looked) {
+export function markerOf({ uav, place, colour, name, track }, at_ms, looked) {
   const moment = momentOf(track, at_ms);
   const position = moment?.sample.position;
   if (!moment || !position) return null;
@@ -56,6 +56,7 @@ export function markerOf({ uav, place, name, track }, at_ms, looked) {
     id: idOf({ uav, place }),
     name,
     place,
+    colour,
     letter: routeLetter(place),
     position,
     heading_deg: sample.heading_deg,
@@ -73,10 +74,11 @@ function factOf(moment) {
   return moment.sample.height_m === null ? "" : heightText(moment.sample.height_m);
 }
 
-/** @param {Shown} shown @returns {{ sequence: number, geometry: Geometry | null }[]} */
+/** @param {Shown} shown @returns {{ sequence: number, geometry: Geometry | null, colour: number }[]} */
 const plannedLines = ({ routes }) =>
-  routes.map(({ place, waypoints }) => ({
+  routes.map(({ place, colour, waypoints }) => ({
     sequence: place,
+    colour,
     geometry:
       waypoints.length > 1 ? { type: "LineString", coordinates: waypoints.map(({ position }) => position) } : null,
   }));
@@ -86,12 +88,13 @@ const pillsOf = ({ targets, labels }) =>
   targets.flatMap(({ place, uav, label: name, state }) => {
     const known = labels.get(place);
     if (!known) return [];
-    const { label, number, position } = known;
+    const { label, colour, number, position } = known;
     return [
       {
         key: `${place}`,
         position,
         sequence: uav,
+        colour: uav === null ? null : colour,
         letter: uav === null ? "" : routeLetter(uav),
         number,
         name: `${label} ${name}`,

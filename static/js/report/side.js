@@ -1,7 +1,7 @@
 /** The side: what came of the mission in a sentence, in figures, and what became of each target. */
 
 import { byId, find, h, icon } from "../dom.js";
-import { routeNumber } from "../domain/palette.js";
+import { colourClass } from "../domain/palette.js";
 import { STATES as MISSION_STATES } from "../missions/rows.js";
 import {
   capital,
@@ -144,13 +144,12 @@ export function drawTargets(record, labels, onLook) {
 /** @param {RecordTarget} target @param {Labels} labels @param {OnLook} onLook */
 function pill(target, labels, onLook) {
   const known = labels.get(target.place);
-  const look = target.uav === null ? "" : `route-${routeNumber(target.uav)}`;
   if (!known) return h("span", { class: "pill" }, `${target.place + 1}`);
   return h(
     "button",
     {
       type: "button",
-      class: `report-pill ${look} ${target.state}`,
+      class: `report-pill ${target.uav === null ? "" : colourClass(known.colour)} ${target.state}`,
       "aria-label": t("Show target {label}", { label: known.label }),
       onclick: () => onLook(target.place),
     },

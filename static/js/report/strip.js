@@ -1,7 +1,7 @@
 /** A UAV's flight pulled straight over time: measured solid, estimated dotted, silence empty, targets where it was at them, alerts above. */
 
 import { svg } from "../dom.js";
-import { routeNumber } from "../domain/palette.js";
+import { colourClass } from "../domain/palette.js";
 import { lastOf } from "../record/track.js";
 
 /** @import { Estimate, Sample, Track } from "../record/track.js" */
@@ -33,7 +33,7 @@ export function spread(places, width_px, apart_px = APART_PX) {
 
 /**
  * @param {object} flown
- * @param {number} flown.place
+ * @param {number} flown.colour number of it
  * @param {Track} flown.track
  * @param {readonly ReachedTarget[]} flown.targets by time
  * @param {readonly StripAlert[]} flown.alerts
@@ -41,7 +41,7 @@ export function spread(places, width_px, apart_px = APART_PX) {
  * @param {number} flown.width_px
  * @param {string} flown.label
  */
-export function drawStrip({ place, track, targets, alerts, x, width_px, label }) {
+export function drawStrip({ colour, track, targets, alerts, x, width_px, label }) {
   /** @param {number} at_ms */
   const isAirborne = (at_ms) => track.flights.some(({ from_ms, to_ms }) => from_ms <= at_ms && at_ms <= to_ms);
   /** @param {[Sample | Estimate, ...(Sample | Estimate)[]]} run @param {string} name */
@@ -57,7 +57,7 @@ export function drawStrip({ place, track, targets, alerts, x, width_px, label })
   return svg(
     "svg",
     {
-      class: `replay-strip route-${routeNumber(place)}`,
+      class: `replay-strip ${colourClass(colour)}`,
       role: "img",
       "aria-label": label,
       width: width_px,

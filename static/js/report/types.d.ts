@@ -32,6 +32,7 @@ export interface StripAlert {
 
 /** A route of the record with what the replay draws of it. */
 export interface ReplayRoute extends RecordRoute {
+  colour: number;
   isOver: boolean;
   track: Track;
   targets: StripTarget[];

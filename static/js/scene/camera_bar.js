@@ -64,21 +64,21 @@ function camerasOf(choose) {
   return { element, cameras };
 }
 
-/** A button for each UAV. @param {readonly FlightRoute[]} routes @param {(place: number) => void} choose */
-const uavsOf = (routes, choose) =>
+/** A button for each UAV. @param {readonly FlightRoute[]} routes @param {readonly number[]} colours of the mission @param {(place: number) => void} choose */
+const uavsOf = (routes, colours, choose) =>
   routes.map(({ place, name: uav }) => ({
     place,
     button: h(
       "button",
       {
         type: "button",
-        class: `scene-uav route-${routeNumber(place)}`,
+        class: `scene-uav route-${routeNumber(place, colours)}`,
         "aria-pressed": "false",
         "aria-label": t("Follow {name}", { name: `${routeLetter(place)} ${uav}` }),
         title: uav,
         onclick: () => choose(place),
       },
-      h("span", { class: `letter route-${routeNumber(place)}` }, routeLetter(place)),
+      h("span", { class: `letter route-${routeNumber(place, colours)}` }, routeLetter(place)),
     ),
   }));
 
@@ -120,10 +120,10 @@ function openLink(openAddress) {
   return link;
 }
 
-/** @param {{ routes: readonly FlightRoute[], acts: SceneActs, isPanel: boolean, openAddress: () => string }} options */
-export function createCameraBar({ routes, acts, isPanel, openAddress }) {
+/** @param {{ routes: readonly FlightRoute[], colours: readonly number[], acts: SceneActs, isPanel: boolean, openAddress: () => string }} options */
+export function createCameraBar({ routes, colours, acts, isPanel, openAddress }) {
   const { element: choices, cameras } = camerasOf(acts.setCamera);
-  const uavs = uavsOf(routes, acts.choose);
+  const uavs = uavsOf(routes, colours, acts.choose);
   const element = h(
     "div",
     { class: "scene-bar", role: "group", "aria-label": t("Camera") },

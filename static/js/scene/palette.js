@@ -1,6 +1,6 @@
 /** The tokens that the 3D view draws with, as they stand now: those of the map, and water for the sky. */
 
-import { readPalette } from "../domain/palette.js";
+import { readPalette, routeNumber } from "../domain/palette.js";
 
 /** @import { ScenePalette } from "./types.d.ts" */
 
@@ -13,10 +13,19 @@ const MORE = {
   accent: "--accent",
 };
 
-/** @param {(token: string) => string} [read] @returns {ScenePalette} */
+/**
+ * colours: those of the mission, in whose order the routes' colours then are.
+ *
+ * @param {readonly number[]} [colours]
+ * @param {(token: string) => string} [read]
+ * @returns {ScenePalette}
+ */
 export function readScenePalette(
+  colours = [],
   read = (token) => getComputedStyle(document.documentElement).getPropertyValue(token).trim(),
 ) {
   const more = Object.fromEntries(Object.entries(MORE).map(([name, token]) => [name, read(token)]));
-  return { ...readPalette(read), .../** @type {{ [Name in keyof typeof MORE]: string }} */ (more) };
+  const palette = readPalette(read);
+  const routes = palette.routes.map((_, place) => palette.routes[routeNumber(place, colours) - 1]);
+  return { ...palette, routes, .../** @type {{ [Name in keyof typeof MORE]: string }} */ (more) };
 }

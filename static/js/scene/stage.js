@@ -224,7 +224,7 @@ export async function openStage(root, options) {
 function mountStage(root, scene, options) {
   const { mission, source, link = null, isPanel = false, player: hostPlayer = null, now_ms = Date.now } = options;
   const { onChange = () => {}, onClose = () => {}, openAddress = () => "" } = options;
-  const palette = readScenePalette();
+  const palette = readScenePalette(source.colours);
   const holder = h("div", { class: "scene-picture" });
   const notices = createNotices();
   /** @type {Frames | null} */
@@ -243,7 +243,7 @@ function mountStage(root, scene, options) {
   const stage = { mission, source, chosen: null, target: null, isFlat: picture.kind === "2d", now_ms };
   const rig = createRig({ isCalm: () => calm.matches });
   const labels = createLabels(holder);
-  const instruments = createInstruments();
+  const instruments = createInstruments(source.colours);
   /** @type {TimeBar | null} */
   let bar = null;
   const player =
@@ -266,7 +266,7 @@ function mountStage(root, scene, options) {
     onPick: (at) => frames?.pick(at),
   });
   const atNow = () => (player ? player.at_ms : now_ms());
-  const look = watchLook(picture, palette);
+  const look = watchLook(picture, palette, source.colours);
   const context = { ...drawn, stage, scene, rig, hands, player, labels, palette: look.palette, atNow };
   const acts = createActs({
     ...context,
@@ -277,7 +277,7 @@ function mountStage(root, scene, options) {
     step: (direction) => bar?.step(direction),
     showBar: () => cameraBar.show({ mode: rig.mode, chosen: stage.chosen, isFlat: stage.isFlat }),
   });
-  const cameraBar = createCameraBar({ routes: source.routes, acts, isPanel, openAddress });
+  const cameraBar = createCameraBar({ routes: source.routes, colours: source.colours, acts, isPanel, openAddress });
   const chips = chipsOf(source, scene);
   if (!hostPlayer && player && source.span) bar = timeBarIn(root, player, source, source.span);
   frames = createFrames({
@@ -329,11 +329,12 @@ function timeBarIn(root, player, source, span) {
  *
  * @param {Picture} picture
  * @param {ScenePalette} firstPalette
+ * @param {readonly number[]} colours of the mission
  */
-function watchLook(picture, firstPalette) {
+function watchLook(picture, firstPalette, colours) {
   let palette = firstPalette;
   const endTheme = onTheme(() => {
-    palette = readScenePalette();
+    palette = readScenePalette(colours);
     picture.setPalette(palette);
   });
   const onCalm = () => picture.request();

@@ -29,9 +29,9 @@ const MARKS = {
 /** How much of a span has passed. @param {TimeSpan} span @param {number} at_ms */
 const shareOf = ({ from_ms, to_ms }, at_ms) => (at_ms - from_ms) / (to_ms - from_ms);
 
-/** @param {ReplayEvent} event @param {TimeSpan} span */
-function markOf({ kind, place, at_ms }, span) {
-  const route = place === null || place === undefined ? "" : `route-${routeNumber(place)}`;
+/** @param {ReplayEvent} event @param {TimeSpan} span @param {readonly number[]} colours of the mission */
+function markOf({ kind, place, at_ms }, span, colours) {
+  const route = place === null || place === undefined ? "" : `route-${routeNumber(place, colours)}`;
   const mark = svg(
     "svg",
     { class: `scene-mark ${kind} ${route}`, viewBox: "-6 -6 12 12", width: 12, height: 12 },
@@ -160,7 +160,7 @@ export function createTimeBar({ player, source, span: firstSpan, eventWords }) {
   function drawMarks() {
     const within = source.events.filter(({ at_ms }) => at_ms >= span.from_ms && at_ms <= span.to_ms);
     const ticks = ticksOver(span, hasDate, marks.clientWidth || 600, text);
-    marks.replaceChildren(...ticks, ...within.map((one) => markOf(one, span)));
+    marks.replaceChildren(...ticks, ...within.map((one) => markOf(one, span, source.colours)));
   }
   new ResizeObserver(drawMarks).observe(element);
 

@@ -105,6 +105,8 @@ export interface FlightSource {
   hasDate: boolean;
   span: TimeSpan | null;
   routes: FlightRoute[];
+  /** of the mission's UAVs by their places; empty: those of the places */
+  colours: number[];
   targets: SourceTarget[];
   events: ReplayEvent[];
   windAt(at_ms: number, height_m: number): Wind | null;

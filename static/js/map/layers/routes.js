@@ -16,10 +16,10 @@ const LAYERS = [
 ];
 
 /**
- * routes: [{ sequence, geometry }]
+ * routes: [{ sequence, geometry, colour }]; colour: of what flies
  *
  * @param {MapLibreMap} map
- * @param {{ sequence: number, geometry: Geometry | null }[]} routes
+ * @param {{ sequence: number, geometry: Geometry | null, colour?: number }[]} routes
  */
 export function update(map, routes) {
   setFeatures(
@@ -31,7 +31,7 @@ export function update(map, routes) {
         type: "Feature",
         properties: {
           sequence: route.sequence,
-          route: routeNumber(route.sequence),
+          route: route.colour ?? routeNumber(route.sequence),
           dashed: route.sequence >= ROUTE_COUNT,
         },
         geometry: route.geometry,

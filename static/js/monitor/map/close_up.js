@@ -2,6 +2,7 @@
 
 import { h, icon } from "../../dom.js";
 import { ESTIMATED, withinOf_m } from "../../domain/certainty.js";
+import { colourClass } from "../../domain/palette.js";
 import { provideImages } from "../../map/look/images.js";
 import { mapStyle, repaint, sourceOf } from "../../map/look/style.js";
 import { boxAround, tellFaults } from "../../map/map_view.js";
@@ -93,7 +94,7 @@ class CloseUp {
     if (!wanted || this.#box.hidden) return;
     this.#latest = { uav: wanted, routes, flown };
     this.#letter.textContent = wanted.letter;
-    this.#letter.className = `letter ${wanted.routeClass}`;
+    this.#letter.className = `letter ${colourClass(wanted.colour)}`;
     this.#title.textContent = wanted.name;
     if (this.#small) this.#draw();
     else this.#small = this.#start(wanted.position);

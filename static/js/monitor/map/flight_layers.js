@@ -1,6 +1,5 @@
 /** What is flown, where the last report was, and the ellipse of an estimate: layers between routes and labels. */
 
-import { routeNumber } from "../../domain/palette.js";
 import { addSources, setPaint, sourceOf } from "../../map/look/style.js";
 import { ellipseRing, metresPerPixel } from "./ellipse.js";
 
@@ -9,7 +8,7 @@ import { ellipseRing, metresPerPixel } from "./ellipse.js";
 /** @import { FeatureCollection, Geometry, MapLibreMap } from "../../map/types.d.ts" */
 /** @import { DrawnUav, FlownLine, OfferedRoute } from "../types.d.ts" */
 
-/** A UAV that is estimated or lost. @typedef {Pick<DrawnUav, "place" | "certainty" | "position" | "bound" | "last" | "words">} UncertainUav */
+/** A UAV that is estimated or lost. @typedef {Pick<DrawnUav, "colour" | "certainty" | "position" | "bound" | "last" | "words">} UncertainUav */
 
 const BEFORE = "line-labels";
 const LEAST_RING_PX = 14;
@@ -106,10 +105,10 @@ export function recolour(map, palette) {
   thinRoutes(map);
 }
 
-/** @param {{ place: number | null, certainty: string }} uav @param {Geometry} geometry */
+/** @param {{ colour: number | null, certainty: string }} uav @param {Geometry} geometry */
 const feature = (uav, geometry, more = {}) => ({
   type: "Feature",
-  properties: { route: uav.place === null ? 0 : routeNumber(uav.place), isLost: uav.certainty === "lost", ...more },
+  properties: { route: uav.colour ?? 0, isLost: uav.certainty === "lost", ...more },
   geometry,
 });
 const shown = new WeakMap(); // source → what it shows, in one text
@@ -132,10 +131,10 @@ function show(map, name, features, key = JSON.stringify(features)) {
 /** A line of thousands of places grows at its end. @param {FlownLine[]} uavs */
 const lineKey = (uavs) =>
   JSON.stringify(
-    uavs.map(({ place, parts }) => [place, parts.length, parts.at(-1)?.length, parts.at(-1)?.at(-1), parts[0]?.[0]]),
+    uavs.map(({ colour, parts }) => [colour, parts.length, parts.at(-1)?.length, parts.at(-1)?.at(-1), parts[0]?.[0]]),
   );
 
-/** uavs: [{ place, certainty, parts: [[lon lat, …], …] }] @param {MapLibreMap} map @param {FlownLine[]} uavs */
+/** uavs: [{ colour, certainty, parts: [[lon lat, …], …] }] @param {MapLibreMap} map @param {FlownLine[]} uavs */
 export function showFlown(map, uavs) {
   show(
     map,
@@ -163,7 +162,7 @@ function isClear(map, last, position) {
 }
 
 /**
- * uavs that are estimated or lost: [{ place, certainty, position, bound, last: lon lat or null, words }].
+ * uavs that are estimated or lost: [{ colour, certainty, position, bound, last: lon lat or null, words }].
  *
  * @param {MapLibreMap} map
  * @param {UncertainUav[]} uavs
@@ -194,7 +193,7 @@ export function showUncertain(map, uavs) {
 }
 
 /**
- * Routes of another plan that is offered: [{ place, geometry }].
+ * Routes of another plan that is offered: [{ colour, geometry }].
  *
  * @param {MapLibreMap} map
  * @param {OfferedRoute[]} routes
@@ -203,6 +202,6 @@ export function showOffered(map, routes) {
   show(
     map,
     "offered",
-    routes.map(({ place, geometry }) => feature({ place, certainty: "measured" }, geometry)),
+    routes.map(({ colour, geometry }) => feature({ colour, certainty: "measured" }, geometry)),
   );
 }

@@ -57,7 +57,7 @@ export function drawnUav(uav, now_ms, chosen, numbers = new Map()) {
     fact: mapFact(uav, certainty),
     isChosen: uav.id === chosen,
     isSimulated: uav.is_simulated,
-    routeClass: uav.place === null ? "" : `route-${routeNumber(uav.place)}`,
+    colour: uav.colour,
     bound: isSure || certainty === LOST ? null : (uav.estimated?.bound ?? null),
     last: isSure ? null : (uav.measured?.position ?? null),
     words: uav.measured ? t("last report {time}", { time: exactClockText(uav.measured.measured_at) }) : "",
@@ -83,20 +83,22 @@ function placesToFit(state) {
 
 /** @param {Pick<MonitorState, "missions" | "details">} state @returns {PlannedLine[]} */
 const plannedLines = ({ missions, details }) =>
-  missions.flatMap(({ id }) =>
-    (details.get(id)?.plan?.routes ?? []).map(({ geometry }, sequence) => ({ sequence, geometry })),
+  missions.flatMap(({ id, colours }) =>
+    (details.get(id)?.plan?.routes ?? []).map(({ geometry }, sequence) => ({
+      sequence,
+      geometry,
+      colour: routeNumber(sequence, colours),
+    })),
   );
 
 /** @param {Pick<MonitorState, "uavs" | "flown">} state @returns {FlownLine[]} */
-const flownLines = ({ uavs, flown }) => uavs.flatMap(({ id, place }) => ({ place, parts: flown.get(id) ?? [] }));
+const flownLines = ({ uavs, flown }) => uavs.flatMap(({ id, colour }) => ({ colour, parts: flown.get(id) ?? [] }));
 
 /** @param {PlannedLine[]} routes @returns {FeatureCollection} */
 const collection = (routes) => ({
   type: "FeatureCollection",
-  features: routes.flatMap(({ sequence, geometry }) =>
-    geometry
-      ? [{ type: "Feature", properties: { sequence, route: routeNumber(sequence), dashed: false }, geometry }]
-      : [],
+  features: routes.flatMap(({ sequence, geometry, colour }) =>
+    geometry ? [{ type: "Feature", properties: { sequence, route: colour, dashed: false }, geometry }] : [],
   ),
 });
 
@@ -113,6 +115,7 @@ const pillsOf = ({ missions, details, numbers: order }) =>
         key: `${mission.id} ${target.place}`,
         position,
         sequence: target.uav,
+        colour: target.uav === null ? null : routeNumber(target.uav, mission.colours),
         letter: target.uav === null ? "" : `${prefix}${routeLetter(target.uav)}`,
         number: numbers.get(target.place) ?? target.place + 1,
         name: `${pillOf(target, numbers, prefix)} ${target.label}`,

@@ -1,7 +1,7 @@
 /** Targets of what flies, by their state: complete filled, failed red, skipped dashed, the rest open. */
 
 import { h } from "../../dom.js";
-import { routeNumber } from "../../domain/palette.js";
+import { colourClass } from "../../domain/palette.js";
 import { maplibre } from "../../map/maplibre.js";
 import { mergePills } from "../../map/pills.js";
 import { t } from "../../text.js";
@@ -12,7 +12,7 @@ import { STATES } from "../board.js";
 /** @import { MapLibreMap } from "../../map/types.d.ts" */
 /** @import { Pill } from "../../map/pills.js" */
 
-/** @typedef {Omit<Pill, "x" | "y"> & { position: number[], state: TargetState }} TargetPill */
+/** @typedef {Omit<Pill, "x" | "y"> & { position: number[], state: TargetState, colour: number | null }} TargetPill */
 
 const MOST = 200;
 /** @param {TargetPill[]} members @returns {TargetState} */
@@ -47,7 +47,7 @@ export function createTargetPills(map) {
       const element = h(
         "span",
         {
-          class: `map-pill live-pill ${state} ${first.sequence === null ? "waiting" : `route-${routeNumber(first.sequence)}`}`,
+          class: `map-pill live-pill ${state} ${colourClass(first.colour) || "waiting"}`,
           role: "img",
           "aria-label": t("Target {label}: {names}", { label, names: words }),
           title: words,

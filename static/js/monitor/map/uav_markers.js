@@ -1,7 +1,7 @@
 /** UAVs on the map: a filled dart where one is measured, a hollow one where it is estimated, grey in a dotted ring where it is lost. */
 
 import { h, icon, svg } from "../../dom.js";
-import { routeNumber } from "../../domain/palette.js";
+import { colourClass } from "../../domain/palette.js";
 import { maplibre } from "../../map/maplibre.js";
 import { markSimulated } from "../../simulated.js";
 import { t } from "../../text.js";
@@ -58,7 +58,7 @@ function shapeOf(heading_deg) {
 
 /** @param {Parts} parts @param {MarkedUav} uav */
 function dress({ element, dart, letter, name, certainty, fact, alarm }, uav) {
-  const look = new Set([uav.certainty, uav.place === null ? "" : `route-${routeNumber(uav.place)}`]);
+  const look = new Set([uav.certainty, colourClass(uav.colour)]);
   for (const kind of LOOKS) element.classList.toggle(kind, look.has(kind)); // the map has classes of its own on it
   element.classList.toggle("chosen", uav.isChosen);
   const level = uav.alarm ?? null;

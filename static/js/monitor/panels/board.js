@@ -1,7 +1,7 @@
 /** The board and the log of events, one of them at a time. */
 
 import { byId, find, h, icon, keyedList, setChildren } from "../../dom.js";
-import { routeNumber } from "../../domain/palette.js";
+import { colourClass } from "../../domain/palette.js";
 import { simulatedMark } from "../../simulated.js";
 import { t } from "../../text.js";
 import { clockText, exactClockText, exactText } from "../../units.js";
@@ -76,12 +76,12 @@ function makeRow({ mission, place }, show) {
 }
 
 /** @param {HTMLTableRowElement} row @param {BoardRow} target */
-function refreshRow(row, { uav, pill, label, state, at, isExpected, reason }) {
+function refreshRow(row, { colour, pill, label, state, at, isExpected, reason }) {
   const { words, image } = STATES[state];
-  const key = JSON.stringify([uav, pill, label, state, at, reason]);
+  const key = JSON.stringify([colour, pill, label, state, at, reason]);
   if (row.dataset.key === key) return;
   row.dataset.key = key;
-  row.className = `${state} ${uav === null ? "" : `route-${routeNumber(uav)}`}`;
+  row.className = `${state} ${colourClass(colour)}`;
   find(row, ".pill").textContent = pill;
   find(row, "button").textContent = label;
   setChildren(row.cells[1], h("span", {}, icon(image, "small"), words), reason && h("small", {}, reason));

@@ -4,12 +4,12 @@ import { byId, h, icon, keyedList, refill } from "../../dom.js";
 import { certaintyOf } from "../../domain/certainty.js";
 import { commandWords, isOpen, KINDS, timesOf } from "../../domain/flying.js";
 import { alarmOf, alertsInOrder, isOpenAlert } from "../../domain/order.js";
-import { routeNumber } from "../../domain/palette.js";
+import { colourClass } from "../../domain/palette.js";
 import { profileOf } from "../../domain/route_profile.js";
 import { simulatedMark } from "../../simulated.js";
 import { t, tn } from "../../text.js";
 import { exactClockText, lengthText, numberText } from "../../units.js";
-import { messageWords } from "../alert_words.js";
+import { CONTACT_MEANS, messageWords } from "../alert_words.js";
 import { isNone } from "../arrival.js";
 import { numbersOf, pillOf } from "../board.js";
 import { letterOf, prefixOf } from "../call_signs.js";
@@ -237,7 +237,7 @@ class Card {
 
   /** An alert marks the card in its place. @param {LiveUav} uav @param {boolean} isChosen @param {AlertLevel | null} alarm @param {string} letter */
   #drawHead(uav, isChosen, alarm, letter) {
-    const route = uav.place === null ? "" : `route-${routeNumber(uav.place)}`;
+    const route = colourClass(uav.colour);
     this.element.className = `card ${route} ${isChosen ? "chosen" : ""} ${alarm ? `alarm-${alarm}` : ""}`;
     this.#alarm.hidden = alarm === null;
     refill(this.#alarm, alarm ?? "", () => (alarm ? [icon(LEVEL_ICONS[alarm]), unseen(LEVEL_WORDS[alarm])] : []));
@@ -266,6 +266,7 @@ class Card {
     const estimate = estimateWords(uav, certainty, now_ms);
     this.#estimate.hidden = estimate === null;
     if (!estimate) return;
+    this.#estimate.title = uav.estimated?.contact_expected_at ? CONTACT_MEANS : "";
     refill(this.#estimate, `${estimate.strong} ${estimate.rest}`, () => [
       icon("circle-dashed"),
       h("span", {}, h("strong", {}, estimate.strong), ` ${estimate.rest}`),

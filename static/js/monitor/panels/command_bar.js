@@ -2,7 +2,7 @@
 
 import { byId, h, icon } from "../../dom.js";
 import { KINDS } from "../../domain/flying.js";
-import { routeNumber } from "../../domain/palette.js";
+import { colourClass } from "../../domain/palette.js";
 import { menuOf, toggleMenu } from "../../page/chrome.js";
 import { t } from "../../text.js";
 import { batchScopes, whyNot } from "../batch.js";
@@ -110,7 +110,7 @@ export function mountCommandBar(store, commanding) {
     letter.hidden = uav.place === null;
     if (uav.place !== null) {
       letter.textContent = letterOf(uav, state.numbers);
-      letter.className = `letter route-${routeNumber(uav.place)}`;
+      letter.className = `letter ${colourClass(uav.colour)}`;
     }
     name.textContent = uav.name;
     const reason = whyNot(uav);

@@ -2,7 +2,7 @@
 
 import { ApiError, get, post } from "../../api.js";
 import { byId, h, icon, setChildren } from "../../dom.js";
-import { routeNumber } from "../../domain/palette.js";
+import { colourClass, routeNumber } from "../../domain/palette.js";
 import { askToClose } from "../../page/close_mission.js";
 import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
@@ -78,15 +78,18 @@ const computingCard = (offer) =>
     h("p", { class: "caption" }, causeWords(offer)),
   );
 
-/** What each UAV would fly. @param {LiveOffer} offer */
-const uavList = (offer) =>
+/** Of the mission that flies now. @param {Pick<MonitorState, "missions">} state @param {LiveOffer} offer */
+const coloursOf = ({ missions }, { mission }) => missions.find(({ id }) => id === mission)?.colours;
+
+/** What each UAV would fly. @param {LiveOffer} offer @param {readonly number[]} [colours] of its mission */
+const uavList = (offer, colours) =>
   h(
     "ul",
     { class: "offer-uavs" },
     uavLines(offer).map(({ place, letter, name, what, before, after, why }) => {
       const figures = (before || after) && h("small", {}, before ? `${before} → ${after}` : after);
       const said = h("span", {}, h("strong", {}, name), ` ${what}`, figures, why && h("small", {}, why));
-      return h("li", { class: `route-${routeNumber(place)}` }, h("span", { class: "letter" }, letter), said);
+      return h("li", { class: colourClass(routeNumber(place, colours)) }, h("span", { class: "letter" }, letter), said);
     }),
   );
 
@@ -121,7 +124,7 @@ function card(store, offer, canFly, whyNot) {
     { class: "offer" },
     h("h3", {}, icon("waypoints"), t("Re-plan offered")),
     h("p", {}, h("strong", {}, `${causeWords(offer)}.`), ` ${sentenceOf(offer)}.`),
-    uavList(offer),
+    uavList(offer, coloursOf(store.state, offer)),
     targetList(offer),
     whyNot ? h("p", { class: "caption" }, whyNot) : valid_until && until,
     canFly && buttons(store, offer, whyNot),
@@ -169,13 +172,13 @@ const openTargets = (missions, id) =>
     .filter(({ state }) => state === "pending" || state === "in-progress")
     .map(({ label }) => label);
 
-/** Routes of the plan that is offered, by the UAVs that would fly them; none where it cannot be read. @param {LiveOffer} offer @returns {Promise<OfferedRoute[]>} */
-async function readRoutes(offer) {
+/** Routes of the plan that is offered, by the UAVs that would fly them; none where it cannot be read. @param {LiveOffer} offer @param {readonly number[]} [colours] @returns {Promise<OfferedRoute[]>} */
+async function readRoutes(offer, colours) {
   try {
     const { data } = /** @type {Answer<Mission>} */ (await get(`/missions/${offer.continuation}`));
     return (differenceOf(offer).uavs ?? []).flatMap(({ place, continuation_place }) => {
       const geometry = data.plan?.routes[continuation_place ?? -1]?.geometry;
-      return geometry ? { place, geometry } : [];
+      return geometry ? { colour: routeNumber(place, colours), geometry } : [];
     });
   } catch (error) {
     if (!(error instanceof ApiError)) throw error;
@@ -195,7 +198,7 @@ export function mountOffers(store, page) {
     const wanted = offer?.continuation ?? "";
     if (wanted === routesOf) return;
     routesOf = wanted;
-    const offered = offer && wanted ? await readRoutes(offer) : [];
+    const offered = offer && wanted ? await readRoutes(offer, coloursOf(store.state, offer)) : [];
     if (routesOf === wanted) store.update({ offered });
   }
 

@@ -2,7 +2,7 @@
 
 import { ApiError, freshKey, get, patch, post, remove } from "../../api.js";
 import { byId, h, icon, keyedList, refill } from "../../dom.js";
-import { routeLetter, routeNumber } from "../../domain/palette.js";
+import { colourClass, routeLetter, routeNumber } from "../../domain/palette.js";
 import { confirmAct } from "../../page/confirm.js";
 import { say, toast } from "../../page/toast.js";
 import { t } from "../../text.js";
@@ -87,6 +87,7 @@ export function mountSimulation(store, page) {
 
 class SimulationPanel {
   #page;
+  #store;
   #state = byId("simulation-state");
   /** @type {Simulation | null} */
   #newest = null;
@@ -103,6 +104,7 @@ class SimulationPanel {
   /** @param {MonitorStore} store @param {MonitorPage} page */
   constructor(store, page) {
     this.#page = page;
+    this.#store = store;
     /** @type {Do} */
     const act = (send, words) => this.#done(send, words);
     this.#start = startForm(page, act);
@@ -151,6 +153,10 @@ class SimulationPanel {
     }
   }
 
+  get #colours() {
+    return this.#store.state.missions.find(({ id }) => id === this.#page.mission)?.colours;
+  }
+
   #draw() {
     const newest = this.#newest;
     const { words, isBad } = stateWords(newest, this.#page.canFly);
@@ -167,7 +173,7 @@ class SimulationPanel {
     const { words, isBad } = vehicleWords(vehicle);
     const others = (this.#newest?.vehicles ?? []).filter(isPresent).length - 1;
     const canEnd = this.#page.canFly && isPresent(vehicle) && others > 0;
-    row.className = `route-${routeNumber(vehicle.sequence)} ${isBad ? "bad" : ""}`;
+    row.className = `${colourClass(routeNumber(vehicle.sequence, this.#colours))} ${isBad ? "bad" : ""}`;
     refill(row, JSON.stringify([vehicle.name, words, canEnd]), () => [
       h("span", { class: "letter" }, routeLetter(vehicle.sequence)),
       h("span", {}, h("strong", {}, vehicle.name), h("small", {}, words)),

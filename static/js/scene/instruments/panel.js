@@ -11,7 +11,8 @@ import { certaintyText } from "./readings.js";
 
 /** @typedef {ReturnType<typeof createInstruments>} Instruments */
 
-export function createInstruments() {
+/** @param {readonly number[]} [colours] of the mission */
+export function createInstruments(colours) {
   const letter = h("span", { class: "letter" });
   const name = h("strong", {});
   const certainty = h("span", { class: "scene-certainty caption" });
@@ -56,7 +57,7 @@ export function createInstruments() {
       element.hidden = !route;
       if (!route) return;
       put(letter, routeLetter(route.place));
-      letter.className = `letter route-${routeNumber(route.place)}`;
+      letter.className = `letter route-${routeNumber(route.place, colours)}`;
       put(name, route.name);
       markSimulated(name, isMarked);
       list.hidden = !drawn;

@@ -150,6 +150,7 @@ export function liveSource({ detail, features = [] }) {
     hasDate: true,
     span: null,
     routes,
+    colours: detail.colours,
     targets: targetsOf(routes, detail.targets),
     events: [],
     /** of what was flown: a ribbon that has grown */

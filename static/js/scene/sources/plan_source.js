@@ -94,6 +94,7 @@ export function planSource(detail) {
     departs_ms,
     hasDate: Boolean(detail.departs_at),
     routes,
+    colours: detail.colours,
     span: spanOf(routes),
     targets: targetsOf(routes, detail.targets),
     events: [],

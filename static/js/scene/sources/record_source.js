@@ -57,6 +57,7 @@ export function recordSource(loaded) {
       pieces: [],
       track: trackOf([], [], 0),
     })),
+    colours: record.mission.colours,
     targets: [],
     events: [],
     windAt: (at_ms) => windMeasured(source.routes, at_ms),

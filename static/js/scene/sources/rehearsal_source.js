@@ -57,6 +57,7 @@ export function rehearsalSource({ detail, track, mission }) {
     departs_ms,
     hasDate: Boolean(mission.departs_at),
     routes,
+    colours: mission.colours,
     span: spanOf(routes),
     targets: targetsOf(routes, mission.targets),
     events: eventsOfRun(run.verdict, routes, departs_ms),
