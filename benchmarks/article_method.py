@@ -9,9 +9,10 @@ from dataclasses import dataclass
 
 import networkx as nx
 import numpy as np
-from inspection.network.inspection_graph import InspectionGraph
 from ortools.constraint_solver import pywrapcp, routing_enums_pb2
 from scipy.spatial import cKDTree
+
+from inspection.network.inspection_graph import InspectionGraph
 
 EARTH_RADIUS_M = 6_371_008.8  # IUGG mean radius
 NO_WAY_M = 10**8

@@ -17,16 +17,16 @@ from time import perf_counter, thread_time
 from typing import Any
 
 import numpy as np
+
+from benchmarks.make_graph import make, missions
+from benchmarks.report import machine, table, write_section
+from inspection.geodesy import LonLat
 from inspection.network.build.flyable import node_heights_m
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.network.legs import Attachments
 from inspection.network.paths.along_paths import steps_of_graph
 from inspection.network.paths.paths import travel_of_legs
 from inspection.network.route_index import route_index
-
-from benchmarks.make_graph import make, missions
-from benchmarks.report import machine, table, write_section
-from inspection.geodesy import LonLat
 from planning.connection_points import Ways
 from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
 from planning.energy.conditions import Conditions, WindLayer

@@ -30,14 +30,14 @@ django.setup()
 
 from django.conf import settings  # noqa: E402  # only importable once Django is set up
 from django.db import connection  # noqa: E402
+
+from inspection import selectors, services  # noqa: E402
+from inspection.geodesy import LonLat  # noqa: E402
 from inspection.network.inspection_graph import InspectionGraph  # noqa: E402
 from inspection.network.legs import Attachment  # noqa: E402
 from inspection.network.paths.access import clear_legs  # noqa: E402
 from inspection.network.paths.paths import travel_between  # noqa: E402
 from inspection.network.zones.zone_index import zones_of_graph  # noqa: E402
-
-from inspection import selectors, services  # noqa: E402
-from inspection.geodesy import LonLat  # noqa: E402
 
 
 def build_region(path: Path) -> float:

@@ -21,13 +21,12 @@ KEY = "large"
 
 def planner(folder: Path) -> None:
     """What a web worker does, in this process: map the stored graph and its index, and plan; prints the most memory it had."""
+    import config.wsgi  # noqa: F401, PLC0415 (all that a web worker has loaded)
+    from inspection.geodesy import LonLat  # noqa: PLC0415
     from inspection.network.paths.access import clear_legs  # noqa: PLC0415
     from inspection.network.paths.paths import travel_between  # noqa: PLC0415
     from inspection.network.snapshot_file import read_cleared  # noqa: PLC0415
     from inspection.network.zones.zone_index import ZoneIndex  # noqa: PLC0415
-
-    import config.wsgi  # noqa: F401, PLC0415 (all that a web worker has loaded)
-    from inspection.geodesy import LonLat  # noqa: PLC0415
 
     zones = ZoneIndex([], [], [])
     graph = read_cleared(folder / "graphs", key=KEY, zones=zones, version=1, ground_revision=1, tallest_m=math.inf)

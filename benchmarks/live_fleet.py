@@ -11,7 +11,6 @@ from uuid import UUID
 import numpy as np
 from django.contrib.gis.geos import Point
 from django.db import connection
-from tests.inspection.importers.terrain.tiffs import write_geotiff
 
 from inspection.models import Asset
 from inspection.services import import_terrain
@@ -21,6 +20,7 @@ from missions.services import TargetRequest, create_mission, plan_mission
 from missions.services.approval import approve_mission
 from telemetry.models import UavLink
 from tests.inspection import ground
+from tests.inspection.importers.terrain.tiffs import write_geotiff
 from tests.missions import worlds
 from tests.workspace.front_door import environment_of
 from workspace.models import Organisation, User

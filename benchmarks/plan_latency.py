@@ -20,10 +20,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 os.environ.setdefault("DJANGO_SETTINGS_MODULE", "config.settings")
 django.setup()
 
-from inspection.network.inspection_graph import InspectionGraph, NodeKind  # noqa: E402
-
 from benchmarks.article_method import ArticleMethod  # noqa: E402 (Django first)
 from inspection.geodesy import LonLat  # noqa: E402
+from inspection.network.inspection_graph import InspectionGraph, NodeKind  # noqa: E402
 from inspection.selectors import current_graph  # noqa: E402
 from missions.models import EndAction  # noqa: E402
 from missions.services import PlanRequest, TargetRequest, UavRequest, make_plan  # noqa: E402

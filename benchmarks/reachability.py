@@ -18,6 +18,10 @@ from time import perf_counter
 import numpy as np
 import orjson
 import shapely
+
+from benchmarks.make_graph import make
+from benchmarks.report import machine, table, write_section
+from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.flyable import flyable_part
 from inspection.network.build.network import Network
 from inspection.network.build.zone_masking import cleared
@@ -26,10 +30,6 @@ from inspection.network.inspection_graph import EdgeKind, NodeKind
 from inspection.network.route_index import route_index
 from inspection.network.rules import LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
-
-from benchmarks.make_graph import make
-from benchmarks.report import machine, table, write_section
-from inspection.geodesy import LonLat, distance_m
 from planning.connection_points import AccessRules
 from planning.energy.conditions import Conditions, WindLayer
 from planning.energy.path_cost import FlightClass

@@ -25,16 +25,16 @@ django.setup()
 from django.conf import settings  # noqa: E402 (Django first)
 from django.contrib.gis.geos import MultiPolygon, Polygon  # noqa: E402
 from django.db import transaction  # noqa: E402
-from inspection.network.build.network import Network  # noqa: E402
-from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind  # noqa: E402
-from inspection.network.snapshot_file import to_bytes  # noqa: E402
-from inspection.network.warm_up import rehearse  # noqa: E402
-from inspection.network.zones.zone_index import ZoneIndex  # noqa: E402
 
 from benchmarks.make_graph import make  # noqa: E402
 from benchmarks.report import machine, table, write_section  # noqa: E402
 from inspection.geodesy import distance_m  # noqa: E402
 from inspection.models import GraphSnapshot, NoFlyZone  # noqa: E402
+from inspection.network.build.network import Network  # noqa: E402
+from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind  # noqa: E402
+from inspection.network.snapshot_file import to_bytes  # noqa: E402
+from inspection.network.warm_up import rehearse  # noqa: E402
+from inspection.network.zones.zone_index import ZoneIndex  # noqa: E402
 from inspection.selectors.graph import rules_of_snapshots  # noqa: E402
 from inspection.selectors.planning import planning_read  # noqa: E402
 from inspection.services.ground import mark_ground_changed  # noqa: E402

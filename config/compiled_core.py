@@ -15,7 +15,7 @@ from pathlib import Path
 
 from config.private_servers import PROJECT_DIR, state_directory
 
-SOURCE_FOLDERS = ("inspection/geodesy", "inspection/graph", "planning")
+SOURCE_FOLDERS = ("inspection/geodesy", "inspection/network", "planning")
 SHIPPED = PROJECT_DIR / ".venv" / "compiled"
 LOCATOR = "config.compiled_places.ProjectCacheLocator"
 # Environment variables of numba that change the code, but not the names under which numba keeps it.
@@ -32,7 +32,7 @@ def compiled_stamp() -> str:
     for folder in SOURCE_FOLDERS:
         for path in sorted((PROJECT_DIR / folder).rglob("*.py")):
             content = path.read_bytes()  # constants of any may be compiled in
-            digest.update(f" {path.relative_to(PROJECT_DIR)} {len(content)} ".encode() + content)
+            digest.update(f" {folder}/{path.relative_to(PROJECT_DIR / folder)} {len(content)} ".encode() + content)
     return digest.hexdigest()
 
 

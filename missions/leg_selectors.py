@@ -7,10 +7,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from inspection.network.spans import Spans, spans_between, spans_of
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import FloatArray
+from inspection.network.spans import Spans, spans_between, spans_of
 from inspection.selectors import NoGraph, ground_heights_m, has_terrain
 from inspection.selectors.planning import planning_read
 from inspection.selectors.zone_table import zone_table

@@ -7,6 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
+from numba import njit
+from numpy.typing import NDArray
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy.local_frame import LocalFrame
+from inspection.geodesy.wgs84 import short_distance_m
 from inspection.network.build.network import Network
 from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import InspectionGraph
@@ -18,12 +24,6 @@ from inspection.network.paths.paths import Travel, travel_between_places
 from inspection.network.route_index import asset_places, node_tree
 from inspection.network.zones.zone_detours import Errand, ways_round
 from inspection.network.zones.zone_index import ZoneIndex
-from numba import njit
-from numpy.typing import NDArray
-
-from inspection.geodesy import LonLat, distance_m
-from inspection.geodesy.local_frame import LocalFrame
-from inspection.geodesy.wgs84 import short_distance_m
 from planning.problem import End
 
 FloatArray = NDArray[np.float64]

@@ -15,15 +15,15 @@ from itertools import pairwise
 from typing import Any, BinaryIO
 
 import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
 from inspection.network.nearness import EARTH_RADIUS_M
 from inspection.network.paths.contracted_graph import condense_columns
 from inspection.network.paths.hub_labels import label
 from inspection.network.paths.node_tree import NodeTree, tree_of
 from inspection.network.paths.paths import travel_of_legs
 from inspection.network.route_index import RouteIndex
-from numba import njit
-from numpy.typing import NDArray
-
 from planning.problem import FloatArray, IntArray, Objective, Problem, Routes, UavStart, Visit
 from planning.solver.cost_matrices import NO_WAY_M
 from planning.solver.exact import MAX_TARGETS, best_routes

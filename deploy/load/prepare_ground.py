@@ -36,12 +36,12 @@ from django.contrib.gis.geos import Point, Polygon  # noqa: E402
 from django.core.management import call_command  # noqa: E402
 from django.db import transaction  # noqa: E402
 from django.utils import timezone  # noqa: E402
-from inspection.network.build.network import Network  # noqa: E402
-from inspection.network.inspection_graph import EdgeKind, NodeKind  # noqa: E402
-from inspection.network.snapshot_file import to_bytes  # noqa: E402
 
 from inspection.geodesy import distance_m  # noqa: E402
 from inspection.models import Asset, AssetKind, GraphSnapshot  # noqa: E402
+from inspection.network.build.network import Network  # noqa: E402
+from inspection.network.inspection_graph import EdgeKind, NodeKind  # noqa: E402
+from inspection.network.snapshot_file import to_bytes  # noqa: E402
 from inspection.selectors.graph import rules_of_snapshots  # noqa: E402
 from inspection.selectors.ground import ground_revision  # noqa: E402
 from inspection.services.ground import mark_ground_changed  # noqa: E402

@@ -4,8 +4,9 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
-from inspection.geodesy.geometry_validator import GeometryFault
 from pyproj import CRS
+
+from inspection.geodesy.geometry_validator import GeometryFault
 
 MAX_ROWS = 200_000
 MAX_COLUMNS = 200

@@ -5,6 +5,7 @@ from typing import Any
 
 import networkx as nx
 import numpy as np
+
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 
 

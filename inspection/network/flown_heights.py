@@ -3,8 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from inspection.network.inspection_graph import NodeKind
 from numpy.typing import NDArray
+
+from inspection.network.inspection_graph import NodeKind
 
 FloatArray = NDArray[np.float64]
 

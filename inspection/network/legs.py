@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import chain, repeat
 
 import numpy as np
+
 from inspection.network.paths.contracted_graph import FloatArray, NumberArray
 
 Bends = tuple[tuple[float, float], ...]  # lon, lat [deg]

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
+
 from inspection.network.array_folder import Arrays, read_folder, write_folder
 from inspection.network.build.flyable import flyable_part, remember_flyable_part
 from inspection.network.build.network import Network

@@ -6,10 +6,10 @@ from heapq import heappop, heappush
 from itertools import pairwise
 
 import numpy as np
-from inspection.network.build.joining import join_vertices
-from inspection.network.infrastructure import Places, Ways
 
 from inspection.geodesy import LonLat, distance_m
+from inspection.network.build.joining import join_vertices
+from inspection.network.infrastructure import Places, Ways
 
 DETOUR_COST = 3.0  # per metre of a line that is not of the circuit; so much longer may the way along the circuit be
 

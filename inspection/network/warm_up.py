@@ -1,6 +1,9 @@
 """Every compiled function of the graph run once, so that it is compiled, or loaded, before somebody waits for it."""
 
 import numpy as np
+from shapely import box
+
+from inspection.geodesy import LonLat
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.network.legs import Attachment
 from inspection.network.paths.access import clear_legs
@@ -8,9 +11,6 @@ from inspection.network.paths.paths import travel_between
 from inspection.network.route_index import node_tree
 from inspection.network.zones.zone_detours import Errand, ways_round
 from inspection.network.zones.zone_index import ZoneIndex
-from shapely import box
-
-from inspection.geodesy import LonLat
 
 
 def rehearse() -> None:

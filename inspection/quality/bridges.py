@@ -1,8 +1,9 @@
 """Bridges without a way: nothing says what they carry."""
 
+from shapely import Point
+
 from inspection.quality.infrastructure import GapGround
 from inspection.quality.issue import Gap
-from shapely import Point
 
 
 def bridges_without_way(ground: GapGround) -> list[Gap]:

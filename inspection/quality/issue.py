@@ -8,7 +8,7 @@ from shapely.geometry.base import BaseGeometry
 
 @dataclass(frozen=True)
 class Gap:
-    """kind is a value of models.GapKind. cut_off_m is explained in data_gaps/search.py."""
+    """kind is a value of models.GapKind. cut_off_m is explained in quality/search.py."""
 
     kind: str
     key: str  # the same on every run, for as long as the gap is there

@@ -1,12 +1,12 @@
 """Ends of lines: those that should join, and those that end in nothing."""
 
 import numpy as np
-from inspection.quality.infrastructure import asset_key, place_key
-from inspection.quality.issue import Gap
-from inspection.quality.network import BoolArray, FloatArray, IntArray, NearLegs, Network
 from shapely import LineString, Point
 
 from inspection.network.nearness import nearest_within
+from inspection.quality.infrastructure import asset_key, place_key
+from inspection.quality.issue import Gap
+from inspection.quality.network import BoolArray, FloatArray, IntArray, NearLegs, Network
 
 JOIN_M = 6.0  # "a few metres": a mapper's slip; gantries of a substation stand 10 m and more apart
 TERMINAL_M = 150.0  # a substation's reach, as in the graph's rule for crossings

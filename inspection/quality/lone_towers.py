@@ -1,9 +1,6 @@
 """Towers that no line passes: one that stands alone, or a row of them whose line is not mapped."""
 
 import numpy as np
-from inspection.quality.infrastructure import asset_key
-from inspection.quality.issue import Gap
-from inspection.quality.network import BoolArray, FloatArray, IntArray, Network, metres_by
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import depth_first_order, minimum_spanning_tree
 from shapely import MultiPoint, Point
@@ -11,6 +8,9 @@ from shapely import MultiPoint, Point
 from inspection.geodesy import distance_m
 from inspection.network.build.edges import component_labels
 from inspection.network.nearness import nearest_within, pairs_within
+from inspection.quality.infrastructure import asset_key
+from inspection.quality.issue import Gap
+from inspection.quality.network import BoolArray, FloatArray, IntArray, Network, metres_by
 
 ROW_M = 550.0  # the widest usual span: towers nearer than that may stand in one row
 LINE_REACH_M = 500.0  # how far the nearest line is looked for

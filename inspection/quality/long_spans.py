@@ -1,11 +1,12 @@
 """Spans far longer than their line's others: towers that are not mapped."""
 
 import numpy as np
+from shapely import LineString
+
 from inspection.quality.infrastructure import asset_key, place_key
 from inspection.quality.issue import Gap
 from inspection.quality.network import FloatArray, Network
 from inspection.quality.spans import CLASSES, LONGER_THAN_OTHERS, LONGEST_IN_THE_WORLD_M, usual_span_m, way_classes
-from shapely import LineString
 
 
 def long_spans(network: Network) -> list[Gap]:

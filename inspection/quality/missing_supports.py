@@ -1,11 +1,12 @@
 """Line vertices without a tower, one gap for each line; and lines without any."""
 
 import numpy as np
+from shapely import MultiPoint
+
 from inspection.quality.infrastructure import asset_key
 from inspection.quality.issue import Gap
 from inspection.quality.line_ends import is_at_terminal
 from inspection.quality.network import BoolArray, FloatArray, IntArray, Network, metres_by
-from shapely import MultiPoint
 
 SHORTEST_LINE_M = 150.0  # what is shorter may hang between two portals
 

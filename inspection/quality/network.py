@@ -5,7 +5,6 @@ from functools import cached_property
 
 import numpy as np
 import shapely
-from inspection.quality.infrastructure import GapGround
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import breadth_first_order
@@ -15,6 +14,7 @@ from inspection.geodesy import distance_m
 from inspection.network.build.edges import component_labels
 from inspection.network.build.joining import JoinedVertices, join_vertices
 from inspection.network.nearness import EARTH_RADIUS_M
+from inspection.quality.infrastructure import GapGround
 
 IntArray = NDArray[np.int64]
 FloatArray = NDArray[np.float64]

@@ -1,8 +1,9 @@
 """Which distance between supports is usual on a line, and which one is far too long."""
 
 import numpy as np
-from inspection.quality.network import Network
 from numpy.typing import NDArray
+
+from inspection.quality.network import Network
 
 FloatArray = NDArray[np.float64]
 

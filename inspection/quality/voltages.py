@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from typing import Any
 
-from inspection.quality.infrastructure import GapGround, WayFacts, asset_key
-from inspection.quality.issue import Gap
 from shapely import Point
 
 from inspection.network.infrastructure import Ways
+from inspection.quality.infrastructure import GapGround, WayFacts, asset_key
+from inspection.quality.issue import Gap
 
 HIGHEST_V = 1_200_000  # the highest that was ever in service: 1,150 kV Ekibastuz to Kokshetau, 1,200 kV as tested at Bina
 MOST_VALUES = 6

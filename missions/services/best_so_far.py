@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.paths.passed import passed_on
 
 from inspection.geodesy import LonLat
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.paths.passed import passed_on
 from planning.connection_points import Ways
 from planning.problem import End, Objective, Problem, Routes
 from planning.solver.progress import Progress

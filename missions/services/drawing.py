@@ -7,12 +7,12 @@ from itertools import accumulate, chain, pairwise
 
 import numpy as np
 from django.utils.translation import gettext as _
+
+from inspection.geodesy import LonLat
 from inspection.network.build.flyable import node_heights_m
 from inspection.network.inspection_graph import NodeKind
 from inspection.network.paths.passed import BEND, passed_on
 from inspection.network.spans import spans_of
-
-from inspection.geodesy import LonLat
 from missions.models import EndAction
 from missions.services.assignment import route_end
 from missions.services.laid_out import LaidOut

@@ -4,9 +4,8 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from inspection.network.zones.zone_index import ZoneIndex
-
 from inspection.geodesy import LonLat
+from inspection.network.zones.zone_index import ZoneIndex
 from missions.services.attempts import Attempt
 from missions.services.battery import battery_overruns, not_lasting_for, without_overruns
 from missions.services.over_wires import (

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from django.conf import settings
 from django.utils.translation import gettext as _
-from inspection.network.build.network import Network
-from inspection.network.spans import spans_of
 
 from inspection.models import AssetKind
+from inspection.network.build.network import Network
+from inspection.network.spans import spans_of
 from inspection.selectors.planning import Edition, heights_at, planning_read
 from missions.leg_selectors import LegFlyer, speed_words, too_low_text
 from missions.models import EndAction, Mission

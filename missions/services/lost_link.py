@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 from django.conf import settings
+
 from inspection.network.build.network import Network
 from inspection.network.spans import spans_of
-
 from inspection.selectors.graph import zones_of_table
 from inspection.selectors.planning import heights_at, planning_read
 from inspection.zones.reach import ZoneTable

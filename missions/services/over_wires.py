@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 from django.conf import settings
+from numpy.typing import NDArray
+
+from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.network import Network
 from inspection.network.build.obstacles import index_of_walls, walls_along
 from inspection.network.spans import BESIDE_M, spans_of
 from inspection.network.zones.zone_index import ZoneIndex
-from numpy.typing import NDArray
-
-from inspection.geodesy import LonLat, distance_m
 from missions.services.attempts import Attempt
 from missions.services.plan_json import PlannedRoute
 from missions.services.refusals import LeftOut

@@ -10,10 +10,10 @@ import numpy as np
 from django.conf import settings
 from django.db.models.functions import Now
 from django.utils.translation import gettext as _
-from inspection.network.spans import spans_of
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
+from inspection.network.spans import spans_of
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import planning_read
 from inspection.zones.reach import ZoneTable

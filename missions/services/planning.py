@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 from django.conf import settings
-from inspection.network.build.obstacles import at_all_heights, with_walls
-from inspection.network.zones.zone_index import ZoneIndex
 
 from inspection.geodesy import LonLat
+from inspection.network.build.obstacles import at_all_heights, with_walls
+from inspection.network.zones.zone_index import ZoneIndex
 from inspection.selectors.planning import PlanningGround, edition_now, heights_at, planning_read, terrain_at
 from missions.flight_selectors import OtherFlights, flights_at_the_same_time
 from missions.services.apart import routes_apart

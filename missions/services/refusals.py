@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from django.conf import settings
+
+from inspection.geodesy import LonLat
 from inspection.network.build.network import Network
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.route_index import asset_places
 from inspection.network.zones.zone_index import ZoneIndex
-
-from inspection.geodesy import LonLat
 from inspection.selectors.planning import Edition
 from missions.fleet_selectors import states_out_of_service
 from missions.models import UavState

@@ -2,10 +2,10 @@
 
 import numpy as np
 from django.conf import settings
+
 from inspection.network.build.obstacles import too_tall_walls, with_walls
 from inspection.network.by_length import by_length
 from inspection.network.zones.zone_index import ZoneIndex
-
 from inspection.selectors.planning import PlanningGround, planning_read
 from inspection.zones.reach import BoolArray
 from missions.services.refusals import Scene

@@ -10,9 +10,9 @@ from django.db import connection
 from django.db.models import Max, Q
 from django.utils import timezone
 from django.utils.translation import gettext as _
-from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
 
 from inspection.geodesy import LonLat
+from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
 from missions.flight_selectors import STILL_FLOWN, route_in_time
 from missions.in_air_hooks import places_in_the_air
 from missions.models import CommandAxis, CommandKind, CommandState, Route, Uav, UavCommand, UavState

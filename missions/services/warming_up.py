@@ -3,10 +3,10 @@
 import logging
 
 from django.db import Error, connections
+
 from inspection.network.route_index import asset_places, node_tree, route_index
 from inspection.network.spans import spans_of
 from inspection.network.warm_up import rehearse as rehearse_ways
-
 from inspection.selectors import NoGraph
 from missions.services.scenes import current_scene
 from planning.solver.warm_up import rehearse as rehearse_solvers

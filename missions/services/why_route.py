@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import shapely
 from django.utils.translation import gettext as _
-from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.zones.zone_index import ZoneIndex
 
 from inspection.geodesy import LonLat, distance_m
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.zones.zone_index import ZoneIndex
 from missions.models import EndAction
 from missions.services.places import Place, places_of
 from missions.services.refusals import Scene, zone_at

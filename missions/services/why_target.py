@@ -5,13 +5,13 @@ from typing import Any
 
 import numpy as np
 import shapely
-from inspection.network.build.obstacles import NO_ZONE
-from inspection.network.route_index import node_tree
-from inspection.network.zones.zone_index import widen
 from shapely.geometry import LineString
 from shapely.ops import nearest_points
 
 from inspection.geodesy import LonLat, distance_m, path_length_m
+from inspection.network.build.obstacles import NO_ZONE
+from inspection.network.route_index import node_tree
+from inspection.network.zones.zone_index import widen
 from missions.fleet_selectors import uavs_of_organisation
 from missions.models import EndAction, UavState
 from missions.services.assignment import route_end

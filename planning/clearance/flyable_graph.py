@@ -2,7 +2,6 @@
 
 from inspection.network.build.flyable import flyable_part
 from inspection.network.inspection_graph import InspectionGraph
-
 from planning.rules import FlightRules
 
 

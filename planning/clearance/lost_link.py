@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from inspection.network.spans import Spans, spans_between
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.local_frame import LocalFrame
+from inspection.network.spans import Spans, spans_between
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute, Margins, ZoneFacts, breaches
 from planning.energy.conditions import Conditions, air_density
 from planning.energy.leg_cost import J_PER_WH, hold_taken, landing_taken, leg_taken, speeds, table_of

@@ -10,11 +10,11 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 import shapely
-from inspection.network.spans import Spans
 from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy.local_frame import LocalFrame
+from inspection.network.spans import Spans
 from planning.rules import FlightRules
 from planning.trajectory.heights import GroundHeights
 from planning.trajectory.waypoints import BASE, NONE, FloatArray, RoutePoints, Waypoints

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
-from inspection.network.spans import Spans
 
 from inspection.geodesy import LonLat, distance_m
+from inspection.network.spans import Spans
 from planning.clearance.zone_clearance import TAKE_OFF, BoolArray, FlownRoute, Margins, ZoneFacts, breaches
 from planning.trajectory.heights import SAMPLE_SPACING_M, GroundHeights
 from planning.trajectory.spans_below import tops_below

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from itertools import accumulate, chain
 
 import numpy as np
-from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.paths.along_paths import chain_arrays
-from inspection.network.paths.contracted_graph import NumberArray
 from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.short_vector import short_vector_m
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.paths.along_paths import chain_arrays
+from inspection.network.paths.contracted_graph import NumberArray
 from planning.connection_points import Ways
 from planning.energy.conditions import Conditions, air_density
 from planning.energy.leg_cost import J_PER_WH, Speeds, landing_taken, leg_taken, stay_taken, take_off_taken

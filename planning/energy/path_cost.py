@@ -10,6 +10,10 @@ from typing import NamedTuple
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from inspection.geodesy.short_vector import short_vector_m
 from inspection.network.build.flyable import node_heights_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.along_paths import Sums, leg_of_way, quantities_of_pairs, steps_of_graph, sums_along
@@ -17,10 +21,6 @@ from inspection.network.paths.contracted_graph import NumberArray
 from inspection.network.paths.hub_labels import IntArray
 from inspection.network.paths.paths import DIRECT, Travel
 from inspection.network.route_index import route_index
-from numba import njit
-from numpy.typing import NDArray
-
-from inspection.geodesy.short_vector import short_vector_m
 from planning.energy.conditions import Conditions, air_density, wind_in_table
 from planning.energy.leg_cost import J_PER_WH, Speeds, is_closed, leg_taken, speeds, table_of, taken_in_wind
 from planning.energy.performance import Performance

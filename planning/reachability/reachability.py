@@ -9,6 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from numba import njit
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.build.network import Network
 from inspection.network.flown_heights import asset_heights_m
 from inspection.network.inspection_graph import InspectionGraph, NodeKind
@@ -20,12 +26,6 @@ from inspection.network.paths.node_tree import points_on_sphere
 from inspection.network.paths.one_to_all import Crossroads, crossroads, spread
 from inspection.network.route_index import node_tree, route_index
 from inspection.network.zones.zone_index import ZoneIndex
-from numba import njit
-from numpy.typing import NDArray
-from scipy.spatial import cKDTree
-
-from inspection.geodesy import LonLat, distance_m
-from inspection.geodesy.local_frame import LocalFrame
 from planning.connection_points import AccessRules, Terminal, access_legs, direct_legs
 from planning.energy.conditions import Conditions
 from planning.energy.leg_cost import J_PER_WH

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
+from numpy.typing import NDArray
+
 from inspection.network.build.network import Network
 from inspection.network.inspection_graph import InspectionGraph, NodeKind
-from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -3,10 +3,10 @@
 from dataclasses import fields
 
 import numpy as np
+
 from inspection.network.build.network import Network
 from inspection.network.warm_up import BESIDE, graph_to_rehearse_on
 from inspection.network.zones.zone_index import ZoneIndex
-
 from planning.connection_points import AccessRules, Terminal, ways_between
 from planning.energy.path_cost import FlightClass
 from planning.energy.performance import Performance

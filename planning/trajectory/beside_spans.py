@@ -4,11 +4,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from inspection.network.spans import BESIDE_M, Spans, cell_of
-from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
 from numba import njit
 from numpy.typing import NDArray
 
+from inspection.network.spans import BESIDE_M, Spans, cell_of
+from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
 from planning.trajectory.waypoints import NONE, FloatArray, IntArray
 
 AT_M = 1.0  # rounding of positions

@@ -3,10 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from inspection.network.spans import Spans
 from numpy.typing import NDArray
 
 from inspection.geodesy import distance_m
+from inspection.network.spans import Spans
 from planning.rules import FlightRules
 from planning.trajectory.beside_spans import legs_beside, points_beside, stretches_too_low
 from planning.trajectory.heights import GroundHeights

@@ -2,9 +2,9 @@
 
 import numpy as np
 import shapely
-from inspection.network.spans import Spans
 
 from inspection.geodesy.local_frame import LocalFrame
+from inspection.network.spans import Spans
 from planning.clearance.obstacle_clearance import lines_between, spans_near
 from planning.trajectory.heights import GroundHeights
 from planning.trajectory.waypoints import FloatArray

@@ -1,11 +1,11 @@
 """The compiled parts of drawing and of keeping apart run once, so that they are compiled, or loaded, before somebody waits for it."""
 
 import numpy as np
+
+from inspection.geodesy import LonLat
 from inspection.network.spans import spans_between
 from inspection.network.warm_up import graph_to_rehearse_on
 from inspection.network.zones.zone_index import ZoneIndex
-
-from inspection.geodesy import LonLat
 from planning.clearance.obstacle_clearance import spans_too_near
 from planning.connection_points import AccessRules, Terminal, ways_between
 from planning.energy.assignment_costs import Finish, flight_costs

@@ -1,8 +1,8 @@
 """What a rehearsal is held against: zones, terrain, towers and wires of the ground as it is now."""
 
 import numpy as np
-from inspection.network.spans import Spans, spans_of
 
+from inspection.network.spans import Spans, spans_of
 from inspection.selectors import NoGraph
 from inspection.selectors.planning import PlanningGround, heights_at
 from simulation.rehearsing.ground import Heights

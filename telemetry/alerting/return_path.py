@@ -8,9 +8,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from inspection.network.spans import Spans
 
 from inspection.geodesy import LonLat, distance_m
+from inspection.network.spans import Spans
 from mavlink.approved_route import HOVER, Flight, FrozenWaypoint
 from planning.clearance.obstacle_clearance import legs_too_near
 from planning.clearance.zone_clearance import TAKE_OFF, FlownRoute, Margins, ZoneFacts, breaches

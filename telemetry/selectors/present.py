@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 from django.utils.dateparse import parse_datetime
-from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
 
 from inspection.geodesy import LonLat
+from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
 from missions.models import Uav
 from telemetry.models import UavLink, UavWatch
 

@@ -5,10 +5,10 @@ from datetime import datetime, timedelta
 
 import numpy as np
 from django.conf import settings
-from inspection.network.spans import spans_of
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from inspection.geodesy import LonLat
+from inspection.network.spans import spans_of
 from inspection.selectors import ground_heights_m
 from inspection.selectors.planning import planning_read
 from mavlink.approved_route import Flight

@@ -7,9 +7,9 @@ from datetime import datetime
 import numpy as np
 import shapely
 from django.utils.translation import gettext as _
-from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
 
 from inspection.models import Asset
+from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON
 from inspection.selectors import asset_label, assets_near, ground_heights_m
 from inspection.selectors.zone_table import zone_table
 from missions.models import Uav

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-OWN_ZONE_FILES = Path(__file__).with_name("zones") / "files"
+OWN_ZONE_FILES = Path(__file__).with_name("importers") / "zones" / "files"
 
 
 @pytest.fixture(scope="session")

@@ -9,10 +9,10 @@ from django.contrib import admin
 from django.contrib.gis.geos import LineString, Point
 from django.test import Client
 from django.urls import reverse
-from inspection.network.infrastructure import NO_OSM_NODE
 
 import config.urls  # noqa: F401 - the models are registered when the addresses are read
 from inspection.models import Asset, AssetKind, DataImport, ImportKind, NoFlyZone, ZoneSet
+from inspection.network.infrastructure import NO_OSM_NODE
 from inspection.selectors import ground_revision
 from inspection.services import WrongGeometry, save_asset
 from missions.models import InspectionTarget, Mission, Uav

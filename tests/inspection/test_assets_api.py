@@ -5,9 +5,9 @@ from typing import Any
 import pytest
 from django.test import Client
 from django.utils import timezone
-from inspection.network.snapshot_file import LAYOUT
 
 from inspection.models import Asset, DataImport, GraphSnapshot, TerrainTile, ZoneSet
+from inspection.network.snapshot_file import LAYOUT
 from inspection.selectors import asset_detail, asset_label
 from inspection.services import mark_ground_changed
 from tests.inspection.ground import bridge, line, railway, square, tower, zone

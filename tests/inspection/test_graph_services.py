@@ -15,6 +15,10 @@ from django.contrib.gis.geos import LineString, MultiPolygon, Point, Polygon
 from django.core.management import CommandError, call_command
 from django.db import connection, connections
 from django.utils import timezone
+
+from inspection import selectors, services, tasks
+from inspection.geodesy import LonLat
+from inspection.models import Asset, AssetKind, GraphSnapshot, NoFlyZone
 from inspection.network.build.flyable import flyable_part
 from inspection.network.inspection_graph import InspectionGraph, NodeKind
 from inspection.network.legs import Attachment
@@ -23,10 +27,6 @@ from inspection.network.route_index import route_index
 from inspection.network.rules import LinkingRules
 from inspection.network.snapshot_file import CLEARED, NETWORKS
 from inspection.network.zones.zone_index import ZoneIndex
-
-from inspection import selectors, services, tasks
-from inspection.geodesy import LonLat
-from inspection.models import Asset, AssetKind, GraphSnapshot, NoFlyZone
 from inspection.selectors import graph as graph_selectors
 from inspection.selectors.graph import KEPT, _Kept, graph_for
 from inspection.selectors.planning import planning_read

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 from django.test import Client
-from inspection.importers.assets.mapping import MAX_EXTERNAL_ID
 
+from inspection.importers.assets.mapping import MAX_EXTERNAL_ID
 from inspection.models import Asset, AssetReference, DataImport
 from inspection.selectors import ground_revision
 from inspection.services import AssetFileError, import_assets

@@ -6,9 +6,9 @@ from io import StringIO
 import pytest
 from django.core.management import call_command
 from django.core.management.base import CommandError
+
 from inspection.importers.osm.file_validator import OsmFileError
 from inspection.importers.osm.reader import read_osm
-
 from inspection.models import Asset, DataImport, Ground
 from inspection.services import import_osm
 from tests.cases import long

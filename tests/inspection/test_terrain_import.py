@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from django.core.management import call_command
 from django.core.management.base import CommandError
-from inspection.importers.terrain.geotiff import GeoTiff
 
+from inspection.importers.terrain.geotiff import GeoTiff
 from inspection.models import DataImport, TerrainTile
 from inspection.selectors import ground_heights_m, has_terrain
 from inspection.selectors.terrain import ground_truth

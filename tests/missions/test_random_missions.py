@@ -11,9 +11,9 @@ import networkx as nx
 import numpy as np
 import pytest
 import shapely
-from inspection.network.inspection_graph import InspectionGraph
 
 from inspection.geodesy import distance_m, path_length_m
+from inspection.network.inspection_graph import InspectionGraph
 from inspection.selectors import zones_in_force
 from inspection.selectors.planning import planning_read
 from inspection.services import import_osm

@@ -7,6 +7,8 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.flyable import flyable_part
 from inspection.network.build.network import Network
 from inspection.network.build.zone_masking import cleared
@@ -14,8 +16,6 @@ from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import EdgeKind, NodeKind
 from inspection.network.rules import LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
-
-from inspection.geodesy import LonLat, distance_m
 from planning.connection_points import AccessRules, Terminal, ways_between
 from planning.energy.assignment_costs import Finish, flight_costs
 from planning.energy.conditions import Conditions, WindLayer

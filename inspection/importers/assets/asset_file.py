@@ -7,6 +7,8 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 import shapely
+from shapely import LineString, MultiLineString, MultiPolygon, Point
+
 from inspection.geodesy.geometry_validator import MAX_LINE_VERTICES, GeometryFault, VertexBudget, checked_geometry, checked_line
 from inspection.importers.archive import Archive, opened_archive
 from inspection.importers.assets.delimited import delimited_source
@@ -17,7 +19,6 @@ from inspection.importers.assets.reference_systems import ROUGH_M, ToWgs84, name
 from inspection.importers.assets.shapefiles import shapefile_source
 from inspection.importers.faults import MAX_FAULTS
 from inspection.importers.rows import MAX_ROWS, AssetFileError, Cell, RawRow, Source, refused
-from shapely import LineString, MultiLineString, MultiPolygon, Point
 
 MAX_VERTICES = 2_000_000
 MAX_PARTS = 5_000  # lines of one row

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import shapely
+
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.rows import (
     MAX_COLUMNS,

@@ -8,11 +8,12 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
+from pyproj import CRS
+
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.assets.reference_systems import system_of_code, system_of_wkt
 from inspection.importers.assets.wkb import geometry_of_wkb
 from inspection.importers.rows import MAX_ROW_CHARACTERS, MAX_ROWS, Columns, RawRow, Source, plain_cell, refused
-from pyproj import CRS
 
 _STEPS_BETWEEN_LOOKS = 10_000
 _MAX_STEPS = 50_000_000  # of SQLite's machine for one query; an honest table of 200,000 rows takes a fifth

@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 import shapely
+from shapely.geometry.base import BaseGeometry
+
+from inspection.geodesy import path_length_m
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.assets.asset_file import Row, RowFaults, Shape
 from inspection.importers.assets.delimited import number_of
 from inspection.importers.osm.tags import CABLE_KINDS, MAX_HEIGHT_M, RAILWAYS_OUT_OF_USE, circuits, length_m, voltages_v
 from inspection.importers.rows import Cell, refused
-from shapely.geometry.base import BaseGeometry
-
-from inspection.geodesy import path_length_m
 
 RECORD_VERSION = 1  # counted up when the rules that make records change, so that the next import refreshes the rows
 KINDS = ("tower", "line", "railway", "bridge")

@@ -5,13 +5,13 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from inspection.geodesy.geometry_validator import GeometryFault
-from inspection.importers.rows import refused
 from pyproj import CRS, Transformer, network
 from pyproj.exceptions import CRSError, ProjError
 from pyproj.transformer import TransformerGroup
 
 from inspection.geodesy import LonLat
+from inspection.geodesy.geometry_validator import GeometryFault
+from inspection.importers.rows import refused
 
 MAX_WKT_CHARACTERS = 16 * 1024
 ROUGH_M = 2.0  # an accuracy worse than this is told

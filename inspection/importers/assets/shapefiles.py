@@ -9,6 +9,7 @@ from pathlib import PurePosixPath
 from typing import IO, Any
 
 import shapefile
+
 from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.importers.archive import Archive
 from inspection.importers.assets.reference_systems import MAX_WKT_CHARACTERS, system_of_wkt

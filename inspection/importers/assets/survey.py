@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import shapely
+
 from inspection.importers.assets.asset_file import Row, Shape
 from inspection.importers.assets.delimited import number_of
 from inspection.importers.rows import Cell

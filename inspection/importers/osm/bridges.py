@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from inspection.importers.osm.records import AssetRecord
-from inspection.importers.osm.tags import bridge_width_m, height_m
 from shapely import LineString, MultiPolygon, Point, Polygon, STRtree
 from shapely.geometry.base import BaseGeometry
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.geodesy.wgs84 import FloatArray
+from inspection.importers.osm.records import AssetRecord
+from inspection.importers.osm.tags import bridge_width_m, height_m
 
 LYING_ON_SHARE = 0.5  # a way lies on an area if at least half of its length does
 AREA_TOLERANCE_M = 1.0  # edges of areas are drawn along the way's own nodes now and then

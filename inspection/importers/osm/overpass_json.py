@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any, TextIO
 
 import osmium
+from osmium.osm import mutable
+
 from inspection.importers.osm.file_validator import OsmFileError, OsmFormat, open_unpacked
 from inspection.importers.osm.overpass import complaint
-from osmium.osm import mutable
 
 MAX_ELEMENT_CHARACTERS = 16 * 1024 * 1024
 MAX_REMARK_CHARACTERS = 10_000

@@ -9,18 +9,18 @@ from typing import Any
 
 import numpy as np
 import osmium
-from inspection.importers.osm import tags as meaning
-from inspection.importers.osm.areas import BrokenArea, polygon_of_relation, polygon_of_ring
-from inspection.importers.osm.bridges import BridgeArea, BridgeWay, bridges_of
-from inspection.importers.osm.file_validator import OsmFileError, OsmFormat, Progress, examine
-from inspection.importers.osm.overpass_json import rewrite_as_pbf
-from inspection.importers.osm.records import AssetRecord, Extent, OsmContent
 from numpy.typing import NDArray
 from osmium.filter import KeyFilter
 from shapely import LineString, Point
 
 from inspection.geodesy import LonLat, distance_m
 from inspection.geodesy.wgs84 import FloatArray
+from inspection.importers.osm import tags as meaning
+from inspection.importers.osm.areas import BrokenArea, polygon_of_relation, polygon_of_ring
+from inspection.importers.osm.bridges import BridgeArea, BridgeWay, bridges_of
+from inspection.importers.osm.file_validator import OsmFileError, OsmFormat, Progress, examine
+from inspection.importers.osm.overpass_json import rewrite_as_pbf
+from inspection.importers.osm.records import AssetRecord, Extent, OsmContent
 
 MAX_NODES_KEPT = 50_000_000  # four times the nodes of all the world's power lines; more is not infrastructure
 MAX_NODES_PER_WAY = 10_000  # OSM itself stops at 2,000

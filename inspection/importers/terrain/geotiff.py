@@ -5,14 +5,15 @@ from collections import OrderedDict
 from typing import IO, Any
 
 import numpy as np
+from numpy.typing import NDArray
+from pyproj import CRS
+from pyproj.exceptions import CRSError
+
 from inspection.importers.terrain.errors import TerrainFileError
 from inspection.importers.terrain.raster import Kind, Window, window_of
 from inspection.importers.terrain.tiff_directory import TiffDirectory
 from inspection.importers.terrain.tiff_unpacking import NAMES, NONE, READ, unpacked_part, without_predictor
 from inspection.importers.terrain.vertical_datum import datum_of_codes, metres_of_unit, refuse_if_ellipsoidal
-from numpy.typing import NDArray
-from pyproj import CRS
-from pyproj.exceptions import CRSError
 
 MOST_POSTS = 200_000_000
 MOST_PARTS = 1_000_000

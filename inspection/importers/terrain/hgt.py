@@ -4,6 +4,7 @@ import re
 from typing import IO
 
 import numpy as np
+
 from inspection.importers.terrain.errors import TerrainFileError
 from inspection.importers.terrain.raster import Window, window_of
 

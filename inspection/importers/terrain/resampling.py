@@ -4,14 +4,14 @@ import math
 import warnings
 
 import numpy as np
-from inspection.importers.terrain.errors import TerrainFileError
-from inspection.importers.terrain.geotiff import MOST_POSTS, GeoTiff
-from inspection.importers.terrain.raster import Kind, Raster, Window
 from pyproj import CRS, Transformer, network
 from pyproj.exceptions import ProjError
 from pyproj.transformer import TransformerGroup
 
 from inspection.geodesy.wgs84 import FloatArray, distance_m
+from inspection.importers.terrain.errors import TerrainFileError
+from inspection.importers.terrain.geotiff import MOST_POSTS, GeoTiff
+from inspection.importers.terrain.raster import Kind, Raster, Window
 from inspection.terrain.height_grid import HeightGrid
 
 SAME_DEG = 2e-5  # some 2 m: ETRS89 and its like are taken for WGS 84

@@ -3,8 +3,9 @@
 from typing import IO, Any, Literal
 
 import numpy as np
-from inspection.importers.terrain.errors import TerrainFileError
 from numpy.typing import NDArray
+
+from inspection.importers.terrain.errors import TerrainFileError
 
 TIFF_STARTS = (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+")  # classic and BigTIFF
 MOST_ENTRIES = 1_000

@@ -3,8 +3,9 @@
 import zlib
 
 import numpy as np
-from inspection.importers.terrain.errors import TerrainFileError
 from numpy.typing import NDArray
+
+from inspection.importers.terrain.errors import TerrainFileError
 
 NONE, LZW, DEFLATE, PACKBITS, OLD_DEFLATE = 1, 5, 8, 32773, 32946
 READ = (NONE, LZW, DEFLATE, PACKBITS, OLD_DEFLATE)

@@ -1,8 +1,9 @@
 """From where heights count: the names of vertical datums, and heights above the ellipsoid, which are refused."""
 
-from inspection.importers.terrain.errors import TerrainFileError
 from pyproj import CRS
 from pyproj.exceptions import CRSError
+
+from inspection.importers.terrain.errors import TerrainFileError
 
 LONGEST_NAME = 50
 _NAMES = {5773: "EGM96", 5798: "EGM84", 3855: "EGM2008", 5703: "NAVD88", 6360: "NAVD88", 5621: "EVRF2007", 7837: "DHHN2016"}

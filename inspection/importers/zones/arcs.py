@@ -3,9 +3,9 @@
 from math import acos, ceil, cos, pi
 
 import numpy as np
-from inspection.geodesy.geometry_validator import GeometryFault
 
 from inspection.geodesy import LonLat
+from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.geodesy.wgs84 import WGS84, FloatArray
 
 FARTHEST_M = 0.5  # that a side may be from the curve; in aeronautical files radii themselves are rounded to 19 m and more

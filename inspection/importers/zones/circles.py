@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 import shapely
-from inspection.geodesy.geometry_validator import GeometryFault, VertexBudget, polygons_of_rings
 from shapely import MultiPolygon, Polygon
 
 from inspection.geodesy import LonLat
+from inspection.geodesy.geometry_validator import GeometryFault, VertexBudget, polygons_of_rings
 from inspection.geodesy.wgs84 import WGS84, FloatArray
 
 CORNERS = 64

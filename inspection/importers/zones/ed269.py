@@ -11,7 +11,6 @@ from inspection.importers.zones.circles import checked_radius_m, enclosing_polyg
 from inspection.importers.zones.height_bands import height_band
 from inspection.importers.zones.records import ZoneRecord
 from inspection.importers.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
-
 from inspection.zones.schedule import checked_schedule
 
 _OWN_FIELDS = {"identifier", "name", "restriction", "geometry", "applicability"}

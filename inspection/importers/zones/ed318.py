@@ -12,7 +12,6 @@ from inspection.importers.zones.geojson import is_hidden, left_out
 from inspection.importers.zones.height_bands import height_band
 from inspection.importers.zones.records import ZoneRecord
 from inspection.importers.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
-
 from inspection.zones.schedule import checked_schedule, moment_of
 
 TYPES = ("USPACE", "PROHIBITED", "REQ_AUTHORIZATION", "CONDITIONAL", "NO_RESTRICTION")

@@ -11,6 +11,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from shapely import MultiPolygon
+
+from inspection.geodesy import LonLat
 from inspection.geodesy.geometry_validator import (
     MAX_POLYGON_VERTICES,
     MAX_POLYGONS,
@@ -19,16 +22,13 @@ from inspection.geodesy.geometry_validator import (
     VertexBudget,
     polygons_of_rings,
 )
+from inspection.geodesy.wgs84 import FloatArray
 from inspection.importers.faults import FaultList
 from inspection.importers.zones.arcs import arc, arc_between, circle_ring
 from inspection.importers.zones.loops import area_of_all_loops
 from inspection.importers.zones.openair_values import has_sixty, height_of, length_m_of, number_of, position_of
 from inspection.importers.zones.records import HeightBand, UnreadRecord, ZoneRecord
 from inspection.importers.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
-from shapely import MultiPolygon
-
-from inspection.geodesy import LonLat
-from inspection.geodesy.wgs84 import FloatArray
 
 CLASSES = {
     "R": "Restricted", "Q": "Danger", "P": "Prohibited", "A": "Class A", "B": "Class B", "C": "Class C", "D": "Class D", "E": "Class E",

@@ -3,12 +3,11 @@
 import re
 from math import isfinite
 
+from inspection.geodesy import LonLat
 from inspection.geodesy.geometry_validator import GeometryFault, checked_position
 from inspection.importers.zones.circles import checked_radius_m
 from inspection.importers.zones.height_bands import MAX_LIMIT_M
 from inspection.importers.zones.records import FOOT_M
-
-from inspection.geodesy import LonLat
 
 NAUTICAL_MILE_M = 1_852.0
 FLIGHT_LEVEL_M = 100 * FOOT_M

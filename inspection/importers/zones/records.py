@@ -3,8 +3,9 @@
 from dataclasses import dataclass, field
 from typing import Any
 
-from inspection.geodesy.geometry_validator import GeometryFault
 from shapely import MultiPolygon
+
+from inspection.geodesy.geometry_validator import GeometryFault
 
 FOOT_M = 0.3048
 NO_CEILING = 99_999  # written by some sources (Switzerland) where there is no upper limit

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 import shapely
+
 from inspection.network.build.network import network
 from inspection.network.build.zone_masking import ClearedGraph, cleared
 from inspection.network.flown_heights import FlownHeights

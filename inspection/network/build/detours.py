@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from itertools import combinations, pairwise
 
 import numpy as np
+from numpy.typing import NDArray
+
 from inspection.network.build.edges import NO_ASSET, Edges, component_labels
 from inspection.network.build.flown_nodes import FlownNodes
 from inspection.network.flown_heights import FlownHeights
@@ -12,7 +14,6 @@ from inspection.network.nearness import on_unit_sphere
 from inspection.network.rules import LinkingRules
 from inspection.network.zones.zone_detours import Errand, WayRound, ways_round
 from inspection.network.zones.zone_index import ZoneIndex
-from numpy.typing import NDArray
 
 ALL_PAIRS = 6  # up to so many stumps of a gap each is joined to each; of more
 NEAREST = 3  # each to the nearest, and to its neighbours all round

@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from inspection.network.inspection_graph import EdgeKind
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 from inspection.geodesy import distance_m
+from inspection.network.inspection_graph import EdgeKind
 
 IntArray = NDArray[np.int64]
 FloatArray = NDArray[np.float64]

@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+
 from inspection.network.flown_heights import FlownHeights, asset_heights_m
 from inspection.network.zones.zone_index import ZoneIndex
-from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

@@ -4,10 +4,11 @@ from dataclasses import replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
+
 from inspection.network.build.network import Network
 from inspection.network.flown_heights import asset_heights_m
 from inspection.network.inspection_graph import InspectionGraph
-from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
 

@@ -3,10 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from inspection.network.infrastructure import NO_OSM_NODE, Places, Ways
-from inspection.network.nearness import chord, nearest_within, on_unit_sphere
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
+
+from inspection.network.infrastructure import NO_OSM_NODE, Places, Ways
+from inspection.network.nearness import chord, nearest_within, on_unit_sphere
 
 TOUCH_M = 1.0  # a vertex that a curator draws so near to another one is meant to be it
 

@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
+
 from inspection.network.build.detours import Gap
 from inspection.network.build.edges import Edges, component_labels, edges_of
 from inspection.network.build.flown_nodes import FlownNodes
@@ -11,7 +13,6 @@ from inspection.network.inspection_graph import EdgeKind
 from inspection.network.nearness import nearest_within, pairs_within
 from inspection.network.rules import LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
-from numpy.typing import NDArray
 
 TRIES = 8  # the nearest, and when a zone is in the way as many more
 

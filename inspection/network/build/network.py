@@ -3,6 +3,8 @@
 from dataclasses import dataclass, fields
 
 import numpy as np
+from numpy.typing import NDArray
+
 from inspection.network.build.edges import Edges, cheapest_per_pair, component_labels, costs, edges_of, joined, lengths_m, without_seam
 from inspection.network.build.joining import JoinedVertices, join_vertices
 from inspection.network.build.links import bridge_links, crossing_links, railway_crossing_links
@@ -11,7 +13,6 @@ from inspection.network.flown_heights import UNTAGGED_HEIGHT_M
 from inspection.network.infrastructure import GroundData, Places, Ways
 from inspection.network.inspection_graph import EdgeKind, NodeKind, read_only
 from inspection.network.rules import LinkingRules
-from numpy.typing import NDArray
 
 NO_PLACES = Places(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros((0, 2)), np.zeros(0))
 

@@ -5,11 +5,12 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
+
 from inspection.network.build.network import Network
 from inspection.network.flown_heights import FlownHeights
 from inspection.network.spans import BESIDE_M, hung_between
 from inspection.network.zones.zone_index import ZoneIndex, plane_scale
-from numpy.typing import NDArray
 
 NO_ZONE = -1  # in place of a zone's primary key
 WALL = f"the {BESIDE_M:.0f} m around a mast or wires that cannot be flown over"

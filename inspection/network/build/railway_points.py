@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from math import asin, atan2, cos, hypot, pi, radians
 
 import numpy as np
-from inspection.network.build.joining import JoinedVertices
-from inspection.network.infrastructure import Ways
 from numpy.typing import NDArray
 
 from inspection.geodesy import distance_m
+from inspection.network.build.joining import JoinedVertices
+from inspection.network.infrastructure import Ways
 
 MAX_STRAY_M = 15.0  # how far a straight leg may pass from a vertex that it skips
 METRES_PER_DEGREE = 111_695.0  # the most on WGS84 (of latitude, at a pole): what counts as short enough here is so on the ground

@@ -3,6 +3,8 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
+
 from inspection.network.build.detours import detours, gaps
 from inspection.network.build.edges import NO_ASSET, Edges, component_labels, joined
 from inspection.network.build.flown_nodes import FlownNodes
@@ -13,7 +15,6 @@ from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.network.rules import LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
-from numpy.typing import NDArray
 
 NO_VERSION = 0  # until the graph is stored
 

@@ -1,6 +1,11 @@
 """How a position that is not on the graph gets onto it: legs that are clear of zones."""
 
 import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.wgs84 import short_distance_m
 from inspection.network.flown_heights import FlownHeights, asset_heights_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import Attachments, joined
@@ -11,11 +16,6 @@ from inspection.network.paths.node_tree import around_in_tree, nearest_in_tree, 
 from inspection.network.route_index import node_tree, route_index
 from inspection.network.zones.zone_detours import Errand, ways_round
 from inspection.network.zones.zone_index import ZoneIndex
-from numba import njit
-from numpy.typing import NDArray
-
-from inspection.geodesy import LonLat
-from inspection.geodesy.wgs84 import short_distance_m
 
 MOST_ROUND = 8  # nearest nodes behind zones that are offered legs round them
 ROUND_ELSEWHERE = 2  # nearest nodes of each component that no straight leg reaches

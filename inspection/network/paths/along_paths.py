@@ -7,14 +7,14 @@ with each hub label, so that no way is walked. Each quantity of each direction i
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
+
+from inspection.geodesy.short_vector import short_vector_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.contracted_graph import FloatArray, NumberArray
 from inspection.network.paths.hub_labels import IntArray
 from inspection.network.paths.paths import ALONG_CHAIN, DIRECT, NO_WAY, Travel
 from inspection.network.route_index import OncePerGraph, RouteIndex, route_index
-from numba import njit
-
-from inspection.geodesy.short_vector import short_vector_m
 
 
 @dataclass(frozen=True, eq=False)

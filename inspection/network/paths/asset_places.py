@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+
 from inspection.network.inspection_graph import InspectionGraph, NodeKind
 from inspection.network.paths.contracted_graph import NumberArray
 from inspection.network.paths.hub_labels import IntArray

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from inspection.network.paths.contracted_graph import CondensedGraph, FloatArray, NumberArray
 from numba import njit
 from numpy.typing import NDArray
+
+from inspection.network.paths.contracted_graph import CondensedGraph, FloatArray, NumberArray
 
 SAMPLED_TREES = 48
 MOST_SAMPLED_NODES = 4_000_000  # in all trees together

@@ -3,13 +3,13 @@
 from dataclasses import dataclass
 
 import numpy as np
-from inspection.network.nearness import on_unit_sphere
-from inspection.network.paths.contracted_graph import FloatArray, NumberArray
-from inspection.network.paths.hub_labels import IntArray
 from numba import njit
 from numpy.typing import NDArray
 
 from inspection.geodesy import LonLat
+from inspection.network.nearness import on_unit_sphere
+from inspection.network.paths.contracted_graph import FloatArray, NumberArray
+from inspection.network.paths.hub_labels import IntArray
 
 LEAF = 12  # nodes of a leaf are looked at one by one
 

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from heapq import heappop, heappush
 
 import numpy as np
+from numba import njit
+
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import Attachments
 from inspection.network.paths.contracted_graph import CondensedGraph, FloatArray, NumberArray
 from inspection.network.route_index import route_index
-from numba import njit
 
 
 @dataclass(frozen=True, eq=False)

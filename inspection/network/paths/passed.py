@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+
 from inspection.network.legs import NO_BENDS
 from inspection.network.paths.contracted_graph import FloatArray
 from inspection.network.paths.hub_labels import IntArray

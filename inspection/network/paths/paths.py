@@ -5,12 +5,13 @@ from dataclasses import dataclass, field, replace
 from itertools import accumulate
 
 import numpy as np
+from numba import njit
+
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import Attachment, Attachments, DirectLeg, NoWay, bends_of, joined
 from inspection.network.paths.contracted_graph import FloatArray, NumberArray
 from inspection.network.paths.hub_labels import IntArray
 from inspection.network.route_index import RouteIndex, route_index
-from numba import njit
 
 # What `Travel.way` holds in place of an entry: there is no way, or the way is the direct leg, or it stays within one chain.
 NO_WAY = -1

@@ -13,13 +13,13 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 import shapely
-from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON, ZoneIndex, plane_scale
 from numba import njit
 from numpy.typing import NDArray
 from shapely import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from inspection.geodesy import distance_m
+from inspection.network.zones.zone_index import METRES_PER_DEGREE_LAT, METRES_PER_DEGREE_LON, ZoneIndex, plane_scale
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]

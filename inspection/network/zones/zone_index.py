@@ -8,13 +8,13 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 import shapely
-from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.zones.box_grid import BoxGrid
 from numpy.typing import ArrayLike, NDArray
 from shapely import STRtree
 from shapely.geometry.base import BaseGeometry
 
 from inspection.geodesy import LonLat
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.zones.box_grid import BoxGrid
 
 # The fewest metres in a degree of latitude, and of longitude on the equator (WGS84): a clearance is never narrower than asked.
 METRES_PER_DEGREE_LAT = 110_574.0

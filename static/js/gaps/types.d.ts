@@ -3,7 +3,7 @@
 import type { GapFeature, GapProperties, Offer } from "../api_types.d.ts";
 import type { Geometry } from "../map/types.d.ts";
 
-/** Figures of a gap's kind (inspection/data_gaps). */
+/** Figures of a gap's kind (inspection/quality). */
 export interface GapDetails {
   nearest?: number[];
   is_advisory?: boolean;

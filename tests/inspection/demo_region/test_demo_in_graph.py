@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from django.conf import settings
-from inspection.network.build.edges import component_labels
-from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
-from inspection.network.paths.access import clear_legs
 
 from inspection.demo_region import BASES, make_region, write_osm_file
 from inspection.models import Asset, AssetKind, DataImport, GraphSnapshot, NoFlyZone
+from inspection.network.build.edges import component_labels
+from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
+from inspection.network.paths.access import clear_legs
 from inspection.selectors import current_graph, zones_in_force
 from inspection.services import build_graph, import_osm, import_zones
 

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from django.contrib.gis.gdal import GDALRaster
 from django.core.management import call_command
-from inspection.importers.terrain.terrain_file import opened_terrain
 
 from inspection.demo_region import BASES, make_quillmoor, make_region, write_osm_file
+from inspection.importers.terrain.terrain_file import opened_terrain
 from inspection.selectors import ground_heights_m
 from inspection.services import import_terrain
 

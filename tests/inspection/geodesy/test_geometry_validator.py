@@ -9,6 +9,8 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
+from shapely import Point, Polygon
+
 from inspection.geodesy.geometry_validator import (
     MAX_POLYGON_VERTICES,
     GeometryFault,
@@ -19,8 +21,6 @@ from inspection.geodesy.geometry_validator import (
     checked_position,
 )
 from inspection.importers.strict_json import JsonFault, parse_strict_json
-from shapely import Point, Polygon
-
 from tests.runaway import no_runaway
 
 

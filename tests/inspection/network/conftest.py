@@ -1,6 +1,7 @@
 """The compiled core is loaded before any test is timed."""
 
 import pytest
+
 from inspection.network.warm_up import rehearse
 
 

@@ -4,8 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 import shapely
-from inspection.network.inspection_graph import InspectionGraph
 from shapely.geometry.base import BaseGeometry
+
+from inspection.network.inspection_graph import InspectionGraph
 
 
 def drawn_graph(

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 import shapely
-from inspection.network.infrastructure import NO_OSM_NODE, GroundData, Places, Ways, Zones
 from shapely.geometry.base import BaseGeometry
 
 from inspection.geodesy.wgs84 import WGS84
+from inspection.network.infrastructure import NO_OSM_NODE, GroundData, Places, Ways, Zones
 
 LAT, LON = 47.0, 9.0
 

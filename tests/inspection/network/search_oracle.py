@@ -6,11 +6,12 @@ from functools import lru_cache
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from inspection.network.inspection_graph import InspectionGraph
-from inspection.network.legs import Attachment, DirectLeg, NoWay
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
+
+from inspection.network.inspection_graph import InspectionGraph
+from inspection.network.legs import Attachment, DirectLeg, NoWay
 
 ENTRIES_PER_BLOCK = 8_000_000  # sources x nodes searched at once: 100 MB
 KEPT_SEARCHES = 16  # of sources whose paths are asked for, when not all are kept

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from shapely import box
+
+from inspection.geodesy import LonLat, distance_m, path_length_m
 from inspection.network.flown_heights import FlownHeights
 from inspection.network.paths.access import MOST_ROUND, clear_legs
 from inspection.network.zones.zone_index import ZoneIndex
-from shapely import box
 from tests.inspection.network.drawn_graphs import drawn_graph
-
-from inspection.geodesy import LonLat, distance_m, path_length_m
 
 NO_ZONES = ZoneIndex([], [], [])
 ROW = [(10.0 + 0.001 * number, 50.0) for number in range(100)]

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.legs import DirectLeg
 from inspection.network.paths.along_paths import leg_of_way, quantities_of_ways, steps_of_graph, sums_along

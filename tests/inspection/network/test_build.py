@@ -4,12 +4,12 @@ from dataclasses import fields, replace
 
 import numpy as np
 import pytest
+
+from inspection.geodesy import distance_m
 from inspection.network.build.build import build
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph, NodeKind
 from inspection.network.rules import LinkingRules
 from tests.inspection.network.drawn_ground import ground, lonlat, places, square, ways, zone
-
-from inspection.geodesy import distance_m
 
 RULES = LinkingRules(zone_clearance_m=5.0)
 ROW = [(0, 0), (200, 0), (400, 0)]

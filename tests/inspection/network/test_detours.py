@@ -3,6 +3,7 @@
 import networkx as nx
 import numpy as np
 import pytest
+
 from inspection.network.build.detours import ALL_PAIRS, _pairs
 from inspection.network.build.edges import component_labels
 from inspection.network.build.network import network

@@ -3,10 +3,10 @@
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from inspection.network.nearness import on_unit_sphere
-from inspection.network.paths.node_tree import build_node_tree
 
 from inspection.geodesy import LonLat
+from inspection.network.nearness import on_unit_sphere
+from inspection.network.paths.node_tree import build_node_tree
 
 degrees = st.floats(-85, 85).map(lambda value: round(value, 2))  # some places coincide
 places = st.tuples(st.floats(-180, 180).map(lambda value: round(value, 1)), degrees)

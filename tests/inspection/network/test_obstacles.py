@@ -5,9 +5,10 @@ from weakref import ref
 
 import numpy as np
 import pytest
+from shapely import box
+
 from inspection.network.build.obstacles import WALL, index_of_walls, with_walls
 from inspection.network.zones.zone_index import ZoneIndex
-from shapely import box
 
 
 def zone(west: float, name: str) -> ZoneIndex:

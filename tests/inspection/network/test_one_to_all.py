@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
+
 from inspection.network.legs import NO_LEGS, Attachments
 from inspection.network.paths.one_to_all import spread
 from inspection.network.paths.paths import travel_between

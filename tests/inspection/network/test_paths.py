@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from inspection.network.legs import Attachment, DirectLeg, NoWay
 from inspection.network.paths.contracted_graph import CORE, condense
 from inspection.network.paths.passed import BEND, passed_on

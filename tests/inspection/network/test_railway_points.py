@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from shapely import LineString, Point
+
+from inspection.geodesy import distance_m, path_length_m
 from inspection.network.build.joining import join_vertices
 from inspection.network.build.network import NO_PLACES
 from inspection.network.build.railway_points import RailwayPoints, railway_points
-from shapely import LineString, Point
 from tests.inspection.network.drawn_ground import LAT, LON, lonlat, ways
-
-from inspection.geodesy import distance_m, path_length_m
 
 
 def points_of(*tracks, osm=()) -> RailwayPoints:

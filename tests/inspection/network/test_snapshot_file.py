@@ -9,6 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from shapely import box
+
+from inspection.network import array_folder
 from inspection.network.array_folder import MANIFEST
 from inspection.network.build.flyable import flyable_part
 from inspection.network.build.network import Network
@@ -33,10 +36,7 @@ from inspection.network.snapshot_file import (
     write_network,
 )
 from inspection.network.zones.zone_index import ZoneIndex, zones_of_graph
-from shapely import box
 from tests.inspection.network.drawn_graphs import drawn_graph
-
-from inspection.network import array_folder
 
 GRAPH = drawn_graph(
     [(9.0, 47.0), (9.1, 47.0), (9.2, 47.1)], [(0, 1, 7_600.0), (1, 2, 13_500.0)], zones=[box(8, 46, 8.1, 46.1), box(8, 45, 8.1, 45.1)]

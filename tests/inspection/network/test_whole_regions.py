@@ -6,6 +6,9 @@ import networkx as nx
 import numpy as np
 import pytest
 import shapely
+
+from inspection import services
+from inspection.geodesy import LonLat, distance_m
 from inspection.network.build.build import build
 from inspection.network.build.edges import component_labels
 from inspection.network.build.zone_masking import ClearedGraph
@@ -16,9 +19,6 @@ from inspection.network.paths.access import clear_legs
 from inspection.network.paths.paths import travel_between
 from inspection.network.rules import LinkingRules
 from inspection.network.zones.zone_index import zones_of_graph
-
-from inspection import services
-from inspection.geodesy import LonLat, distance_m
 from inspection.selectors.ground_data import ground_data
 from tests.cases import long
 from tests.exact_geometry import segment_meets_polygon

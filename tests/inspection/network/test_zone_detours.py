@@ -8,13 +8,13 @@ import pytest
 import shapely
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from inspection.network.zones.zone_detours import Errand, WayRound, ways_round
-from inspection.network.zones.zone_index import ZoneIndex
 from shapely.geometry.base import BaseGeometry
-from tests.inspection.network.drawn_ground import Spot, lonlat, square, zone
 
 from inspection.geodesy import distance_m, path_length_m
+from inspection.network.zones.zone_detours import Errand, WayRound, ways_round
+from inspection.network.zones.zone_index import ZoneIndex
 from tests.exact_geometry import segment_meets_polygon
+from tests.inspection.network.drawn_ground import Spot, lonlat, square, zone
 
 CLEARANCE_M = 5.0
 LONGEST_M = 10_000.0

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from inspection.network.zones.zone_index import MANY, ZoneIndex
 from shapely import MultiPolygon, Polygon, box
 from shapely.affinity import translate
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.wgs84 import WGS84
+from inspection.network.zones.zone_index import MANY, ZoneIndex
 from tests.exact_geometry import segment_meets_polygon
 
 ROOT = Path(__file__).resolve().parents[3]

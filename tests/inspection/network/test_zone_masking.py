@@ -9,6 +9,8 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from shapely.geometry.base import BaseGeometry
+
 from inspection.network.build.build import build
 from inspection.network.build.network import Network, network
 from inspection.network.build.zone_masking import cleared
@@ -16,7 +18,6 @@ from inspection.network.flown_heights import FlownHeights
 from inspection.network.inspection_graph import EdgeKind, InspectionGraph
 from inspection.network.rules import LinkingRules
 from inspection.network.zones.zone_index import ZoneIndex
-from shapely.geometry.base import BaseGeometry
 from tests.inspection.network.drawn_ground import ground, places, square, ways, zone
 
 RULES = LinkingRules(detour_m=0.0, zone_clearance_m=5.0)

@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from inspection.quality.infrastructure import NO_OSM_ID, GapGround, PlainBridge, SupportFacts, WayFacts
 
 from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.infrastructure import NO_OSM_NODE, Places, Ways
+from inspection.quality.infrastructure import NO_OSM_ID, GapGround, PlainBridge, SupportFacts, WayFacts
 
 FRAME = LocalFrame.around(10.0, 56.0)
 Metres = tuple[float, float]

@@ -2,15 +2,15 @@
 
 import numpy as np
 import pytest
+
+from inspection.network.build.edges import component_labels
 from inspection.quality.infrastructure import GapGround
 from inspection.quality.issue import Gap
 from inspection.quality.lone_towers import course_of_row
 from inspection.quality.network import Network
 from inspection.quality.search import search
-from tests.inspection.quality.drawn import at, ground, row
-
-from inspection.network.build.edges import component_labels
 from inspection.serializers.gap_words import sentence, title
+from tests.inspection.quality.drawn import at, ground, row
 
 
 def found(kind: str, drawn: GapGround) -> list[Gap]:

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
-from inspection.importers.zones.zone_file import read_zones
 
+from inspection.importers.zones.zone_file import read_zones
 from inspection.zones.activity import SUN_ALLOWANCE_S, Span, active_spans, merged
 from inspection.zones.schedule import DAYS, EVENTS, checked_schedule
 from inspection.zones.sun import DAY_S, EPOCH, sun_event_s

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 import shapely
-from inspection.network.spans import spans_between
 
 from inspection.geodesy import LonLat
+from inspection.network.spans import spans_between
 from planning.clearance.lost_link import (
     FailedReturn,
     LostLink,

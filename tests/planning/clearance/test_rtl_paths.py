@@ -9,11 +9,11 @@ The flight leads 1 km north, 1 km east, and 1 km south again, at 50 m; its take-
 
 import numpy as np
 import pytest
-from inspection.network.spans import spans_between
 from shapely.geometry import box
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
+from inspection.network.spans import spans_between
 from planning.clearance.rtl_paths import Haven, InTheWay, Places, WaysHome
 from planning.clearance.zone_clearance import Margins, ZoneFacts
 

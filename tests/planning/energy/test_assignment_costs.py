@@ -9,14 +9,14 @@ import pytest
 import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from inspection.geodesy import LonLat, distance_m
+from inspection.geodesy.local_frame import LocalFrame
 from inspection.network.build.flyable import node_heights_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.paths.passed import BEND, passed_on
 from inspection.network.paths.paths import DIRECT
 from inspection.network.zones.zone_index import ZoneIndex
-
-from inspection.geodesy import LonLat, distance_m
-from inspection.geodesy.local_frame import LocalFrame
 from planning.connection_points import AccessRules, Terminal, Ways, ways_between
 from planning.energy.assignment_costs import Finish, FlightCosts, flight_costs
 from planning.energy.conditions import Conditions, WindLayer

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
-from inspection.network.spans import Spans, spans_between
 
 from inspection.geodesy import LonLat
+from inspection.network.spans import Spans, spans_between
 from planning.clearance.obstacle_clearance import legs_too_near, spans_too_near
 from planning.problem import Task, TaskKind
 from planning.rules import FlightRules

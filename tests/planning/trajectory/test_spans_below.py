@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 import shapely
-from inspection.network.spans import spans_between
 
+from inspection.network.spans import spans_between
 from planning.trajectory.spans_below import BESIDE_M, tops_below
 
 DEG_M = 111_319.49  # on the equator

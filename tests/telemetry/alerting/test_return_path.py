@@ -8,10 +8,10 @@ import pytest
 import shapely
 from hypothesis import given
 from hypothesis import strategies as st
-from inspection.network.spans import Spans, spans_between
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
+from inspection.network.spans import Spans, spans_between
 from mavlink.approved_route import HOVER, RETURN, Flight, FrozenWaypoint, TakeOff
 from planning.clearance.zone_clearance import Margins, ZoneFacts
 from planning.rules import FlightRules

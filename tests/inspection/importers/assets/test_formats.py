@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 import shapefile
 import shapely
+
 from inspection.importers.assets.asset_file import Row, RowFaults, opened_asset_file
 from inspection.importers.rows import AssetFileError
 from tests.inspection.importers.assets.made_files import (

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 import shapely
+
 from inspection.importers.assets.asset_file import RowFaults, opened_asset_file
 from inspection.importers.rows import AssetFileError
 from tests.inspection.importers.assets.made_files import (
@@ -23,7 +24,6 @@ from tests.inspection.importers.assets.made_files import (
     shapefile_members,
     zipped,
 )
-
 from tests.runaway import no_runaway
 
 MOST_MEMORY_KIB = 64 * 1024

@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
 from inspection.importers.assets.asset_file import RowFaults, opened_asset_file
 from inspection.importers.assets.delimited import number_of
 from inspection.importers.assets.mapping import AssetRecord, Tally, checked_mapping, records_of

@@ -1,9 +1,9 @@
 """Which ways make one bridge, and what polygon a bridge gets."""
 
 import pytest
-from inspection.importers.osm.reader import read_osm
 from shapely import Point
 
+from inspection.importers.osm.reader import read_osm
 from tests.inspection.osm_files import write_osm
 
 BRIDGE = {"highway": "primary", "bridge": "yes"}

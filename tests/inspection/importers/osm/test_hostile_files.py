@@ -8,9 +8,9 @@ import struct
 import zlib
 
 import pytest
+
 from inspection.importers.osm.file_validator import MAX_BLOB_BYTES, OsmFileError, examine
 from inspection.importers.osm.reader import read_osm
-
 from tests.runaway import no_runaway
 
 

@@ -5,11 +5,11 @@ import json
 
 import numpy as np
 import pytest
-from inspection.importers.osm.file_validator import OsmFileError
-from inspection.importers.osm.reader import read_osm
 from shapely import Point
 
 from inspection.geodesy.wgs84 import path_length_m
+from inspection.importers.osm.file_validator import OsmFileError
+from inspection.importers.osm.reader import read_osm
 from tests.inspection.osm_files import TOWER, osm_xml, small_line, write_osm
 
 # Of the generated regions as drawn, counted without the reader; of the real files the table in the README of the shared data.

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
 from inspection.importers.terrain.errors import TerrainFileError
 from inspection.importers.terrain.geotiff import MOST_PART_BYTES, GeoTiff
 from inspection.importers.terrain.raster import Kind

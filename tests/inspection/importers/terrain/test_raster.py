@@ -1,6 +1,7 @@
 """Windows of posts, and the blocks that a raster is stored in."""
 
 import numpy as np
+
 from inspection.importers.terrain.raster import Kind, Window, blocks_of, window_of
 from inspection.importers.terrain.survey import Survey
 

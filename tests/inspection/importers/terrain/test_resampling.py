@@ -4,11 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pyproj import Transformer
+
 from inspection.importers.terrain.errors import TerrainFileError
 from inspection.importers.terrain.raster import Kind, blocks_of
 from inspection.importers.terrain.survey import Survey
 from inspection.importers.terrain.terrain_file import opened_terrain
-from pyproj import Transformer
 from tests.inspection.importers.terrain.tiffs import write_geotiff
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from inspection.importers.terrain.errors import TerrainFileError
 from inspection.importers.terrain.hgt import HgtRaster
 from inspection.importers.terrain.terrain_file import datum_of, opened_terrain

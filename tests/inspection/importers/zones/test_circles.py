@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 import shapely
-from inspection.geodesy.geometry_validator import GeometryFault
-from inspection.importers.zones.circles import checked_radius_m, enclosing_polygon
 
 from inspection.geodesy import LonLat
+from inspection.geodesy.geometry_validator import GeometryFault
 from inspection.geodesy.wgs84 import WGS84
+from inspection.importers.zones.circles import checked_radius_m, enclosing_polygon
 
 
 @pytest.mark.parametrize(

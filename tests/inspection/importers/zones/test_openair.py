@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+
+from inspection.geodesy import LonLat
+from inspection.geodesy.wgs84 import WGS84
 from inspection.importers.zones.arcs import FARTHEST_M, arc, arc_between, circle_ring
 from inspection.importers.zones.loops import area_of_all_loops
 from inspection.importers.zones.openair_values import NAUTICAL_MILE_M, height_of, length_m_of, position_of
 from inspection.importers.zones.zone_file import ZoneFile, ZoneFileError, read_zones
-
-from inspection.geodesy import LonLat
-from inspection.geodesy.wgs84 import WGS84
 
 CENTRE = LonLat(14.5, 50.1)
 CZECH_CLASSES = {"R": 85, "GS": 76, "Q": 45, "D": 41, "P": 11, "C": 9, "E": 3}

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+
 from inspection.importers.zones.zone_file import ZoneFileError, read_zones
 
 SQUARE = {"type": "Polygon", "coordinates": [[[9, 47], [10, 47], [10, 48], [9, 48], [9, 47]]]}

@@ -1,0 +1,1 @@
+"""Terrain files as rasters of heights."""

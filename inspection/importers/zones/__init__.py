@@ -1,0 +1,1 @@
+"""Zone files in each dialect as zone records."""

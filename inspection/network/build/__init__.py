@@ -1,0 +1,1 @@
+"""From infrastructure to the network and the graph that is clear of zones."""

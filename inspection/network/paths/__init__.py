@@ -1,0 +1,1 @@
+"""Least-cost paths on a built graph."""
