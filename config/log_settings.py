@@ -1,4 +1,4 @@
-"""How lines of log are written, from the environment: for people, or as JSON; see operation/log_lines.py."""
+"""How lines of log are written, from the environment: for people, or as JSON; see operation/json_lines.py."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,8 +11,8 @@ def log_settings(environment: Mapping[str, str]) -> dict[str, Any]:
         "version": 1,
         "disable_existing_loggers": False,
         "formatters": {
-            "line": {"()": "operation.log_lines.LineFormatter"},
-            "json": {"()": "operation.log_lines.JsonFormatter", "program": environment.get("SPANWISE_PROGRAM", "")},
+            "line": {"()": "operation.json_lines.LineFormatter"},
+            "json": {"()": "operation.json_lines.JsonFormatter", "program": environment.get("SPANWISE_PROGRAM", "")},
         },
         "handlers": {"console": {"class": "logging.StreamHandler", "formatter": form}},
         "root": {"handlers": ["console"], "level": environment.get("SPANWISE_LOG_LEVEL", "INFO")},

@@ -2,21 +2,7 @@
 
 from django.urls import path
 
-from inspection.views import (
-    assets,
-    gaps,
-    geometry_checks,
-    ground,
-    history,
-    imports,
-    picking,
-    regions,
-    scene,
-    terrain,
-    uploads,
-    zone_sets,
-    zones,
-)
+from inspection.views import assets, gaps, ground, history, imports, picking, regions, terrain, uploads, zone_sets, zones
 
 urlpatterns = [
     path("assets", assets.AssetList.as_view(), name="api-assets"),
@@ -51,7 +37,7 @@ urlpatterns = [
     path("imports/<uuid:proposal_id>/apply", imports.ImportApply.as_view(), name="api-import-apply"),
     path("imports/<uuid:proposal_id>/discard", imports.ImportDiscard.as_view(), name="api-import-discard"),
     path("regions/delete", regions.RegionDelete.as_view(), name="api-region-delete"),
-    path("geometry-checks", geometry_checks.GeometryCheck.as_view(), name="api-geometry-checks"),
+    path("geometry-checks", ground.GeometryCheck.as_view(), name="api-geometry-checks"),
     path("gaps", gaps.GapList.as_view(), name="api-gaps"),
     path("gaps/summary", gaps.GapCounts.as_view(), name="api-gap-summary"),
     path("gaps/<int:gap_id>", gaps.GapDetail.as_view(), name="api-gap"),
@@ -64,7 +50,7 @@ urlpatterns = [
     path("terrain/height", terrain.GroundHeight.as_view(), name="api-ground-height"),
     path("terrain/profile", terrain.Profile.as_view(), name="api-terrain-profile"),
     path("terrain/heights", terrain.Heights.as_view(), name="api-heights"),
-    path("scene", scene.SceneOfBox.as_view(), name="api-scene"),
+    path("scene", ground.SceneOfBox.as_view(), name="api-scene"),
     path("ground", ground.Ground.as_view(), name="api-ground"),
     path("tiles/<int:zoom>/<int:column>/<int:row>", ground.Tile.as_view(), name="api-tile"),
 ]

@@ -9,7 +9,7 @@ from missions.views.commands import CommandDetail, MissionCommands, MissionsComm
 from missions.views.events import LiveEvents, MissionEvents
 from missions.views.explanations import LaterDeparture, MissionExplanation, WhyRoute, WhyTarget
 from missions.views.legal_windows import MissionLegalWindows, PlanLegalWindows
-from missions.views.reachability import Reachability
+from missions.views.plans import Reachability
 from missions.views.replan_offers import MissionReplanOffers, ReplanOfferAccept, ReplanOfferDecline, ReplanOfferDetail
 from missions.views.returns import MissionReturns
 from missions.views.selections import SelectionDetail, SelectionList

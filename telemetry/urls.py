@@ -15,7 +15,7 @@ from telemetry.views.alerts import (
 from telemetry.views.estimates import MissionEstimates
 from telemetry.views.exports import KINDS, MissionTelemetryFile, UavTelemetryFile
 from telemetry.views.live import Live
-from telemetry.views.log import LatestTelemetry, TelemetryLog
+from telemetry.views.log_filters import LatestTelemetry, TelemetryLog
 from telemetry.views.mission_record import RESULT_KINDS, MissionRecord, MissionRecordFile, MissionResultsFile
 from telemetry.views.preflight import MissionPreflight
 from telemetry.views.results import Results

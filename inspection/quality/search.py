@@ -13,7 +13,8 @@ Parts of the network are lines that share nodes, as the inspection graph joins t
 
 from collections.abc import Callable
 
-from inspection.quality.bridges import bridges_without_way
+from shapely import Point
+
 from inspection.quality.infrastructure import GapGround
 from inspection.quality.issue import Gap
 from inspection.quality.line_ends import line_ends
@@ -22,6 +23,20 @@ from inspection.quality.long_spans import long_spans
 from inspection.quality.missing_supports import missing_supports
 from inspection.quality.network import Network
 from inspection.quality.voltages import impossible_voltages
+
+
+def bridges_without_way(ground: GapGround) -> list[Gap]:
+    return [
+        Gap(
+            kind="bridge_without_way",
+            key=f"bridge_without_way {bridge.key}",
+            asset=bridge.asset,
+            position=bridge.position,
+            geometry=Point(bridge.position),
+        )
+        for bridge in ground.bridges_without_way
+    ]
+
 
 RECIPE = 2  # counted up when the rules change, so that the next search looks at a ground that it has seen
 

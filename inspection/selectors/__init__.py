@@ -15,10 +15,9 @@ from inspection.selectors.assets import (
 )
 from inspection.selectors.graph import NoGraph, current_graph, graph_of_version, zones_in_force
 from inspection.selectors.ground import GroundSummary, ground_edition, ground_extent, ground_revision, ground_summary
-from inspection.selectors.kept_tiles import tile_of_edition
 from inspection.selectors.terrain import ground_heights_m, has_terrain, terrain_edition
 from inspection.selectors.tiles import RECIPE as TILE_RECIPE
-from inspection.selectors.tiles import NoSuchTile, vector_tile
+from inspection.selectors.tiles import NoSuchTile, tile_of_edition, vector_tile
 
 __all__ = [
     "TILE_RECIPE",

@@ -1,7 +1,8 @@
 """The ground of a box for the 3D view: terrain, supports and spans, railways, bridges and zones."""
 
 import math
-from collections.abc import Iterable
+import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypedDict, TypeVar
 
@@ -17,7 +18,6 @@ from inspection.models import Asset, AssetKind, NoFlyZone
 from inspection.network.flown_heights import UNTAGGED_HEIGHT_M
 from inspection.network.infrastructure import Ways
 from inspection.network.inspection_graph import NodeKind
-from inspection.scene.decks import deck_amsl_m, layer_of
 from inspection.scene.overhead import Overhead, overhead
 from inspection.scene.supports import DrawnSpan, DrawnSupport, LineFacts, SupportFacts, drawn
 from inspection.selectors.assets import Box, area_of
@@ -25,6 +25,22 @@ from inspection.selectors.ground_data import supports_and_lines
 from inspection.selectors.terrain import ground_heights_m
 from inspection.selectors.terrain_models import finest_step_m, terrain_models
 from inspection.selectors.zone_table import zone_table
+
+LAYER_M = 6.5  # a road's or railway's free height below a bridge, with the deck
+MOST_LAYERS = 5
+_LAYER = re.compile(r"-?[0-9]{1,3}")
+
+
+def layer_of(tags: Mapping[str, str]) -> int:
+    """How many things lie below it: 1 if it is not stated."""
+    stated = _LAYER.fullmatch(tags.get("layer", "").strip())
+    return min(max(int(stated[0]), 1), MOST_LAYERS) if stated else 1
+
+
+def deck_amsl_m(ground_m: FloatArray, layer: int) -> float:
+    """Level, no lower than the highest ground at the bridge's edge, and with a layer's room over the lowest. ground_m of shape (n,)."""
+    return float(max(np.max(ground_m), np.min(ground_m) + layer * LAYER_M))
+
 
 RECIPE = 2  # part of the ETag: counts the changes to what a scene holds
 SHORTEST_SIDE_M, LONGEST_SIDE_M = 50.0, 40_000.0

@@ -1,11 +1,35 @@
 """Vector tiles: one SQL statement makes all layers of a tile."""
 
+import contextlib
 import math
 from dataclasses import dataclass
 
+from django.core.cache import cache
 from django.db import connection
 
 from inspection.selectors.assets import VOLTAGE_NOT_STATED
+from workspace.cache_absence import CACHE_AWAY
+
+LAST_KEPT_ZOOM = 11
+KEPT_S = 3_600
+
+
+def tile_of_edition(zoom: int, column: int, row: int, edition: str | None) -> bytes:
+    """The tile of the ground as it is now. Raises NoSuchTile.
+
+    `edition` is another text after each change of the ground; with None nothing is kept.
+    """
+    if edition is None or zoom > LAST_KEPT_ZOOM:
+        return vector_tile(zoom, column, row)
+    key = f"tile:{edition}:{zoom}/{column}/{row}"
+    with contextlib.suppress(*CACHE_AWAY):
+        if (kept := cache.get(key)) is not None:
+            return bytes(kept)
+    tile = vector_tile(zoom, column, row)
+    with contextlib.suppress(*CACHE_AWAY):
+        cache.set(key, tile, KEPT_S)
+    return tile
+
 
 DEEPEST_ZOOM = 22
 RECIPE = 5  # part of the ETag: counts the changes to this file's statements

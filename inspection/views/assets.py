@@ -3,6 +3,7 @@
 from typing import Any
 
 from django.db import transaction
+from django.db.models import Case, IntegerField, Q, QuerySet, Value, When
 from django.http import Http404
 from django.urls import reverse
 from drf_spectacular.utils import OpenApiParameter, OpenApiResponse, extend_schema
@@ -11,7 +12,7 @@ from rest_framework.views import APIView
 
 from inspection import selectors
 from inspection.models import Asset, AssetKind
-from inspection.selectors.asset_search import BEST_FIRST, with_match_rank
+from inspection.selectors.assets import DrawnAsset
 from inspection.serializers.assets import (
     FIELDS_OF_AN_ASSET,
     AssetCollectionSerializer,
@@ -31,6 +32,23 @@ from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, expected_revision
 from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS, several_of
 from workspace.signed_in import SignedInRequest
+
+BEST_FIRST = ("match_rank", "pk")
+
+
+def with_match_rank(assets: QuerySet[DrawnAsset], *, text: str) -> QuerySet[DrawnAsset]:
+    """The same assets with `match_rank`: 0 and 1 are called exactly `text`, 2 and 3 otherwise found; supports have the odd ranks."""
+    is_exact = Q(ref__iexact=text) | Q(name__iexact=text)
+    is_support = Q(kind=AssetKind.TOWER)
+    rank = Case(
+        When(is_exact & ~is_support, then=Value(0)),
+        When(is_exact, then=Value(1)),
+        When(~is_support, then=Value(2)),
+        default=Value(3),
+        output_field=IntegerField(),
+    )
+    return assets.annotate(match_rank=rank)
+
 
 EXTERNAL_ID_TAKEN = {409: OpenApiResponse(description="Another asset has the external id.")}
 

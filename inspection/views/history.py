@@ -13,17 +13,62 @@ from inspection.models import Asset, NoFlyZone
 from inspection.selectors import asset_with_geometry, references_of, zones
 from inspection.selectors.history import NEWEST_FIRST, SUBJECTS, changes_by, changes_of, changes_of_the_ground
 from inspection.serializers.assets import AssetDetailFeatureSerializer, asset_detail_feature
-from inspection.serializers.history import GroundHistoryPageSerializer, RevertSerializer, entry_json
 from inspection.serializers.zones import ZoneDetailFeatureSerializer, zone_detail_feature
+from inspection.services.facts import differing
 from inspection.services.history import follow_source, revert_asset, revert_zone, undo
 from inspection.views.edits import edits
 from inspection.views.parameters import invalid
+from workspace import strict_serializers as serializers
+from workspace.author_names import AUTHOR_HELP, author_name
 from workspace.models import AuditEntry, User
 from workspace.paging import asked_choice, page_of
 from workspace.permissions import CURATORS
 from workspace.preconditions import IF_MATCH_REQUIRED, PRECONDITION_ANSWERS, etag_of, expected_revision
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
+
+OF_THE_SOURCE = {"node_osm_ids", "parts", "content_hash", "data_import_id", "asset_set_id", "zone_set_id", "source_heights", "properties"}
+
+
+class GroundHistoryEntrySerializer(serializers.Serializer):
+    id = serializers.IntegerField(allow_null=True, help_text="null for the first import, which cannot be undone by itself")
+    action = serializers.CharField(help_text="created, changed, deleted, vanished, reverted, restored, followed source, imported")
+    actor = serializers.CharField(allow_null=True, help_text=f"{AUTHOR_HELP}; null for a command or a person who is gone")
+    recorded_at = serializers.DateTimeField()
+    subject_type = serializers.ChoiceField(choices=["asset", "zone"])
+    subject_id = serializers.CharField()
+    before = serializers.DictField(allow_null=True, help_text="the facts that differ, as they were; null for something new")
+    after = serializers.DictField(allow_null=True, help_text="the same facts afterwards; null for something deleted")
+    file_name = serializers.CharField(allow_null=True, help_text="of the import that did it")
+
+
+class GroundHistoryPageSerializer(serializers.Serializer):
+    results = GroundHistoryEntrySerializer(many=True)
+    next = serializers.CharField(allow_null=True, help_text="address of the next page")
+
+
+class RevertSerializer(serializers.Serializer):
+    entry = serializers.IntegerField(min_value=1, help_text="the state before this entry comes back")
+
+
+def entry_json(entry: AuditEntry, reader: User) -> dict[str, Any]:
+    before, after = differing(_for_people(entry.before), _for_people(entry.after))
+    return {
+        "id": entry.pk,
+        "action": entry.action,
+        "actor": author_name(entry.actor, reader),
+        "recorded_at": entry.recorded_at,
+        "subject_type": entry.subject_type,
+        "subject_id": entry.subject_id,
+        "before": before,
+        "after": after,
+        "file_name": None,
+    }
+
+
+def _for_people(facts: dict[str, Any] | None) -> dict[str, Any] | None:
+    return facts and {name: value for name, value in facts.items() if name not in OF_THE_SOURCE}
+
 
 UNDONE = PolymorphicProxySerializer(
     component_name="UndoneFeature", serializers=[AssetDetailFeatureSerializer, ZoneDetailFeatureSerializer], resource_type_field_name=None

@@ -7,10 +7,26 @@ from enum import StrEnum
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
+from mavlink.addressing import Ends, Message
 from mavlink.autopilot_type import COMMANDED, COPTER_MODES, COPTER_NOT_ARMABLE, PX4_AUTO, PX4_SUB_MODES, Flavour, Mode
 from mavlink.commands.command import CommandStep, Effect, Seven
 from mavlink.vehicle_class import VehicleClass, refusal_words
 from mavlink.vehicle_state import VehicleState
+
+FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 15.0  # at first often, for every second counts; then seldom: a pilot may have taken over
+MODES = {Order.HOLD: Mode.HOLD, Order.RETURN: Mode.RETURN, Order.ABORT: Mode.RETURN, Order.LAND: Mode.LAND}
+
+
+def blind_message(order: Order, flavour: Flavour, ends: Ends, sent: int) -> Message:
+    """The same again after it was sent so often. `order` is one of MODES, `flavour` one that is commanded."""
+    numbers = mode_numbers(flavour, MODES[order])
+    return mavlink.MAVLink_command_long_message(ends.system, ends.component, mavlink.MAV_CMD_DO_SET_MODE, min(sent, 255), *numbers)
+
+
+def pause_s(sent: int) -> float:
+    """After so many."""
+    return min(FIRST_PAUSE_S * 2.0 ** max(sent - 1, 0), LONGEST_PAUSE_S)
+
 
 OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
 NAN = math.nan

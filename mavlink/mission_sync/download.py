@@ -3,7 +3,7 @@
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.addressing import Ends, Message, Messages
-from mavlink.mission_sync.transfer import UNCERTAIN, TransferOutcome, TransferState
+from mavlink.mission_sync.upload import UNCERTAIN, TransferOutcome, TransferState
 from mavlink.mission_sync.wire import Held, HeldItem, ack_message, held_item, result_name
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionType

@@ -5,15 +5,12 @@ from typing import Any
 
 from mavlink.addressing import Ends, Message, Messages
 from mavlink.autopilot_type import Flavour, Mode
-from mavlink.mission_sync.clear import Clear
-from mavlink.mission_sync.compare import Difference, are_identical, differences
+from mavlink.mission_sync.compare import Difference, Found, are_identical, differences, found, mix_in_words
 from mavlink.mission_sync.download import Download
 from mavlink.mission_sync.limits import too_many
-from mavlink.mission_sync.onboard_list import Found, found, mix_in_words
 from mavlink.mission_sync.outcome import KeeperOutcome, KeeperState, Mix, Progress
 from mavlink.mission_sync.supported_items import command_words, firmware_words, unknown_items
-from mavlink.mission_sync.transfer import TransferOutcome, TransferState
-from mavlink.mission_sync.upload import REQUESTS, Upload
+from mavlink.mission_sync.upload import REQUESTS, Clear, TransferOutcome, TransferState, Upload
 from mavlink.mission_sync.wire import Held, has_home, held_list, held_sha256, sent_list
 from mavlink.script import Course, Machine, Steps
 from mavlink.timeouts import TransferRules

@@ -1,14 +1,87 @@
 """Sending a list of items to a vehicle, which asks for them one by one."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.addressing import Ends, Message, Messages
-from mavlink.mission_sync.transfer import UNCERTAIN, TransferOutcome, TransferState
 from mavlink.mission_sync.wire import ack_message, item_message, result_name
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionItem, MissionType
+
+# Acknowledgements that do not tell whether the transfer goes on: a repeated message draws them, too, or the vehicle is busy.
+UNCERTAIN = frozenset({
+    mavlink.MAV_MISSION_ERROR,
+    mavlink.MAV_MISSION_DENIED,
+    mavlink.MAV_MISSION_INVALID_SEQUENCE,
+    mavlink.MAV_MISSION_OPERATION_CANCELLED,
+})  # fmt: skip
+
+
+class TransferState(StrEnum):
+    DONE = "done"
+    REFUSED = "refused"  # by the vehicle, which said why
+    UNSURE = "unsure"  # all was sent, and the last answer tells nothing
+    SILENT = "silent"
+    CANCELLED = "cancelled"
+
+
+@dataclass(frozen=True)
+class TransferOutcome:
+    """`code` is short and stable, `item` the one at which it ended, as counted on the wire."""
+
+    state: TransferState
+    code: str = ""
+    item: int | None = None
+
+
+class Clear:
+    """MISSION_CLEAR_ALL of one list. A vehicle that is busy is asked again; read the list back to know."""
+
+    def __init__(self, kind: MissionType, ends: Ends, rules: TransferRules) -> None:
+        self.kind = kind
+        self.outcome: TransferOutcome | None = None
+        self.wake_at_s: float | None = None
+        self._ends = ends
+        self._rules = rules
+        self._begun_s = 0.0
+        self._refused: int | None = None
+
+    def start(self, now_s: float) -> Messages:
+        self._begun_s = now_s
+        return self._asked(now_s)
+
+    def receive(self, message: Message, now_s: float) -> Messages:
+        if self.outcome is not None or not self._ends.has_sent(message) or message.get_type() != "MISSION_ACK":
+            return []
+        if message.mission_type == self.kind:
+            if message.type == mavlink.MAV_MISSION_ACCEPTED:
+                self._end(TransferState.DONE, "")
+            elif message.type in UNCERTAIN:
+                self._refused = message.type
+            else:
+                self._end(TransferState.REFUSED, result_name(message.type))
+        return []
+
+    def tick(self, now_s: float) -> Messages:
+        if self.outcome is not None or self.wake_at_s is None or now_s < self.wake_at_s:
+            return []
+        if now_s < self._begun_s + self._rules.silence_s:
+            return self._asked(now_s)
+        if self._refused is None:
+            return self._end(TransferState.SILENT, "silent")
+        return self._end(TransferState.REFUSED, result_name(self._refused))
+
+    def _asked(self, now_s: float) -> Messages:
+        self.wake_at_s = now_s + self._rules.timeout_s
+        return [mavlink.MAVLink_mission_clear_all_message(self._ends.system, self._ends.component, int(self.kind))]
+
+    def _end(self, state: TransferState, code: str) -> Messages:
+        self.outcome, self.wake_at_s = TransferOutcome(state, code), None
+        return []
+
 
 REQUESTS = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT"})
 

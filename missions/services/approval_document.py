@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 from django.conf import settings
+from django.contrib.gis.db.models.functions import AsGeoJSON
 from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
+from inspection.models import Asset
 from inspection.selectors import ground_revision, terrain_edition
 from inspection.selectors.zone_table import zone_table
 from inspection.zones.reach import ZoneTable
@@ -22,13 +24,42 @@ from mavlink.mission_items import CannotBeFlown, flight_loads
 from mavlink.vehicle_plan import FlightLoad, MissionItem, load_to_json
 from missions.models import EndAction, LinkKind, Mission, Route, Waypoint
 from missions.services.approved_fence import rally_points, zones_beside
-from missions.services.approved_targets import approved_targets
 from missions.services.refused import Reason, Refused
 from missions.services.requests import lost_link_from_json, lost_link_to_json, moment_to_json, task_from_json
 from missions.zone_selectors import departure_s, zone_margins
 from planning.clearance.nearby_zones import zones_near
 from planning.energy.conditions import conditions_from_json, conditions_to_json
 from planning.trajectory.waypoints import WaypointKind
+
+COORDINATE_DIGITS = 7  # about a centimetre
+
+
+def approved_targets(mission: Mission) -> list[dict[str, Any]]:
+    """`geometry` is GeoJSON of the whole asset: a bridge's outline, a line's course."""
+    targets = list(mission.targets.all())
+    assets = {target.asset_id for target in targets if target.asset_id is not None}
+    shapes = Asset.objects.filter(pk__in=assets).annotate(shape=AsGeoJSON("geometry", precision=COORDINATE_DIGITS))
+    known: dict[int | None, tuple[str | None, Any]] = {
+        key: (kind, json.loads(shape)) for key, kind, shape in shapes.values_list("pk", "kind", "shape")
+    }
+    found = []
+    for target in targets:
+        kind, geometry = known.get(target.asset_id, (None, None))
+        found.append(
+            {
+                "id": target.pk,
+                "sequence": target.sequence,
+                "asset": target.asset_id,
+                "label": target.label,
+                "position": None if target.position is None else list(target.position.coords),
+                "stretch": [list(end) for end in target.stretch.coords] if target.stretch else None,
+                "task": target.task,
+                "kind": kind,
+                "geometry": geometry,
+            }
+        )
+    return found
+
 
 VERSION = 1
 

@@ -1,8 +1,8 @@
 """Missions from creation to deletion. Every write locks the mission's row, counts its revision and leaves an entry in its history."""
 
 from collections import Counter
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from datetime import datetime
 from typing import Any
 from uuid import UUID
@@ -15,7 +15,6 @@ from inspection.geodesy import LonLat
 from missions.models import EndAction, InspectionTarget, Mission, MissionState, MissionUav
 from missions.services.last_plan import summary_of_plan
 from missions.services.lost_link import lost_link_of_stored
-from missions.services.own_figures import as_said_before
 from missions.services.places import places_of
 from missions.services.requests import (
     InvalidRequest,
@@ -40,6 +39,17 @@ from planning.energy.performance import InvalidPerformance, Performance, perform
 from planning.problem import Objective
 from workspace.models import Organisation, User
 from workspace.services import record_change
+
+
+def as_said_before(uav: UavRequest, before: Sequence[UavRequest]) -> UavRequest:
+    """Own figures that are sent again as they were are not said anew: what the stored UAV had when they were said is kept."""
+    old = next((other for other in before if other.uav is not None and other.uav == uav.uav), None)
+    if old is None or not old.fleet_figures:
+        return uav
+    values, said = ({**vars(one), **vars(one.performance)} for one in (uav, old))
+    kept = {name: value for name, value in old.fleet_figures.items() if name in uav.fleet_figures and values[name] == said[name]}
+    return replace(uav, fleet_figures={**uav.fleet_figures, **kept})
+
 
 BESIDE_ROUTES = ("name", "lost_link", "external_id", "attributes")  # what routes do not hang on
 MOST_NAMES = 5  # that an entry of the history keeps

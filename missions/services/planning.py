@@ -1,8 +1,10 @@
 """One plan from request to answer: on which zones it stands, the attempts on them, and the last look before it leaves."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
+from functools import wraps
+from time import perf_counter
+from typing import Any, ParamSpec
 
 import numpy as np
 from django.conf import settings
@@ -12,6 +14,7 @@ from inspection.network.build.obstacles import at_all_heights, with_walls
 from inspection.network.zones.zone_index import ZoneIndex
 from inspection.selectors.planning import PlanningGround, edition_now, heights_at, planning_read, terrain_at
 from missions.flight_selectors import OtherFlights, flights_at_the_same_time
+from missions.in_air_hooks import uavs_in_the_air
 from missions.services.apart import routes_apart
 from missions.services.assignment import quality_of
 from missions.services.attempts import Attempt, attempt
@@ -22,19 +25,116 @@ from missions.services.last_look import in_the_air_s, keys_of_zones_met
 from missions.services.lost_link import lost_link_check
 from missions.services.other_limits import with_other_limits
 from missions.services.places import Place, places_of, whole_assets
-from missions.services.plan_figures import counted
 from missions.services.plan_json import PlannedRoute, plan_to_json
-from missions.services.refusals import Scene
+from missions.services.refusals import Grounding, Scene
 from missions.services.requests import PlanRequest
 from missions.services.scenes import scene_on
 from missions.services.unreached import WIND
-from missions.services.warnings import warnings_of
-from missions.services.worth import Worth, value_of, worth_of
 from missions.services.zone_choice import BoolArray, ZoneChoice, zone_choice
+from operation.metrics import PLAN_SECONDS, PLANS, PLANS_REFUSED
+from planning.problem import Objective, Priority
 from planning.separation.report import separation_json
 from planning.separation.separation import Separation
 from planning.solver.solver import Stop, never
 from workspace.turns import end_turn, in_turn
+
+
+@dataclass(frozen=True, order=True)
+class Worth:
+    """Less is better: targets left out, the high priorities first; then ways near infrastructure before the shortest; then the value.
+
+    That is what the objective counts, in its own unit.
+
+    Ways away from infrastructure count as they do in the choice of ways: a short cut across country is not the better plan.
+    """
+
+    left_out: tuple[int, ...]
+    is_by_length: bool
+    value: float
+
+
+def worth_of(request: PlanRequest, found: Attempt, routes: Sequence[PlannedRoute]) -> Worth:
+    left_out = [request.targets[item.target].priority for item in found.left_out]
+    by_priority = tuple(sum(priority is level for priority in left_out) for level in sorted(Priority, reverse=True))
+    return Worth(by_priority, found.scene.is_by_length, value_of(request.objective, routes, found.weights(request)))
+
+
+def value_of(objective: Objective, routes: Sequence[PlannedRoute], weights: Sequence[float] | None = None) -> float:
+    """Metres, seconds or Wh of finished routes, each times its weight; to finish soonest, what a route is put off by counts as well."""
+    values = [_value(objective, route) for route in routes]
+    if weights is not None:
+        values = [value * weight for value, weight in zip(values, weights, strict=True)]
+    return max(values, default=0.0) if objective is Objective.MAKESPAN else sum(values)
+
+
+def _value(objective: Objective, route: PlannedRoute) -> float:
+    if objective is Objective.TOTAL:
+        return route.length_m
+    if objective is Objective.MAKESPAN and route.waypoints is not None:
+        return route.departs_s + route.duration_s
+    if objective is Objective.ENERGY:
+        return 0.0 if route.timing is None or route.timing.total_wh is None else route.timing.total_wh
+    return route.duration_s
+
+
+SHORTEST_WAYS = "The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach."
+
+
+def warnings_of(request: PlanRequest, grounded: Mapping[int, Grounding], *, is_by_length: bool) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = [{"code": why.code, "uav": number, "message": why.message} for number, why in grounded.items()]
+    flying = uavs_in_the_air([uav.uav for uav in request.uavs if uav.uav is not None])
+    in_air = "%s is reported to be in the air: the plan begins with a take-off from the ground at the place where it was last seen."
+    found += [
+        {"code": "uav_in_air", "uav": number, "message": in_air % uav.name}
+        for number, uav in enumerate(request.uavs)
+        if uav.uav in flying and number not in grounded
+    ]
+    if is_by_length:
+        found.append({"code": "shortest_ways", "uav": None, "message": SHORTEST_WAYS})
+    if request.conditions.is_calm:
+        return found
+    unknown = "%s states no top airspeed: it is taken to fly no faster than its speed, through the air."
+    return found + [
+        {"code": "airspeed_not_stated", "uav": number, "message": unknown % uav.name}
+        for number, uav in enumerate(request.uavs)
+        if number not in grounded and uav.performance.max_airspeed_mps is None
+    ]
+
+
+SIZES = ((3, "1-3"), (12, "4-12"), (50, "13-50"), (200, "51-200"))  # targets at most, and what that is called
+LARGEST = "201-"
+
+P = ParamSpec("P")
+
+
+def size_of(targets: int) -> str:
+    return next((name for most, name in SIZES if targets <= most), LARGEST)
+
+
+def counted(make: Callable[P, dict[str, Any]]) -> Callable[P, dict[str, Any]]:
+    """Of a function that makes a plan of its keyword argument `request`, or raises why it cannot."""
+
+    @wraps(make)
+    def make_and_count(*args: P.args, **kwargs: P.kwargs) -> dict[str, Any]:
+        began_s = perf_counter()
+        try:
+            plan = make(*args, **kwargs)
+        except Exception as error:
+            PLANS_REFUSED.labels(type(error).__name__).inc()
+            raise
+        request: Any = kwargs["request"]
+        size, method = size_of(len(request.targets)), _method_of(plan)
+        PLANS.labels(size, method).inc()
+        PLAN_SECONDS.labels(size, method).observe(perf_counter() - began_s)
+        return plan
+
+    return make_and_count
+
+
+def _method_of(plan: Mapping[str, Any]) -> str:
+    quality = plan.get("quality")
+    return str(quality["method"]) if isinstance(quality, Mapping) and "method" in quality else "unknown"
+
 
 MOST_GROUNDS = 5  # that may follow one another while one plan is made
 MOST_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before

@@ -1,6 +1,6 @@
 """Why a UAV flies its route: how far it is straight, what keeping to the lines and going round zones costs, and what another would fly."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -13,13 +13,70 @@ from inspection.geodesy import LonLat, distance_m
 from inspection.network.inspection_graph import InspectionGraph
 from inspection.network.zones.zone_index import ZoneIndex
 from missions.models import EndAction
+from missions.services.counted import counted
+from missions.services.laid_out import LaidOut
 from missions.services.places import Place, places_of
-from missions.services.refusals import Scene, zone_at
-from missions.services.requests import InvalidRequest, PlanRequest
+from missions.services.refusals import Scene, place_height_m, zone_at
+from missions.services.requests import CALM, InvalidRequest, PlanRequest
 from missions.services.scenes import current_scene, scene_without_zones
 from missions.services.visits import visits_of_places
-from missions.services.why_binds import what_binds
 from planning.connection_points import Terminal, Ways, ways_between
+from planning.energy.assignment_costs import FlightCosts
+from planning.problem import Amounts, Objective
+from planning.trajectory.heights import inspection_agl_m
+
+NEARLY = 0.9  # of a limit: no other target fits
+NOTICEABLE = 1.05  # times as long as in calm air
+
+
+def what_binds(
+    request: PlanRequest,
+    scene: Scene,
+    places: Sequence[Place],
+    ways: Ways,
+    orders: Mapping[int, Sequence[int]],
+    uav: int,
+    *,
+    length_m: float,
+    is_round_zones: bool,
+) -> dict[str, Any]:
+    """orders: the visits of each UAV of the request that flies, by its number; uav is the one that is asked about."""
+    flying = [number for number, asked in enumerate(request.uavs) if zone_at(asked.position, scene) is None]
+    costs = _costs(request, scene, places, ways, flying)
+    seconds_s = {number: _of_route(costs, "seconds", flying.index(number), order) for number, order in orders.items() if number in flying}
+    calm = replace(request, conditions=replace(CALM, temperature_c=request.conditions.temperature_c))
+    calm_s = _of_route(_costs(calm, scene, places, ways, flying), "seconds", flying.index(uav), orders[uav])
+    asked = request.uavs[uav]
+    usable_wh = asked.performance.usable_wh
+    used_wh = None if usable_wh is None else _of_route(costs, "wh", flying.index(uav), orders[uav])
+    binds = {
+        "battery": usable_wh is not None and used_wh is not None and used_wh >= NEARLY * usable_wh * asked.sorties,
+        "range": asked.max_range_m is not None and length_m >= NEARLY * asked.max_range_m * asked.sorties,
+        "most_targets": asked.most_targets is not None and len(orders[uav]) >= asked.most_targets,
+        "zone": is_round_zones,
+        "wind": seconds_s[uav] >= NOTICEABLE * calm_s,
+        "balance": request.objective is Objective.MAKESPAN and len(seconds_s) > 1 and seconds_s[uav] < max(seconds_s.values()),
+    }
+    return {
+        "used_wh": used_wh,
+        "usable_wh": None if usable_wh is None else usable_wh * asked.sorties,
+        "flown_s": seconds_s[uav],
+        "wind_s": seconds_s[uav] - calm_s,
+        "binds": [what for what, is_so in binds.items() if is_so],
+    }
+
+
+def _costs(request: PlanRequest, scene: Scene, places: Sequence[Place], ways: Ways, flying: Sequence[int]) -> FlightCosts:
+    visits, courses = visits_of_places(places)
+    agl_m = [inspection_agl_m(place_height_m(place, scene), scene.flight) for place in places]
+    bases = [base for base in request.bases if zone_at(base.position, scene) is None]
+    return counted(LaidOut(request, scene, places, agl_m, visits, courses, ways, bases), flying)
+
+
+def _of_route(costs: FlightCosts, quantity: str, number: int, order: Sequence[int]) -> float:
+    amounts = Amounts(**vars(getattr(costs, quantity)))
+    return float(amounts.of_route(number, costs.class_of[number], order))
+
 
 MOST_VISITS = 150  # beyond, only the route itself is looked at, not what others would fly instead
 BOX_MARGIN_DEG = 0.03  # about 3 km: the way that a zone bars is looked for so far around the route

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection
 from datetime import datetime
+from typing import Any
 from uuid import UUID
 
 from django.http import Http404
@@ -9,13 +10,55 @@ from drf_spectacular.utils import extend_schema
 from rest_framework.response import Response
 from rest_framework.views import APIView
 
+from missions.event_hooks import EventKind, MissionEvent, Place
 from missions.event_selectors import LoggedEvent, events_of_missions, missions_with_live_events
 from missions.models import Mission
 from missions.selectors import mission_alone
-from missions.serializers.events import MissionEventPageSerializer, event_json
+from workspace import strict_serializers as serializers
 from workspace.paging import slice_of
 from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
+
+LEVELS = ("critical", "warning", "advisory")
+
+
+class EventUavSerializer(serializers.Serializer):
+    id = serializers.IntegerField()
+    name = serializers.CharField()
+
+
+class MissionEventSerializer(serializers.Serializer):
+    key = serializers.CharField(help_text="the same whenever it is read")
+    at = serializers.DateTimeField()
+    mission = serializers.UUIDField()
+    kind = serializers.ChoiceField(choices=[kind.value for kind in EventKind])
+    uav = EventUavSerializer(allow_null=True)
+    who = serializers.CharField(allow_null=True, help_text="the user who did it; null: no user did, or one who has left")
+    level = serializers.ChoiceField(choices=LEVELS, allow_null=True)
+    is_simulated = serializers.BooleanField(help_text="of a UAV that is no real aircraft, or of a simulation")
+    message = serializers.CharField(help_text="in English")
+    values = serializers.DictField(child=serializers.JSONField(), help_text="by kind; see docs/live.md")
+
+
+class MissionEventPageSerializer(serializers.Serializer):
+    results = MissionEventSerializer(many=True)
+    next = serializers.CharField(allow_null=True)
+
+
+def event_json(place: Place, event: MissionEvent) -> dict[str, Any]:
+    return {
+        "key": place.key,
+        "at": place.at,
+        "mission": str(place.mission_id),
+        "kind": event.kind.value,
+        "uav": None if event.uav_id is None else {"id": event.uav_id, "name": event.uav_name},
+        "who": event.who,
+        "level": event.level,
+        "is_simulated": event.is_simulated,
+        "message": event.message,
+        "values": event.values,
+    }
+
 
 DESCRIPTION = (
     "Take-offs, landings, crashes, drop-outs, commands step by step, alerts, targets, offers of another plan, and what was done to a "

@@ -14,7 +14,7 @@ from missions.list_selectors import choices_of_filters
 from missions.models import Mission
 from missions.presence import report_presence
 from missions.serializers import inputs, shapes
-from missions.services.follow_ups import draft_follow_up
+from missions.services.mission_copies import draft_follow_up
 from missions.uav_change_selectors import uav_change_json, uav_changes
 from missions.views.approvals import REFUSED
 from missions.views.missions import answer_mission, mission_or_404

@@ -14,12 +14,14 @@ from rest_framework.views import APIView
 from missions import services
 from missions.serializers.inputs import PlanInputSerializer
 from missions.serializers.plain_request import plain_request
+from missions.serializers.reachability import ReachabilityInputSerializer, ReachabilitySerializer
 from missions.serializers.shapes import JobLinkSerializer, PlanSerializer
+from missions.services.reachability import reachability
 from missions.views.problems import api_problems
 from missions.views.small_plans import small_plan
 from workspace.errors import ApiProblem
 from workspace.idempotency import idempotent
-from workspace.models import Job, JobState, User
+from workspace.models import Job, JobState, Role, User
 from workspace.renderers import FastJSONRenderer
 from workspace.services import TooManyJobs, create_job_within, refuse_jobs_beyond
 from workspace.signed_in import SignedInRequest
@@ -27,6 +29,28 @@ from workspace.stored_words import in_words
 from workspace.tasks import send_job_on_commit
 from workspace.throttling import ScopedRate
 from workspace.waiting import NoRoomToWait, preferred_wait_s, wait_for_job
+
+
+class Reachability(APIView):
+    write_roles = frozenset(Role)
+    renderer_classes = [FastJSONRenderer]
+    throttle_classes = [ScopedRate]
+    throttle_scope = "plans"
+
+    @extend_schema(
+        operation_id="reachable_assets",
+        summary="Which assets the UAVs can inspect, one flight for each, and why the others they cannot",
+        description="Judged as a plan with the asset as its only target would be, on the zones that can be in force during the flight.",
+        request=ReachabilityInputSerializer,
+        responses=ReachabilitySerializer,
+    )
+    def post(self, request: SignedInRequest) -> Response:
+        body = ReachabilityInputSerializer(data=request.data, context={"organisation": request.user.organisation})
+        body.is_valid(raise_exception=True)
+        values = body.validated_data
+        with api_problems():
+            return Response(reachability(request=body.to_request(), starts=values["starts"], box=values.get("box")))
+
 
 SOLVE_PLAN = "missions.tasks.solve_plan"
 JOBS_RETRY_AFTER_S = 10

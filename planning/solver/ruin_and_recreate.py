@@ -5,9 +5,12 @@ from one route, which helps where few UAVs fly many targets, and for the longest
 """
 
 import math
+from typing import Any
 
 import numpy as np
-from numba import njit
+from llvmlite import ir
+from numba import njit, types
+from numba.extending import intrinsic
 
 from planning.solver.exchanges import NONE, draw_move, make
 from planning.solver.insertion import recreate
@@ -26,7 +29,29 @@ from planning.solver.plan_state import (
     settle,
     values,
 )
-from planning.solver.unowned import unowned
+
+
+def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
+    if isinstance(kind, types.Array):
+        array = context.make_array(kind)(context, builder, value)
+        array.meminfo = ir.Constant(array.meminfo.type, None)
+        return array._getvalue()
+    if isinstance(kind, types.BaseTuple):
+        members: Any = kind
+        parts = [_without_owner(context, builder, member, builder.extract_value(value, at)) for at, member in enumerate(members)]
+        return context.make_tuple(builder, kind, parts)
+    return value
+
+
+@intrinsic
+def unowned(typing_context: Any, arrays: Any) -> Any:
+    """The same array, or tuple of arrays and tuples, for use while the caller keeps it alive."""
+
+    def code(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        return _without_owner(context, builder, arrays, arguments[0])
+
+    return arrays(arrays), code
+
 
 MEAN_REMOVED = 10.0
 LONGEST_STRING = 10.0

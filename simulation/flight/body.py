@@ -1,18 +1,143 @@
 """The aircraft itself: in its air, over its ground, on its battery, with what it knows of its place."""
 
 import math
+from dataclasses import dataclass
 from enum import StrEnum
+from random import Random
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.local_frame import LocalFrame
-from simulation.flight.air import Air
+from planning.energy.conditions import LAPSE_K_PER_M, SEA_LEVEL_K
 from simulation.flight.airframe import Airframe
-from simulation.flight.battery import Battery
 from simulation.flight.course import Vector
 from simulation.flight.ground import Ground
-from simulation.flight.navigation import Navigation
 from simulation.flight.plant import GUIDANCE_STEP_S, J_PER_WH, Motion, Plant
 from simulation.flight.weather import Weather
+
+DRIFT_MPS = 0.3  # of each axis, drawn when the fix is lost: what a compass, an airspeed and tilt leave after the wind has been learnt
+WANDER_MPS = 0.03  # by which that changes in the first second; it grows with the root of time
+CATCH_UP_S = 1.0  # until a new fix is believed
+
+
+class Navigation:
+    """`error_m` is what its position is off to east and north."""
+
+    def __init__(self, seed: int) -> None:
+        self._random = Random(seed)
+        self._drift_mps: tuple[float, float] | None = None
+        self.error_m = (0.0, 0.0)
+
+    def step(self, dt_s: float, *, is_gps_lost: bool) -> None:
+        if not is_gps_lost:
+            self._drift_mps = None
+            if self.error_m != (0.0, 0.0):
+                kept = math.exp(-dt_s / CATCH_UP_S)
+                east, north = (part * kept for part in self.error_m)
+                self.error_m = (east, north) if math.hypot(east, north) > 1e-3 else (0.0, 0.0)
+            return
+        draw = self._random.gauss
+        if self._drift_mps is None:
+            self._drift_mps = (draw(0.0, DRIFT_MPS), draw(0.0, DRIFT_MPS))
+        east_mps, north_mps = self._drift_mps
+        wander_mps = WANDER_MPS * math.sqrt(dt_s)
+        self._drift_mps = (east_mps + draw(0.0, wander_mps), north_mps + draw(0.0, wander_mps))
+        self.error_m = (self.error_m[0] + self._drift_mps[0] * dt_s, self.error_m[1] + self._drift_mps[1] * dt_s)
+
+
+LEAST_V = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Battery:
+    """`left_wh` at the moment when `used_wh` was drawn; what is drawn after that comes off it."""
+
+    airframe: Airframe
+    left_wh: float
+    used_wh: float = 0.0
+
+    @classmethod
+    def charged(cls, airframe: Airframe, percent: float) -> "Battery":
+        return cls(airframe, airframe.battery_wh * percent / 100.0)
+
+    def left_after(self, used_wh: float) -> float:
+        return max(self.left_wh - (used_wh - self.used_wh), 0.0)
+
+    def percent_after(self, used_wh: float) -> float:
+        return 100.0 * self.left_after(used_wh) / self.airframe.battery_wh
+
+    def with_left(self, left_wh: float, used_wh: float) -> "Battery":
+        """Weakened, or exchanged, at this moment."""
+        return Battery(self.airframe, min(left_wh, self.airframe.battery_wh), used_wh)
+
+    def under_load(self, used_wh: float, power_w: float) -> tuple[float, float]:
+        """Volts and amperes: an open voltage that falls with the charge, less what the current takes of it."""
+        airframe = self.airframe
+        share = self.left_after(used_wh) / airframe.battery_wh
+        open_v = airframe.cells * (airframe.empty_cell_v + (airframe.full_cell_v - airframe.empty_cell_v) * share)
+        # P = U I and U = open - R I: the root with the small current; beyond the greatest power the voltage breaks down to half.
+        under_root = max(open_v**2 - 4.0 * airframe.resistance_ohm * power_w, 0.0)
+        volts = max(0.5 * (open_v + under_root**0.5), LEAST_V)
+        return volts, power_w / volts
+
+
+VERTICAL_SHARE = 0.25  # near the ground gusts have little room to go up and down
+
+
+class Gusts:
+    """Each step the air's velocity beside its mean, north, east and down [m/s], with the given deviation and time constant.
+
+    The process is exact for any step (G. E. Uhlenbeck, L. S. Ornstein, On the Theory of the Brownian Motion, 1930): its deviation does not
+    depend on how finely it is stepped.
+    """
+
+    def __init__(self, seed: int) -> None:
+        self._random = Random(seed)
+        self._ned = (0.0, 0.0, 0.0)
+
+    def step(self, dt_s: float, deviation_mps: float, time_s: float) -> tuple[float, float, float]:
+        if deviation_mps == 0.0 and self._ned == (0.0, 0.0, 0.0):
+            return self._ned
+        kept = math.exp(-dt_s / time_s)
+        fresh = deviation_mps * math.sqrt(1.0 - kept * kept)
+        north, east, down = self._ned
+        draw = self._random.gauss
+        self._ned = (
+            kept * north + fresh * draw(0.0, 1.0),
+            kept * east + fresh * draw(0.0, 1.0),
+            kept * down + fresh * VERTICAL_SHARE * draw(0.0, 1.0),
+        )
+        return self._ned
+
+
+KELVIN = 273.15
+
+
+class Air:
+    """`wind_ned_mps` is the velocity of the air at the UAV, without what Dryden turbulence adds to it."""
+
+    def __init__(self, plant: Plant, weather: Weather, *, ground_m: float, seed: int) -> None:
+        self._plant = plant
+        self._gusts = Gusts(seed)
+        self._ground_m = ground_m
+        self.wind_ned_mps = (0.0, 0.0, 0.0)
+        self.weather = weather
+        self.change(weather)
+
+    def change(self, weather: Weather) -> None:
+        self.weather = weather
+        self._plant.set_turbulence(weather.turbulence_mps_at_20ft)
+        standard_k = SEA_LEVEL_K - LAPSE_K_PER_M * self._ground_m
+        self._plant.set_temperature(weather.conditions.temperature_c + KELVIN - standard_k)
+
+    def step(self, agl_m: float) -> None:
+        weather = self.weather
+        east_mps, north_mps = weather.conditions.wind_at(agl_m) if weather.conditions.wind and math.isfinite(agl_m) else (0.0, 0.0)
+        gust = self._gusts.step(GUIDANCE_STEP_S, weather.gusts_mps, weather.gust_time_s)
+        wind = (north_mps + gust[0], east_mps + gust[1], gust[2])
+        if wind != self.wind_ned_mps:
+            self.wind_ned_mps = wind
+            self._plant.set_wind(*wind)
+
 
 OFF_GROUND_M = 0.3  # above standing: from here on it flies
 STEADY_M = 0.2  # above standing: from here on the loops may integrate

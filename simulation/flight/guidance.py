@@ -7,8 +7,123 @@ from typing import NamedTuple
 
 from simulation.flight.airframe import Airframe
 from simulation.flight.course import Pace, Piece, Vector
-from simulation.flight.governor import Governor, GovernorRules
-from simulation.flight.reference import Reference
+
+
+@dataclass(frozen=True, slots=True)
+class GovernorRules:
+    """The reference slows from `lag_m` behind it on and waits at `most_lag_m`; likewise beside it.
+
+    `effort` is the share of the horizontal acceleration that is asked for; above `high_effort` the speed falls by up to `fall_per_s` of
+    itself a second, below `low_effort` it comes back by `rise_per_s`.
+    """
+
+    lag_m: float = 0.8
+    most_lag_m: float = 3.0
+    beside_m: float = 0.4
+    most_beside_m: float = 1.5
+    high_effort: float = 0.85
+    low_effort: float = 0.7
+    fall_per_s: float = 1.5
+    rise_per_s: float = 0.15
+    effort_time_s: float = 0.4
+
+
+class Governor:
+    def __init__(self, rules: GovernorRules) -> None:
+        self._rules = rules
+        self._effort = 0.0
+        self._share = 1.0
+
+    def step(self, dt_s: float, *, lag_m: float, beside_m: float, effort: float) -> float:
+        """The share of its speed that the reference may go, 0 to 1."""
+        rules = self._rules
+        self._effort += min(dt_s / rules.effort_time_s, 1.0) * (min(effort, 2.0) - self._effort)
+        if self._effort > rules.high_effort:
+            self._share -= rules.fall_per_s * dt_s * min((self._effort - rules.high_effort) / 0.15, 1.0) * max(self._share, 0.1)
+        elif self._effort < rules.low_effort:
+            self._share += rules.rise_per_s * dt_s
+        self._share = min(max(self._share, 0.05), 1.0)
+        behind = _falling(lag_m, rules.lag_m, rules.most_lag_m)
+        return self._share * behind * _falling(abs(beside_m), rules.beside_m, rules.most_beside_m)
+
+
+def _falling(value: float, begins: float, ends: float) -> float:
+    """1 up to `begins`, 0 from `ends` on."""
+    return min(max((ends - value) / (ends - begins), 0.0), 1.0)
+
+
+NEAR_ENOUGH_M = 0.01
+SLOWEST_MPS = 0.1  # so that an end is reached and not only approached
+
+
+class Reference:
+    """`place`, `along`, `speed_mps` and `gain_mps2` (of that speed) after each step; `is_at_end` once it stands at the last point."""
+
+    def __init__(self, pieces: Sequence[Piece], speed_mps: float, acceleration_mps2: float) -> None:
+        self._pieces = pieces
+        self._number, self._s_m = 0, 0.0
+        self._acceleration_mps2 = acceleration_mps2
+        self.speed_mps, self.gain_mps2 = speed_mps, 0.0
+        self.is_at_end = not pieces
+        self._is_told = False
+        self.place, self.along, self._curve = pieces[0].at(0.0) if pieces else ((0.0, 0.0, 0.0), (0.0, 0.0, 1.0), 0.0)
+
+    def step(self, dt_s: float, share: float) -> list[int]:
+        """On by one step, at this share of the speed that may be flown. Returns the marks that were passed."""
+        marks: list[int] = []
+        if self.is_at_end:
+            self.speed_mps, self.gain_mps2 = 0.0, 0.0
+            return marks
+        piece = self._pieces[self._number]
+        left_m = piece.length_m - self._s_m
+        in_time_mps = math.sqrt(piece.end_mps**2 + 2.0 * self._acceleration_mps2 * max(left_m, 0.0))
+        wanted_mps = max(min(piece.fastest_mps * share, in_time_mps), min(SLOWEST_MPS, share * SLOWEST_MPS))
+        change_mps = self._acceleration_mps2 * dt_s
+        # It slows as hard as the course asks for: it was drawn so that this is no more than what is gained each second.
+        speed_mps = (
+            min(wanted_mps, self.speed_mps + change_mps)
+            if wanted_mps > self.speed_mps
+            else max(wanted_mps, self.speed_mps - 1.5 * change_mps)
+        )
+        self.gain_mps2 = (speed_mps - self.speed_mps) / dt_s
+        self._s_m += 0.5 * (speed_mps + self.speed_mps) * dt_s
+        self.speed_mps = speed_mps
+        while True:
+            piece = self._pieces[self._number]
+            is_past = self._s_m >= piece.length_m - NEAR_ENOUGH_M
+            if piece.mark is not None and not self._is_told and (is_past or (piece.radius_m and self._s_m >= 0.5 * piece.length_m)):
+                marks.append(piece.mark)
+                self._is_told = True
+            if not is_past:
+                break
+            if self._number + 1 == len(self._pieces):
+                self.is_at_end, self._s_m = True, piece.length_m
+                self.speed_mps = 0.0
+                break
+            self._s_m = max(self._s_m - piece.length_m, 0.0)
+            self._number += 1
+            self._is_told = False
+        self.place, self.along, self._curve = self._pieces[self._number].at(self._s_m)
+        return marks
+
+    def acceleration(self, lead_s: float) -> Vector:
+        """What the course asks for [m/s²]: to the side as it will in `lead_s`, since an attitude takes that long, and along it now."""
+        gain = self.gain_mps2
+        u, v, w = self.along
+        number, s_m = self._number, self._s_m + self.speed_mps * lead_s
+        while s_m > self._pieces[number].length_m and number + 1 < len(self._pieces):
+            s_m -= self._pieces[number].length_m
+            number += 1
+        piece = self._pieces[number]
+        if piece.radius_m == 0.0 or self.is_at_end:
+            return gain * u, gain * v, gain * w
+        a, b, c = piece.bend(min(s_m, piece.length_m))
+        side = self.speed_mps**2 / piece.radius_m
+        return gain * u + side * a, gain * v + side * b, gain * w + side * c
+
+    @property
+    def end(self) -> Vector:
+        return self._pieces[-1].at(self._pieces[-1].length_m)[0] if self._pieces else self.place
 
 
 @dataclass(frozen=True, slots=True)

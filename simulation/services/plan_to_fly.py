@@ -1,5 +1,8 @@
 """The present plan of a mission as it is flown in simulation: its routes with the very items that UAVs would be given."""
 
+import hashlib
+import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -8,9 +11,9 @@ from django.utils.translation import gettext as _
 
 from inspection.geodesy import LonLat
 from inspection.models import AssetKind
-from mavlink.approved_route import FrozenRoute, NotARoute, route_from_json
+from mavlink.approved_route import FrozenRoute, NotARoute, route_from_json, route_to_json
 from mavlink.mission_items import CannotBeFlown, flight_loads
-from mavlink.vehicle_plan import FlightLoad, load_from_json
+from mavlink.vehicle_plan import FlightLoad, load_from_json, load_to_json
 from missions.models import Approval, Mission, MissionUav
 from missions.services.approval_document import frozen_route
 from missions.services.refused import Reason, Refused, refuse
@@ -18,9 +21,34 @@ from missions.zone_selectors import departure_s
 from planning.energy.conditions import Conditions, conditions_from_json
 from planning.energy.performance import performance_from_json
 from planning.trajectory.heights import asset_height_m
-from simulation.rehearsing.content import content_of
 from simulation.rehearsing.flying import RouteToFly
 from simulation.services.fleet import StandIn, stand_in_of
+
+
+def content_of(
+    routes: Sequence[RouteToFly],
+    airframes: Sequence[str],
+    batteries_wh: Sequence[float | None],
+    departs_s: float | None,
+    turnaround_s: float,
+) -> str:
+    """SHA-256 of the routes, their items, what flies them, when, and how long after a landing the next take-off is."""
+    parts: list[dict[str, Any]] = [
+        {
+            "uav": route.uav,
+            "route": route_to_json(route.route),
+            "items": [load_to_json(FlightLoad(items))["mission"] for items in route.items],
+            **({"rally": [load_to_json(FlightLoad((), rally=rally))["rally"] for rally in route.rally]} if any(route.rally) else {}),
+            "reserve_percent": route.reserve_percent,
+            "limit_mps": route.limit_mps,
+            "airframe": airframe,
+            "battery_wh": battery_wh,
+        }
+        for route, airframe, battery_wh in zip(routes, airframes, batteries_wh, strict=True)
+    ]
+    between = {"turnaround_s": turnaround_s} if any(len(route.items) > 1 for route in routes) else {}
+    text = json.dumps({"departs_s": departs_s, "routes": parts, **between}, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 @dataclass(frozen=True, eq=False)

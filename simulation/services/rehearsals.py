@@ -2,6 +2,8 @@
 
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
+from datetime import timedelta
 from typing import Any
 from uuid import UUID
 
@@ -10,26 +12,122 @@ from django.db import transaction
 from django.utils import timezone
 
 from inspection.selectors.planning import PlanningGround, heights_at, planning_read
+from mavlink.vehicle_plan import MissionItem
 from missions.models import Mission
 from missions.selectors import mission_of_organisation
 from missions.services.missions import note
 from simulation.flight.airframe import AIRFRAMES
+from simulation.flight.events import Crashed, Said
+from simulation.flight.states import Mode, Outcome, Severity, UavState
+from simulation.flight.uav import SimulatedUav
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack
-from simulation.rehearsing.flying import fly
+from simulation.rehearsing.flying import MakeVehicle, Start, Vehicle, fly
+from simulation.rehearsing.ground import BlockedGround, Heights
 from simulation.rehearsing.sky import Sky, sky_from_json, sky_to_json
-from simulation.services.fleet import stand_in_to_json
-from simulation.services.flown_before import take_flown_before
+from simulation.rehearsing.sky_weather import weather_of
+from simulation.services.fleet import StandIn, stand_in_to_json
 from simulation.services.plan_to_fly import PlanToFly, plan_to_fly
 from simulation.services.surroundings import ground_of_plan, surroundings_of
-from simulation.services.vehicles import vehicle_maker
+from simulation.vehicle_protocol.havens import havens_of
 from simulation.verdict.finding import Finding, Level, worst
 from simulation.verdict.flown import FlownRoute
-from simulation.verdict.judging import Verdict, judge
+from simulation.verdict.judging import Verdict, judge, wind_finding
 from simulation.verdict.limits import Limits, limits_to_json
 from simulation.verdict.stored import track_to_json, verdict_to_json
-from simulation.verdict.wind import wind_finding
 from workspace.models import Job, User
 from workspace.services import cancel_job, create_job_within, finish_job
+
+
+class RehearsedUav:
+    """A simulated UAV as a rehearsal orders it about."""
+
+    def __init__(self, uav: SimulatedUav) -> None:
+        self._uav = uav
+
+    @property
+    def now_s(self) -> float:
+        return self._uav.now_s
+
+    @property
+    def state(self) -> UavState:
+        return self._uav.state
+
+    def step(self) -> None:
+        self._uav.step()
+
+    def load(self, items: Sequence[MissionItem], rally: Sequence[MissionItem]) -> Outcome:
+        self._uav.havens = havens_of(rally, self._uav.state.home_amsl_m)
+        return self._uav.load(items)
+
+    def arm(self) -> Outcome:
+        return self._uav.arm()
+
+    def take_off(self, height_relative_m: float) -> Outcome:
+        return self._uav.take_off(height_relative_m)
+
+    def start_mission(self) -> Outcome:
+        return self._uav.set_mode(Mode.MISSION)
+
+    def take_texts(self) -> list[str]:
+        """What it has said of trouble since it was last asked. Why it has crashed is told once."""
+        events = self._uav.take_events()
+        reasons = [event.reason for event in events if isinstance(event, Crashed)]
+        said = [event.text for event in events if isinstance(event, Said) and event.severity is not Severity.INFO]
+        return [text for text in said if not any(text.endswith(reason) for reason in reasons)] + reasons
+
+
+def vehicle_maker(stand_ins: Sequence[StandIn], sky: Sky, terrain: Heights | None) -> MakeVehicle:
+    """Makes the UAV for each flight: its airframe with the battery of the UAV that it stands in for, as full as the conditions say."""
+    by_uav = {stand_in.uav: stand_in for stand_in in stand_ins}
+    weather = weather_of(sky)
+
+    def make(start: Start) -> Vehicle:
+        stand_in = by_uav[start.uav]
+        airframe = replace(AIRFRAMES[stand_in.airframe], battery_wh=stand_in.battery_wh)
+        home_m = 0.0 if start.ground_amsl_m is None else start.ground_amsl_m
+        ground = BlockedGround(None if start.ground_amsl_m is None else terrain, home_m)
+        uav = SimulatedUav(
+            airframe, start.home, ground=ground, weather=weather, seed=start.seed, heading_deg=start.heading_deg,
+            battery_percent=sky.battery_percent,
+        )  # fmt: skip
+        return RehearsedUav(uav)
+
+    return make
+
+
+REUSED_FOR = timedelta(hours=24)  # another version of the program may fly otherwise
+
+
+def take_flown_before(run: RehearsalRun) -> bool:
+    """Give the run the verdict and the lines of its like, if there is one; `finished_at` stays when that was flown.
+
+    Its rehearsal names the ground that it would be flown over.
+    """
+    rehearsal = run.rehearsal
+    alike = RehearsalRun.objects.filter(
+        rehearsal__mission=rehearsal.mission_id,
+        rehearsal__content_sha256=rehearsal.content_sha256,
+        rehearsal__ground_revision=rehearsal.ground_revision,
+        rehearsal__ground_sha256=rehearsal.ground_sha256,
+        rehearsal__seed=rehearsal.seed,
+        rehearsal__limits=rehearsal.limits,
+        rehearsal__uavs=rehearsal.uavs,
+        conditions=run.conditions,
+        finished_at__gte=timezone.now() - REUSED_FOR,
+    )
+    before = alike.exclude(pk=run.pk).order_by("-finished_at").first()
+    if before is None:
+        return False
+    with transaction.atomic():
+        held = RehearsalRun.objects.select_for_update().get(pk=run.pk)
+        if held.finished_at is None:
+            held.verdict, held.level, held.took_s, held.finished_at = before.verdict, before.level, before.took_s, before.finished_at
+            held.save()
+            RehearsalTrack.objects.bulk_create(
+                RehearsalTrack(run=held, uav=track.uav, flights=track.flights) for track in before.tracks.all()
+            )
+    return True
+
 
 REHEARSE = "simulation.tasks.rehearse_mission"
 KEPT = 20  # rehearsals of one mission; older ones go

@@ -15,7 +15,7 @@ from mavlink.vehicle_plan import MissionItem, MissionType
 from simulation.flight import events
 from simulation.flight.settings import Settings
 from simulation.flight.states import Refused, Severity, UavState
-from simulation.vehicle_protocol import file_transfer, time_service
+from simulation.vehicle_protocol import requests
 from simulation.vehicle_protocol.command_door import NotFinite, acknowledgement, command_of
 from simulation.vehicle_protocol.fence import fence_of
 from simulation.vehicle_protocol.fence_watch import MODES, FenceAction, FenceWatch
@@ -29,8 +29,21 @@ from simulation.vehicle_protocol.reports import REPORTS, Report, heartbeat, miss
 from simulation.vehicle_protocol.requests import Requests
 from simulation.vehicle_protocol.stations import Outgoing, Station, is_for
 from simulation.vehicle_protocol.streams import Streams
-from simulation.vehicle_protocol.texts import text_messages
 from simulation.vehicle_protocol.vehicle import Vehicle
+
+PIECE = 50  # bytes of one STATUSTEXT
+MOST_PIECES = 5
+
+
+def text_messages(text: str, severity: int, number: int) -> list[Message]:
+    """In pieces where it is long; `number` (1 to 65535) names what belongs together. Words are cut where they would go on for ever."""
+    words = text.encode("ascii", "replace")[: PIECE * MOST_PIECES]
+    pieces = [words[start : start + PIECE] for start in range(0, len(words), PIECE)] or [b""]
+    identity = number if len(pieces) > 1 else 0
+    if identity and len(pieces[-1]) == PIECE and len(pieces) < MOST_PIECES:
+        pieces.append(b"")  # a full last piece would not tell that it is the last
+    return [mavlink.MAVLink_statustext_message(severity, piece, identity, place) for place, piece in enumerate(pieces)]
+
 
 HEARTBEAT_S = 1.0
 LARGEST_NUMBER = 65_535
@@ -122,13 +135,13 @@ class Endpoint:
         return self.parameters.receive(message, station)
 
     def _file(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
-        return file_transfer.refused(message, station)
+        return requests.refused(message, station)
 
     def _timesync(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
-        return time_service.timesync_answer(message, station, now_s)
+        return requests.timesync_answer(message, station, now_s)
 
     def _ping(self, message: Any, station: Station, now_s: float) -> list[Outgoing]:
-        return time_service.ping_answer(message, station)
+        return requests.ping_answer(message, station)
 
     # What changes
 

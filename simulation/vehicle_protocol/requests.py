@@ -2,16 +2,83 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Message
-from simulation.vehicle_protocol import identity
 from simulation.vehicle_protocol.command_door import Command
 from simulation.vehicle_protocol.flavour import Flavour
 from simulation.vehicle_protocol.pilot import ACCEPTED, DENIED, UNSUPPORTED
 from simulation.vehicle_protocol.reports import REPORTS, Report, home
+from simulation.vehicle_protocol.stations import Outgoing, Station
 from simulation.vehicle_protocol.streams import Streams
+
+CAPABILITIES = (
+    mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FLOAT | mavlink.MAV_PROTOCOL_CAPABILITY_PARAM_FLOAT
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_INT | mavlink.MAV_PROTOCOL_CAPABILITY_COMMAND_INT
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_FENCE | mavlink.MAV_PROTOCOL_CAPABILITY_MISSION_RALLY
+    | mavlink.MAV_PROTOCOL_CAPABILITY_MAVLINK2
+)  # fmt: skip
+DEVELOPMENT = 0  # of the firmware's types: one that is no release is not compared with the latest release
+VERSIONS = {Flavour.PX4: (1, 15, 0), Flavour.ARDUPILOT: (4, 6, 0)}
+VENDOR, PRODUCT = 0x5350, 0x5349
+
+
+def version(flavour: Flavour, system: int) -> Message:
+    """Its unique id is its system id, with letters before it that tell a simulated UAV."""
+    major, minor, patch = VERSIONS[flavour]
+    firmware = major << 24 | minor << 16 | patch << 8 | DEVELOPMENT
+    nothing = [0] * 8
+    unique = int.from_bytes(b"SIMUAV\0\0", "big") | system
+    return mavlink.MAVLink_autopilot_version_message(
+        CAPABILITIES, firmware, firmware, 0, 0, nothing, nothing, nothing, VENDOR, PRODUCT, unique
+    )
+
+
+NO_NETWORK = 0
+HEADER, PAYLOAD = 12, 251
+TERMINATE_SESSION, RESET_SESSIONS = 1, 2
+OPENING = frozenset({4, 11})  # for reading, for writing; 6 would create a file
+ACK, NAK = 128, 129
+UNKNOWN_COMMAND, FILE_NOT_FOUND = 7, 10
+
+
+def refused(message: Any, station: Station) -> list[Outgoing]:
+    """The answer to FILE_TRANSFER_PROTOCOL; there is never a session, so that ending one is easily granted."""
+    asked = bytes(message.payload[:HEADER])
+    if len(asked) < HEADER or asked[3] >= ACK:
+        return []
+    sequence = (int.from_bytes(asked[:2], "little") + 1) & 0xFFFF
+    opcode, session = asked[3], asked[2]
+    answer = bytearray(PAYLOAD)
+    answer[:2] = sequence.to_bytes(2, "little")
+    answer[2], answer[5] = session, opcode
+    if opcode in (TERMINATE_SESSION, RESET_SESSIONS):
+        answer[3] = ACK
+    else:
+        answer[3], answer[4] = NAK, 1
+        answer[HEADER] = FILE_NOT_FOUND if opcode in OPENING else UNKNOWN_COMMAND
+    return [Outgoing(mavlink.MAVLink_file_transfer_protocol_message(NO_NETWORK, *station.ends, list(answer)), station)]
+
+
+_LARGEST_NS = 2**63 - 1
+
+
+def timesync_answer(message: Any, station: Station, now_s: float) -> list[Outgoing]:
+    """now_s: by one clock that never goes back. A message that bears a time of ours already is itself an answer."""
+    if message.tc1 != 0:
+        return []
+    now_ns = min(int(now_s * 1e9), _LARGEST_NS)
+    return [Outgoing(mavlink.MAVLink_timesync_message(now_ns, message.ts1), station)]
+
+
+def ping_answer(message: Any, station: Station) -> list[Outgoing]:
+    """A ping to everybody is answered to who sent it; one that names somebody is the answer to a ping."""
+    if (message.target_system, message.target_component) != (0, 0):
+        return []
+    return [Outgoing(mavlink.MAVLink_ping_message(message.time_usec, message.seq, *station.ends), station)]
+
 
 Answer = tuple[int, list[Message]]  # a MAV_RESULT, and what was asked for
 
@@ -33,7 +100,7 @@ class Requests:
     def _message(self, command: Command) -> Answer:
         number = command.whole(1)
         if number == mavlink.MAVLINK_MSG_ID_AUTOPILOT_VERSION:
-            return ACCEPTED, [identity.version(self.flavour, self.system)]
+            return ACCEPTED, [version(self.flavour, self.system)]
         if number == mavlink.MAVLINK_MSG_ID_MESSAGE_INTERVAL:
             return self._told_interval(command.whole(2))
         if number is None or number not in REPORTS:
@@ -56,7 +123,7 @@ class Requests:
         return ACCEPTED, [mavlink.MAVLink_message_interval_message(number, self.streams.interval_us(number))]
 
     def _version(self, command: Command) -> Answer:
-        return ACCEPTED, [identity.version(self.flavour, self.system)]
+        return ACCEPTED, [version(self.flavour, self.system)]
 
     def _home(self, command: Command) -> Answer:
         return ACCEPTED, [home(self.report())]

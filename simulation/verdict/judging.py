@@ -1,12 +1,14 @@
 """All of a rehearsed mission under one set of conditions, held against the limits: a level, and the reasons for it."""
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from inspection.zones.reach import ZoneTable
-from simulation.verdict.energy import FlightEnergy, energy_of
+from mavlink.approved_route import FrozenRoute
+from planning.energy.conditions import Conditions
 from simulation.verdict.finding import Facts, Finding, Level, level_of
 from simulation.verdict.flown import Ending, FloatArray, FlownRoute
 from simulation.verdict.following import Following, following_of
@@ -15,6 +17,41 @@ from simulation.verdict.meeting import Meeting, meetings_of
 from simulation.verdict.obstacles import Approach, Standing, lowest_of, nearest_standing
 from simulation.verdict.reaching import Visit, visits_of
 from simulation.verdict.zone_approach import ZoneApproach, zone_approaches
+
+
+def wind_finding(uav: int, route: FrozenRoute, conditions: Conditions, max_airspeed_mps: float) -> Finding | None:
+    """The strongest mean wind at the heights of a route, where it is more than can be flown: it is said before all that follows."""
+    heights_m = {waypoint.altitude_agl_m for waypoint in route.waypoints}
+    speed_mps, agl_m = max(((math.hypot(*conditions.wind_at(agl_m)), agl_m) for agl_m in heights_m), default=(0.0, 0.0))
+    if speed_mps <= max_airspeed_mps:
+        return None
+    facts: dict[str, float | int | str | None] = {"wind_mps": speed_mps, "agl_m": agl_m, "limit_mps": max_airspeed_mps}
+    return Finding(Level.FAIL, "wind", uav, facts=facts)
+
+
+@dataclass(frozen=True)
+class FlightEnergy:
+    """One flight: watt-hours used, and percent left at its end; lowest_percent on the way."""
+
+    flight: int
+    used_wh: float
+    left_percent: float
+    lowest_percent: float
+
+
+def energy_of(route: FlownRoute) -> list[FlightEnergy]:
+    """Of the flights that were flown."""
+    return [
+        FlightEnergy(
+            number,
+            float(flown.track.used_wh[-1]),
+            float(flown.track.battery_percent[-1]),
+            float(flown.track.battery_percent.min()),
+        )
+        for number, flown in enumerate(route.flights)
+        if flown.track is not None and len(flown.track)
+    ]
+
 
 MEETING_STEP_S = 0.2
 AS_PLANNED = 1.05  # of the planned energy

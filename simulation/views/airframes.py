@@ -1,5 +1,6 @@
 """Which simulated airframes there are, which one flies for a type of UAV, and whether approval asks for a rehearsal."""
 
+from django.db import transaction
 from django.shortcuts import get_object_or_404
 from django.utils.translation import gettext as _
 from drf_spectacular.utils import extend_schema
@@ -12,13 +13,37 @@ from missions.fleet_selectors import types_of_organisation
 from missions.models import UavType
 from simulation import selectors
 from simulation.flight.airframe import AIRFRAMES
+from simulation.models import SimulatedAirframe
 from simulation.rehearsing.candidates import CANDIDATES
+from simulation.selectors import chosen_airframe
 from simulation.serializers import shapes
-from simulation.services.airframes import NoSuchAirframe, choose_airframe
 from simulation.services.fleet import airframe_of_type
 from simulation.services.green_verdict import set_rule
+from workspace.models import User
 from workspace.permissions import ADMINISTRATORS, InTheBrowserAlone
+from workspace.services import record_change
 from workspace.signed_in import SignedInRequest
+
+
+class NoSuchAirframe(ValueError):
+    """There is no airframe of that code."""
+
+
+def choose_airframe(*, uav_type: UavType, airframe: str | None, actor: User) -> None:
+    """None: whichever is nearest. Raises NoSuchAirframe."""
+    if airframe is not None and airframe not in AIRFRAMES:
+        raise NoSuchAirframe(airframe)
+    with transaction.atomic():
+        before = chosen_airframe(uav_type)
+        if airframe is None:
+            SimulatedAirframe.objects.filter(uav_type=uav_type).delete()
+        else:
+            SimulatedAirframe.objects.update_or_create(uav_type=uav_type, defaults={"airframe": airframe})
+        if before != airframe:
+            record_change(
+                organisation=uav_type.organisation, actor=actor, action="changed", subject_type="uavtype", subject_id=uav_type.pk,
+                before={"simulated_airframe": before}, after={"simulated_airframe": airframe},
+            )  # fmt: skip
 
 
 class Airframes(APIView):

@@ -7,7 +7,7 @@ written any more: an upload that had begun is undone, and what it left is told a
 import asyncio
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -15,13 +15,15 @@ from django.conf import settings
 from django.utils import timezone
 
 from mavlink.addressing import Ends
-from mavlink.commands.actions import Order
+from mavlink.autopilot_type import Flavour
+from mavlink.commands.actions import Order, blind_message, pause_s
 from mavlink.commands.command import CommandEnd, CommandOutcome
 from mavlink.commands.driver import CommandKeeper
+from mavlink.mission_sync.limits import FIRST_LEG, PARAMETERS, LimitWarning, count_warnings, leg_warnings
 from mavlink.mission_sync.outcome import KeeperOutcome, KeeperState
 from mavlink.mission_sync.sync import MissionKeeper
-from mavlink.parameters import ParameterSetting
-from mavlink.rtl import return_height_parameter
+from mavlink.parameters import ParameterReading, ParameterSetting
+from mavlink.rtl import fence_off_by, return_height_parameter
 from mavlink.vehicle_plan import FlightLoad, MissionType
 from missions.models import CommandKind, UavCommand
 from missions.services.commands import (
@@ -35,7 +37,6 @@ from missions.services.commands import (
     note_sent,
     note_sent_unheard,
 )
-from telemetry.gateway.blind import send_blind
 from telemetry.gateway.conversation import Conversation
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.preparation import (
@@ -49,9 +50,73 @@ from telemetry.gateway.preparation import (
 )
 from telemetry.gateway.reading import OTHER_LIST_READ, ask_for_the_present, read_aboard
 from telemetry.gateway.session import HEARD_WITHIN_S, Session
-from telemetry.gateway.vehicle_limits import reason_not_to_load, warnings_of
 from telemetry.services.loads import Carried, Loaded, begin_loading, confirm_loaded, end_loading, fail_loading
 from telemetry.services.mission_alerts import tell_of_mission, tell_of_other_list
+
+RETRIES = 2  # a parameter that a vehicle does not have draws no answer
+ADVICE = {
+    "far-first-waypoint": f"Bring the UAV to where its flight begins, or raise {FIRST_LEG} on it.",
+    "long-leg": "Revoke, and approve it again with points put in on longer legs.",
+}
+FENCE_PARAMETERS = ("FENCE_ENABLE", "FENCE_AUTOENABLE", "FENCE_TYPE")
+FENCE_OFF = "The fence on the UAV does nothing: {parameter}."
+UNTOLD = "The UAV has not told how far apart waypoints may be."
+
+
+async def reason_not_to_load(load: FlightLoad, session: Session, *, is_wanted: Callable[[], bool]) -> CannotCarry | None:
+    """Legs that the vehicle would refuse. It is asked if it has not told, and again before it is refused: it may have been set anew."""
+    if session.flavour is Flavour.ARDUPILOT and load.fence and FENCE_PARAMETERS[0] not in session.state.parameters:
+        await _read(FENCE_PARAMETERS, session, is_wanted)  # for warnings_of
+    if session.flavour is not Flavour.PX4:
+        return None
+    if not session.limits or session.questions.may_ask_limits(session.state) or leg_warnings(load, session.limits, session.state.position):
+        session.questions.limits_left = 0
+        await _read(PARAMETERS, session, is_wanted)
+    refused = leg_warnings(load, session.limits, session.state.position)
+    return _refusal(refused) if refused else None
+
+
+async def _read(names: Sequence[str], session: Session, is_wanted: Callable[[], bool]) -> None:
+    reading = ParameterReading(names, session.state, Ends(session.uav.system), replace(settings.TRANSFER_RULES, retries=RETRIES))
+    await Conversation(session, reading, is_wanted).run(on_change=lambda: None)
+
+
+def warnings_of(load: FlightLoad, session: Session) -> str:
+    """What may go wrong although it is sent; empty where nothing is known."""
+    if session.flavour is None:
+        return ""
+    words = [warning.words for warning in count_warnings(load, session.flavour)]
+    if session.flavour is Flavour.PX4 and not session.limits:
+        words.append(UNTOLD)
+    off_by = fence_off_by(session.flavour, session.state.parameters) if load.fence else ""
+    if off_by:
+        words.append(FENCE_OFF.format(parameter=off_by))
+    return " ".join(words)
+
+
+def _refusal(refused: tuple[LimitWarning, ...]) -> CannotCarry:
+    first, others = refused[0], [warning for warning in refused[1:] if warning.code == "long-leg"]
+    more = [f"So are {len(others)} more legs." if len(others) > 1 else "So is one more leg."] if others else []
+    advice = [ADVICE[code] for code in dict.fromkeys(warning.code for warning in refused)]
+    return CannotCarry(first.code, " ".join(["The UAV would not fly it.", first.words, *more, *advice]))
+
+
+LOOK_EVERY_S = 0.25
+
+
+async def send_blind(order: Order, session: Session, may_send: Callable[[], bool], is_wanted: Callable[[], Awaitable[bool]]) -> None:
+    """`may_send` is asked before each message, `is_wanted` after it."""
+    sent, next_s = 0, time.monotonic()
+    while may_send() and session.state.flavour is not None:
+        if (now_s := time.monotonic()) >= next_s:
+            session.commanded_s = now_s
+            session.send([blind_message(order, session.state.flavour, Ends(session.uav.system), sent)])
+            sent += 1
+            next_s = now_s + pause_s(sent)
+            if not await is_wanted():
+                return
+        await asyncio.sleep(LOOK_EVERY_S)
+
 
 logger = logging.getLogger(__name__)
 

@@ -4,16 +4,113 @@ One that arms and disarms all the time keeps to one file, and no disk is waited 
 """
 
 import asyncio
+import contextlib
 import logging
+import os
+import struct
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from pathlib import Path
+from typing import BinaryIO
 
+from django.conf import settings
+from django.db import transaction
+from pymavlink.dialects.v20 import ardupilotmega as mavlink
+
+from missions.models import Uav
+from missions.services.steering import mission_in_hand
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.flight_log import FlightRecorder
 from telemetry.gateway.options import Options
 from telemetry.gateway.session import Session
-from telemetry.services.flight_logs import begin_flight_log, end_flight_log
+from telemetry.models import FlightLog
+
+
+@transaction.atomic
+def begin_flight_log(*, uav_id: int, path: str, started_at: datetime) -> None:
+    """path: under the folder of logs. Safe to call again; nothing happens for a UAV that is gone."""
+    uav = Uav.objects.select_for_update(of=("self",), no_key=True).filter(pk=uav_id).first()
+    if uav is None or FlightLog.objects.filter(path=path).exists():
+        return
+    for left_open in FlightLog.objects.filter(uav=uav, ended_at=None):
+        end_flight_log(path=left_open.path, ended_at=_last_written(left_open.path) or started_at)
+    FlightLog.objects.create(organisation_id=uav.organisation_id, uav=uav, mission=mission_in_hand(uav), path=path, started_at=started_at)
+
+
+def end_flight_log(*, path: str, ended_at: datetime) -> None:
+    FlightLog.objects.filter(path=path, ended_at=None).update(ended_at=ended_at, size_bytes=_size_bytes(path))
+
+
+def _file(path: str) -> Path:
+    return Path(settings.FLIGHT_LOG_DIR) / path
+
+
+def _size_bytes(path: str) -> int:
+    return _file(path).stat().st_size if _file(path).exists() else 0
+
+
+def _last_written(path: str) -> datetime | None:
+    return datetime.fromtimestamp(_file(path).stat().st_mtime).astimezone() if _file(path).exists() else None
+
+
+CARRY_KEYS = frozenset({mavlink.MAVLINK_MSG_ID_SETUP_SIGNING})
+BUFFER = 64 * 1024
+
+
+@dataclass
+class FlightRecorder:
+    """One open file. A disk that is full, or a log that is too long, ends the writing, nothing else."""
+
+    path: Path
+    most_bytes: int
+    size_bytes: int = 0
+    is_complete: bool = True
+    _file: BinaryIO | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        try:
+            self.path.parent.mkdir(parents=True, exist_ok=True, mode=0o750)
+            self._file = self.path.open("xb", buffering=BUFFER)
+        except OSError:
+            self.is_complete = False
+
+    def write(self, raw: bytes, message_id: int, now_s: float) -> None:
+        if self._file is None or message_id in CARRY_KEYS:
+            return
+        if self.size_bytes + 8 + len(raw) > self.most_bytes:
+            self._stop()
+            return
+        try:
+            self._file.write(struct.pack(">Q", int(now_s * 1e6)) + raw)
+        except OSError:
+            self._stop()
+            return
+        self.size_bytes += 8 + len(raw)
+
+    def sync(self) -> None:
+        """What was written is on the disk afterwards. May take its time: not for the loop."""
+        if self._file is None:
+            return
+        try:
+            self._file.flush()
+            os.fsync(self._file.fileno())
+        except (OSError, ValueError):  # closed meanwhile
+            self._stop()
+
+    def close(self) -> None:
+        self.sync()
+        if self._file is not None:
+            with contextlib.suppress(OSError):
+                self._file.close()
+            self._file = None
+
+    def _stop(self) -> None:
+        self.is_complete = False
+        if self._file is not None:
+            with contextlib.suppress(OSError, ValueError):
+                self._file.close()
+            self._file = None
+
 
 logger = logging.getLogger(__name__)
 

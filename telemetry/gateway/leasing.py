@@ -8,12 +8,18 @@ from dataclasses import dataclass, field
 
 from mavlink.frames import Frame
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
-from telemetry.gateway.leases import served_until_s
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.session import Session
-from telemetry.services.links import renew_leases, take_leases
+from telemetry.services.links import UNHEARD_S, renew_leases, take_leases
+from workspace.lease_times import held_until_s
 from workspace.timed_waits import wait_for_event
+
+
+def served_until_s(asked_s: float, lease_s: float) -> float:
+    """The same for a vehicle, which another gateway may also take once nobody has stored for a while that it was heard."""
+    return held_until_s(asked_s, min(lease_s, UNHEARD_S))
+
 
 logger = logging.getLogger(__name__)
 

@@ -13,16 +13,18 @@ from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
 
+import psycopg
 from django.conf import settings
+from django.db import connection
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.frames import Frame, message_of
+from missions.services.commands import CHANNEL
 from operation import pulse
 from telemetry.gateway.database import DatabaseAway, DatabaseThread
 from telemetry.gateway.desk import Desk
 from telemetry.gateway.fleet import KnownUav, known_uavs
 from telemetry.gateway.flights import SYNC_EVERY_S, Flights
-from telemetry.gateway.hints import listen
 from telemetry.gateway.leasing import Leasing
 from telemetry.gateway.options import Options
 from telemetry.gateway.peers import Listeners, Peer
@@ -32,6 +34,29 @@ from telemetry.gateway.telling import Telling
 from telemetry.gateway.unknown_senders import UnknownSenders
 from telemetry.services.heard_by_gateway import HeardText
 from telemetry.services.links import LinkState, release_leases
+
+TRY_AGAIN_S = 1.0
+
+
+async def listen(on_hint: Callable[[], None]) -> None:
+    """Until it is cancelled, over outages of the database, too."""
+    parameters = {name: value for name, value in connection.get_connection_params().items() if name in PLAIN}
+    while True:
+        try:
+            async with await psycopg.AsyncConnection.connect(**parameters, autocommit=True) as listening:
+                await listening.execute(f"LISTEN {CHANNEL}")
+                on_hint()
+                async for _ in listening.notifies():
+                    on_hint()
+        except psycopg.Error as error:
+            logger.debug("no hints: %s", error)
+        await asyncio.sleep(TRY_AGAIN_S)
+
+
+PLAIN = frozenset(
+    {"application_name", "connect_timeout", "dbname", "host", "password", "port", "sslcert", "sslkey", "sslmode", "sslrootcert", "user"}
+)
+
 
 logger = logging.getLogger(__name__)
 

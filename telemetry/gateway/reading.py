@@ -14,7 +14,7 @@ from mavlink.autopilot_type import RESTARTS, Flavour
 from mavlink.commands.home_request import HomeReading
 from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.download import Download
-from mavlink.mission_sync.transfer import TransferState
+from mavlink.mission_sync.upload import TransferState
 from mavlink.mission_sync.wire import held_list, held_sha256
 from mavlink.parameters import ParameterReading
 from mavlink.vehicle_plan import FlightLoad, MissionType

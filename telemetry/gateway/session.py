@@ -1,6 +1,7 @@
 """One vehicle: what of its frames is believed, what they tell, and what goes back to it."""
 
 import logging
+import math
 import time
 from collections import Counter, deque
 from collections.abc import Callable
@@ -13,9 +14,8 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 from mavlink.addressing import AUTOPILOT
 from mavlink.autopilot_type import MISSION_MODES, Flavour
 from mavlink.decoding.boots import Stamp, VehicleTime
-from mavlink.decoding.link_quality import LinkQuality
-from mavlink.decoding.report import Flown, Reporter, is_place, is_vehicle
-from mavlink.decoding.status_texts import StatusText, TextCollector
+from mavlink.decoding.measurement import LinkQuality
+from mavlink.decoding.report import Flown, Reporter, StatusText, TextCollector, is_place, is_vehicle
 from mavlink.frames import Frame, Message, message_of
 from mavlink.mission_sync.flown_items import FlightWatch
 from mavlink.mission_sync.flown_items import Flown as FlownItem
@@ -27,13 +27,89 @@ from telemetry.gateway import greeting
 from telemetry.gateway.addresses import MAX_ADDRESSES
 from telemetry.gateway.belief import SENDER_SILENT_S, Belief, is_within
 from telemetry.gateway.fleet import KnownUav
-from telemetry.gateway.link_rate import LinkRate
-from telemetry.gateway.list_watch import ListWatch
 from telemetry.gateway.options import OWN_COMPONENT, OWN_SYSTEM
 from telemetry.gateway.peers import Peer
 from telemetry.gateway.questions import Questions
 from telemetry.services.ingest import NewRecord
 from telemetry.services.links import Lease, LinkState
+from telemetry.services.loads import Doubt
+
+WINDOW_S = 10.0
+
+
+@dataclass(frozen=True, slots=True)
+class Rate:
+    """None before a whole window was seen."""
+
+    bytes_s: float | None = None
+    messages_s: float | None = None
+
+
+@dataclass
+class LinkRate:
+    """Of what was received in the last whole window. Times are seconds since 1970."""
+
+    _begin_s: float | None = None
+    _bytes: int = 0
+    _messages: int = 0
+    _last: Rate = Rate()
+
+    def count(self, size_bytes: int, now_s: float) -> None:
+        self.at(now_s)
+        self._bytes += size_bytes
+        self._messages += 1
+
+    def at(self, now_s: float) -> Rate:
+        if self._begin_s is None or now_s < self._begin_s:
+            self._begin_s, self._bytes, self._messages = now_s, 0, 0
+        passed_s = now_s - self._begin_s
+        if passed_s >= WINDOW_S:
+            self._last = Rate(self._bytes / passed_s, self._messages / passed_s)
+            self._begin_s, self._bytes, self._messages = now_s, 0, 0
+        return self._last
+
+
+TO_WHO_SENDS_A_LIST = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK"})  # reading one draws none of these
+QUIET_S = 10.0  # so long after a transfer of ours its answers may still come
+
+
+@dataclass
+class ListWatch:
+    """Of one vehicle. Times are monotonic seconds; `found` is for whoever tells it on to take out."""
+
+    found: list[tuple[Doubt, float]] = field(default_factory=list)
+    _transferred_s: float = -math.inf
+    _total: int | None = None
+    _boot: str | None = None
+
+    def note_sent(self, message: Message, now_s: float) -> None:
+        """By us."""
+        if message.get_type().startswith("MISSION_"):
+            self._transferred_s = now_s
+
+    def look(self, message: Message, state: VehicleState, now_s: float) -> None:
+        """After the vehicle's state has taken the message."""
+        is_ours = now_s - self._transferred_s <= QUIET_S
+        if message.get_type() in TO_WHO_SENDS_A_LIST and not (is_ours and _is_to_us(message)):
+            self._doubt(Doubt.OTHER_STATION, now_s)
+        if state.mission_total is not None and state.mission_total != self._total:
+            if self._total is not None and not is_ours:
+                self._doubt(Doubt.OTHER_LENGTH, now_s)
+            self._total = state.mission_total
+
+    def look_at_boot(self, boot: str, now_s: float) -> None:
+        """boot: what names the present run of the vehicle's clock."""
+        if self._boot not in (None, boot):
+            self._doubt(Doubt.REBOOTED, now_s)
+        self._boot = boot
+
+    def _doubt(self, doubt: Doubt, now_s: float) -> None:
+        self.found = [*(one for one in self.found if one[0] is not doubt), (doubt, now_s)]
+
+
+def _is_to_us(message: Message) -> bool:
+    return message.target_system in (0, OWN_SYSTEM) and message.target_component in (0, OWN_COMPONENT)
+
 
 logger = logging.getLogger(__name__)
 

@@ -117,7 +117,7 @@ class BatteryForecastSerializer(serializers.Serializer):
 
 
 class EstimateShapeSerializer(serializers.Serializer):
-    """What telemetry/estimation/as_json.py writes."""
+    """What telemetry/services/watches.py writes."""
 
     at = serializers.DateTimeField()
     report_at = serializers.DateTimeField()

@@ -4,6 +4,7 @@ from dataclasses import asdict
 from typing import Any
 from uuid import UUID
 
+from django.db import transaction
 from django.shortcuts import get_object_or_404
 from drf_spectacular.types import OpenApiTypes
 from drf_spectacular.utils import extend_schema
@@ -13,11 +14,29 @@ from rest_framework.views import APIView
 from inspection.views.parameters import invalid
 from missions.fleet_selectors import types_of_organisation
 from missions.models import Mission, UavType
-from telemetry.alerting.limits import BOUNDS, InvalidLimits, Limits, limits_of
+from telemetry.alerting.limits import BOUNDS, InvalidLimits, Limits, checked_limits, limits_of
 from telemetry.serializers.alerts import AlertLimitsSerializer
-from telemetry.services.alert_limits import state_alert_limits
 from workspace.models import User
+from workspace.services import record_change
 from workspace.signed_in import SignedInRequest
+
+
+def state_alert_limits(*, row: UavType | Mission, limits: Any, actor: User) -> None:
+    """All that differ from the usual ones. Nothing else of the row is touched. Raises InvalidLimits."""
+    stated = checked_limits(limits)
+    limits_of(stated)
+    with transaction.atomic():
+        rows = Mission.objects.filter(pk=row.pk) if isinstance(row, Mission) else UavType.objects.filter(pk=row.pk)
+        held = rows.select_for_update(no_key=True).get()
+        before, held.alert_limits = held.alert_limits, stated
+        if before != stated:
+            rows.update(alert_limits=stated)
+            record_change(
+                organisation=row.organisation, actor=actor, action="state-alert-limits",
+                subject_type="mission" if isinstance(row, Mission) else "uav_type", subject_id=row.pk, before=before, after=stated,
+            )  # fmt: skip
+    row.alert_limits = stated
+
 
 DESCRIPTION = "All that is stated, by name, in one object; what is left out or null is as usual. See docs/alerts.md."
 

@@ -4,21 +4,33 @@ import logging
 import math
 import threading
 import time
+from collections import Counter, deque
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, Protocol
 from uuid import UUID
 
 import numpy as np
 from django.db import close_old_connections, connection, transaction
 
+from inspection.geodesy import LonLat
 from mavlink.decoding.measurement import Measurement
 from operation import pulse
-from operation.metrics import ESTIMATOR_ROUND_SECONDS
+from operation.metrics import ESTIMATED_UAVS, ESTIMATOR_ERROR_M, ESTIMATOR_INNOVATIONS, ESTIMATOR_ROUND_SECONDS
 from telemetry.alerting.watched import WatchedUav
+from telemetry.estimation.innovation import innovation
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import Tracker
-from telemetry.selectors.watched import WatchedFlight, newest_reports, places_heard, watched_flights
+from telemetry.selectors.watched import (
+    StoredReport,
+    WatchedFlight,
+    last_record_id,
+    newest_reports,
+    places_heard,
+    reports_stored_after,
+    watched_flights,
+)
 from telemetry.services.alerting import look
 from telemetry.services.knowledge import knowledge_of
 from telemetry.services.targets_checked import LOOKED_BACK_S, TargetChecks
@@ -32,11 +44,69 @@ from telemetry.services.watches import (
     store_estimates,
     take_watches,
 )
-from telemetry.watch.figures import count_states, judge
-from telemetry.watch.new_reports import NewReports
 from telemetry.watch.options import Options
 from workspace.errors import DATABASE_AWAY
 from workspace.live import publish_live
+
+OPEN_FOR_S = 30.0  # a store that took its ids earlier than others may end later than them, by so much
+
+
+@dataclass
+class NewReports:
+    """Ids are given before a store ends, so what lies behind the newest may still come: it is asked for again for a while."""
+
+    _behind: int = -1  # all up to this id have been seen, or were there before
+    _seen: deque[tuple[float, int]] = field(default_factory=deque)
+
+    def begin(self) -> None:
+        """From now on, at the first call."""
+        if self._behind < 0:
+            self._behind = last_record_id()
+
+    def read(self, uav_ids: Sequence[int], now_s: float) -> list[StoredReport]:
+        """Of these UAVs, since the last call. now_s: any clock that only goes on."""
+        found = reports_stored_after(self._behind, but=[key for _, key in self._seen], uav_ids=uav_ids)
+        self._seen.extend((now_s, report.id) for report in found)
+        while self._seen and self._seen[0][0] < now_s - OPEN_FOR_S:
+            self._behind = max(self._behind, self._seen.popleft()[1])
+        return found
+
+
+JUDGED_EVERY_S = 10.0  # of a UAV, or where its reports are farther apart at each
+
+
+class Judged(Protocol):
+    """A UAV that is watched."""
+
+    tracker: Tracker
+    judged_s: float
+
+
+def judge(watched: Judged, report: Report) -> None:
+    """Before the estimator takes the report: what did it think of this moment? One in a while tells enough, and costs nothing."""
+    told, newest = report.measurement, watched.tracker.newest
+    if newest is None or report.measured_s <= newest.measured_s or report.measured_s < watched.judged_s + JUDGED_EVERY_S:
+        return
+    if told.longitude_deg is None or told.latitude_deg is None:
+        return
+    watched.judged_s = report.measured_s
+    estimate = watched.tracker.estimate(report.measured_s)
+    if estimate is None or estimate.is_lost:
+        return
+    found = innovation(estimate, LonLat(told.longitude_deg, told.latitude_deg))
+    ESTIMATOR_ERROR_M.observe(found.error_m)
+    ESTIMATOR_INNOVATIONS.labels("within" if found.is_within else "outside").inc()
+
+
+def count_states(made: Iterable[Made], *, held: int) -> None:
+    """UAVs by what is known of them."""
+    states = Counter({"measured": 0, "estimated": 0, "lost": 0})
+    for one in made:
+        states["lost" if one.estimate.is_lost else "measured" if one.estimate.is_measured else "estimated"] += 1
+    states["unknown"] = held - states.total()
+    for state, number in states.items():
+        ESTIMATED_UAVS.labels(state).set(number)
+
 
 logger = logging.getLogger(__name__)
 

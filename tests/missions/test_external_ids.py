@@ -6,8 +6,7 @@ import pytest
 from django.test import Client
 
 from missions.models import Mission, MissionState
-from missions.services.follow_ups import draft_follow_up
-from missions.services.mission_copies import duplicate_mission
+from missions.services.mission_copies import draft_follow_up, duplicate_mission
 from tests.missions.api import mission_body, patch, post
 from tests.missions.worlds import world
 from tests.workspace.people import client_of, somebody

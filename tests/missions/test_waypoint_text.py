@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.geodesy import LonLat
-from missions.services.plan_json import waypoints_to_json
-from missions.services.waypoint_text import line_text, waypoints_text
+from missions.services.plan_json import line_text, waypoints_text, waypoints_to_json
 from planning.problem import Task, TaskKind
 from planning.trajectory.waypoints import RoutePoint, RoutePoints, WaypointKind, Waypoints
 

@@ -18,9 +18,8 @@ from planning.energy.performance import Performance
 from planning.problem import Objective, Task, TaskKind
 from simulation.rehearsing.flying import fly
 from simulation.services.plan_to_fly import plan_to_fly
-from simulation.services.rehearsals import limits_of_settings
+from simulation.services.rehearsals import limits_of_settings, vehicle_maker
 from simulation.services.surroundings import surroundings_of
-from simulation.services.vehicles import vehicle_maker
 from simulation.verdict.judging import Verdict, judge
 from tests.simulation.rehearsed import loaded, skies
 from workspace.models import User

@@ -17,11 +17,10 @@ from missions.services import create_mission, plan_mission
 from missions.services.approval import approve_mission
 from missions.services.refused import Refused
 from simulation.models import Rehearsal, RehearsalRun, RehearsalTrack, SimulatedAirframe
-from simulation.rehearsing.content import content_of
 from simulation.rehearsing.flying import RouteToFly
 from simulation.serializers.words import reason_of
 from simulation.services.green_verdict import reasons_without_rehearsal, set_rule
-from simulation.services.plan_to_fly import plan_to_fly
+from simulation.services.plan_to_fly import content_of, plan_to_fly
 from simulation.services.rehearsals import cancel_rehearsal
 from simulation.tasks import rehearse_mission
 from tests.inspection.ground import tower

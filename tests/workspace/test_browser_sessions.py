@@ -11,11 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.workspace.people import client_of, somebody
-from workspace.browser_sessions import forget_ended_sessions, note_session, session_ends_at
+from workspace.browser_sessions import SessionRules, ends_at, forget_ended_sessions, note_session, session_ends_at
 from workspace.models import AuditEntry, BrowserSession, User
 from workspace.services import create_api_token
 from workspace.session_store import SessionStore
-from workspace.session_times import SessionRules, ends_at
 
 pytestmark = pytest.mark.django_db
 RULES = SessionRules(longest_s=14 * 86_400, idle_s=7_200, watching_s=43_200)

@@ -18,8 +18,8 @@ from django.urls import reverse
 from django.utils import timezone
 
 from config.log_settings import log_settings
+from operation.json_lines import JsonFormatter, LineFormatter
 from operation.log_context import about
-from operation.log_lines import JsonFormatter, LineFormatter
 from operation.redaction import without_secrets
 from tests.telemetry.uav_clients import LINK, linked_uav, report
 from tests.workspace.people import client_of, somebody

@@ -1,6 +1,7 @@
 """Opens a terrain file: a GeoTIFF, an HGT file, or a zip of several of them, which is one model."""
 
 import gzip
+import re
 import tempfile
 import zlib
 from collections.abc import Iterator
@@ -9,16 +10,47 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import IO
 
+import numpy as np
+
 from inspection.importers.archive import Archive, opened_archive
 from inspection.importers.rows import AssetFileError
-from inspection.importers.terrain import hgt
 from inspection.importers.terrain.errors import TerrainFileError
 from inspection.importers.terrain.geotiff import GeoTiff
-from inspection.importers.terrain.hgt import HgtRaster
-from inspection.importers.terrain.raster import Raster
+from inspection.importers.terrain.raster import Raster, Window, window_of
 from inspection.importers.terrain.resampling import DEGREE_M, placed
 from inspection.importers.terrain.tiff_directory import TIFF_STARTS
 from inspection.importers.terrain.vertical_datum import datum_named
+
+VERTICAL_DATUM = "EGM96"  # SRTM, and what is handed out in its form
+VOID = -32768
+SIZES = {1201 * 1201 * 2: 1201, 3601 * 3601 * 2: 3601}  # 3 and 1 arc seconds
+_NAME = re.compile(r"([NS])(\d{2})([EW])(\d{3})", re.IGNORECASE)
+
+
+class HgtRaster:
+    """Reads from an open file; see raster.Raster."""
+
+    def __init__(self, file: IO[bytes], name: str) -> None:
+        size = file.seek(0, 2)
+        match, side = _NAME.match(name), SIZES.get(size)
+        if match is None or side is None:
+            raise TerrainFileError("An HGT file is named after its corner, such as N47E009.hgt, and has 1201 or 3601 posts a side.")
+        south = float(match[2]) * (1 if match[1].upper() == "N" else -1)
+        west = float(match[4]) * (1 if match[3].upper() == "E" else -1)
+        if not (-90 <= south < 90 and -180 <= west < 180):
+            raise TerrainFileError(f"{match[0]} is not on earth.")
+        self._file = file
+        self.width = self.height = side
+        self.west_deg, self.north_deg = west, south + 1.0
+        self.step_lon_deg = self.step_lat_deg = 1.0 / (side - 1)
+
+    def window(self, row: int, column: int, rows: int, columns: int) -> Window:
+        raw = np.empty((rows, columns), dtype=">i2")
+        for line in range(rows):
+            self._file.seek(((row + line) * self.width + column) * 2)
+            raw[line] = np.frombuffer(self._file.read(columns * 2), dtype=">i2")
+        return window_of(raw, VOID)
+
 
 MOST_MEMBERS = 100
 MOST_UNPACKED_BYTES = 512 * 1024 * 1024
@@ -81,7 +113,7 @@ def _one(file: IO[bytes], name: str) -> TerrainFile:
         raster, notes = placed(tiff)
         return TerrainFile("GeoTIFF", [raster], tiff.vertical_datum, [tiff.system.name], notes)
     if name.lower().removesuffix(".gz").endswith(_HGT_ENDING):
-        return TerrainFile("HGT", [HgtRaster(file, name)], hgt.VERTICAL_DATUM, ["WGS 84"])
+        return TerrainFile("HGT", [HgtRaster(file, name)], VERTICAL_DATUM, ["WGS 84"])
     raise TerrainFileError("This is neither a GeoTIFF nor an HGT file, zipped or not.")
 
 
@@ -124,7 +156,7 @@ def _members(archive: Archive) -> list[str]:
     if tiff_bytes > max(FREE_TIFF_BYTES, MOST_TIFF_RATIO * archive.packed_bytes):
         raise TerrainFileError(f"The zip unpacks to more than {MOST_TIFF_RATIO} times its size; refused as a decompression bomb.")
     for name in names:
-        if name.lower().endswith(_HGT_ENDING) and archive.size_of(name) not in hgt.SIZES:
+        if name.lower().endswith(_HGT_ENDING) and archive.size_of(name) not in SIZES:
             raise TerrainFileError(f"{name[:100]} has not 1201 or 3601 posts a side.")
     return sorted(names)
 
@@ -132,7 +164,7 @@ def _members(archive: Archive) -> list[str]:
 @contextmanager
 def _gunzipped(path: Path) -> Iterator[IO[bytes]]:
     """A .hgt.gz as a file without a name; never more than the largest HGT file has."""
-    left = max(hgt.SIZES)
+    left = max(SIZES)
     with tempfile.TemporaryFile() as target:
         try:
             with gzip.open(path) as packed:

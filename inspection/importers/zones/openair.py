@@ -8,10 +8,13 @@ Source: OpenAir user airspace format, as XCSoar and SeeYou read it.
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import acos, ceil, cos, pi
 from typing import Any
 
 import numpy as np
-from shapely import MultiPolygon
+import shapely
+from numpy.typing import NDArray
+from shapely import MultiLineString, MultiPolygon, Polygon
 
 from inspection.geodesy import LonLat
 from inspection.geodesy.geometry_validator import (
@@ -22,13 +25,106 @@ from inspection.geodesy.geometry_validator import (
     VertexBudget,
     polygons_of_rings,
 )
-from inspection.geodesy.wgs84 import FloatArray
+from inspection.geodesy.wgs84 import WGS84, FloatArray
 from inspection.importers.faults import FaultList
-from inspection.importers.zones.arcs import arc, arc_between, circle_ring
-from inspection.importers.zones.loops import area_of_all_loops
 from inspection.importers.zones.openair_values import has_sixty, height_of, length_m_of, number_of, position_of
 from inspection.importers.zones.records import HeightBand, UnreadRecord, ZoneRecord
 from inspection.importers.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_text
+
+MOST_CROSSINGS = 8
+_CHUNK = 256
+
+
+def area_of_all_loops(ring: FloatArray) -> list[Polygon] | None:
+    """The polygons that the closed ring of shape (n, 2) encloses with any of its loops; None if it crosses itself too often."""
+    segments = shapely.get_parts(MultiLineString(list(np.stack([ring[:-1], ring[1:]], axis=1))))
+    if _crossings(segments) > MOST_CROSSINGS:
+        return None
+    faces = shapely.get_parts(shapely.polygonize([shapely.unary_union(segments)]))
+    if not len(faces):
+        return None
+    area = shapely.unary_union([Polygon(face.exterior) for face in faces])  # what a loop leaves out in its middle is enclosed too
+    parts = list(area.geoms) if isinstance(area, MultiPolygon) else [area]
+    return [part for part in parts if isinstance(part, Polygon) and part.is_valid and part.area > 0.0] or None
+
+
+def _crossings(segments: NDArray[np.object_]) -> int:
+    """How many pairs of sides meet that are not neighbours; counting stops above MOST_CROSSINGS."""
+    tree = shapely.STRtree(segments)
+    count, last = 0, len(segments) - 1
+    for first in range(0, len(segments), _CHUNK):
+        one, other = tree.query(segments[first : first + _CHUNK], predicate="intersects")
+        gap = other - (one + first)
+        count += int(((gap > 1) & (gap < last)).sum())
+        if count > MOST_CROSSINGS:
+            break
+    return count
+
+
+FARTHEST_M = 0.5  # that a side may be from the curve; in aeronautical files radii themselves are rounded to 19 m and more
+MOST_DIFFERENT_RADII = 0.2  # of the two ends of an arc; more is another centre
+_LEAST_SIDES = 8
+
+
+def arc(centre: LonLat, radius_m: float, start_deg: float, end_deg: float, is_clockwise: bool, place: str) -> FloatArray:
+    """From one direction to another (degrees from north), ends included; shape (n, 2), lon lat."""
+    return _path(centre, radius_m, radius_m, start_deg, _turn(start_deg, end_deg, is_clockwise), place)
+
+
+def arc_between(centre: LonLat, start: LonLat, end: LonLat, is_clockwise: bool, place: str) -> FloatArray:
+    """From one position to another; where they are not equally far from the centre, the radius goes over from one to the other."""
+    start_deg, _, start_m = WGS84.inv(centre.lon, centre.lat, start.lon, start.lat)
+    end_deg, _, end_m = WGS84.inv(centre.lon, centre.lat, end.lon, end.lat)
+    if min(start_m, end_m) < FARTHEST_M:
+        raise GeometryFault(place, "an end of the arc lies in its centre", start)
+    if abs(start_m - end_m) > MOST_DIFFERENT_RADII * max(start_m, end_m):
+        raise GeometryFault(
+            place, f"the ends of the arc are {start_m:.0f} m and {end_m:.0f} m from its centre: another centre is meant", start
+        )
+    path = _path(centre, start_m, end_m, start_deg, _turn(start_deg, end_deg, is_clockwise), place)
+    path[0], path[-1] = start, end
+    return path
+
+
+def circle_ring(centre: LonLat, radius_m: float, place: str) -> FloatArray:
+    """A closed ring around the circle: it holds all of it, and is nowhere farther than FARTHEST_M outside."""
+    sides = _sides(radius_m, 2 * pi)
+    _check_not_at_a_pole(centre, radius_m, place)
+    bearings = np.arange(sides, dtype=np.float64) * (360.0 / sides)
+    points = _at(centre, np.full(sides, radius_m / cos(pi / sides)), bearings)
+    return np.vstack([points, points[:1]])
+
+
+def _turn(start_deg: float, end_deg: float, is_clockwise: bool) -> float:
+    """The angle to turn through, in degrees, positive clockwise; a whole turn where both directions are the same."""
+    turn = (end_deg - start_deg) % 360.0
+    if turn < 1e-9:
+        turn = 360.0
+    return turn if is_clockwise else turn - 360.0 if turn < 360.0 else -360.0
+
+
+def _path(centre: LonLat, start_m: float, end_m: float, start_deg: float, turn_deg: float, place: str) -> FloatArray:
+    _check_not_at_a_pole(centre, max(start_m, end_m), place)
+    shares: FloatArray = np.linspace(0.0, 1.0, _sides(max(start_m, end_m), abs(turn_deg) * pi / 180.0) + 1, dtype=np.float64)
+    return _at(centre, start_m + shares * (end_m - start_m), start_deg + shares * turn_deg)
+
+
+def _sides(radius_m: float, angle_rad: float) -> int:
+    """How many sides keep within FARTHEST_M of the curve."""
+    step = 2.0 * acos(max(1.0 - FARTHEST_M / radius_m, 0.0))
+    return max(ceil(angle_rad / step), ceil(_LEAST_SIDES * angle_rad / (2 * pi)), 1)
+
+
+def _at(centre: LonLat, distances_m: FloatArray, bearings_deg: FloatArray) -> FloatArray:
+    lon, lat, _ = WGS84.fwd(np.full(len(bearings_deg), centre.lon), np.full(len(bearings_deg), centre.lat), bearings_deg, distances_m)
+    return np.column_stack([np.asarray(lon), np.asarray(lat)])
+
+
+def _check_not_at_a_pole(centre: LonLat, radius_m: float, place: str) -> None:
+    pole_m = min(WGS84.inv(centre.lon, centre.lat, centre.lon, latitude)[2] for latitude in (90.0, -90.0))
+    if pole_m <= radius_m * 1.2:
+        raise GeometryFault(place, "the arc comes too near to a pole", centre)
+
 
 CLASSES = {
     "R": "Restricted", "Q": "Danger", "P": "Prohibited", "A": "Class A", "B": "Class B", "C": "Class C", "D": "Class D", "E": "Class E",

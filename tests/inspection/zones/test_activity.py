@@ -9,9 +9,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from inspection.importers.zones.zone_file import read_zones
-from inspection.zones.activity import SUN_ALLOWANCE_S, Span, active_spans, merged
+from inspection.zones.activity import DAY_S, EPOCH, SUN_ALLOWANCE_S, Span, active_spans, merged, sun_event_s
 from inspection.zones.schedule import DAYS, EVENTS, checked_schedule
-from inspection.zones.sun import DAY_S, EPOCH, sun_event_s
 
 COPENHAGEN = (12.5, 55.6, 12.6, 55.7)
 COLUMBUS = (-83.0, 39.9, -82.9, 40.0)

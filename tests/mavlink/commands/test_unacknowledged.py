@@ -5,8 +5,7 @@ from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.addressing import Ends
 from mavlink.autopilot_type import Flavour
-from mavlink.commands.actions import Order
-from mavlink.commands.unacknowledged import blind_message, pause_s
+from mavlink.commands.actions import Order, blind_message, pause_s
 
 PX4_MODES = {Order.HOLD: 3, Order.RETURN: 5, Order.ABORT: 5, Order.LAND: 6}
 COPTER_MODES = {Order.HOLD: 17, Order.RETURN: 6, Order.ABORT: 6, Order.LAND: 9}

@@ -5,10 +5,8 @@ from math import nan, pi
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.decoding.link_quality import LinkQuality
-from mavlink.decoding.measurement import Measurement
-from mavlink.decoding.report import Flown, Reporter, is_vehicle
-from mavlink.decoding.status_texts import StatusText, TextCollector
+from mavlink.decoding.measurement import LinkQuality, Measurement
+from mavlink.decoding.report import Flown, Reporter, StatusText, TextCollector, is_vehicle
 
 NOT_TOLD = Flown()
 

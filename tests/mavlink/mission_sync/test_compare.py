@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import Flavour
-from mavlink.mission_sync.compare import are_identical, differences
-from mavlink.mission_sync.onboard_list import Found, found, mix_in_words
+from mavlink.mission_sync.compare import Found, are_identical, differences, found, mix_in_words
 from mavlink.mission_sync.wire import Held, HeldItem, held_item
 from mavlink.vehicle_plan import MissionItem, MissionType
 from tests.telemetry.vehicles.ardupilot import ArduPilot

@@ -3,8 +3,7 @@
 import pytest
 
 from mavlink.autopilot_type import Flavour
-from mavlink.mission_sync.compare import differences
-from mavlink.mission_sync.onboard_list import Found
+from mavlink.mission_sync.compare import Found, differences
 from mavlink.mission_sync.outcome import KeeperState
 from mavlink.mission_sync.sync import MissionKeeper
 from mavlink.mission_sync.wire import held_list

@@ -4,10 +4,9 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import Flavour
-from mavlink.mission_sync.clear import Clear
 from mavlink.mission_sync.compare import differences
 from mavlink.mission_sync.download import Download
-from mavlink.mission_sync.transfer import TransferState
+from mavlink.mission_sync.upload import Clear, TransferState
 from mavlink.mission_sync.wire import held_list
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionType

@@ -6,8 +6,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.autopilot_type import PX4_AUTO, Flavour
-from mavlink.mission_sync.compare import differences
-from mavlink.mission_sync.onboard_list import Found
+from mavlink.mission_sync.compare import Found, differences
 from mavlink.mission_sync.outcome import KeeperOutcome, KeeperState
 from mavlink.mission_sync.sync import MissionKeeper
 from mavlink.mission_sync.wire import held_list

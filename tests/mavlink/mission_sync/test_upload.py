@@ -5,8 +5,7 @@ from typing import Any
 import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from mavlink.mission_sync.transfer import TransferState
-from mavlink.mission_sync.upload import Upload
+from mavlink.mission_sync.upload import TransferState, Upload
 from mavlink.timeouts import TransferRules
 from mavlink.vehicle_plan import MissionType
 from tests.telemetry.vehicles.loads import ENDS, mission

@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from inspection.zones.activity import Span
-from planning.trajectory.departure_windows import blocked_departures, free_between
+from missions.zone_selectors import blocked_departures, free_between
 
 A_DAY = (0.0, 86_400.0)
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from simulation.flight.airframe import AIRFRAMES, Airframe
-from simulation.flight.model_file import AXES, MODELS, ROTORS, flight_model, mixer_of
-from simulation.flight.plant import Plant
+from simulation.flight.plant import AXES, MODELS, ROTORS, Plant, flight_model, mixer_of
 from simulation.flight.states import Mode
 from simulation.flight.uav import SimulatedUav
 from tests.simulation.flight.lists import HOME, airborne, step, wind

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from simulation.flight.course import CORNER_M, Pace, Piece, Vector, Via, course
-from simulation.flight.reference import Reference
+from simulation.flight.guidance import Reference
 
 PACE = Pace(climb_mps=2.0, descent_mps=1.5, acceleration_mps2=2.0, corner_mps2=2.5)
 NUMBER = st.floats(-300.0, 300.0).map(lambda value: round(value, 2))

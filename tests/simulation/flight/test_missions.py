@@ -15,10 +15,10 @@ from mavlink.vehicle_plan import MissionItem
 from planning.problem import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
 from simulation.flight.airframe import AIRFRAMES
-from simulation.flight.circle import around
 from simulation.flight.events import Disarmed, ItemReached, LandedAt, MissionEnded, ModeChanged, PhotoTaken, TookOff
 from simulation.flight.faults import Faults
 from simulation.flight.flown import Ending, fly_mission
+from simulation.flight.manoeuvres import around
 from simulation.flight.orders import CannotFly, orders
 from simulation.flight.states import Landed, MissionState, Mode
 from simulation.flight.uav import SimulatedUav

@@ -12,9 +12,8 @@ import pytest
 from django.core.management import CommandError, call_command
 
 from simulation.flight.airframe import AIRFRAMES
-from simulation.flight.cross_track import cross_track_m
 from simulation.flight.route_file import MOST_WAYPOINTS, InvalidRoute, RouteFile, items_of, read_route
-from simulation.flight.route_flight import fly_route
+from simulation.flight.route_flight import cross_track_m, fly_route
 from simulation.flight.weather import Weather
 from tests.simulation.flight.lists import HOME, off_m, place, wind
 

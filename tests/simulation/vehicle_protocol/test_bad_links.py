@@ -11,7 +11,7 @@ from mavlink.vehicle_plan import MissionItem, MissionType
 from mavlink.vehicle_state import VehicleState
 from simulation.vehicle_protocol.endpoint import Endpoint
 from simulation.vehicle_protocol.flavour import Flavour
-from simulation.vehicle_protocol.item_wire import as_kept
+from simulation.vehicle_protocol.mission_server import as_kept
 from simulation.vehicle_protocol.stations import Station
 from tests.simulation.kinematic_uav import KinematicUav
 from tests.simulation.vehicle_protocol.talk import SYSTEM, UNIX_S, over_the_wire

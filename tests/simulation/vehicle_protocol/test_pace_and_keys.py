@@ -6,7 +6,7 @@ import pytest
 
 from mavlink.frames import frames_of_datagram
 from mavlink.signing import FrameWriter, SignatureCheck
-from simulation.vehicle_protocol.pace import Pace
+from simulation.vehicle_endpoint.fleet import Pace
 from simulation.vehicle_protocol.signed_link import SignedLink
 from tests.telemetry.gateway.station import heartbeat
 

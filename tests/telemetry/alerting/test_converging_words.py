@@ -9,8 +9,7 @@ import pytest
 from telemetry.alerting.acts import acts_of
 from telemetry.alerting.detectors.converging import CODE, DETECTOR
 from telemetry.alerting.finding import CRITICAL, WARNING
-from telemetry.alerting.meetings import meetings, ways_of
-from telemetry.alerting.right_of_way import Flying, Why, yielding
+from telemetry.alerting.meetings import Flying, Why, meetings, ways_of, yielding
 from telemetry.alerting.watched import WatchedUav
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.report import Report

@@ -21,12 +21,12 @@ from mavlink.approved_route import RETURN, FrozenRoute, FrozenWaypoint, TakeOff
 from mavlink.decoding.measurement import Measurement
 from planning.problem import Task, TaskKind
 from planning.trajectory.waypoints import WaypointKind
-from telemetry.estimation.as_json import estimate_to_json
 from telemetry.estimation.estimate import Estimate
 from telemetry.estimation.knowledge import Knowledge
 from telemetry.estimation.own_time import OwnTime
 from telemetry.estimation.report import Report
 from telemetry.estimation.tracker import VOUCHED_S, Tracker
+from telemetry.services.watches import estimate_to_json
 
 HOME = LonLat(10.0, 56.0)
 FRAME = LocalFrame.around(*HOME)

@@ -10,8 +10,7 @@ import pytest
 from pymavlink import mavutil
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from telemetry.gateway.flight_log import FlightRecorder
-from telemetry.gateway.flights import DISARMED_FOR_S, Flights
+from telemetry.gateway.flights import DISARMED_FOR_S, FlightRecorder, Flights
 from telemetry.gateway.options import Options
 from telemetry.models import FlightLog
 from tests.telemetry.gateway.station import Link, gateway_at_work, heartbeat, port_of, position, signed_uav, unsigned_uav, wait_for

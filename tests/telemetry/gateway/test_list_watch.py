@@ -4,7 +4,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
 from mavlink.vehicle_state import VehicleState
-from telemetry.gateway.list_watch import QUIET_S, ListWatch
+from telemetry.gateway.session import QUIET_S, ListWatch
 from telemetry.services.loads import Doubt
 
 LOADED_S, LATER_S = 100.0, 100.0 + QUIET_S + 1.0

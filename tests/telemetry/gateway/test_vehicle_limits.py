@@ -10,7 +10,7 @@ from missions.models import CommandState, Mission
 from missions.serializers.commands import command_json
 from missions.services.approval import approve_mission
 from missions.services.dispatch import load_of
-from telemetry.gateway.vehicle_limits import UNTOLD
+from telemetry.gateway.carriage import UNTOLD
 from telemetry.models import UavLink
 from tests.missions.flights import ground, planned
 from tests.missions.worlds import UAV_AT, world

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from inspection.importers.terrain.errors import TerrainFileError
-from inspection.importers.terrain.hgt import HgtRaster
-from inspection.importers.terrain.terrain_file import datum_of, opened_terrain
+from inspection.importers.terrain.terrain_file import HgtRaster, datum_of, opened_terrain
 from inspection.importers.terrain.vertical_datum import DatumFault, datum_named
 from tests.inspection.importers.terrain.tiffs import write_geotiff, write_hgt
 
