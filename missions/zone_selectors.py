@@ -17,6 +17,7 @@ from planning.clearance.nearby_zones import zones_near
 from planning.clearance.zone_clearance import TAKE_OFF, Breach, FlownRoute, Margins, breaches
 
 LegTime = tuple[float, float]  # from when to when a leg is flown, in seconds after departure, its end included
+CLEARANCE_KEPT = 0.99  # routes keep their clearance; what they come short of it by is rounding
 
 
 def blocked_departures(
@@ -46,9 +47,6 @@ def free_between(blocked: Iterable[Span], from_s: float, to_s: float) -> tuple[S
     if open_s < to_s:
         free.append(Span(open_s, to_s))
     return tuple(free)
-
-
-CLEARANCE_KEPT = 0.99  # routes keep their clearance; what they come short of it by is rounding
 
 
 @dataclass(frozen=True)

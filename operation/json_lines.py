@@ -20,6 +20,7 @@ from operation.log_context import ABOUT_REQUEST, FIELDS, facts
 from operation.redaction import without_secrets
 
 IN_ONE_LINE = {code: f"\\x{code:02x}" for code in (*range(32), 127, 0x85, 0x2028, 0x2029)} | {9: "\\t", 10: "\\n", 13: "\\r"}
+LONGEST = 100_000  # signs; a line without an end is cut
 
 
 class LineFormatter(logging.Formatter):
@@ -70,9 +71,6 @@ def named_in(record: logging.LogRecord) -> dict[str, str]:
     read = getattr(told.pop("request"), ABOUT_REQUEST, None)
     named = {**(read() if callable(read) else {}), **facts(), **{name: value for name, value in told.items() if value is not None}}
     return {name: str(named[name]) for name in FIELDS if named.get(name) not in (None, "")}
-
-
-LONGEST = 100_000  # signs; a line without an end is cut
 
 
 def is_asked_for() -> bool:

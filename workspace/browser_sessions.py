@@ -15,6 +15,8 @@ from django.utils.crypto import constant_time_compare
 from workspace.models import BrowserSession, User
 from workspace.services import person_facts, record_change
 
+NOTED_EVERY = timedelta(minutes=1)
+
 
 @dataclass(frozen=True)
 class SessionRules:
@@ -31,9 +33,6 @@ def ends_at(*, began_at: datetime, acted_at: datetime, present_at: datetime, rul
         present_at + timedelta(seconds=rules.idle_s),
         acted_at + timedelta(seconds=rules.watching_s),
     )
-
-
-NOTED_EVERY = timedelta(minutes=1)
 
 
 def session_rules() -> SessionRules:

@@ -24,6 +24,8 @@ from inspection.quality.missing_supports import missing_supports
 from inspection.quality.network import Network
 from inspection.quality.voltages import impossible_voltages
 
+RECIPE = 2  # counted up when the rules change, so that the next search looks at a ground that it has seen
+
 
 def bridges_without_way(ground: GapGround) -> list[Gap]:
     return [
@@ -36,9 +38,6 @@ def bridges_without_way(ground: GapGround) -> list[Gap]:
         )
         for bridge in ground.bridges_without_way
     ]
-
-
-RECIPE = 2  # counted up when the rules change, so that the next search looks at a ground that it has seen
 
 
 def search(ground: GapGround, progress: Callable[[str], None] | None = None) -> list[Gap]:

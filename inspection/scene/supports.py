@@ -14,6 +14,9 @@ USUAL_POLE_V, USUAL_PORTAL_V = 20_000, 110_000  # where no voltage is stated
 # Straight lines through what is common, in metres by kilovolts: wood at 11 to 33 kV, wood and steel up to 220 kV; gantries of substations.
 _POLE_M, _POLE_M_BY_KV, _TALLEST_POLE_M = 8.0, 0.12, 34.0
 _PORTAL_M, _PORTAL_M_BY_KV = 6.0, 0.045
+MOST_PHASES = 12
+PHASES_OF_CIRCUIT = 3
+_ONE_PHASE_HZ = {"16.7", "16.67", "16 2/3", "0"}  # railways' lines and direct current: two wires to a circuit
 
 
 def likely_height_m(kind: str, voltage_v: int | None, *, is_of_minor_lines: bool, counted_m: float) -> float:
@@ -27,11 +30,6 @@ def likely_height_m(kind: str, voltage_v: int | None, *, is_of_minor_lines: bool
     if kind == "portal":
         return min(_PORTAL_M + _PORTAL_M_BY_KV * (voltage_v or USUAL_PORTAL_V) / 1000.0, counted_m)
     return counted_m
-
-
-MOST_PHASES = 12
-PHASES_OF_CIRCUIT = 3
-_ONE_PHASE_HZ = {"16.7", "16.67", "16 2/3", "0"}  # railways' lines and direct current: two wires to a circuit
 
 
 @dataclass(frozen=True)

@@ -29,6 +29,16 @@ from inspection.selectors.zone_table import zone_table
 LAYER_M = 6.5  # a road's or railway's free height below a bridge, with the deck
 MOST_LAYERS = 5
 _LAYER = re.compile(r"-?[0-9]{1,3}")
+RECIPE = 2  # part of the ETag: counts the changes to what a scene holds
+SHORTEST_SIDE_M, LONGEST_SIDE_M = 50.0, 40_000.0
+NEAREST_POLE_DEG = 85.0
+MOST_POSTS = 225  # of the ground, along each side
+AROUND_M = 1_500.0  # ground, railways, bridges and zones reach so far beyond the box
+REACH_DEG = 0.15  # a span is not longer than that in degrees
+MOST_SUPPORTS, MOST_SPANS, MOST_RAILWAYS, MOST_BRIDGES, MOST_ZONES = 4_000, 6_000, 1_500, 1_500, 200
+SIMPLER_DEG, COARSEST_DEG = 5e-6, 1e-3  # half a metre to a hundred: of the outlines of zones
+MOST_CORNERS = 4_000  # of a zone
+Row = TypeVar("Row", Asset, NoFlyZone)
 
 
 def layer_of(tags: Mapping[str, str]) -> int:
@@ -40,19 +50,6 @@ def layer_of(tags: Mapping[str, str]) -> int:
 def deck_amsl_m(ground_m: FloatArray, layer: int) -> float:
     """Level, no lower than the highest ground at the bridge's edge, and with a layer's room over the lowest. ground_m of shape (n,)."""
     return float(max(np.max(ground_m), np.min(ground_m) + layer * LAYER_M))
-
-
-RECIPE = 2  # part of the ETag: counts the changes to what a scene holds
-SHORTEST_SIDE_M, LONGEST_SIDE_M = 50.0, 40_000.0
-NEAREST_POLE_DEG = 85.0
-MOST_POSTS = 225  # of the ground, along each side
-AROUND_M = 1_500.0  # ground, railways, bridges and zones reach so far beyond the box
-REACH_DEG = 0.15  # a span is not longer than that in degrees
-MOST_SUPPORTS, MOST_SPANS, MOST_RAILWAYS, MOST_BRIDGES, MOST_ZONES = 4_000, 6_000, 1_500, 1_500, 200
-SIMPLER_DEG, COARSEST_DEG = 5e-6, 1e-3  # half a metre to a hundred: of the outlines of zones
-MOST_CORNERS = 4_000  # of a zone
-
-Row = TypeVar("Row", Asset, NoFlyZone)
 
 
 class UnfitBox(Exception):

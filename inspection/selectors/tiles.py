@@ -12,6 +12,50 @@ from workspace.cache_absence import CACHE_AWAY
 
 LAST_KEPT_ZOOM = 11
 KEPT_S = 3_600
+DEEPEST_ZOOM = 22
+RECIPE = 5  # part of the ETag: counts the changes to this file's statements
+EXTENT = 4096
+BUFFER = 64  # in units of the extent
+MERCATOR_LIMIT_M = 20_037_508.342789244  # half of the equator of EPSG:3857
+# From which zoom on a thing is in the tiles: ui.md section 6. A tile of zoom z serves the map up to z + 1.
+ALL_VOLTAGES_ZOOM = 10
+MEDIUM_VOLTAGE_ZOOM, MEDIUM_VOLTAGE_V = 8, 50_000
+HIGH_VOLTAGE_V = 100_000
+RAILWAY_ZOOM = 8
+BRIDGE_ZOOM = 10
+TOWER_ZOOM = 10
+OUT_OF_USE_ZOOM = 13  # underground, disused, busbars and bays
+ZONE_LABEL_ZOOM = 9
+LONGEST_SCHEDULE = 4_000  # characters; of a zone with a longer one the tile does not say when it applies
+MOST_FEATURES = 20_000  # of a layer in one tile; the most important ones stay
+MOST_FEATURES_FAR = ((4, 1_500), (7, 3_500))  # up to a zoom: what more would say nothing, and make tiles slow and large
+VOLTAGE_TEXT = "trim_scale(max_voltage_v / 1000.0) || ' kV'"
+# The words of asset_label in selectors/assets.py.
+LABEL = f"""COALESCE(
+    NULLIF(ref, ''), NULLIF(name, ''),
+    CASE WHEN kind = 'line' THEN NULLIF(CONCAT_WS(' ', NULLIF(operator, ''), {VOLTAGE_TEXT}), '')
+         WHEN kind = 'railway' THEN NULLIF(operator, '') || ' railway' END,
+    CASE subtype WHEN 'minor_line' THEN 'Line' WHEN 'cable' THEN 'Cable' WHEN 'pole' THEN 'Pole' WHEN 'portal' THEN 'Portal'
+                 WHEN 'tram' THEN 'Tramway' WHEN 'subway' THEN 'Subway' ELSE INITCAP(kind) END
+    || ' ' || CASE WHEN line_id IS NOT NULL THEN place_on_line || ' of ' || places_on_line ELSE COALESCE(osm_type || osm_id, id::text) END
+)"""
+VOLTAGES_TEXT = "(SELECT STRING_AGG(trim_scale(v / 1000.0) || ' kV', ', ') FROM UNNEST(voltages_v) v)"
+GIVEN = "COALESCE(NULLIF(ref, ''), NULLIF(name, ''))"
+OPERATOR = f"NULLIF(NULLIF(operator, ''), {GIVEN})"
+TOWER_VOLTAGE_V = "COALESCE(line_voltage_v, max_voltage_v)"  # from which zoom on a tower is drawn goes by its line
+TOWERS = """inspection_asset LEFT JOIN (
+    SELECT id AS own_id, max_voltage_v AS line_voltage_v,
+           COALESCE(NULLIF(ref, ''), NULLIF(name, ''), NULLIF(operator, '')) AS line_owner
+    FROM inspection_asset
+) line ON own_id = line_id"""
+ZONE_COLUMNS = f"""
+    id AS feature_id, id, name, name AS label, NULLIF(restriction, '') AS restriction, NULLIF(reason, '') AS reason,
+    lower_limit_m, NULLIF(lower_reference, '') AS lower_reference, upper_limit_m, NULLIF(upper_reference, '') AS upper_reference,
+    (ST_XMax(geometry) - ST_XMin(geometry))::float8 AS width_deg,
+    CASE WHEN LENGTH(schedule::text) <= {LONGEST_SCHEDULE} THEN schedule::text END AS schedule
+"""
+ON_GROUND = "vanished_at IS NULL AND (is_flyable OR %(zoom)s >= %(out_of_use_zoom)s)"
+SIMPLIFIED = "ST_Simplify(geometry, %(tolerance_deg)s, true)"
 
 
 def tile_of_edition(zoom: int, column: int, row: int, edition: str | None) -> bytes:
@@ -29,40 +73,6 @@ def tile_of_edition(zoom: int, column: int, row: int, edition: str | None) -> by
     with contextlib.suppress(*CACHE_AWAY):
         cache.set(key, tile, KEPT_S)
     return tile
-
-
-DEEPEST_ZOOM = 22
-RECIPE = 5  # part of the ETag: counts the changes to this file's statements
-EXTENT = 4096
-BUFFER = 64  # in units of the extent
-MERCATOR_LIMIT_M = 20_037_508.342789244  # half of the equator of EPSG:3857
-
-# From which zoom on a thing is in the tiles: ui.md section 6. A tile of zoom z serves the map up to z + 1.
-ALL_VOLTAGES_ZOOM = 10
-MEDIUM_VOLTAGE_ZOOM, MEDIUM_VOLTAGE_V = 8, 50_000
-HIGH_VOLTAGE_V = 100_000
-RAILWAY_ZOOM = 8
-BRIDGE_ZOOM = 10
-TOWER_ZOOM = 10
-OUT_OF_USE_ZOOM = 13  # underground, disused, busbars and bays
-ZONE_LABEL_ZOOM = 9
-LONGEST_SCHEDULE = 4_000  # characters; of a zone with a longer one the tile does not say when it applies
-MOST_FEATURES = 20_000  # of a layer in one tile; the most important ones stay
-MOST_FEATURES_FAR = ((4, 1_500), (7, 3_500))  # up to a zoom: what more would say nothing, and make tiles slow and large
-
-VOLTAGE_TEXT = "trim_scale(max_voltage_v / 1000.0) || ' kV'"
-# The words of asset_label in selectors/assets.py.
-LABEL = f"""COALESCE(
-    NULLIF(ref, ''), NULLIF(name, ''),
-    CASE WHEN kind = 'line' THEN NULLIF(CONCAT_WS(' ', NULLIF(operator, ''), {VOLTAGE_TEXT}), '')
-         WHEN kind = 'railway' THEN NULLIF(operator, '') || ' railway' END,
-    CASE subtype WHEN 'minor_line' THEN 'Line' WHEN 'cable' THEN 'Cable' WHEN 'pole' THEN 'Pole' WHEN 'portal' THEN 'Portal'
-                 WHEN 'tram' THEN 'Tramway' WHEN 'subway' THEN 'Subway' ELSE INITCAP(kind) END
-    || ' ' || CASE WHEN line_id IS NOT NULL THEN place_on_line || ' of ' || places_on_line ELSE COALESCE(osm_type || osm_id, id::text) END
-)"""
-VOLTAGES_TEXT = "(SELECT STRING_AGG(trim_scale(v / 1000.0) || ' kV', ', ') FROM UNNEST(voltages_v) v)"
-GIVEN = "COALESCE(NULLIF(ref, ''), NULLIF(name, ''))"
-OPERATOR = f"NULLIF(NULLIF(operator, ''), {GIVEN})"
 
 
 def _voltage_and_owner(voltage: str, owner: str) -> str:
@@ -87,24 +97,11 @@ RAILWAY_COLUMNS = _asset_columns(
     f"CASE WHEN {GIVEN} IS NOT NULL THEN NULLIF(CONCAT_WS(', ', NULLIF(NULLIF(name, ''), {GIVEN}), {OPERATOR}), '') END"
 )
 BRIDGE_COLUMNS = _asset_columns("'carries ' || NULLIF(carries, '')")
-TOWER_VOLTAGE_V = "COALESCE(line_voltage_v, max_voltage_v)"  # from which zoom on a tower is drawn goes by its line
 TOWER_COLUMNS = _asset_columns(
     f"""CASE WHEN line_id IS NOT NULL THEN {_voltage_and_owner(f"trim_scale({TOWER_VOLTAGE_V} / 1000.0) || ' kV'", "line_owner")}
              ELSE NULLIF(CONCAT_WS(' ', {VOLTAGE_TEXT}, {OPERATOR}), '') END""",
     TOWER_VOLTAGE_V,
 )
-TOWERS = """inspection_asset LEFT JOIN (
-    SELECT id AS own_id, max_voltage_v AS line_voltage_v,
-           COALESCE(NULLIF(ref, ''), NULLIF(name, ''), NULLIF(operator, '')) AS line_owner
-    FROM inspection_asset
-) line ON own_id = line_id"""
-ZONE_COLUMNS = f"""
-    id AS feature_id, id, name, name AS label, NULLIF(restriction, '') AS restriction, NULLIF(reason, '') AS reason,
-    lower_limit_m, NULLIF(lower_reference, '') AS lower_reference, upper_limit_m, NULLIF(upper_reference, '') AS upper_reference,
-    (ST_XMax(geometry) - ST_XMin(geometry))::float8 AS width_deg,
-    CASE WHEN LENGTH(schedule::text) <= {LONGEST_SCHEDULE} THEN schedule::text END AS schedule
-"""
-ON_GROUND = "vanished_at IS NULL AND (is_flyable OR %(zoom)s >= %(out_of_use_zoom)s)"
 
 
 @dataclass(frozen=True)
@@ -118,7 +115,6 @@ class Layer:
     order: str  # the most important first
 
 
-SIMPLIFIED = "ST_Simplify(geometry, %(tolerance_deg)s, true)"
 LAYERS = (
     Layer(
         "lines", 0, LINE_COLUMNS,

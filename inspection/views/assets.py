@@ -34,6 +34,7 @@ from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS, several_of
 from workspace.signed_in import SignedInRequest
 
 BEST_FIRST = ("match_rank", "pk")
+EXTERNAL_ID_TAKEN = {409: OpenApiResponse(description="Another asset has the external id.")}
 
 
 def with_match_rank(assets: QuerySet[DrawnAsset], *, text: str) -> QuerySet[DrawnAsset]:
@@ -48,9 +49,6 @@ def with_match_rank(assets: QuerySet[DrawnAsset], *, text: str) -> QuerySet[Draw
         output_field=IntegerField(),
     )
     return assets.annotate(match_rank=rank)
-
-
-EXTERNAL_ID_TAKEN = {409: OpenApiResponse(description="Another asset has the external id.")}
 
 
 class AssetList(APIView):

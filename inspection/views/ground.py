@@ -28,6 +28,8 @@ from inspection.views.parameters import BOX_TEXT, box_of, invalid
 from workspace.negotiation import OneAnswer
 from workspace.permissions import CURATORS
 
+TILE_TYPE = "application/vnd.mapbox-vector-tile"
+
 
 class SceneOfBox(APIView):
     throttle_scope = "scene"
@@ -124,9 +126,6 @@ def ground_json(summary: GroundSummary) -> dict[str, Any]:
         "is_synthetic": summary.is_synthetic,
         "has_terrain": summary.has_terrain,
     }
-
-
-TILE_TYPE = "application/vnd.mapbox-vector-tile"
 
 
 class Ground(APIView):

@@ -28,6 +28,10 @@ from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
 OF_THE_SOURCE = {"node_osm_ids", "parts", "content_hash", "data_import_id", "asset_set_id", "zone_set_id", "source_heights", "properties"}
+UNDONE = PolymorphicProxySerializer(
+    component_name="UndoneFeature", serializers=[AssetDetailFeatureSerializer, ZoneDetailFeatureSerializer], resource_type_field_name=None
+)
+CANNOT = {409: OpenApiResponse(description="It was changed again since, or there is nothing to go back to.")}
 
 
 class GroundHistoryEntrySerializer(serializers.Serializer):
@@ -68,12 +72,6 @@ def entry_json(entry: AuditEntry, reader: User) -> dict[str, Any]:
 
 def _for_people(facts: dict[str, Any] | None) -> dict[str, Any] | None:
     return facts and {name: value for name, value in facts.items() if name not in OF_THE_SOURCE}
-
-
-UNDONE = PolymorphicProxySerializer(
-    component_name="UndoneFeature", serializers=[AssetDetailFeatureSerializer, ZoneDetailFeatureSerializer], resource_type_field_name=None
-)
-CANNOT = {409: OpenApiResponse(description="It was changed again since, or there is nothing to go back to.")}
 
 
 def asset_now(user: User, asset_id: int) -> dict[str, Any] | None:

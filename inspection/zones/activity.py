@@ -27,6 +27,13 @@ _ZENITH_AND_DIRECTION: Mapping[str, tuple[float, SunDirection]] = {
     "SS": (SUNRISE_ZENITH_DEG, SunDirection.SETTING),
     "EECT": (TWILIGHT_ZENITH_DEG, SunDirection.SETTING),
 }
+SUN_ALLOWANCE_S = 120.0  # what the equations, the air and an observer on a hill differ by
+BOX_STEP_DEG = 0.1  # the sun is looked at on the corners of such a grid, so that neighbouring zones ask the same; 24 s of the sun's way
+LONGEST_WINDOW_S = 400 * DAY_S  # over more days than that a zone that applies now and then counts as applying always
+EPOCH_WEEKDAY = DAYS.index("THU")  # of 1970-01-01
+_TIME = re.compile(r"(\d{2}):(\d{2}):(\d{2})Z")
+Box = tuple[float, float, float, float]  # west, south, east, north [deg]
+Place = tuple[float, float]
 
 
 @lru_cache(maxsize=100_000)
@@ -49,16 +56,6 @@ def sun_event_s(event: str, day: int, lon_deg: float, lat_deg: float) -> float |
             return None
         minutes = 720.0 - 4.0 * (lon_deg + angle_deg) - eq_of_time(century)
     return day * DAY_S + minutes * 60.0
-
-
-SUN_ALLOWANCE_S = 120.0  # what the equations, the air and an observer on a hill differ by
-BOX_STEP_DEG = 0.1  # the sun is looked at on the corners of such a grid, so that neighbouring zones ask the same; 24 s of the sun's way
-LONGEST_WINDOW_S = 400 * DAY_S  # over more days than that a zone that applies now and then counts as applying always
-EPOCH_WEEKDAY = DAYS.index("THU")  # of 1970-01-01
-_TIME = re.compile(r"(\d{2}):(\d{2}):(\d{2})Z")
-
-Box = tuple[float, float, float, float]  # west, south, east, north [deg]
-Place = tuple[float, float]
 
 
 class Span(NamedTuple):

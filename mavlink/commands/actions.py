@@ -14,20 +14,6 @@ from mavlink.vehicle_class import VehicleClass, refusal_words
 from mavlink.vehicle_state import VehicleState
 
 FIRST_PAUSE_S, LONGEST_PAUSE_S = 1.0, 15.0  # at first often, for every second counts; then seldom: a pilot may have taken over
-MODES = {Order.HOLD: Mode.HOLD, Order.RETURN: Mode.RETURN, Order.ABORT: Mode.RETURN, Order.LAND: Mode.LAND}
-
-
-def blind_message(order: Order, flavour: Flavour, ends: Ends, sent: int) -> Message:
-    """The same again after it was sent so often. `order` is one of MODES, `flavour` one that is commanded."""
-    numbers = mode_numbers(flavour, MODES[order])
-    return mavlink.MAVLink_command_long_message(ends.system, ends.component, mavlink.MAV_CMD_DO_SET_MODE, min(sent, 255), *numbers)
-
-
-def pause_s(sent: int) -> float:
-    """After so many."""
-    return min(FIRST_PAUSE_S * 2.0 ** max(sent - 1, 0), LONGEST_PAUSE_S)
-
-
 OWN_MODE = float(mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED)
 NAN = math.nan
 ABORT_ROUNDS = 3
@@ -266,3 +252,17 @@ def _positive(parameters: Mapping[str, float], name: str) -> float:
     if value is None or not (math.isfinite(value) and value > 0):
         raise CannotOrder("parameters", f"{name} must be above 0.")
     return float(value)
+
+
+MODES = {Order.HOLD: Mode.HOLD, Order.RETURN: Mode.RETURN, Order.ABORT: Mode.RETURN, Order.LAND: Mode.LAND}
+
+
+def blind_message(order: Order, flavour: Flavour, ends: Ends, sent: int) -> Message:
+    """The same again after it was sent so often. `order` is one of MODES, `flavour` one that is commanded."""
+    numbers = mode_numbers(flavour, MODES[order])
+    return mavlink.MAVLink_command_long_message(ends.system, ends.component, mavlink.MAV_CMD_DO_SET_MODE, min(sent, 255), *numbers)
+
+
+def pause_s(sent: int) -> float:
+    """After so many."""
+    return min(FIRST_PAUSE_S * 2.0 ** max(sent - 1, 0), LONGEST_PAUSE_S)

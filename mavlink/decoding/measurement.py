@@ -10,6 +10,9 @@ LARGEST_GAP = 128  # of numbers that wrap at 256; more is a repetition, another 
 RADIO_FULL = 254
 RADIO_UNKNOWN = 255
 RADIO_KEPT_S = 10.0
+LONGEST_MODE = 30
+_SMALLEST, _LARGEST_SMALL, _LARGEST_INT = 0, 32_767, 2_147_483_647
+_COUNTED = (("mission_item", _LARGEST_INT), ("waypoint_sequence", _LARGEST_INT))
 
 
 @dataclass
@@ -42,11 +45,6 @@ class LinkQuality:
         if self._radio_percent is not None and now_s - self._radio_at_s <= RADIO_KEPT_S:
             return self._radio_percent
         return round(min(100.0 * self._received / self._sent, 100.0), 1) if self._sent else None
-
-
-LONGEST_MODE = 30
-_SMALLEST, _LARGEST_SMALL, _LARGEST_INT = 0, 32_767, 2_147_483_647
-_COUNTED = (("mission_item", _LARGEST_INT), ("waypoint_sequence", _LARGEST_INT))
 
 
 @dataclass(frozen=True, slots=True)

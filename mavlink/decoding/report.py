@@ -14,6 +14,12 @@ PIECE = 50  # characters of a whole piece; a shorter one is the last
 PATIENCE_S = 3.0
 MOST_OPEN = 8
 LONGEST = 500
+KEPT_S = 10.0  # a value that was not told for so long is not known any more
+E7 = 1e7
+UNKNOWN_U16 = 65_535
+UNKNOWN_SATELLITES = 255
+FIX_2D = 2
+Values = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -72,15 +78,6 @@ def _closed(collected: _Open) -> StatusText:
 def _clean(text: str | bytes) -> str:
     words = text.decode(errors="replace") if isinstance(text, bytes) else text
     return "".join(letter if letter.isprintable() else " " for letter in words.rstrip("\0"))
-
-
-KEPT_S = 10.0  # a value that was not told for so long is not known any more
-E7 = 1e7
-UNKNOWN_U16 = 65_535
-UNKNOWN_SATELLITES = 255
-FIX_2D = 2
-
-Values = dict[str, Any]
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,20 @@ from mavlink.mission_sync.supported_items import as_old_roi
 from mavlink.mission_sync.wire import Held, HeldItem
 from mavlink.vehicle_plan import MissionItem
 
+CENTIMETRE_M = 0.01
+YAW_DEG = 0.001  # by way of radians in 32 bits
+NOT_FLOWN = frozenset({
+    mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT, mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION,
+    mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION,
+    mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION, mavlink.MAV_CMD_NAV_RALLY_POINT,
+})  # fmt: skip
+PLACELESS_ON_ARDUPILOT = frozenset({mavlink.MAV_FRAME_MISSION, mavlink.MAV_FRAME_GLOBAL})
+SAME_FRAME: dict[int, int] = {
+    mavlink.MAV_FRAME_GLOBAL_INT: mavlink.MAV_FRAME_GLOBAL,
+    mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT: mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT,
+    mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT: mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT,
+}
+
 
 class Found(StrEnum):
     NOTHING = "nothing"
@@ -74,10 +88,6 @@ def _of_list(held: Held, items: Sequence[MissionItem], flavour: Flavour) -> set[
     return {place for place, (item, there) in enumerate(zip(items, held, strict=False)) if is_same(item, there.item, flavour)}
 
 
-CENTIMETRE_M = 0.01
-YAW_DEG = 0.001  # by way of radians in 32 bits
-
-
 class Keeps(Enum):
     """What becomes of a parameter."""
 
@@ -116,18 +126,6 @@ PX4_KEEPS = {
     mavlink.MAV_CMD_NAV_RALLY_POINT: (NOTHING, NOTHING, NOTHING, NOTHING),
 }
 KEEPS = {Flavour.ARDUPILOT: ARDUPILOT_KEEPS, Flavour.PX4: PX4_KEEPS}
-
-NOT_FLOWN = frozenset({
-    mavlink.MAV_CMD_NAV_FENCE_RETURN_POINT, mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION,
-    mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION, mavlink.MAV_CMD_NAV_FENCE_CIRCLE_INCLUSION,
-    mavlink.MAV_CMD_NAV_FENCE_CIRCLE_EXCLUSION, mavlink.MAV_CMD_NAV_RALLY_POINT,
-})  # fmt: skip
-PLACELESS_ON_ARDUPILOT = frozenset({mavlink.MAV_FRAME_MISSION, mavlink.MAV_FRAME_GLOBAL})
-SAME_FRAME: dict[int, int] = {
-    mavlink.MAV_FRAME_GLOBAL_INT: mavlink.MAV_FRAME_GLOBAL,
-    mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT: mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT,
-    mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT: mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT,
-}
 
 
 @dataclass(frozen=True)

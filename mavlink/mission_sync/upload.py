@@ -18,6 +18,7 @@ UNCERTAIN = frozenset({
     mavlink.MAV_MISSION_INVALID_SEQUENCE,
     mavlink.MAV_MISSION_OPERATION_CANCELLED,
 })  # fmt: skip
+REQUESTS = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT"})
 
 
 class TransferState(StrEnum):
@@ -81,9 +82,6 @@ class Clear:
     def _end(self, state: TransferState, code: str) -> Messages:
         self.outcome, self.wake_at_s = TransferOutcome(state, code), None
         return []
-
-
-REQUESTS = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT"})
 
 
 class Upload:

@@ -32,6 +32,7 @@ from planning.energy.conditions import conditions_from_json, conditions_to_json
 from planning.trajectory.waypoints import WaypointKind
 
 COORDINATE_DIGITS = 7  # about a centimetre
+VERSION = 1
 
 
 def approved_targets(mission: Mission) -> list[dict[str, Any]]:
@@ -59,9 +60,6 @@ def approved_targets(mission: Mission) -> list[dict[str, Any]]:
             }
         )
     return found
-
-
-VERSION = 1
 
 
 def content_sha256(document: Any) -> str:

@@ -15,6 +15,16 @@ from missions.services.refused import refuse
 from missions.services.still_apart import separation_of_stored
 from workspace.models import User
 
+COPIED = (
+    "organisation_id", "state", "objective", "return_to_start", "planned_at", "graph_version", "ground_revision", "flat_ground_assumed",
+    "total_length_m", "longest_route_m", "plan_warnings", "last_plan", "locks", "plan_quality",
+    "departs_at", "conditions", "charging_w", "total_energy_wh", "separation", "lost_link",
+    "lost_link_check", "external_id", "attributes",
+)  # fmt: skip
+NOT_FLOWN: dict[str, Any] = {
+    "state": TargetState.PENDING, "state_at": None, "state_reason": "", "reached_at": None, "held_s": None, "visit_stored_at": None,
+}  # fmt: skip
+
 
 def draft_follow_up(*, mission: Mission, author: User, name: str = "") -> Mission:
     """With the same UAVs and wishes, and no departure yet. What another mission that continues this one took over is left to that one.
@@ -47,17 +57,6 @@ def draft_follow_up(*, mission: Mission, author: User, name: str = "") -> Missio
 def _what(target: InspectionTarget) -> tuple[Any, ...]:
     """Names what is inspected, in whichever mission."""
     return (target.asset_id, *(None if shape is None else shape.wkb for shape in (target.position, target.stretch)))
-
-
-COPIED = (
-    "organisation_id", "state", "objective", "return_to_start", "planned_at", "graph_version", "ground_revision", "flat_ground_assumed",
-    "total_length_m", "longest_route_m", "plan_warnings", "last_plan", "locks", "plan_quality",
-    "departs_at", "conditions", "charging_w", "total_energy_wh", "separation", "lost_link",
-    "lost_link_check", "external_id", "attributes",
-)  # fmt: skip
-NOT_FLOWN: dict[str, Any] = {
-    "state": TargetState.PENDING, "state_at": None, "state_reason": "", "reached_at": None, "held_s": None, "visit_stored_at": None,
-}  # fmt: skip
 
 
 def duplicate_mission(*, mission: Mission, author: User, name: str = "", **other: Any) -> Mission:

@@ -40,6 +40,10 @@ from planning.problem import Objective
 from workspace.models import Organisation, User
 from workspace.services import record_change
 
+BESIDE_ROUTES = ("name", "lost_link", "external_id", "attributes")  # what routes do not hang on
+MOST_NAMES = 5  # that an entry of the history keeps
+EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}
+
 
 def as_said_before(uav: UavRequest, before: Sequence[UavRequest]) -> UavRequest:
     """Own figures that are sent again as they were are not said anew: what the stored UAV had when they were said is kept."""
@@ -49,11 +53,6 @@ def as_said_before(uav: UavRequest, before: Sequence[UavRequest]) -> UavRequest:
     values, said = ({**vars(one), **vars(one.performance)} for one in (uav, old))
     kept = {name: value for name, value in old.fleet_figures.items() if name in uav.fleet_figures and values[name] == said[name]}
     return replace(uav, fleet_figures={**uav.fleet_figures, **kept})
-
-
-BESIDE_ROUTES = ("name", "lost_link", "external_id", "attributes")  # what routes do not hang on
-MOST_NAMES = 5  # that an entry of the history keeps
-EDITABLE = {MissionState.DRAFT, MissionState.PLANNED}
 
 
 class MissionChanged(Exception):

@@ -23,6 +23,15 @@ _OPENING, _NEXT, _CLOSING = b'[{"position":[', b'},{"position":[', b"}]"
 _KIND = [f'],"kind":"{kind.value}","asset":'.encode() for kind in KINDS]
 _NO_TARGET = b',"target":null,"task":null'
 _PIECES = 4  # position, kind, asset, the rest
+ALL_PLANS, WITHOUT_TIMED_ZONES = "all_plans", "without_timed_zones"  # of which plans bound and gap speak
+FLAT_GROUND = "flat ground assumed"
+TERRAIN_MODEL = "terrain model"
+_KIND_NAMES = [kind.value for kind in KINDS]
+NO_QUALITY: dict[str, Any] = {
+    "lower_bound_m": None, "lower_bound_s": None, "lower_bound_wh": None, "gap": None, "is_proven": False,
+    "gap_of": ALL_PLANS, "method": "", "wish": None,
+}  # fmt: skip
+NO_SHORTFALL: dict[str, float | None] = {"missing_m": None, "missing_wh": None, "missing_s": None}
 
 
 def waypoints_text(waypoints: Waypoints) -> orjson.Fragment:
@@ -86,18 +95,6 @@ def _items(values: IntArray) -> list[bytes]:
 
 def _text(values: FloatArray | IntArray) -> bytes:
     return orjson.dumps(np.ascontiguousarray(values), option=orjson.OPT_SERIALIZE_NUMPY)
-
-
-ALL_PLANS, WITHOUT_TIMED_ZONES = "all_plans", "without_timed_zones"  # of which plans bound and gap speak
-FLAT_GROUND = "flat ground assumed"
-TERRAIN_MODEL = "terrain model"
-_KIND_NAMES = [kind.value for kind in KINDS]
-NO_QUALITY: dict[str, Any] = {
-    "lower_bound_m": None, "lower_bound_s": None, "lower_bound_wh": None, "gap": None, "is_proven": False,
-    "gap_of": ALL_PLANS, "method": "", "wish": None,
-}  # fmt: skip
-
-NO_SHORTFALL: dict[str, float | None] = {"missing_m": None, "missing_wh": None, "missing_s": None}
 
 
 @dataclass(frozen=True)

@@ -38,6 +38,14 @@ from planning.separation.separation import Separation
 from planning.solver.solver import Stop, never
 from workspace.turns import end_turn, in_turn
 
+SHORTEST_WAYS = "The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach."
+SIZES = ((3, "1-3"), (12, "4-12"), (50, "13-50"), (200, "51-200"))  # targets at most, and what that is called
+LARGEST = "201-"
+P = ParamSpec("P")
+MOST_GROUNDS = 5  # that may follow one another while one plan is made
+MOST_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before
+MOST_TRIES = 6  # with more zones each time
+
 
 @dataclass(frozen=True, order=True)
 class Worth:
@@ -77,9 +85,6 @@ def _value(objective: Objective, route: PlannedRoute) -> float:
     return route.duration_s
 
 
-SHORTEST_WAYS = "The routes take shorter ways than preferred, farther from the lines: along the lines, not all targets are in reach."
-
-
 def warnings_of(request: PlanRequest, grounded: Mapping[int, Grounding], *, is_by_length: bool) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = [{"code": why.code, "uav": number, "message": why.message} for number, why in grounded.items()]
     flying = uavs_in_the_air([uav.uav for uav in request.uavs if uav.uav is not None])
@@ -99,12 +104,6 @@ def warnings_of(request: PlanRequest, grounded: Mapping[int, Grounding], *, is_b
         for number, uav in enumerate(request.uavs)
         if number not in grounded and uav.performance.max_airspeed_mps is None
     ]
-
-
-SIZES = ((3, "1-3"), (12, "4-12"), (50, "13-50"), (200, "51-200"))  # targets at most, and what that is called
-LARGEST = "201-"
-
-P = ParamSpec("P")
 
 
 def size_of(targets: int) -> str:
@@ -134,11 +133,6 @@ def counted(make: Callable[P, dict[str, Any]]) -> Callable[P, dict[str, Any]]:
 def _method_of(plan: Mapping[str, Any]) -> str:
     quality = plan.get("quality")
     return str(quality["method"]) if isinstance(quality, Mapping) and "method" in quality else "unknown"
-
-
-MOST_GROUNDS = 5  # that may follow one another while one plan is made
-MOST_WINDOWS = 6  # of other missions' flights, each at least twice as long as the one before
-MOST_TRIES = 6  # with more zones each time
 
 
 class GraphOutdated(Exception):

@@ -27,6 +27,9 @@ from planning.trajectory.heights import inspection_agl_m
 
 NEARLY = 0.9  # of a limit: no other target fits
 NOTICEABLE = 1.05  # times as long as in calm air
+MOST_VISITS = 150  # beyond, only the route itself is looked at, not what others would fly instead
+BOX_MARGIN_DEG = 0.03  # about 3 km: the way that a zone bars is looked for so far around the route
+LEAST_DETOUR_M = 20.0
 
 
 def what_binds(
@@ -76,11 +79,6 @@ def _costs(request: PlanRequest, scene: Scene, places: Sequence[Place], ways: Wa
 def _of_route(costs: FlightCosts, quantity: str, number: int, order: Sequence[int]) -> float:
     amounts = Amounts(**vars(getattr(costs, quantity)))
     return float(amounts.of_route(number, costs.class_of[number], order))
-
-
-MOST_VISITS = 150  # beyond, only the route itself is looked at, not what others would fly instead
-BOX_MARGIN_DEG = 0.03  # about 3 km: the way that a zone bars is looked for so far around the route
-LEAST_DETOUR_M = 20.0
 
 
 @dataclass(frozen=True)

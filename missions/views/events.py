@@ -20,6 +20,10 @@ from workspace.schema import PAGE_PARAMETERS
 from workspace.signed_in import SignedInRequest
 
 LEVELS = ("critical", "warning", "advisory")
+DESCRIPTION = (
+    "Take-offs, landings, crashes, drop-outs, commands step by step, alerts, targets, offers of another plan, and what was done to a "
+    "simulation: who and when."
+)
 
 
 class EventUavSerializer(serializers.Serializer):
@@ -58,12 +62,6 @@ def event_json(place: Place, event: MissionEvent) -> dict[str, Any]:
         "message": event.message,
         "values": event.values,
     }
-
-
-DESCRIPTION = (
-    "Take-offs, landings, crashes, drop-outs, commands step by step, alerts, targets, offers of another plan, and what was done to a "
-    "simulation: who and when."
-)
 
 
 class MissionEvents(APIView):

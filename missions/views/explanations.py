@@ -31,6 +31,9 @@ from workspace.whole_numbers import WholeNumber
 
 MOST_EXPLAINED = 20  # routes, and targets, of one answer
 SHORTEST_WAYS = "shortest_ways"
+EVERYBODY = frozenset(Role)
+UAVS = WholeNumber("uav", "the routes of these UAVs alone, by their index", minimum=0, maximum=99_999, max_values=1_000)
+TARGETS = WholeNumber("target", "these targets alone, by their index", minimum=0, maximum=99_999, max_values=1_000)
 
 
 def explain_mission(
@@ -68,12 +71,6 @@ def _route(request: PlanRequest, orders: list[list[int]], uav: int, *, is_by_len
     except InvalidRequest as error:
         return {"uav": uav, "fault": next(iter(error.faults.values())), "explanation": None}
     return {"uav": uav, "fault": "", "explanation": found}
-
-
-EVERYBODY = frozenset(Role)
-
-UAVS = WholeNumber("uav", "the routes of these UAVs alone, by their index", minimum=0, maximum=99_999, max_values=1_000)
-TARGETS = WholeNumber("target", "these targets alone, by their index", minimum=0, maximum=99_999, max_values=1_000)
 
 
 class _Explanation(APIView):

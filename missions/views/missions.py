@@ -60,6 +60,23 @@ FILTER_PARAMETERS = [
     OpenApiParameter("deleted", bool, description="true: the deleted ones"),
     OpenApiParameter("order", str, enum=ORDER_NAMES, description="the column to sort by, with - for descending; -changed without one"),
 ]
+IF_MATCH = OpenApiParameter(
+    "If-Match", str, OpenApiParameter.HEADER, required=True,
+    description="the ETag of the mission as last seen, or * for whatever is there; 412 if it has changed",
+)  # fmt: skip
+# What stops UAVs, or takes from them what they would fly, is never held up by a header that is missing.
+IF_MATCH_OPTIONAL = OpenApiParameter(
+    "If-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen: 412 if it has changed; without it any"
+)
+IF_NONE_MATCH = OpenApiParameter(
+    "If-None-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen; 304 while it is the same"
+)
+CHANGED = {
+    409: OpenApiResponse(description="The mission cannot be changed, or somebody else was faster."),
+    412: OpenApiResponse(description="The mission has changed since."),
+    428: OpenApiResponse(description="If-Match is missing."),
+}
+PLANNED_LATER = {202: OpenApiResponse(shapes.JobLinkSerializer, description="Stored; a job plans it, see Location.")}
 
 
 def asked_filter(request: Request) -> MissionFilter:
@@ -91,25 +108,6 @@ def asked_order(request: Request) -> tuple[str, str]:
 
 def _refusal(name: str, message: str) -> Any:
     return ApiProblem(400, "invalid", f"{name}: {message}", details={name: [message]})
-
-
-IF_MATCH = OpenApiParameter(
-    "If-Match", str, OpenApiParameter.HEADER, required=True,
-    description="the ETag of the mission as last seen, or * for whatever is there; 412 if it has changed",
-)  # fmt: skip
-# What stops UAVs, or takes from them what they would fly, is never held up by a header that is missing.
-IF_MATCH_OPTIONAL = OpenApiParameter(
-    "If-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen: 412 if it has changed; without it any"
-)
-IF_NONE_MATCH = OpenApiParameter(
-    "If-None-Match", str, OpenApiParameter.HEADER, description="the ETag of the mission as last seen; 304 while it is the same"
-)
-CHANGED = {
-    409: OpenApiResponse(description="The mission cannot be changed, or somebody else was faster."),
-    412: OpenApiResponse(description="The mission has changed since."),
-    428: OpenApiResponse(description="If-Match is missing."),
-}
-PLANNED_LATER = {202: OpenApiResponse(shapes.JobLinkSerializer, description="Stored; a job plans it, see Location.")}
 
 
 def mission_or_404(user: User, mission_id: UUID, *, deleted: bool = False) -> Mission:

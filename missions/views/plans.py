@@ -30,6 +30,23 @@ from workspace.tasks import send_job_on_commit
 from workspace.throttling import ScopedRate
 from workspace.waiting import NoRoomToWait, preferred_wait_s, wait_for_job
 
+SOLVE_PLAN = "missions.tasks.solve_plan"
+JOBS_RETRY_AFTER_S = 10
+STATUS_OF_FAILURE = {
+    "invalid": 400,
+    "nothing_to_plan": 400,
+    "no_graph": 503,
+    "graph_outdated": 503,
+    "took_too_long": 503,
+    "worker_lost": 503,
+}
+PREFER = OpenApiParameter(
+    "Prefer",
+    str,
+    OpenApiParameter.HEADER,
+    description="`wait=N`: for a large plan, wait up to N seconds for it (RFC 7240). 200 with the plan if it is done by then, else 202.",
+)
+
 
 class Reachability(APIView):
     write_roles = frozenset(Role)
@@ -50,25 +67,6 @@ class Reachability(APIView):
         values = body.validated_data
         with api_problems():
             return Response(reachability(request=body.to_request(), starts=values["starts"], box=values.get("box")))
-
-
-SOLVE_PLAN = "missions.tasks.solve_plan"
-JOBS_RETRY_AFTER_S = 10
-STATUS_OF_FAILURE = {
-    "invalid": 400,
-    "nothing_to_plan": 400,
-    "no_graph": 503,
-    "graph_outdated": 503,
-    "took_too_long": 503,
-    "worker_lost": 503,
-}
-
-PREFER = OpenApiParameter(
-    "Prefer",
-    str,
-    OpenApiParameter.HEADER,
-    description="`wait=N`: for a large plan, wait up to N seconds for it (RFC 7240). 200 with the plan if it is done by then, else 202.",
-)
 
 
 class PlanList(APIView):

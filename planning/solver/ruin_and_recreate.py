@@ -30,6 +30,14 @@ from planning.solver.plan_state import (
     values,
 )
 
+MEAN_REMOVED = 10.0
+LONGEST_STRING = 10.0
+SPLIT_SHARE = 0.5  # how often a string keeps some targets in its middle
+KEEP_SHARE = 0.01  # how often one more of them is let go
+AROUND_LONGEST_SHARE = 0.5
+MOVES_FOR_TOTAL, MOVES_FOR_LONGEST = 20, 4  # in each round; for the longest route, taking out and putting back brings more
+NEAR_SHARE = 0.9  # how often a place is looked for beside neighbours and at the ends of routes alone
+
 
 def _without_owner(context: Any, builder: Any, kind: Any, value: Any) -> Any:
     if isinstance(kind, types.Array):
@@ -51,15 +59,6 @@ def unowned(typing_context: Any, arrays: Any) -> Any:
         return _without_owner(context, builder, arrays, arguments[0])
 
     return arrays(arrays), code
-
-
-MEAN_REMOVED = 10.0
-LONGEST_STRING = 10.0
-SPLIT_SHARE = 0.5  # how often a string keeps some targets in its middle
-KEEP_SHARE = 0.01  # how often one more of them is let go
-AROUND_LONGEST_SHARE = 0.5
-MOVES_FOR_TOTAL, MOVES_FOR_LONGEST = 20, 4  # in each round; for the longest route, taking out and putting back brings more
-NEAR_SHARE = 0.9  # how often a place is looked for beside neighbours and at the ends of routes alone
 
 
 @njit(cache=True, nogil=True)

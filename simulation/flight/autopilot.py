@@ -12,6 +12,7 @@ from simulation.flight.settings import OwnAction
 from simulation.flight.states import Mode, Severity
 
 STRENGTH = {Mode.RETURN: 1, Mode.LAND: 2}  # what is under way is not given up for less
+SETTLES_S = 2.0  # on the ground, until the model rests
 
 
 class Failsafes:
@@ -72,9 +73,6 @@ def _manoeuvre(action: OwnAction) -> Manoeuvre | None:
     if action is OwnAction.RETURN:
         return Return()
     return Land() if action is OwnAction.LAND else None
-
-
-SETTLES_S = 2.0  # on the ground, until the model rests
 
 
 class Autopilot:

@@ -17,6 +17,17 @@ from simulation.flight.weather import Weather
 DRIFT_MPS = 0.3  # of each axis, drawn when the fix is lost: what a compass, an airspeed and tilt leave after the wind has been learnt
 WANDER_MPS = 0.03  # by which that changes in the first second; it grows with the root of time
 CATCH_UP_S = 1.0  # until a new fix is believed
+LEAST_V = 1.0
+VERTICAL_SHARE = 0.25  # near the ground gusts have little room to go up and down
+KELVIN = 273.15
+OFF_GROUND_M = 0.3  # above standing: from here on it flies
+STEADY_M = 0.2  # above standing: from here on the loops may integrate
+NEAR_GROUND_M = 0.5
+OVERTURNED_RAD = math.radians(60.0)
+HARD_DOWN_MPS, HARD_ALONG_MPS = 3.0, 2.5  # what the legs bear
+GROUND_EACH_M = 1.0  # the ground is asked for its height each time so far has been flown
+LOW_M, LOW_GROUND_EACH_M = 15.0, 0.2
+SEEDS_APART = 2_654_435_761  # keeps the draws of gusts, drift and turbulence apart (Knuth's multiplier)
 
 
 class Navigation:
@@ -42,9 +53,6 @@ class Navigation:
         wander_mps = WANDER_MPS * math.sqrt(dt_s)
         self._drift_mps = (east_mps + draw(0.0, wander_mps), north_mps + draw(0.0, wander_mps))
         self.error_m = (self.error_m[0] + self._drift_mps[0] * dt_s, self.error_m[1] + self._drift_mps[1] * dt_s)
-
-
-LEAST_V = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,9 +88,6 @@ class Battery:
         return volts, power_w / volts
 
 
-VERTICAL_SHARE = 0.25  # near the ground gusts have little room to go up and down
-
-
 class Gusts:
     """Each step the air's velocity beside its mean, north, east and down [m/s], with the given deviation and time constant.
 
@@ -107,9 +112,6 @@ class Gusts:
             kept * down + fresh * VERTICAL_SHARE * draw(0.0, 1.0),
         )
         return self._ned
-
-
-KELVIN = 273.15
 
 
 class Air:
@@ -137,16 +139,6 @@ class Air:
         if wind != self.wind_ned_mps:
             self.wind_ned_mps = wind
             self._plant.set_wind(*wind)
-
-
-OFF_GROUND_M = 0.3  # above standing: from here on it flies
-STEADY_M = 0.2  # above standing: from here on the loops may integrate
-NEAR_GROUND_M = 0.5
-OVERTURNED_RAD = math.radians(60.0)
-HARD_DOWN_MPS, HARD_ALONG_MPS = 3.0, 2.5  # what the legs bear
-GROUND_EACH_M = 1.0  # the ground is asked for its height each time so far has been flown
-LOW_M, LOW_GROUND_EACH_M = 15.0, 0.2
-SEEDS_APART = 2_654_435_761  # keeps the draws of gusts, drift and turbulence apart (Knuth's multiplier)
 
 
 class Contact(StrEnum):

@@ -8,6 +8,11 @@ from typing import NamedTuple
 from simulation.flight.airframe import Airframe
 from simulation.flight.course import Pace, Piece, Vector
 
+NEAR_ENOUGH_M = 0.01
+SLOWEST_MPS = 0.1  # so that an end is reached and not only approached
+STILL: Vector = (0.0, 0.0, 0.0)
+GATE_LEASH_M = 1.0
+
 
 @dataclass(frozen=True, slots=True)
 class GovernorRules:
@@ -50,10 +55,6 @@ class Governor:
 def _falling(value: float, begins: float, ends: float) -> float:
     """1 up to `begins`, 0 from `ends` on."""
     return min(max((ends - value) / (ends - begins), 0.0), 1.0)
-
-
-NEAR_ENOUGH_M = 0.01
-SLOWEST_MPS = 0.1  # so that an end is reached and not only approached
 
 
 class Reference:
@@ -152,10 +153,6 @@ class Gate(NamedTuple):
 
     place: Vector
     radius_m: float
-
-
-STILL: Vector = (0.0, 0.0, 0.0)
-GATE_LEASH_M = 1.0
 
 
 class Guidance:

@@ -9,6 +9,8 @@ from simulation.flight.states import Mode
 
 INSIDE_M = 0.1  # by which the chords may lie inside the circle
 WIDEST_RAD = math.radians(15.0)  # of one chord
+AT_HEIGHT_M = 0.5
+OVER_PLACE_M = 0.5
 
 
 def around(centre: Vector, start: Vector, turns: float, radius_m: float) -> list[Vector]:
@@ -24,10 +26,6 @@ def around(centre: Vector, start: Vector, turns: float, radius_m: float) -> list
     step = math.copysign(whole / chords, radius_m) if chords else 0.0
     bearings = [begin + step * number for number in range(chords + 1)]
     return [(centre[0] + radius * math.sin(bearing), centre[1] + radius * math.cos(bearing), centre[2]) for bearing in bearings]
-
-
-AT_HEIGHT_M = 0.5
-OVER_PLACE_M = 0.5
 
 
 class Manoeuvre(Protocol):

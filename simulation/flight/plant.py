@@ -16,6 +16,38 @@ from simulation.flight.faults import MOTORS
 MODELS = Path(__file__).resolve().parent.parent / "aircraft_models"
 ROTORS = 4
 AXES = ("thrust", "roll", "pitch", "yaw")
+FOOT_M = 0.3048
+GUIDANCE_STEP_S = 0.04
+PHYSICS_HZ = (250, 125, 100)  # below 100 Hz the legs' springs are not followed any more
+J_PER_WH = 3600.0
+HIGHEST_M = 20_000.0  # above it, or under the ground, the model has come apart
+_READ = (
+    "position/long-gc-deg",
+    "position/lat-geod-deg",
+    "position/h-sl-meters",
+    "velocities/v-north-fps",
+    "velocities/v-east-fps",
+    "velocities/v-down-fps",
+    "attitude/phi-rad",
+    "attitude/theta-rad",
+    "attitude/psi-rad",
+    "velocities/p-rad_sec",
+    "velocities/q-rad_sec",
+    "velocities/r-rad_sec",
+    "control/effort",
+    "battery/used-j",
+    "battery/power-w",
+)
+_VELOCITY = slice(3, 6)  # of these, in feet a second
+_SET_POINTS = (
+    "setpoint/north-mps",
+    "setpoint/east-mps",
+    "setpoint/down-mps",
+    "setpoint/accel-north-mps2",
+    "setpoint/accel-east-mps2",
+    "setpoint/accel-down-mps2",
+    "setpoint/heading-rad",
+)
 
 
 def flight_model(code: str, step_s: float, seed: int) -> jsbsim.FGFDMExec:
@@ -60,41 +92,6 @@ def mixer_of(code: str) -> tuple[tuple[float, ...], ...]:
     if not np.isfinite(inverse).all():
         raise ValueError(f"The rotors of the airframe {code!r} cannot turn it.")
     return tuple(tuple(float(share) for share in inverse[:, axis]) for axis in range(len(AXES)))
-
-
-FOOT_M = 0.3048
-GUIDANCE_STEP_S = 0.04
-PHYSICS_HZ = (250, 125, 100)  # below 100 Hz the legs' springs are not followed any more
-J_PER_WH = 3600.0
-HIGHEST_M = 20_000.0  # above it, or under the ground, the model has come apart
-
-_READ = (
-    "position/long-gc-deg",
-    "position/lat-geod-deg",
-    "position/h-sl-meters",
-    "velocities/v-north-fps",
-    "velocities/v-east-fps",
-    "velocities/v-down-fps",
-    "attitude/phi-rad",
-    "attitude/theta-rad",
-    "attitude/psi-rad",
-    "velocities/p-rad_sec",
-    "velocities/q-rad_sec",
-    "velocities/r-rad_sec",
-    "control/effort",
-    "battery/used-j",
-    "battery/power-w",
-)
-_VELOCITY = slice(3, 6)  # of these, in feet a second
-_SET_POINTS = (
-    "setpoint/north-mps",
-    "setpoint/east-mps",
-    "setpoint/down-mps",
-    "setpoint/accel-north-mps2",
-    "setpoint/accel-east-mps2",
-    "setpoint/accel-down-mps2",
-    "setpoint/heading-rad",
-)
 
 
 class Motion(NamedTuple):

@@ -19,6 +19,10 @@ from simulation.flight.uav import SimulatedUav
 from simulation.flight.weather import Weather
 
 FloatArray = NDArray[np.float64]
+TRACK_STEPS = 5  # a line of the track each 0.2 s
+MOST_BESIDE_M = 5.0
+MOST_LANDING_M = 2.0
+LEAST_RESERVE_PERCENT = 20.0  # as plans keep it by default
 
 
 def cross_track_m(track: FloatArray, legs: NDArray[np.int64], waypoints: Sequence[LonLat]) -> FloatArray:
@@ -46,12 +50,6 @@ def _beside_m(points: FloatArray, start: LonLat, end: LonLat) -> FloatArray:
     share = np.clip(away @ along / length2, 0.0, 1.0) if length2 > 0.0 else np.zeros(len(points))
     off = away - share[:, None] * along
     return np.asarray(np.hypot(off[:, 0], off[:, 1]), dtype=np.float64)
-
-
-TRACK_STEPS = 5  # a line of the track each 0.2 s
-MOST_BESIDE_M = 5.0
-MOST_LANDING_M = 2.0
-LEAST_RESERVE_PERCENT = 20.0  # as plans keep it by default
 
 
 @dataclass(frozen=True)

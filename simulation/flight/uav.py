@@ -22,6 +22,8 @@ from simulation.flight.states import DONE, Gps, Haven, Landed, MissionState, Mod
 from simulation.flight.weather import Weather
 
 NO_FIX, FIX = Gps(0, 0, 99.9), Gps(3, 14, 0.7)
+SETTLES_S = 2.0  # on the ground, until the model rests
+SLOWEST_MPS = 0.2
 
 
 def told(
@@ -70,10 +72,6 @@ def _landed(cockpit: Cockpit, manoeuvre: Manoeuvre) -> Landed:
     if manoeuvre.is_landing:
         return Landed.LANDING
     return Landed.TAKING_OFF if manoeuvre.mode is Mode.TAKE_OFF else Landed.IN_AIR
-
-
-SETTLES_S = 2.0  # on the ground, until the model rests
-SLOWEST_MPS = 0.2
 
 
 class SimulatedUav:

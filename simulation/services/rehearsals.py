@@ -37,6 +37,11 @@ from simulation.verdict.stored import track_to_json, verdict_to_json
 from workspace.models import Job, User
 from workspace.services import cancel_job, create_job_within, finish_job
 
+REUSED_FOR = timedelta(hours=24)  # another version of the program may fly otherwise
+REHEARSE = "simulation.tasks.rehearse_mission"
+KEPT = 20  # rehearsals of one mission; older ones go
+OnProgress = Callable[[str, float], None]
+
 
 class RehearsedUav:
     """A simulated UAV as a rehearsal orders it about."""
@@ -95,9 +100,6 @@ def vehicle_maker(stand_ins: Sequence[StandIn], sky: Sky, terrain: Heights | Non
     return make
 
 
-REUSED_FOR = timedelta(hours=24)  # another version of the program may fly otherwise
-
-
 def take_flown_before(run: RehearsalRun) -> bool:
     """Give the run the verdict and the lines of its like, if there is one; `finished_at` stays when that was flown.
 
@@ -127,12 +129,6 @@ def take_flown_before(run: RehearsalRun) -> bool:
                 RehearsalTrack(run=held, uav=track.uav, flights=track.flights) for track in before.tracks.all()
             )
     return True
-
-
-REHEARSE = "simulation.tasks.rehearse_mission"
-KEPT = 20  # rehearsals of one mission; older ones go
-
-OnProgress = Callable[[str, float], None]
 
 
 class PlanChanged(Exception):

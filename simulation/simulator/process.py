@@ -38,6 +38,12 @@ from simulation.vehicle_protocol.flavour import Flavour
 from workspace.errors import DATABASE_AWAY
 from workspace.lease_times import held_until_s
 
+logger = logging.getLogger(__name__)
+EVERY_S = 0.5
+TELL_EVERY_S = 1.0
+AWAY_EVERY_S = 60.0  # one line of log
+LOOP, HANGS_AFTER_S = "the simulator", 300.0  # a database that neither answers nor refuses may hold it up for minutes
+
 
 class NoGateway(Exception):
     """A mission's UAV has nowhere to connect to."""
@@ -68,14 +74,6 @@ def launch_of(vehicle: SimulatedVehicle, simulation: Simulation, options: Option
 def _key_of(uav: Uav) -> bytes | None:
     credential = uav.credentials.filter(kind=CredentialKind.MAVLINK_KEY, revoked_at=None).first()
     return None if credential is None else mavlink_signing_key(credential=credential)
-
-
-logger = logging.getLogger(__name__)
-
-EVERY_S = 0.5
-TELL_EVERY_S = 1.0
-AWAY_EVERY_S = 60.0  # one line of log
-LOOP, HANGS_AFTER_S = "the simulator", 300.0  # a database that neither answers nor refuses may hold it up for minutes
 
 
 @dataclass

@@ -13,6 +13,10 @@ from simulation.flight.weather import Weather
 from simulation.vehicle_endpoint.flying_uav import FlyingUav
 
 RESYNC_AFTER_S = 1.0  # of wall time: what is further behind is given up
+logger = logging.getLogger(__name__)
+SPEED_UNHEARD = 1.0  # while a station falls silent that has to keep up with the reports: those that it is too busy for are lost
+STEP_S = 0.04  # of simulated time, as SimulatedUav has it
+SLOWEST, FASTEST = 0.1, 60.0
 
 
 @dataclass
@@ -55,13 +59,6 @@ class Pace:
         """From now on."""
         self.speed = speed
         self.next_s = now_s + self.interval_s
-
-
-logger = logging.getLogger(__name__)
-
-SPEED_UNHEARD = 1.0  # while a station falls silent that has to keep up with the reports: those that it is too busy for are lost
-STEP_S = 0.04  # of simulated time, as SimulatedUav has it
-SLOWEST, FASTEST = 0.1, 60.0
 
 
 class WrongPace(ValueError):

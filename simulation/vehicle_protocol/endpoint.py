@@ -33,6 +33,12 @@ from simulation.vehicle_protocol.vehicle import Vehicle
 
 PIECE = 50  # bytes of one STATUSTEXT
 MOST_PIECES = 5
+HEARTBEAT_S = 1.0
+LARGEST_NUMBER = 65_535
+SEVERITIES = {
+    Severity.INFO: mavlink.MAV_SEVERITY_INFO, Severity.WARNING: mavlink.MAV_SEVERITY_WARNING,
+    Severity.CRITICAL: mavlink.MAV_SEVERITY_CRITICAL,
+}  # fmt: skip
 
 
 def text_messages(text: str, severity: int, number: int) -> list[Message]:
@@ -43,14 +49,6 @@ def text_messages(text: str, severity: int, number: int) -> list[Message]:
     if identity and len(pieces[-1]) == PIECE and len(pieces) < MOST_PIECES:
         pieces.append(b"")  # a full last piece would not tell that it is the last
     return [mavlink.MAVLink_statustext_message(severity, piece, identity, place) for place, piece in enumerate(pieces)]
-
-
-HEARTBEAT_S = 1.0
-LARGEST_NUMBER = 65_535
-SEVERITIES = {
-    Severity.INFO: mavlink.MAV_SEVERITY_INFO, Severity.WARNING: mavlink.MAV_SEVERITY_WARNING,
-    Severity.CRITICAL: mavlink.MAV_SEVERITY_CRITICAL,
-}  # fmt: skip
 
 
 class Endpoint:

@@ -31,6 +31,11 @@ KEPT_BY_ARDUPILOT = {
     mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_INCLUSION: 1, mavlink.MAV_CMD_NAV_FENCE_POLYGON_VERTEX_EXCLUSION: 1,
     mavlink.MAV_CMD_NAV_RALLY_POINT: 0,
 }  # fmt: skip
+REQUEST_EVERY_S = 0.25
+MOST_REQUESTS = 20  # of one item
+ALL_LISTS = mavlink.MAV_MISSION_TYPE_ALL
+ACCEPTED, DENIED = int(mavlink.MAV_MISSION_ACCEPTED), int(mavlink.MAV_MISSION_DENIED)
+Replace = Callable[[MissionType, tuple[MissionItem, ...]], int]  # a MAV_MISSION_RESULT; nothing has changed unless it is ACCEPTED
 
 
 def item_of(message: Any) -> MissionItem:
@@ -81,14 +86,6 @@ def _e7(degrees: float) -> int:
 
 def _float32(value: float) -> float:
     return float(struct.unpack("<f", struct.pack("<f", value))[0])
-
-
-REQUEST_EVERY_S = 0.25
-MOST_REQUESTS = 20  # of one item
-ALL_LISTS = mavlink.MAV_MISSION_TYPE_ALL
-ACCEPTED, DENIED = int(mavlink.MAV_MISSION_ACCEPTED), int(mavlink.MAV_MISSION_DENIED)
-
-Replace = Callable[[MissionType, tuple[MissionItem, ...]], int]  # a MAV_MISSION_RESULT; nothing has changed unless it is ACCEPTED
 
 
 @dataclass

@@ -23,6 +23,14 @@ CAPABILITIES = (
 DEVELOPMENT = 0  # of the firmware's types: one that is no release is not compared with the latest release
 VERSIONS = {Flavour.PX4: (1, 15, 0), Flavour.ARDUPILOT: (4, 6, 0)}
 VENDOR, PRODUCT = 0x5350, 0x5349
+NO_NETWORK = 0
+HEADER, PAYLOAD = 12, 251
+TERMINATE_SESSION, RESET_SESSIONS = 1, 2
+OPENING = frozenset({4, 11})  # for reading, for writing; 6 would create a file
+ACK, NAK = 128, 129
+UNKNOWN_COMMAND, FILE_NOT_FOUND = 7, 10
+_LARGEST_NS = 2**63 - 1
+Answer = tuple[int, list[Message]]  # a MAV_RESULT, and what was asked for
 
 
 def version(flavour: Flavour, system: int) -> Message:
@@ -34,14 +42,6 @@ def version(flavour: Flavour, system: int) -> Message:
     return mavlink.MAVLink_autopilot_version_message(
         CAPABILITIES, firmware, firmware, 0, 0, nothing, nothing, nothing, VENDOR, PRODUCT, unique
     )
-
-
-NO_NETWORK = 0
-HEADER, PAYLOAD = 12, 251
-TERMINATE_SESSION, RESET_SESSIONS = 1, 2
-OPENING = frozenset({4, 11})  # for reading, for writing; 6 would create a file
-ACK, NAK = 128, 129
-UNKNOWN_COMMAND, FILE_NOT_FOUND = 7, 10
 
 
 def refused(message: Any, station: Station) -> list[Outgoing]:
@@ -62,9 +62,6 @@ def refused(message: Any, station: Station) -> list[Outgoing]:
     return [Outgoing(mavlink.MAVLink_file_transfer_protocol_message(NO_NETWORK, *station.ends, list(answer)), station)]
 
 
-_LARGEST_NS = 2**63 - 1
-
-
 def timesync_answer(message: Any, station: Station, now_s: float) -> list[Outgoing]:
     """now_s: by one clock that never goes back. A message that bears a time of ours already is itself an answer."""
     if message.tc1 != 0:
@@ -78,9 +75,6 @@ def ping_answer(message: Any, station: Station) -> list[Outgoing]:
     if (message.target_system, message.target_component) != (0, 0):
         return []
     return [Outgoing(mavlink.MAVLink_ping_message(message.time_usec, message.seq, *station.ends), station)]
-
-
-Answer = tuple[int, list[Message]]  # a MAV_RESULT, and what was asked for
 
 
 @dataclass

@@ -18,6 +18,11 @@ from simulation.verdict.obstacles import Approach, Standing, lowest_of, nearest_
 from simulation.verdict.reaching import Visit, visits_of
 from simulation.verdict.zone_approach import ZoneApproach, zone_approaches
 
+MEETING_STEP_S = 0.2
+AS_PLANNED = 1.05  # of the planned energy
+NEAR_ZONES = 5  # of a route that are told of
+GroundHeights = Callable[[FloatArray], FloatArray]
+
 
 def wind_finding(uav: int, route: FrozenRoute, conditions: Conditions, max_airspeed_mps: float) -> Finding | None:
     """The strongest mean wind at the heights of a route, where it is more than can be flown: it is said before all that follows."""
@@ -51,13 +56,6 @@ def energy_of(route: FlownRoute) -> list[FlightEnergy]:
         for number, flown in enumerate(route.flights)
         if flown.track is not None and len(flown.track)
     ]
-
-
-MEETING_STEP_S = 0.2
-AS_PLANNED = 1.05  # of the planned energy
-NEAR_ZONES = 5  # of a route that are told of
-
-GroundHeights = Callable[[FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,16 @@ STANDS_BELOW_MPS = 1.0
 CLIMBS_ABOVE_MPS = 0.7
 SAME_COURSE_DEG, HEAD_ON_DEG = 60.0, 150.0
 HIGHER_M = 2.0
+FloatArray = NDArray[np.float64]
+IntArray = NDArray[np.int64]
+STEP_S = 2.0
+MOST_BOUND_M = 10.0  # of each; a UAV that may be anywhere would meet everyone
+DEGREE_M = 111_195.0
+MOST_MET = 8  # others that each is told of: in a crowd more would say nothing new
+SAME_RATE = 0.1  # of clocks: by which what was learnt of two that are the same may differ
+FAR_M, FAR_HEIGHT_M = 15.0, 8.0  # by which metres across the ground and in height are weighed against each other
+SLOWEST_CLIMB_MPS = 1.0  # from the ground; who climbs faster is taken to go on so
+NEAR_M, NEAR_HEIGHT_M = 150.0, 60.0  # farther ones are not told: no limit reaches so far beyond
 
 
 class Why(StrEnum):
@@ -75,19 +85,6 @@ def _angle_deg(one: tuple[float, float], other: tuple[float, float]) -> float:
     """From one direction to another, clockwise, -180 to 180."""
     turned = math.degrees(math.atan2(*other) - math.atan2(*one))
     return (turned + 180.0) % 360.0 - 180.0
-
-
-FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
-
-STEP_S = 2.0
-MOST_BOUND_M = 10.0  # of each; a UAV that may be anywhere would meet everyone
-DEGREE_M = 111_195.0
-MOST_MET = 8  # others that each is told of: in a crowd more would say nothing new
-SAME_RATE = 0.1  # of clocks: by which what was learnt of two that are the same may differ
-FAR_M, FAR_HEIGHT_M = 15.0, 8.0  # by which metres across the ground and in height are weighed against each other
-SLOWEST_CLIMB_MPS = 1.0  # from the ground; who climbs faster is taken to go on so
-NEAR_M, NEAR_HEIGHT_M = 150.0, 60.0  # farther ones are not told: no limit reaches so far beyond
 
 
 @dataclass(frozen=True, slots=True)

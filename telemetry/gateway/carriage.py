@@ -61,6 +61,16 @@ ADVICE = {
 FENCE_PARAMETERS = ("FENCE_ENABLE", "FENCE_AUTOENABLE", "FENCE_TYPE")
 FENCE_OFF = "The fence on the UAV does nothing: {parameter}."
 UNTOLD = "The UAV has not told how far apart waypoints may be."
+LOOK_EVERY_S = 0.25
+logger = logging.getLogger(__name__)
+PROGRESS_EVERY_S = 0.5
+TRY_AGAIN_IN_S = 2.0
+UNHEARD = frozenset({"silent", "too-slow", "not-heard"})  # the link's fault: worth another try as long as the command is wanted
+NOT_YET = frozenset({"not-held", "not-heard", "left-hold"})  # a mission is taken off as soon as that can be
+CLEAR_AGAIN_IN_S = 15.0
+MOST_ATTEMPTS = 100
+UNSETTLED_S = 2.0  # for which what was sent before may still arrive
+DATABASE_RETRY_S = 0.5
 
 
 async def reason_not_to_load(load: FlightLoad, session: Session, *, is_wanted: Callable[[], bool]) -> CannotCarry | None:
@@ -101,9 +111,6 @@ def _refusal(refused: tuple[LimitWarning, ...]) -> CannotCarry:
     return CannotCarry(first.code, " ".join(["The UAV would not fly it.", first.words, *more, *advice]))
 
 
-LOOK_EVERY_S = 0.25
-
-
 async def send_blind(order: Order, session: Session, may_send: Callable[[], bool], is_wanted: Callable[[], Awaitable[bool]]) -> None:
     """`may_send` is asked before each message, `is_wanted` after it."""
     sent, next_s = 0, time.monotonic()
@@ -116,18 +123,6 @@ async def send_blind(order: Order, session: Session, may_send: Callable[[], bool
             if not await is_wanted():
                 return
         await asyncio.sleep(LOOK_EVERY_S)
-
-
-logger = logging.getLogger(__name__)
-
-PROGRESS_EVERY_S = 0.5
-TRY_AGAIN_IN_S = 2.0
-UNHEARD = frozenset({"silent", "too-slow", "not-heard"})  # the link's fault: worth another try as long as the command is wanted
-NOT_YET = frozenset({"not-held", "not-heard", "left-hold"})  # a mission is taken off as soon as that can be
-CLEAR_AGAIN_IN_S = 15.0
-MOST_ATTEMPTS = 100
-UNSETTLED_S = 2.0  # for which what was sent before may still arrive
-DATABASE_RETRY_S = 0.5
 
 
 @dataclass

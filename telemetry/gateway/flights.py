@@ -25,6 +25,14 @@ from telemetry.gateway.options import Options
 from telemetry.gateway.session import Session
 from telemetry.models import FlightLog
 
+CARRY_KEYS = frozenset({mavlink.MAVLINK_MSG_ID_SETUP_SIGNING})
+BUFFER = 64 * 1024
+logger = logging.getLogger(__name__)
+SYNC_EVERY_S = 2.0
+DISARMED_FOR_S = 2.0
+FORGOTTEN_AFTER_S = 1_800.0  # a flight that ended unheard
+ROWS_WAITING = 1_000
+
 
 @transaction.atomic
 def begin_flight_log(*, uav_id: int, path: str, started_at: datetime) -> None:
@@ -51,10 +59,6 @@ def _size_bytes(path: str) -> int:
 
 def _last_written(path: str) -> datetime | None:
     return datetime.fromtimestamp(_file(path).stat().st_mtime).astimezone() if _file(path).exists() else None
-
-
-CARRY_KEYS = frozenset({mavlink.MAVLINK_MSG_ID_SETUP_SIGNING})
-BUFFER = 64 * 1024
 
 
 @dataclass
@@ -110,14 +114,6 @@ class FlightRecorder:
             with contextlib.suppress(OSError, ValueError):
                 self._file.close()
             self._file = None
-
-
-logger = logging.getLogger(__name__)
-
-SYNC_EVERY_S = 2.0
-DISARMED_FOR_S = 2.0
-FORGOTTEN_AFTER_S = 1_800.0  # a flight that ended unheard
-ROWS_WAITING = 1_000
 
 
 @dataclass

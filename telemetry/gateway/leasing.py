@@ -15,18 +15,16 @@ from telemetry.services.links import UNHEARD_S, renew_leases, take_leases
 from workspace.lease_times import held_until_s
 from workspace.timed_waits import wait_for_event
 
-
-def served_until_s(asked_s: float, lease_s: float) -> float:
-    """The same for a vehicle, which another gateway may also take once nobody has stored for a while that it was heard."""
-    return held_until_s(asked_s, min(lease_s, UNHEARD_S))
-
-
 logger = logging.getLogger(__name__)
-
 LEASES_EVERY_S = 1.0
 RETRY_S = 0.5
 GATHERED_S = 0.05  # vehicles that are first heard together are asked for at once
 WAITED_TOO_LONG_S = 15.0
+
+
+def served_until_s(asked_s: float, lease_s: float) -> float:
+    """The same for a vehicle, which another gateway may also take once nobody has stored for a while that it was heard."""
+    return held_until_s(asked_s, min(lease_s, UNHEARD_S))
 
 
 @dataclass

@@ -23,6 +23,11 @@ from telemetry.services.along_route import OnBoard, along_route, held_flight
 from telemetry.services.loads import Loaded, loaded_on
 
 SAME_M = 1.0  # of two legs that are as near it is on the first
+LOADING = (CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION)
+FLIES_LIST = (CommandKind.START, CommandKind.RESUME)
+EMPTY = FlightLoad(())
+KNOWN_LOADS = 5
+NEW_S = 10.0
 
 
 def item_to_begin_with(load: FlightLoad, begun_by: int, state: VehicleState) -> int | None:
@@ -46,13 +51,6 @@ def item_to_begin_with(load: FlightLoad, begun_by: int, state: VehicleState) -> 
         if beside.away_m <= nearest_m - (0.0 if found is None else SAME_M):
             found, nearest_m = number, beside.away_m
     return found
-
-
-LOADING = (CommandKind.UPLOAD_MISSION, CommandKind.CLEAR_MISSION)
-FLIES_LIST = (CommandKind.START, CommandKind.RESUME)
-EMPTY = FlightLoad(())
-KNOWN_LOADS = 5
-NEW_S = 10.0
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,17 @@ from telemetry.services.heard_by_gateway import HeardText
 from telemetry.services.links import LinkState, release_leases
 
 TRY_AGAIN_S = 1.0
+PLAIN = frozenset(
+    {"application_name", "connect_timeout", "dbname", "host", "password", "port", "sslcert", "sslkey", "sslmode", "sslrootcert", "user"}
+)
+logger = logging.getLogger(__name__)
+FLEET_EVERY_S = 1.0
+RETRY_S = 0.5
+COUNTS_EVERY_S = 60.0
+DESK_WITHIN_S = 5.0
+STOP_WITHIN_S = 4.0
+CANCEL_AGAIN_S = 0.5
+LOOP, HANGS_AFTER_S = "the gateway", 30.0
 
 
 async def listen(on_hint: Callable[[], None]) -> None:
@@ -51,22 +62,6 @@ async def listen(on_hint: Callable[[], None]) -> None:
         except psycopg.Error as error:
             logger.debug("no hints: %s", error)
         await asyncio.sleep(TRY_AGAIN_S)
-
-
-PLAIN = frozenset(
-    {"application_name", "connect_timeout", "dbname", "host", "password", "port", "sslcert", "sslkey", "sslmode", "sslrootcert", "user"}
-)
-
-
-logger = logging.getLogger(__name__)
-
-FLEET_EVERY_S = 1.0
-RETRY_S = 0.5
-COUNTS_EVERY_S = 60.0
-DESK_WITHIN_S = 5.0
-STOP_WITHIN_S = 4.0
-CANCEL_AGAIN_S = 0.5
-LOOP, HANGS_AFTER_S = "the gateway", 30.0
 
 
 @dataclass

@@ -35,6 +35,18 @@ from telemetry.services.links import Lease, LinkState
 from telemetry.services.loads import Doubt
 
 WINDOW_S = 10.0
+TO_WHO_SENDS_A_LIST = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK"})  # reading one draws none of these
+QUIET_S = 10.0  # so long after a transfer of ours its answers may still come
+logger = logging.getLogger(__name__)
+MOST_WAITING = 5_000  # frames of a vehicle that is not served yet
+HEARD_WITHIN_S = 5.0  # else what is not urgent waits for it, or for another gateway
+GREET_AGAIN_S = 1.0
+LATE = frozenset({Refusal.TOO_OLD, Refusal.BEFORE_START})
+POSITIONS_MISSING_S = 3.0
+RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
+TELL_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
+ADDRESS_GOOD_S = 3_600.0  # no flight lasts longer: whoever has an address for longer without a word may not be the UAV any more
+Listener = Callable[[Message, float], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,10 +79,6 @@ class LinkRate:
             self._last = Rate(self._bytes / passed_s, self._messages / passed_s)
             self._begin_s, self._bytes, self._messages = now_s, 0, 0
         return self._last
-
-
-TO_WHO_SENDS_A_LIST = frozenset({"MISSION_REQUEST", "MISSION_REQUEST_INT", "MISSION_ACK"})  # reading one draws none of these
-QUIET_S = 10.0  # so long after a transfer of ours its answers may still come
 
 
 @dataclass
@@ -109,19 +117,6 @@ class ListWatch:
 
 def _is_to_us(message: Message) -> bool:
     return message.target_system in (0, OWN_SYSTEM) and message.target_component in (0, OWN_COMPONENT)
-
-
-logger = logging.getLogger(__name__)
-
-MOST_WAITING = 5_000  # frames of a vehicle that is not served yet
-HEARD_WITHIN_S = 5.0  # else what is not urgent waits for it, or for another gateway
-GREET_AGAIN_S = 1.0
-LATE = frozenset({Refusal.TOO_OLD, Refusal.BEFORE_START})
-POSITIONS_MISSING_S = 3.0
-RADIO = frozenset({mavlink.MAVLINK_MSG_ID_RADIO_STATUS, mavlink.MAVLINK_MSG_ID_RADIO})
-TELL_TIME = frozenset({"GLOBAL_POSITION_INT", "ATTITUDE", "SYSTEM_TIME"})
-ADDRESS_GOOD_S = 3_600.0  # no flight lasts longer: whoever has an address for longer without a word may not be the UAV any more
-Listener = Callable[[Message, float], None]
 
 
 @dataclass

@@ -18,6 +18,8 @@ from telemetry.selectors.live import Key
 from telemetry.serializers.alerts import alert_json
 from workspace.stored_words import in_words
 
+SAME_IN_ALL = ""  # the language of what has no words
+
 
 def missions_json(mission_ids: Iterable[UUID]) -> list[dict[str, Any]]:
     missions = list(Mission.objects.filter(pk__in=list(mission_ids)))
@@ -64,9 +66,6 @@ def _mission_json(mission: Mission, uavs: list[dict[str, Any]], targets: list[In
         ],
         "counts": {"complete": sum(target.state == TargetState.COMPLETE for target in targets), "all": len(targets)},
     }
-
-
-SAME_IN_ALL = ""  # the language of what has no words
 
 
 def language_of(kind: str, language: str) -> str:

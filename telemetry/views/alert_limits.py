@@ -20,6 +20,8 @@ from workspace.models import User
 from workspace.services import record_change
 from workspace.signed_in import SignedInRequest
 
+DESCRIPTION = "All that is stated, by name, in one object; what is left out or null is as usual. See docs/alerts.md."
+
 
 def state_alert_limits(*, row: UavType | Mission, limits: Any, actor: User) -> None:
     """All that differ from the usual ones. Nothing else of the row is touched. Raises InvalidLimits."""
@@ -36,9 +38,6 @@ def state_alert_limits(*, row: UavType | Mission, limits: Any, actor: User) -> N
                 subject_type="mission" if isinstance(row, Mission) else "uav_type", subject_id=row.pk, before=before, after=stated,
             )  # fmt: skip
     row.alert_limits = stated
-
-
-DESCRIPTION = "All that is stated, by name, in one object; what is left out or null is as usual. See docs/alerts.md."
 
 
 class UavTypeAlertLimits(APIView):

@@ -23,6 +23,13 @@ FIGURES = (
     "altitude_amsl_m", "altitude_relative_m", "speed_mps", "heading_deg", "bound_along_m", "bound_across_m", "bound_bearing_deg",
     "bound_height_m", "bound_speed_mps",
 )  # fmt: skip
+FILTERS = [
+    OpenApiParameter("from", TIME, description="of moments at or after this time, with its zone"),
+    OpenApiParameter("to", TIME, description="of moments before this time, with its zone"),
+    UAV.documented,
+    OpenApiParameter("replaced", bool, description="true: those for whose second a measurement came later; false: the others"),
+    *THINNED,
+]
 
 
 class EstimatePropertiesSerializer(serializers.Serializer):
@@ -69,15 +76,6 @@ def estimate_feature(estimate: PositionEstimate) -> dict[str, Any]:
             **{name: getattr(estimate, name) for name in FIGURES},
         },
     }
-
-
-FILTERS = [
-    OpenApiParameter("from", TIME, description="of moments at or after this time, with its zone"),
-    OpenApiParameter("to", TIME, description="of moments before this time, with its zone"),
-    UAV.documented,
-    OpenApiParameter("replaced", bool, description="true: those for whose second a measurement came later; false: the others"),
-    *THINNED,
-]
 
 
 class MissionEstimates(APIView):

@@ -28,70 +28,7 @@ from workspace.schema import PAGE_PARAMETERS, TIME
 from workspace.signed_in import SignedInRequest
 from workspace.whole_numbers import WholeNumber
 
-
-class TelemetryLog(APIView):
-    renderer_classes = [FastJSONRenderer]
-
-    @extend_schema(
-        operation_id="list_telemetry",
-        summary="What UAVs reported, in the order of measurement",
-        description=(
-            "GeoJSON. Without a UAV, a mission or a beginning: of the last day. Records from the future and out of order are among them, "
-            "flagged. Thinning out is done in the database: `every_s` keeps the first record of each UAV in each so many seconds, `most` "
-            "chooses the seconds."
-        ),
-        parameters=[*FILTERS, *PAGE_PARAMETERS],
-        responses=RecordCollectionSerializer,
-    )
-    def get(self, request: SignedInRequest) -> Response:
-        records = records_that_match(request.user.organisation, asked_log(request))
-        chosen = sampled(request, records, of=in_time)
-        page = page_of(request, chosen.rows.select_related("uav", "stream"), order=("measured_at", "pk"))
-        return Response(
-            {
-                "type": "FeatureCollection",
-                "features": [record_feature(as_logged(record)) for record in page.rows],
-                "every_s": chosen.every_s,
-                "next": chosen.next(page.next),
-            }
-        )
-
-
-class LatestTelemetry(APIView):
-    @extend_schema(
-        operation_id="get_latest_telemetry",
-        summary="What a UAV measured last; never a record from the future",
-        responses=RecordFeatureSerializer,
-    )
-    def get(self, request: SignedInRequest, uav_id: int) -> Response:
-        record = latest_record(uav_or_404(request.user, uav_id))
-        if record is None:
-            raise Http404
-        return Response(record_feature(as_logged(record)))
-
-
 SHORTEST_S, LONGEST_S = 1e-3, 366 * 86_400.0  # between chosen rows
-
-
-def one_each(rows: QuerySet[Any], every_s: float, *, time: str = "measured_at") -> QuerySet[Any]:
-    """The first of each UAV in each stretch of so many seconds."""
-    stretch = Floor(Extract(time, "epoch") / Value(every_s), output_field=FloatField())
-    place = Window(RowNumber(), partition_by=[F("uav_id"), stretch], order_by=[F(time), F("pk")])
-    return rows.model._default_manager.filter(pk__in=rows.order_by().annotate(place=place).filter(place=1).values("pk"))
-
-
-def spacing_for(rows: QuerySet[Any], most: int, *, time: str = "measured_at") -> float | None:
-    """How many seconds apart at most so many of them lie, but up to two a UAV; None where they are no more than that."""
-    unordered = rows.order_by()
-    if len(unordered.values_list("pk")[: most + 1]) <= most:
-        return None
-    facts = unordered.aggregate(first=Min(time), last=Max(time))
-    uavs = unordered.values("uav_id").distinct().count()
-    span: timedelta = facts["last"] - facts["first"]
-    stretches = max(most // uavs - 1, 1)  # whole ones; the span may touch one more than it has
-    return min(max(span.total_seconds() / stretches, SHORTEST_S), LONGEST_S)
-
-
 USUAL_SPAN = timedelta(days=1)
 UAV = WholeNumber("uav", "id of a UAV")
 MOST = WholeNumber("most", "so many at most over all pages, evenly chosen, but up to two a UAV; `next` has the every_s", maximum=100_000)
@@ -114,6 +51,25 @@ FILTERS = [
     BOX,
     *THINNED,
 ]
+
+
+def one_each(rows: QuerySet[Any], every_s: float, *, time: str = "measured_at") -> QuerySet[Any]:
+    """The first of each UAV in each stretch of so many seconds."""
+    stretch = Floor(Extract(time, "epoch") / Value(every_s), output_field=FloatField())
+    place = Window(RowNumber(), partition_by=[F("uav_id"), stretch], order_by=[F(time), F("pk")])
+    return rows.model._default_manager.filter(pk__in=rows.order_by().annotate(place=place).filter(place=1).values("pk"))
+
+
+def spacing_for(rows: QuerySet[Any], most: int, *, time: str = "measured_at") -> float | None:
+    """How many seconds apart at most so many of them lie, but up to two a UAV; None where they are no more than that."""
+    unordered = rows.order_by()
+    if len(unordered.values_list("pk")[: most + 1]) <= most:
+        return None
+    facts = unordered.aggregate(first=Min(time), last=Max(time))
+    uavs = unordered.values("uav_id").distinct().count()
+    span: timedelta = facts["last"] - facts["first"]
+    stretches = max(most // uavs - 1, 1)  # whole ones; the span may touch one more than it has
+    return min(max(span.total_seconds() / stretches, SHORTEST_S), LONGEST_S)
 
 
 @dataclass(frozen=True)
@@ -180,3 +136,44 @@ def mission_of(request: Request) -> UUID | None:
         return UUID(text) if text else None
     except ValueError as error:
         raise invalid("mission", "The id of a mission is needed.") from error
+
+
+class TelemetryLog(APIView):
+    renderer_classes = [FastJSONRenderer]
+
+    @extend_schema(
+        operation_id="list_telemetry",
+        summary="What UAVs reported, in the order of measurement",
+        description=(
+            "GeoJSON. Without a UAV, a mission or a beginning: of the last day. Records from the future and out of order are among them, "
+            "flagged. Thinning out is done in the database: `every_s` keeps the first record of each UAV in each so many seconds, `most` "
+            "chooses the seconds."
+        ),
+        parameters=[*FILTERS, *PAGE_PARAMETERS],
+        responses=RecordCollectionSerializer,
+    )
+    def get(self, request: SignedInRequest) -> Response:
+        records = records_that_match(request.user.organisation, asked_log(request))
+        chosen = sampled(request, records, of=in_time)
+        page = page_of(request, chosen.rows.select_related("uav", "stream"), order=("measured_at", "pk"))
+        return Response(
+            {
+                "type": "FeatureCollection",
+                "features": [record_feature(as_logged(record)) for record in page.rows],
+                "every_s": chosen.every_s,
+                "next": chosen.next(page.next),
+            }
+        )
+
+
+class LatestTelemetry(APIView):
+    @extend_schema(
+        operation_id="get_latest_telemetry",
+        summary="What a UAV measured last; never a record from the future",
+        responses=RecordFeatureSerializer,
+    )
+    def get(self, request: SignedInRequest, uav_id: int) -> Response:
+        record = latest_record(uav_or_404(request.user, uav_id))
+        if record is None:
+            raise Http404
+        return Response(record_feature(as_logged(record)))

@@ -22,6 +22,18 @@ from workspace.schema import CHANGED_SINCE, PAGE_PARAMETERS, TIME
 from workspace.signed_in import SignedInRequest
 from workspace.whole_numbers import WholeNumber
 
+NEWEST_FIRST = ("-state_at", "-pk")
+ASSET = WholeNumber("asset", "id of an asset")
+FILTERS = [
+    ASSET.documented,
+    OpenApiParameter("external_id", str, description="your organisation's id of the asset"),
+    OpenApiParameter("mission", UUID, description="id of a mission"),
+    OpenApiParameter("from", TIME, description="`state_at` at or after this time, with its zone"),
+    OpenApiParameter("to", TIME, description="`state_at` before this time, with its zone"),
+    OpenApiParameter("reached_from", TIME, description="`reached_at` at or after this time, with its zone"),
+    OpenApiParameter("reached_before", TIME, description="`reached_at` before this time, with its zone"),
+]
+
 
 @dataclass(frozen=True, slots=True)
 class ResultFilter:
@@ -62,19 +74,6 @@ def results_that_match(organisation_id: int, wanted: ResultFilter) -> QuerySet[I
     return targets.select_related("mission", "asset").prefetch_related(
         Prefetch("waypoints", planned, to_attr="planned_waypoints"), Prefetch("results", reported_all, to_attr="reported_results")
     )
-
-
-NEWEST_FIRST = ("-state_at", "-pk")
-ASSET = WholeNumber("asset", "id of an asset")
-FILTERS = [
-    ASSET.documented,
-    OpenApiParameter("external_id", str, description="your organisation's id of the asset"),
-    OpenApiParameter("mission", UUID, description="id of a mission"),
-    OpenApiParameter("from", TIME, description="`state_at` at or after this time, with its zone"),
-    OpenApiParameter("to", TIME, description="`state_at` before this time, with its zone"),
-    OpenApiParameter("reached_from", TIME, description="`reached_at` at or after this time, with its zone"),
-    OpenApiParameter("reached_before", TIME, description="`reached_at` before this time, with its zone"),
-]
 
 
 class Results(APIView):

@@ -49,6 +49,16 @@ from workspace.errors import DATABASE_AWAY
 from workspace.live import publish_live
 
 OPEN_FOR_S = 30.0  # a store that took its ids earlier than others may end later than them, by so much
+JUDGED_EVERY_S = 10.0  # of a UAV, or where its reports are farther apart at each
+logger = logging.getLogger(__name__)
+EVERY_S = 1.0
+AWAY_EVERY_S = 60.0  # one line of log
+LOOP, HANGS_AFTER_S = "the watch", 300.0  # a database that neither answers nor refuses may hold it up for minutes
+READ_BACK = 60  # reports of a UAV, to know again what was known of it
+FAULTS = (ArithmeticError, ValueError, LookupError, np.linalg.LinAlgError)
+WITHOUT_RECORD_S = 3.0
+LEARN_AT_ONCE = 3  # UAVs a round
+HEARD_BACK, HEARD_EVERY = 20_000, 20  # records of a UAV
 
 
 @dataclass
@@ -70,9 +80,6 @@ class NewReports:
         while self._seen and self._seen[0][0] < now_s - OPEN_FOR_S:
             self._behind = max(self._behind, self._seen.popleft()[1])
         return found
-
-
-JUDGED_EVERY_S = 10.0  # of a UAV, or where its reports are farther apart at each
 
 
 class Judged(Protocol):
@@ -106,18 +113,6 @@ def count_states(made: Iterable[Made], *, held: int) -> None:
     states["unknown"] = held - states.total()
     for state, number in states.items():
         ESTIMATED_UAVS.labels(state).set(number)
-
-
-logger = logging.getLogger(__name__)
-
-EVERY_S = 1.0
-AWAY_EVERY_S = 60.0  # one line of log
-LOOP, HANGS_AFTER_S = "the watch", 300.0  # a database that neither answers nor refuses may hold it up for minutes
-READ_BACK = 60  # reports of a UAV, to know again what was known of it
-FAULTS = (ArithmeticError, ValueError, LookupError, np.linalg.LinAlgError)
-WITHOUT_RECORD_S = 3.0
-LEARN_AT_ONCE = 3  # UAVs a round
-HEARD_BACK, HEARD_EVERY = 20_000, 20  # records of a UAV
 
 
 @dataclass

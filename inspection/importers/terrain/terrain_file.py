@@ -25,6 +25,14 @@ VERTICAL_DATUM = "EGM96"  # SRTM, and what is handed out in its form
 VOID = -32768
 SIZES = {1201 * 1201 * 2: 1201, 3601 * 3601 * 2: 3601}  # 3 and 1 arc seconds
 _NAME = re.compile(r"([NS])(\d{2})([EW])(\d{3})", re.IGNORECASE)
+MOST_MEMBERS = 100
+MOST_UNPACKED_BYTES = 512 * 1024 * 1024
+DEFLATE_LIMIT = 1_032  # an HGT file of open sea packs as well as that; what counts is how much comes out
+MOST_TIFF_RATIO, FREE_TIFF_BYTES = 100, 16 * 1024 * 1024
+NEEDS_DATUM = "The file does not say from where its heights count. Say it: EGM96, EGM2008, or the name of another vertical datum."
+_ZIP_START, _GZIP_START = b"PK", b"\x1f\x8b"
+_TIFF_ENDINGS, _HGT_ENDING, _TABLES = (".tif", ".tiff"), ".hgt", (".txt", ".xml", ".prj", ".tfw", ".md", ".html", ".pdf", ".png", ".jpg")
+_CHUNK = 1024 * 1024
 
 
 class HgtRaster:
@@ -50,16 +58,6 @@ class HgtRaster:
             self._file.seek(((row + line) * self.width + column) * 2)
             raw[line] = np.frombuffer(self._file.read(columns * 2), dtype=">i2")
         return window_of(raw, VOID)
-
-
-MOST_MEMBERS = 100
-MOST_UNPACKED_BYTES = 512 * 1024 * 1024
-DEFLATE_LIMIT = 1_032  # an HGT file of open sea packs as well as that; what counts is how much comes out
-MOST_TIFF_RATIO, FREE_TIFF_BYTES = 100, 16 * 1024 * 1024
-NEEDS_DATUM = "The file does not say from where its heights count. Say it: EGM96, EGM2008, or the name of another vertical datum."
-_ZIP_START, _GZIP_START = b"PK", b"\x1f\x8b"
-_TIFF_ENDINGS, _HGT_ENDING, _TABLES = (".tif", ".tiff"), ".hgt", (".txt", ".xml", ".prj", ".tfw", ".md", ".html", ".pdf", ".png", ".jpg")
-_CHUNK = 1024 * 1024
 
 
 @dataclass

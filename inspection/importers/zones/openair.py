@@ -33,6 +33,21 @@ from inspection.importers.zones.texts import MAX_IDENTIFIER, MAX_NAME, checked_t
 
 MOST_CROSSINGS = 8
 _CHUNK = 256
+FARTHEST_M = 0.5  # that a side may be from the curve; in aeronautical files radii themselves are rounded to 19 m and more
+MOST_DIFFERENT_RADII = 0.2  # of the two ends of an arc; more is another centre
+_LEAST_SIDES = 8
+CLASSES = {
+    "R": "Restricted", "Q": "Danger", "P": "Prohibited", "A": "Class A", "B": "Class B", "C": "Class C", "D": "Class D", "E": "Class E",
+    "F": "Class F", "G": "Class G", "CTR": "Control zone", "GP": "Gliders prohibited", "GS": "Glider sector", "W": "Wave window",
+    "RMZ": "Radio mandatory zone", "TMZ": "Transponder mandatory zone", "UNC": "Unclassified", "UNCLASSIFIED": "Unclassified",
+}  # fmt: skip
+MAX_LINE_CHARACTERS = 2_000
+MOST_LISTED = 20  # in a note
+HALF_ROUND_DEG = 180.0
+_LOOKS = re.compile(rb"^\s*AC\s+\S", re.MULTILINE)
+_COMMENT = re.compile(r"(^|\s)\*.*$")
+_PEN = {"SP", "SB", "AT", "TO", "TC", "CO"}
+_FACTS = {"AY": "type", "AF": "frequency", "AG": "station", "AX": "transponder", "AA": "activation", "AI": "identifier"}
 
 
 def area_of_all_loops(ring: FloatArray) -> list[Polygon] | None:
@@ -59,11 +74,6 @@ def _crossings(segments: NDArray[np.object_]) -> int:
         if count > MOST_CROSSINGS:
             break
     return count
-
-
-FARTHEST_M = 0.5  # that a side may be from the curve; in aeronautical files radii themselves are rounded to 19 m and more
-MOST_DIFFERENT_RADII = 0.2  # of the two ends of an arc; more is another centre
-_LEAST_SIDES = 8
 
 
 def arc(centre: LonLat, radius_m: float, start_deg: float, end_deg: float, is_clockwise: bool, place: str) -> FloatArray:
@@ -124,20 +134,6 @@ def _check_not_at_a_pole(centre: LonLat, radius_m: float, place: str) -> None:
     pole_m = min(WGS84.inv(centre.lon, centre.lat, centre.lon, latitude)[2] for latitude in (90.0, -90.0))
     if pole_m <= radius_m * 1.2:
         raise GeometryFault(place, "the arc comes too near to a pole", centre)
-
-
-CLASSES = {
-    "R": "Restricted", "Q": "Danger", "P": "Prohibited", "A": "Class A", "B": "Class B", "C": "Class C", "D": "Class D", "E": "Class E",
-    "F": "Class F", "G": "Class G", "CTR": "Control zone", "GP": "Gliders prohibited", "GS": "Glider sector", "W": "Wave window",
-    "RMZ": "Radio mandatory zone", "TMZ": "Transponder mandatory zone", "UNC": "Unclassified", "UNCLASSIFIED": "Unclassified",
-}  # fmt: skip
-MAX_LINE_CHARACTERS = 2_000
-MOST_LISTED = 20  # in a note
-HALF_ROUND_DEG = 180.0
-_LOOKS = re.compile(rb"^\s*AC\s+\S", re.MULTILINE)
-_COMMENT = re.compile(r"(^|\s)\*.*$")
-_PEN = {"SP", "SB", "AT", "TO", "TC", "CO"}
-_FACTS = {"AY": "type", "AF": "frequency", "AG": "station", "AX": "transponder", "AA": "activation", "AI": "identifier"}
 
 
 def looks_like_openair(data: bytes) -> bool:

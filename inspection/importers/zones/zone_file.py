@@ -19,6 +19,8 @@ from inspection.importers.zones.texts import MAX_IDENTIFIER, MAX_NAME
 
 MAX_LOOKED_AT = 20_000  # parts of one zone
 _PLACE = re.compile(r"(features|UASZoneList)\[(\d+)\]")
+MAX_FILE_BYTES = 32 * 1024 * 1024
+_GEOJSON = {"FeatureCollection", "Feature", "Polygon", "MultiPolygon", "Point", "GeometryCollection"}
 
 
 def unread_of_document(document: dict[str, Any], faults: Sequence[GeometryFault]) -> list[UnreadRecord]:
@@ -68,10 +70,6 @@ def _positions(geometry: Any) -> Iterator[tuple[float, float]]:
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
-
-
-MAX_FILE_BYTES = 32 * 1024 * 1024
-_GEOJSON = {"FeatureCollection", "Feature", "Polygon", "MultiPolygon", "Point", "GeometryCollection"}
 
 
 class ZoneFileError(ValueError):

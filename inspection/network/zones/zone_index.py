@@ -16,6 +16,17 @@ from inspection.geodesy import LonLat
 from inspection.network.inspection_graph import InspectionGraph
 
 CELLS = 512  # along each side
+# The fewest metres in a degree of latitude, and of longitude on the equator (WGS84): a clearance is never narrower than asked.
+METRES_PER_DEGREE_LAT = 110_574.0
+METRES_PER_DEGREE_LON = 111_319.0
+NEAREST_POLE_DEG = 89.9  # nearer to a pole a degree of longitude no longer shrinks here
+CORNER_SEGMENTS = 8  # per quarter circle of a widened corner
+CORNER_EXCESS = 1.005  # makes the chords of such a quarter circle clear the true one: 1 / cos(90 deg / 16) = 1.0048
+
+MANY = 5_000  # legs or positions from which on it is worth a coarse look at where they are
+
+BoolArray = NDArray[np.bool_]
+FloatArray = NDArray[np.float64]
 
 
 class BoxGrid:
@@ -44,19 +55,6 @@ class BoxGrid:
     def _cells(self, position: FloatArray) -> NDArray[np.int64]:
         cells: NDArray[np.int64] = np.clip(np.floor((position - self._low) / self._step), 0, CELLS - 1).astype(np.int64)
         return cells
-
-
-# The fewest metres in a degree of latitude, and of longitude on the equator (WGS84): a clearance is never narrower than asked.
-METRES_PER_DEGREE_LAT = 110_574.0
-METRES_PER_DEGREE_LON = 111_319.0
-NEAREST_POLE_DEG = 89.9  # nearer to a pole a degree of longitude no longer shrinks here
-CORNER_SEGMENTS = 8  # per quarter circle of a widened corner
-CORNER_EXCESS = 1.005  # makes the chords of such a quarter circle clear the true one: 1 / cos(90 deg / 16) = 1.0048
-
-MANY = 5_000  # legs or positions from which on it is worth a coarse look at where they are
-
-BoolArray = NDArray[np.bool_]
-FloatArray = NDArray[np.float64]
 
 
 class ZoneIndex:
