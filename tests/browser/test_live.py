@@ -116,6 +116,13 @@ def test_one_operator_starts_a_flight_and_another_sees_it_move_an_alert_and_an_a
     off_route.get_by_role("button", name="Acknowledge").first.click()
     expect(third.locator(".alert.known").filter(has_text="Acknowledged by rory")).to_be_visible()
 
+    watcher.keyboard.press("Shift+R")
+    expect(question).to_contain_text("It returns to its take-off place and lands.")
+    flyers[0].reports(along_m, mode="RTL")  # its failsafe, while the question stands
+    expect(question).to_contain_text("Kite is already returning. This command was not sent.")
+    question.get_by_role("button", name="Close").click()
+    expect(question).to_have_count(0)
+
 
 def test_a_uav_that_is_silent_is_estimated_and_a_page_that_is_cut_off_says_so(
     visitor: Visitor, flight: tuple[str, list[Flyer]], picture: Picture
@@ -131,6 +138,11 @@ def test_a_uav_that_is_silent_is_estimated_and_a_page_that_is_cut_off_says_so(
     expect(kite.locator(".estimate")).to_contain_text("(95 %)")
     expect(kite.locator(".figures")).to_contain_text("~")
     expect(page.locator(".map-flyer.estimated")).to_have_count(1)
+    silent = page.locator("#alert-list .alert").filter(has_text="no telemetry for")
+    expect(silent).to_contain_text("(last message ")
+    expect(silent).to_contain_text("Planned for link loss: it continues its mission by itself.")
+    said = silent.locator(".alert-title").inner_text()
+    expect(silent.locator(".alert-title")).not_to_have_text(said)
     kite.get_by_role("button", name=re.compile("Kite")).click()
     in_both_themes(page, picture, "live-estimated")
 

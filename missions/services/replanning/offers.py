@@ -59,7 +59,9 @@ def withdraw(*, mission_id: UUID, code: str, uav_id: int) -> bool:
     It is outdated, and not worked out again. The same cause makes another offer when it comes back.
     """
     with transaction.atomic():
-        held = Mission.objects.select_for_update(no_key=True).get(pk=mission_id)
+        held = Mission.objects.select_for_update(no_key=True).filter(pk=mission_id).first()
+        if held is None:
+            return False
         undecided = held.replan_offers.select_for_update(of=("self",)).select_related("mission")
         offer = undecided.filter(state__in=UNDECIDED, code=code, cause__uav=uav_id).first()
         if offer is None:
